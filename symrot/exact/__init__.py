@@ -1,0 +1,1 @@
+"""Exact decision of equality (see ``derivations/`` and the module docstrings)."""
