@@ -1,0 +1,288 @@
+"""The solids of symrot as data: dimensions, conditions, axes, and the map that sweeps them out. Standard library only.
+
+A map gives the position in the axes of the shape as text over its coordinates, each between limits that are text
+over the dimensions; a coordinate used in ``cos`` and ``sin`` has limits that are multiples of a quarter turn.
+Measure, mass, centre of mass and inertia all follow from it (:mod:`symrot.inertia.integration`): nothing else is typed.
+"""
+
+from collections.abc import Callable, Mapping
+from fractions import Fraction
+from operator import le, lt
+from typing import Any, NamedTuple
+
+from symrot.errors import InputError
+from symrot.number import read, show
+
+__all__ = ["DENSITY_UNITS", "SHAPES", "Coordinate", "Dimension", "Shape", "check_dimensions", "find_shape"]
+
+DENSITY_UNITS = {"solid": "kg/m^3", "surface": "kg/m^2", "curve": "kg/m", "points": "1"}
+"""Unit of the density of each kind of shape; points carry their masses among their dimensions."""
+
+
+class Dimension(NamedTuple):
+    """One dimension of a shape: a length in m, or a list of ``size`` points (m) or masses (kg); None is any count."""
+
+    name: str
+    meaning: str
+    symbol: str
+    least: str = "positive"  # positive | zero (allowed) | any
+    form: str = "length"  # length | points | masses
+    size: int | None = None
+
+
+class Coordinate(NamedTuple):
+    """One coordinate of a map, with its limits as text over the dimensions."""
+
+    name: str
+    lower: str
+    upper: str
+
+
+class Shape(NamedTuple):
+    """A shape of the table; ``position`` is empty for separate points."""
+
+    name: str
+    kind: str  # a key of DENSITY_UNITS
+    dimensions: tuple[Dimension, ...]
+    axes: str
+    coordinates: tuple[Coordinate, ...] = ()
+    position: tuple[str, str, str] | tuple[()] = ()
+    conditions: tuple[tuple[str, str, str], ...] = ()  # (dimension, "<" or "<=", dimension)
+
+    @property
+    def density_unit(self) -> str:
+        """The unit of a density of this shape."""
+        return DENSITY_UNITS[self.kind]
+
+
+_RELATIONS: dict[str, Callable[[Any, Any], bool]] = {"<": lt, "<=": le}
+
+_TURN = Coordinate("phi", "0", "2*pi")
+_UNIT = Coordinate("s", "0", "1")
+_ALONG_A = Coordinate("u", "-a/2", "a/2")
+_ALONG_B = Coordinate("v", "-b/2", "b/2")
+_ALONG_LENGTH = Coordinate("w", "-length/2", "length/2")
+_RADIUS = Dimension("radius", "radius", "R")
+_LENGTH = Dimension("length", "length along z", "L")
+_HEIGHT = Dimension("height", "height along z", "h")
+_INNER = Dimension("inner", "inner radius", "R_1", "zero")
+_OUTER = Dimension("outer", "outer radius", "R_2")
+_TRIANGLE = (
+    Dimension("base", "side along x, from the first corner to the second", "b"),
+    Dimension("height", "distance of the third corner from that side, along y", "h"),
+    Dimension("apex", "x of the third corner", "e", "any"),
+)
+_TRIANGLE_MAP = ("base*u*(1 - s) + apex*s", "height*s")
+_SPHERE_MAP = ("s*sin(theta)*cos(phi)", "s*sin(theta)*sin(phi)", "s*cos(theta)")
+_HALF_TURN = Coordinate("theta", "0", "pi")
+
+
+def _corner(axis: str) -> str:
+    """Return the map of a tetrahedron on one axis: from corner 1 a share r to 2, of that s on to 3, of that t to 4."""
+    return f"{axis}1 + r*({axis}2 - {axis}1) + r*s*({axis}3 - {axis}2) + r*s*q*({axis}4 - {axis}3)"
+
+
+_TABLE = (
+    Shape(
+        "box", "solid",
+        (Dimension("a", "side along x", "a"), Dimension("b", "side along y", "b"), Dimension("c", "side along z", "c")),
+        "origin at the centre, axes along the sides",
+        (_ALONG_A, _ALONG_B, Coordinate("w", "-c/2", "c/2")), ("u", "v", "w"),
+    ),
+    Shape(
+        "cylinder", "solid", (_RADIUS, _LENGTH), "origin at the centre, z along the axis",
+        (Coordinate("s", "0", "radius"), _TURN, _ALONG_LENGTH), ("s*cos(phi)", "s*sin(phi)", "w"),
+    ),
+    Shape(
+        "hollow_cylinder", "solid", (_INNER, _OUTER, _LENGTH), "origin at the centre, z along the axis",
+        (Coordinate("s", "inner", "outer"), _TURN, _ALONG_LENGTH), ("s*cos(phi)", "s*sin(phi)", "w"),
+        (("inner", "<", "outer"),),
+    ),
+    Shape(
+        "cone", "solid", (Dimension("radius", "radius of the base", "R"), _HEIGHT),
+        "origin at the centre of the base, z along the axis toward the apex at z = height",
+        (Coordinate("s", "0", "radius"), _TURN, Coordinate("w", "0", "1")),
+        ("s*(1 - w)*cos(phi)", "s*(1 - w)*sin(phi)", "height*w"),
+    ),
+    Shape(
+        "frustum", "solid",
+        (
+            Dimension("bottom", "radius at z = 0", "R_1"), Dimension("top", "radius at z = height", "R_2", "zero"),
+            _HEIGHT,
+        ),
+        "origin at the centre of the bottom, z along the axis toward the top at z = height",
+        (_UNIT, _TURN, Coordinate("w", "0", "1")),
+        ("s*(bottom + (top - bottom)*w)*cos(phi)", "s*(bottom + (top - bottom)*w)*sin(phi)", "height*w"),
+    ),
+    Shape(
+        "sphere", "solid", (_RADIUS,), "origin at the centre",
+        (Coordinate("s", "0", "radius"), _HALF_TURN, _TURN), _SPHERE_MAP,
+    ),
+    Shape(
+        "spherical_shell", "surface", (_RADIUS,), "origin at the centre",
+        (_HALF_TURN, _TURN), ("radius*sin(theta)*cos(phi)", "radius*sin(theta)*sin(phi)", "radius*cos(theta)"),
+    ),
+    Shape(
+        "hollow_sphere", "solid", (_INNER, _OUTER), "origin at the centre",
+        (Coordinate("s", "inner", "outer"), _HALF_TURN, _TURN), _SPHERE_MAP, (("inner", "<", "outer"),),
+    ),
+    Shape(
+        "hemisphere", "solid", (_RADIUS,), "origin at the centre of the flat face, the dome toward +z",
+        (Coordinate("s", "0", "radius"), Coordinate("theta", "0", "pi/2"), _TURN), _SPHERE_MAP,
+    ),
+    Shape(
+        "ellipsoid", "solid",
+        (
+            Dimension("a", "semi-axis along x", "a"), Dimension("b", "semi-axis along y", "b"),
+            Dimension("c", "semi-axis along z", "c"),
+        ),
+        "origin at the centre, axes along the semi-axes",
+        (_UNIT, _HALF_TURN, _TURN), ("a*s*sin(theta)*cos(phi)", "b*s*sin(theta)*sin(phi)", "c*s*cos(theta)"),
+    ),
+    Shape(
+        "torus", "solid",
+        (Dimension("ring", "radius of the centre line", "R"), Dimension("tube", "radius of the tube", "r")),
+        "origin at the centre, z along the axis of revolution",
+        (Coordinate("s", "0", "tube"), _TURN, Coordinate("theta", "0", "2*pi")),
+        ("(ring + s*cos(theta))*cos(phi)", "(ring + s*cos(theta))*sin(phi)", "s*sin(theta)"), (("tube", "<=", "ring"),),
+    ),
+    Shape("rod", "curve", (_LENGTH,), "origin at the centre, z along the rod", (_ALONG_LENGTH,), ("0", "0", "w")),
+    Shape(
+        "disk", "surface", (_RADIUS,), "origin at the centre, z along the normal",
+        (Coordinate("s", "0", "radius"), _TURN), ("s*cos(phi)", "s*sin(phi)", "0"),
+    ),
+    Shape(
+        "ring", "curve", (_RADIUS,), "origin at the centre, z along the normal",
+        (_TURN,), ("radius*cos(phi)", "radius*sin(phi)", "0"),
+    ),
+    Shape(
+        "plate", "surface", (Dimension("a", "side along x", "a"), Dimension("b", "side along y", "b")),
+        "origin at the centre, z along the normal", (_ALONG_A, _ALONG_B), ("u", "v", "0"),
+    ),
+    Shape(
+        "triangular_plate", "surface", _TRIANGLE,
+        "origin at the first corner, corners (0, 0), (base, 0), (apex, height) in the plane z = 0",
+        (Coordinate("u", "0", "1"), _UNIT), (*_TRIANGLE_MAP, "0"),
+    ),
+    Shape(
+        "triangular_prism", "solid", (*_TRIANGLE, _LENGTH),
+        "corners (0, 0), (base, 0), (apex, height) in x, y; z from -length/2 to length/2",
+        (Coordinate("u", "0", "1"), _UNIT, _ALONG_LENGTH), (*_TRIANGLE_MAP, "w"),
+    ),
+    Shape(
+        "tetrahedron", "solid", (Dimension("vertices", "the four corners [x, y, z]", "P", "any", "points", 4),),
+        "origin and axes in which the corners are given",
+        (Coordinate("r", "0", "1"), _UNIT, Coordinate("q", "0", "1")), (_corner("x"), _corner("y"), _corner("z")),
+    ),
+    Shape(
+        "point_masses", "points",
+        (
+            Dimension("masses", "the masses", "m", "positive", "masses"),
+            Dimension("points", "their positions [x, y, z]", "P", "any", "points"),
+        ),
+        "origin and axes in which the points are given",
+    ),
+)  # fmt: skip
+
+SHAPES: dict[str, Shape] = {shape.name: shape for shape in _TABLE}
+"""Every shape by name, in reading order."""
+
+
+def _prefix(where: str) -> str:
+    return f"{where}: " if where else ""
+
+
+def find_shape(name: object, where: str = "") -> Shape:
+    """Return the shape of that name, or raise InputError with the names there are."""
+    if not isinstance(name, str) or name not in SHAPES:
+        raise InputError(f"{_prefix(where)}expected a shape, one of {', '.join(SHAPES)}; got {show(name)}")
+    return SHAPES[name]
+
+
+def _point(value: object, where: str) -> tuple[Fraction, Fraction, Fraction]:
+    if isinstance(value, str) or not isinstance(value, list | tuple) or len(value) != 3:
+        raise InputError(f"{_prefix(where)}expected a point [x, y, z] in m, got {show(value)}")
+    x, y, z = (read(item, f"{where}[{index}]") for index, item in enumerate(value))
+    return x, y, z
+
+
+def _length(value: object, dimension: Dimension, where: str) -> Fraction:
+    number = read(value, where)
+    if (number < 0 and dimension.least != "any") or (number == 0 and dimension.least == "positive"):
+        expected = "a positive number" if dimension.least == "positive" else "a number >= 0"
+        unit = "kg" if dimension.form == "masses" else "m"
+        raise InputError(f"{_prefix(where)}expected {expected} ({dimension.meaning}, {unit}), got {show(value)}")
+    return number
+
+
+def _read_dimension(value: object, dimension: Dimension, where: str) -> Any:
+    if dimension.form == "length":
+        return _length(value, dimension, where)
+    if isinstance(value, str) or not isinstance(value, list | tuple) or len(value) != (dimension.size or len(value)):
+        many = f"a list of {dimension.size}" if dimension.size else "a list"
+        raise InputError(f"{_prefix(where)}expected {many}, {dimension.meaning}; got {show(value)}")
+    if not value:
+        raise InputError(f"{_prefix(where)}expected at least one entry, {dimension.meaning}; got an empty list")
+    items = enumerate(value)
+    if dimension.form == "points":
+        return tuple(_point(item, f"{where}[{index}]") for index, item in items)
+    return tuple(_length(item, dimension, f"{where}[{index}]") for index, item in items)
+
+
+def check_names(shape: Shape, dimensions: Mapping[str, object], where: str = "") -> None:
+    """Raise InputError unless exactly the dimensions of the shape are given."""
+    expected = [dimension.name for dimension in shape.dimensions]
+    unknown, missing = sorted(set(dimensions) - set(expected)), [name for name in expected if name not in dimensions]
+    if unknown or missing:
+        fault = f"'{unknown[0]}' is none of them" if unknown else f"'{missing[0]}' is missing"
+        raise InputError(f"{_prefix(where)}expected the dimensions {', '.join(expected)} of a {shape.name}; {fault}")
+
+
+def check_dimensions(shape: Shape, dimensions: Mapping[str, object], where: str = "") -> dict[str, Any]:
+    """Return the dimensions of a shape as exact numbers.
+
+    Parameters
+    ----------
+    shape : Shape
+        An entry of :data:`SHAPES`.
+    dimensions : mapping of str to number, text, or list of them
+        What :func:`symrot.number.read` reads, in m (masses in kg).
+    where : str
+        Place of the dimensions, put in front of every complaint.
+
+    Returns
+    -------
+    dict of str to Fraction, or to a tuple of masses or of points
+
+    Raises
+    ------
+    InputError
+        For a missing or unknown dimension, one that is not a positive length (or zero, or any, where the table says
+        so), one that breaks a condition such as ``inner < outer``, or lists of different lengths.
+    """
+    check_names(shape, dimensions, where)
+    dot = f"{where}." if where else ""
+    found = {d.name: _read_dimension(dimensions[d.name], d, dot + d.name) for d in shape.dimensions}
+    for left, relation, right in shape.conditions:
+        if not _RELATIONS[relation](found[left], found[right]):
+            raise InputError(
+                f"{_prefix(where)}expected {left} {relation} {right} of a {shape.name}; "
+                f"got {left} = {show(dimensions[left])}, {right} = {show(dimensions[right])}"
+            )
+    lists = [d.name for d in shape.dimensions if d.form != "length" and d.size is None]
+    if len({len(found[name]) for name in lists}) > 1:
+        counts = ", ".join(f"{len(found[name])} {name}" for name in lists)
+        raise InputError(f"{_prefix(where)}expected as many {' as '.join(lists)}; got {counts}")
+    return found
+
+
+def scalars(dimensions: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the dimensions as single numbers by name; corner n of ``vertices`` becomes ``xn``, ``yn``, ``zn``."""
+    flat: dict[str, Any] = {}
+    for name, value in dimensions.items():
+        if isinstance(value, tuple):
+            corners = enumerate(value, 1)
+            flat.update({f"{axis}{n}": item for n, point in corners for axis, item in zip("xyz", point, strict=True)})
+        else:
+            flat[name] = value
+    return flat

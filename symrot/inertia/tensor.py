@@ -1,0 +1,145 @@
+"""Algebra of 3x3 tensors as nested tuples, over Fractions, floats or SymPy expressions. Standard library only.
+
+One code serves the exact mass properties of a scene and the symbolic bodies of a derivation. Tensors and vectors come
+in as nested sequences, SymPy matrices or NumPy arrays, and go out as tuples.
+Convention: inertia components carry the minus sign, ``I_xy = -integral of x y dm``.
+"""
+
+from collections.abc import Callable, Iterable
+from typing import Any
+
+__all__ = [
+    "IDENTITY", "Tensor", "Vector", "about_center_of_mass", "about_point", "add", "apply", "cross", "determinant",
+    "dot", "inertia_of_point", "inertia_of_second_moments", "matrix", "multiply", "rotate", "scale", "subtract",
+    "trace", "transpose", "vector",
+]  # fmt: skip
+
+Vector = tuple[Any, Any, Any]
+Tensor = tuple[Vector, Vector, Vector]
+
+IDENTITY: Tensor = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
+
+
+def matrix(source: Any) -> Tensor:
+    """Return a 3x3 tensor as nested tuples; ``ValueError`` when it is not 3x3."""
+    rows = tuple(vector(row) for row in (source.tolist() if hasattr(source, "tolist") else source))
+    if len(rows) != 3:
+        raise ValueError(f"expected a 3x3 tensor, got {len(rows)} rows")
+    return rows
+
+
+def vector(source: Any) -> Vector:
+    """Return a vector, row or column of three as a tuple; ``ValueError`` when it has not three components."""
+    items: Iterable[Any] = source.tolist() if hasattr(source, "tolist") else source
+    found = tuple(items)
+    if len(found) == 1:
+        found = tuple(found[0])
+    if found and all(isinstance(item, list) for item in found):
+        found = tuple(item for (item,) in found)
+    if len(found) != 3:
+        raise ValueError(f"expected 3 components, got {len(found)}")
+    return found
+
+
+def _entrywise(operation: Callable[..., Any], *tensors: Any) -> Tensor:
+    return matrix([list(map(operation, *rows)) for rows in zip(*map(matrix, tensors), strict=True)])
+
+
+def add(left: Any, right: Any) -> Tensor:
+    """Return left + right."""
+    return _entrywise(lambda a, b: a + b, left, right)
+
+
+def subtract(left: Any, right: Any) -> Tensor:
+    """Return left - right."""
+    return _entrywise(lambda a, b: a - b, left, right)
+
+
+def scale(factor: Any, tensor: Any) -> Tensor:
+    """Return factor * tensor."""
+    return _entrywise(lambda a: factor * a, tensor)
+
+
+def transpose(tensor: Any) -> Tensor:
+    """Return the transpose."""
+    return matrix(list(zip(*matrix(tensor), strict=True)))
+
+
+def dot(left: Any, right: Any) -> Any:
+    """Return the scalar product of two vectors."""
+    (a, b, c), (x, y, z) = vector(left), vector(right)
+    return a * x + b * y + c * z
+
+
+def cross(left: Any, right: Any) -> Vector:
+    """Return the vector product left x right."""
+    (a, b, c), (x, y, z) = vector(left), vector(right)
+    return b * z - c * y, c * x - a * z, a * y - b * x
+
+
+def apply(tensor: Any, v: Any) -> Vector:
+    """Return tensor * v."""
+    first, second, third = matrix(tensor)
+    return dot(first, v), dot(second, v), dot(third, v)
+
+
+def multiply(left: Any, right: Any) -> Tensor:
+    """Return the product left * right."""
+    columns = transpose(right)
+    return matrix(tuple(tuple(dot(row, column) for column in columns) for row in matrix(left)))
+
+
+def trace(tensor: Any) -> Any:
+    """Return the sum of the diagonal."""
+    rows = matrix(tensor)
+    return rows[0][0] + rows[1][1] + rows[2][2]
+
+
+def determinant(tensor: Any) -> Any:
+    """Return the determinant."""
+    first, second, third = matrix(tensor)
+    return dot(first, cross(second, third))
+
+
+def rotate(tensor: Any, dcm: Any) -> Tensor:
+    """Return the components of a tensor in other axes: ``dcm * tensor * dcm^T``.
+
+    ``dcm`` maps components in the old axes to components in the new ones, as ``dcm_sb`` maps body to space.
+    """
+    return multiply(multiply(dcm, tensor), transpose(dcm))
+
+
+def inertia_of_second_moments(moments: Any) -> Tensor:
+    """Return the inertia tensor ``trace(M) 1 - M`` of the second moments ``M_ij = integral of x_i x_j dm``, kg m^2."""
+    total = trace(moments)
+    rows = matrix(moments)
+    return matrix(tuple(tuple(total - rows[i][i] if i == j else -rows[i][j] for j in range(3)) for i in range(3)))
+
+
+def inertia_of_point(mass: Any, position: Any) -> Tensor:
+    """Return the inertia tensor of a point mass about the origin, ``m (r^2 1 - r r^T)``, kg m^2."""
+    r = vector(position)
+    return inertia_of_second_moments(tuple(tuple(mass * a * b for b in r) for a in r))
+
+
+def about_point(inertia: Any, mass: Any, offset: Any) -> Tensor:
+    """Return the inertia tensor about a point, from the one about the centre of mass (parallel axes, full tensor).
+
+    Parameters
+    ----------
+    inertia : 3x3, kg m^2
+        About the centre of mass.
+    mass : number, kg
+    offset : 3-vector, m
+        From the point to the centre of mass, or back: the sign does not matter.
+
+    Notes
+    -----
+    Source: Goldstein, Poole & Safko, Classical Mechanics, 3rd ed., section 5.3.
+    """
+    return add(inertia, inertia_of_point(mass, offset))
+
+
+def about_center_of_mass(inertia: Any, mass: Any, offset: Any) -> Tensor:
+    """Return the inertia tensor about the centre of mass, from the one about a point ``offset`` away."""
+    return subtract(inertia, inertia_of_point(mass, offset))
