@@ -1,0 +1,218 @@
+"""Principal axes, class of body and admissibility of an inertia tensor. Standard library only.
+
+The class is decided on numbers far more accurate than a double (120 digits, equality to 2^-200), so bodies whose
+moments differ in their last digit are told apart, and equal moments survive a rotation by an irrational angle.
+"""
+
+from decimal import Decimal, localcontext
+from fractions import Fraction
+from itertools import permutations
+from typing import Any, NamedTuple
+
+from symrot.errors import InputError
+from symrot.inertia.tensor import IDENTITY, Tensor, cross, determinant, dot, matrix, subtract, transpose
+from symrot.number import equal, read, show
+
+__all__ = ["Principal", "principal_axes", "require_admissible", "why_not_propagable"]
+
+DIGITS = 120
+_NEGLIGIBLE = Fraction(1, 2**200)  # of the largest moment, as in number.equal
+_PAIRS = ((0, 1), (0, 2), (1, 2))
+_LARGEST_DENOMINATOR = 10**40  # a moment is looked for among these fractions, and taken only when it is exactly a root
+
+_Work = list[list[Decimal]]
+
+
+class Principal(NamedTuple):
+    """Principal moments and axes of a body.
+
+    ``moments`` are in kg m^2, exact where they are rational, and exactly equal where they are equal. Column k of
+    ``axes`` is principal axis k in the given axes: ``v_given = axes * v_principal``, right-handed, orthonormal to
+    1e-110. When the given axes are principal already, ``axes`` is the identity and the moments keep their order; else
+    each principal axis is numbered and directed like the given axis that it is closest to.
+    """
+
+    moments: tuple[Fraction, Fraction, Fraction]
+    axes: Tensor
+    kind: str  # spherical | symmetric | asymmetric
+    symmetry_axis: int | None  # of a symmetric body: 0, 1 or 2
+    given_axes: bool  # the given axes are principal
+
+    @property
+    def flat(self) -> bool:
+        """Whether all mass lies in a plane: the largest moment is the sum of the other two."""
+        small, middle, large = sorted(self.moments)
+        return equal(small + middle, large)
+
+    @property
+    def needle(self) -> bool:
+        """Whether all mass lies on a line: one moment is zero."""
+        return min(self.moments) == 0
+
+
+def _read_tensor(inertia: Any, where: str) -> Tensor:
+    try:
+        rows = matrix(inertia)
+    except (TypeError, ValueError):
+        raise InputError(f"{_prefix(where)}expected 3x3 moments of inertia in kg m^2, got {show(inertia)}") from None
+    tensor = matrix([[read(entry, where) for entry in row] for row in rows])
+    largest = max(abs(entry) for row in tensor for entry in row)
+    for i, j in _PAIRS:
+        if abs(tensor[i][j] - tensor[j][i]) > largest * _NEGLIGIBLE:
+            raise InputError(
+                f"{_prefix(where)}expected a symmetric inertia tensor, got {float(tensor[i][j])!r} and "
+                f"{float(tensor[j][i])!r} on either side of the diagonal"
+            )
+    return tensor
+
+
+def _prefix(where: str) -> str:
+    return f"{where}: " if where else ""
+
+
+def _jacobi(tensor: Tensor) -> tuple[list[Decimal], _Work]:
+    """Return eigenvalues and eigenvectors (columns) by cyclic Jacobi rotations (Golub & Van Loan, section 8.5)."""
+    work = [[Decimal(entry.numerator) / Decimal(entry.denominator) for entry in row] for row in tensor]
+    vectors = [[Decimal(int(i == j)) for j in range(3)] for i in range(3)]
+    scale = max(abs(entry) for row in work for entry in row)
+    limit = scale.scaleb(5 - DIGITS)
+    while any(work[p][q] for p, q in _PAIRS):
+        for p, q in _PAIRS:
+            if abs(work[p][q]) > limit:
+                _eliminate(work, vectors, p, q)
+            work[p][q] = work[q][p] = Decimal(0) if abs(work[p][q]) <= limit else work[p][q]
+    return [work[i][i] for i in range(3)], vectors
+
+
+def _eliminate(work: _Work, vectors: _Work, p: int, q: int) -> None:
+    """Turn axes p and q by the smaller of the angles that make ``work[p][q]`` zero."""
+    cotangent = (work[q][q] - work[p][p]) / (2 * work[p][q])  # of twice the angle
+    tangent = 1 / (abs(cotangent) + (cotangent * cotangent + 1).sqrt())
+    tangent = tangent if cotangent >= 0 else -tangent
+    cosine = 1 / (tangent * tangent + 1).sqrt()
+    sine = tangent * cosine
+    shift, r = tangent * work[p][q], 3 - p - q
+    work[p][p], work[q][q] = work[p][p] - shift, work[q][q] + shift
+    work[p][q] = work[q][p] = Decimal(0)
+    work[r][p], work[r][q] = cosine * work[r][p] - sine * work[r][q], sine * work[r][p] + cosine * work[r][q]
+    work[p][r], work[q][r] = work[r][p], work[r][q]
+    for row in vectors:
+        row[p], row[q] = cosine * row[p] - sine * row[q], sine * row[p] + cosine * row[q]
+
+
+def _root(tensor: Tensor, value: Decimal) -> Fraction:
+    """Return the eigenvalue that ``value`` approximates: the exact one when it is a fraction of moderate size."""
+    approximate = Fraction(value)
+    exact = approximate.limit_denominator(_LARGEST_DENOMINATOR)
+    shifted = subtract(tensor, tuple(tuple(exact * entry for entry in row) for row in IDENTITY))
+    return exact if determinant(shifted) == 0 else approximate
+
+
+def _closest_order(vectors: _Work) -> tuple[int, ...]:
+    return max(permutations(range(3)), key=lambda order: sum(abs(vectors[i][order[i]]) for i in range(3)))
+
+
+def _directed(columns: list[tuple[Fraction, ...]]) -> Tensor:
+    """Return the axes as columns, each along its given axis rather than against it, and right-handed."""
+    for k, column in enumerate(columns):
+        leading = column[k] or max(column, key=abs)
+        if leading < 0:
+            columns[k] = tuple(-entry for entry in column)
+    if dot(columns[0], cross(columns[1], columns[2])) < 0:
+        loosest = min(range(3), key=lambda k: abs(columns[k][k]))
+        columns[loosest] = tuple(-entry for entry in columns[loosest])
+    return transpose(columns)
+
+
+def _settle(moments: list[Fraction]) -> tuple[Fraction, Fraction, Fraction]:
+    """Return the moments with rounding removed: the negligible become zero, equal ones become exactly equal."""
+    limit = max(map(abs, moments)) * _NEGLIGIBLE
+    settled = [Fraction(0) if abs(moment) <= limit else moment for moment in moments]
+    for i, j in _PAIRS:
+        if equal(settled[i], settled[j]):
+            settled[j] = settled[i]
+    first, second, third = settled
+    return first, second, third
+
+
+def _class(moments: tuple[Fraction, Fraction, Fraction]) -> tuple[str, int | None]:
+    pairs = [(i, j) for i, j in _PAIRS if moments[i] == moments[j]]
+    if len(pairs) == 1:
+        return "symmetric", 3 - sum(pairs[0])
+    return ("spherical" if pairs else "asymmetric"), None
+
+
+def principal_axes(inertia: Any, where: str = "") -> Principal:
+    """Return the principal axes and the class of a body.
+
+    Parameters
+    ----------
+    inertia : 3x3 numbers or texts, kg m^2
+        Symmetric, products with the minus sign. Need not be admissible.
+    where : str
+        Place of the tensor, put in front of a complaint.
+
+    Returns
+    -------
+    Principal
+        Near-degenerate tensors included: the float of each moment and of each component of the axes is the double
+        nearest to its true value.
+
+    Raises
+    ------
+    InputError
+        If the tensor is not 3x3, not finite or not symmetric.
+
+    Examples
+    --------
+    >>> principal_axes([[2, -1, 0], [-1, 2, 0], [0, 0, 3]]).moments
+    (Fraction(3, 1), Fraction(1, 1), Fraction(3, 1))
+    """
+    tensor = _read_tensor(inertia, where)
+    limit = max(abs(tensor[i][i]) for i in range(3)) * _NEGLIGIBLE
+    if all(abs(tensor[i][j]) <= limit for i, j in _PAIRS):
+        moments = _settle([tensor[i][i] for i in range(3)])
+        return Principal(moments, IDENTITY, *_class(moments), True)
+    with localcontext() as context:
+        context.prec = DIGITS
+        values, vectors = _jacobi(tensor)
+        order = _closest_order(vectors)
+        moments = _settle([_root(tensor, values[k]) for k in order])
+        columns = [tuple(Fraction(vectors[i][k]) for i in range(3)) for k in order]
+    return Principal(moments, _directed(columns), *_class(moments), False)
+
+
+def _listed(moments: tuple[Fraction, Fraction, Fraction]) -> str:
+    return ", ".join(f"{float(moment):.15g}" for moment in moments) + " kg m^2"
+
+
+def require_admissible(body: Principal, where: str = "") -> None:
+    """Raise InputError unless some distribution of mass has these moments.
+
+    Each moment is >= 0 and none exceeds the sum of the other two; equality (a flat body) and one zero moment (a needle)
+    are admitted, to 2^-200.
+    """
+    small, middle, large = sorted(body.moments)
+    if small < 0:
+        raise InputError(
+            f"{_prefix(where)}expected principal moments of inertia that are not negative, got {_listed(body.moments)}"
+        )
+    if small + middle < large and not equal(small + middle, large):
+        raise InputError(
+            f"{_prefix(where)}expected principal moments of inertia none of which exceeds the sum of the other two "
+            f"(no body has others), got {_listed(body.moments)}, where "
+            f"{float(large):.15g} exceeds {float(small):.15g} + {float(middle):.15g} "
+            f"by {float(large - small - middle):.3g}"
+        )
+
+
+def why_not_propagable(body: Principal) -> str:
+    """Return why Euler's equations cannot be solved for the rates of omega, as a clause; empty when they can."""
+    if max(body.moments) == 0:
+        return "a point has no moments of inertia, so no torque determines its angular acceleration"
+    if body.needle:
+        return (
+            f"a needle (principal moments {_listed(body.moments)}) has no moment of inertia about its own line, so its "
+            "angular acceleration about that line is undetermined; give it a small thickness"
+        )
+    return ""
