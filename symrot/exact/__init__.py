@@ -1,1 +1,15 @@
-"""Exact decision of equality (see ``derivations/`` and the module docstrings)."""
+"""Exact decision of equality of formulas.
+
+``normal_form``, ``is_zero`` and ``Verdict`` are found here on first use; ``decide`` is in :mod:`symrot.exact.decide`.
+"""
+
+from importlib import import_module
+from typing import Any
+
+_HOME = {"normal_form": "decide", "is_zero": "decide", "Verdict": "decide"}
+
+
+def __getattr__(name: str) -> Any:
+    if name in _HOME:
+        return getattr(import_module(f"{__name__}.{_HOME[name]}"), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

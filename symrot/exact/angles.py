@@ -1,0 +1,99 @@
+"""Angles: every argument of a sine or cosine as a Q-linear form in atoms, and the base angle of each atom.
+
+``sin(2*phi - psi/2 + pi/3)`` is the form ``{phi: 2, psi: -1/2}`` with ``1/3`` half-turns. When all forms of a problem
+are known, each atom gets one base angle, the greatest common divisor of its coefficients, so that every angle is an
+integer combination of base angles and every sine and cosine a polynomial in theirs (research: VERIFICATION.md,
+section 1, steps (b) and (c)).
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from fractions import Fraction
+from math import gcd, lcm
+
+from sympy import Expr, Rational, cos, pi, sin
+
+from symrot.errors import InputError
+
+TWELFTHS = 12
+"""Multiples of pi/12 have sines and cosines in Q(sqrt 2, sqrt 3); the constant of an angle is reduced to them."""
+
+
+@dataclass(frozen=True)
+class LinearForm:
+    """An angle ``sum(coefficient * atom) + half_turns * pi``.
+
+    ``half_turns`` is a multiple of 1/12; a constant of another denominator stays as a multiple of the atom ``pi``.
+    """
+
+    terms: tuple[tuple[Expr, Fraction], ...]
+    half_turns: Fraction
+
+
+def linear_form(argument: Expr) -> LinearForm:
+    """Return the Q-linear form of an angle (rad); products are expanded, anything not a number is an atom.
+
+    Raises
+    ------
+    InputError
+        If the angle holds a floating point number.
+    """
+    coefficients: dict[Expr, Fraction] = {}
+    half_turns = Fraction(0)
+    for term in argument.expand().as_ordered_terms():
+        number, atom = term.as_coeff_Mul()
+        if not number.is_Rational:
+            raise InputError(f"an exact angle needs rational coefficients, got {number} in {argument}")
+        coefficient = Fraction(int(number.p), int(number.q))
+        if atom == pi and TWELFTHS % coefficient.denominator == 0:
+            half_turns += coefficient
+        elif coefficient:
+            coefficients[atom] = coefficients.get(atom, Fraction(0)) + coefficient
+    terms = sorted(((a, c) for a, c in coefficients.items() if c), key=lambda item: item[0].sort_key())
+    return LinearForm(tuple(terms), half_turns % 2)
+
+
+def base_coefficients(forms: Iterable[LinearForm]) -> dict[Expr, Fraction]:
+    """Return, for each atom, the largest rational of which all its coefficients are integer multiples.
+
+    The base angle of the atom is this coefficient times the atom: ``theta/2`` when ``theta`` and ``theta/2`` occur.
+    """
+    bases: dict[Expr, Fraction] = {}
+    for form in forms:
+        for atom, coefficient in form.terms:
+            known = bases.get(atom, Fraction(0))
+            denominator = lcm(known.denominator, coefficient.denominator)
+            bases[atom] = Fraction(gcd(int(known * denominator), int(coefficient * denominator)), denominator)
+    return bases
+
+
+def constant_cosine_sine(half_turns: Fraction) -> tuple[Expr, Expr]:
+    """Return the exact cosine and sine of ``half_turns * pi`` in square roots (a multiple of 1/12)."""
+    angle = Rational(half_turns.numerator, half_turns.denominator) * pi
+    return cos(angle), sin(angle)
+
+
+def base_angle(atom: Expr, coefficient: Fraction) -> Expr:
+    """Return the base angle as an expression, rad."""
+    return Rational(coefficient.numerator, coefficient.denominator) * atom
+
+
+def chebyshev(multiple: int) -> tuple[list[int], list[int]]:
+    """Return the integer coefficients (low to high) of T_n and U_(n-1), ``n >= 1``.
+
+    ``cos(n x) = T_n(cos x)`` and ``sin(n x) = sin(x) U_(n-1)(cos x)``.
+    """
+    first, first_next = [1], [0, 1]  # T_0, T_1
+    second, second_next = [0], [1]  # U_(-1), U_0
+    for _ in range(multiple - 1):
+        first, first_next = first_next, _double_shift_minus(first_next, first)
+        second, second_next = second_next, _double_shift_minus(second_next, second)
+    return first_next, second_next
+
+
+def _double_shift_minus(last: list[int], before: list[int]) -> list[int]:
+    """Return the coefficients of ``2 x * last - before``: the recurrence of both kinds of Chebyshev polynomial."""
+    result = [0] + [2 * c for c in last]
+    for power, coefficient in enumerate(before):
+        result[power] -= coefficient
+    return result

@@ -1,0 +1,106 @@
+"""Roots: every fractional power as a rational factor times generators ``g`` with a relation ``g^n = P``.
+
+``sqrt(P/Q)`` is written ``g/Q`` with ``g = Q*sqrt(P/Q)``, so that ``g^2 = P*Q`` holds whatever the signs are, and
+positive rational numbers are taken out as square roots of primes. Two different radicands get two generators, even
+where their product is a square (``sqrt(x^2) = |x|``): what follows from the relations is true, and what does not may
+still be true on one branch. :func:`symrot.exact.decide.decide` says "undecided" there unless it finds a witness.
+"""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from math import prod
+
+from sympy import Abs, Expr, I, Integer, Pow, Rational, factorint, sqrt
+
+from symrot.errors import InputError
+
+__all__ = ["Radical", "Root", "radical"]
+
+
+@dataclass(frozen=True)
+class Root:
+    """A generator ``expression`` with ``expression^index = power_expression``; ``depth`` counts nested roots."""
+
+    expression: Expr
+    power_expression: Expr
+    index: int
+    depth: int
+
+
+@dataclass(frozen=True)
+class Radical:
+    """``expression = (rational * product(roots) / below)^power``."""
+
+    expression: Expr
+    rational: Rational
+    roots: tuple[Root, ...]
+    below: Expr
+    power: int
+
+    @property
+    def parts(self) -> tuple[Expr, ...]:
+        """The expressions that must be readable before this one is."""
+        return (self.below, *(root.power_expression for root in self.roots))
+
+
+def radical(node: Expr, lowest_terms: Callable[[Expr], tuple[Rational, Expr, Expr]]) -> Radical:
+    """Return what a fractional power, ``i`` or the absolute value of a real expression is made of.
+
+    Parameters
+    ----------
+    node : Expr
+    lowest_terms : function
+        From an expression to (positive rational, numerator, denominator), the last two primitive polynomials over the
+        integers in canonical form, or (0, 0, 1).
+
+    Raises
+    ------
+    InputError
+        If a negative power of an expression is asked for which is zero everywhere.
+    """
+    if node is I:
+        return Radical(node, Integer(1), (_imaginary_unit(),), Integer(1), 1)
+    if isinstance(node, Abs):
+        base, power, index = node.args[0] ** 2, 1, 2
+    else:
+        assert isinstance(node, Pow)
+        base, power, index = node.base, int(node.exp.p), int(node.exp.q)
+    content, above, below = lowest_terms(base)
+    if not content:
+        if power < 0:
+            raise InputError(f"the formula divides by a power of {base}, which is zero everywhere")
+        return Radical(node, Integer(0), (), Integer(1), 1)
+    if index != 2:
+        above, below = content.p * above, content.q * below
+        rational, roots = Integer(1), []
+    else:
+        rational, roots = _square_root_of_number(content)
+    if above == -1 and below == 1 and index == 2:
+        roots.append(_imaginary_unit())
+    elif above != 1 or below != 1:
+        inside = (above * below ** (index - 1)).expand()
+        shown = Abs(node.args[0]) if isinstance(node, Abs) and below == 1 else below * (above / below) ** Rational(1, index)
+        roots.append(Root(shown, inside, index, 1 + _nesting([inside])))
+    return Radical(node, rational, tuple(roots), below, power)
+
+
+def _imaginary_unit() -> Root:
+    return Root(I, Integer(-1), 2, 1)
+
+
+def _square_root_of_number(value: Rational) -> tuple[Rational, list[Root]]:
+    """Return the square root of a positive rational as rational * product of square roots of primes."""
+    powers = factorint(int(value.p) * int(value.q))
+    outside = prod(prime ** (power // 2) for prime, power in powers.items())
+    primes = sorted(prime for prime, power in powers.items() if power % 2)
+    return Rational(outside, value.q), [Root(sqrt(prime), Integer(prime), 2, 1) for prime in primes]
+
+
+def _nesting(expressions: Iterable[Expr]) -> int:
+    """Return how deep fractional powers are nested."""
+    deepest = 0
+    for node in expressions:
+        below = _nesting(node.args)
+        own = node is I or isinstance(node, Abs) or (isinstance(node, Pow) and node.exp.is_Rational and not node.exp.is_Integer)
+        deepest = max(deepest, below + bool(own))
+    return deepest
