@@ -1,0 +1,284 @@
+"""The one interface that every attitude description has.
+
+A chart names an attitude by parameters p. It knows its ``dcm``, the quaternion of the same attitude, the parameters
+as functions of a quaternion, and the rate matrix B(p) of ``omega = B(p) dp/dt`` in both frames, with what there is
+to know about B: inverse, determinant, where it is singular, how badly conditioned it is on the way there.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from typing import Any, Self
+
+from sympy import (
+    Basic,
+    Expr,
+    FiniteSet,
+    ImageSet,
+    ImmutableDenseMatrix,
+    ImmutableMatrix,
+    Integer,
+    Interval,
+    Lambda,
+    Matrix,
+    Max,
+    Min,
+    S,
+    Set,
+    Symbol,
+    Tuple,
+    cancel,
+    limit,
+    pi,
+    solveset,
+    sqrt,
+)
+
+from symrot.errors import InputError
+from symrot.kinematics.rotations import check_frame
+
+__all__ = ["Chart", "Limit", "RateMatrix", "SingularSet", "condition_of", "zeros_of"]
+
+_n = Symbol("n", integer=True)
+
+
+@dataclass(frozen=True)
+class SingularSet:
+    """Where ``equation`` vanishes: the values of ``variable``, solved for exactly.
+
+    ``variable`` is an expression in the parameters of the chart (an angle, the length of a vector);
+    ``values`` is a SymPy set of real numbers, empty for a chart that is regular wherever it is defined.
+    """
+
+    equation: Expr
+    variable: Expr
+    values: Set
+
+    @property
+    def is_empty(self) -> bool:
+        return bool(self.values is S.EmptySet)
+
+    def points(self) -> tuple[Expr, ...]:
+        """Return the distinct values within [0, 2 pi), in increasing order."""
+        found = self.values.intersect(Interval.Ropen(0, 2 * pi))
+        return tuple(sorted(found, key=lambda value: float(value)))
+
+    def __contains__(self, value: Any) -> bool:
+        return bool(self.values.contains(value) == S.true)
+
+    def __str__(self) -> str:
+        if self.is_empty:
+            return "empty"
+        values = self.values
+        if isinstance(values, ImageSet):
+            text = f"{self.variable} = {values.lamda.expr}, n any integer"
+            return text if values.base_set is S.Integers else f"{text} but 0"
+        return f"{self.variable} in {values}"
+
+
+def condition_of(gram: Matrix) -> Expr:
+    """Return ``sqrt(largest / smallest eigenvalue)`` of a Gram matrix ``B^T B`` or ``B B^T``: the condition of B."""
+    values = list(gram.eigenvals())
+    return sqrt(cancel(Max(*values) / Min(*values)))
+
+
+def zeros_of(equation: Expr, variable: Symbol, domain: Set = S.Reals) -> Set:
+    """Return the zeros in ``domain`` of a periodic or algebraic expression in one variable, exactly.
+
+    Zeros evenly spaced over the turn are returned as one family ``{first + n * spacing}``.
+    """
+    if not equation.free_symbols:
+        return domain if equation == 0 else S.EmptySet
+    solution = solveset(equation, variable, domain)
+    if solution is S.EmptySet or isinstance(solution, FiniteSet):
+        return solution
+    turn = sorted(solution.intersect(Interval.Ropen(0, 2 * pi)), key=lambda value: float(value))
+    spacing = 2 * pi / len(turn)
+    if any(after - before != spacing for before, after in pairwise(turn)):
+        return solution
+    return ImageSet(Lambda(_n, turn[0] + _n * spacing), S.Integers)
+
+
+@dataclass(frozen=True)
+class Limit:
+    """What the inverse rate matrix does when the chart nears one of its singular points from one side.
+
+    ``limit`` holds the limits of its entries (infinite ones with their sign); ``residue`` those of
+    ``(variable - point)`` times the inverse: how large a rate a unit of omega asks for, times the distance.
+    """
+
+    variable: Expr
+    point: Expr
+    side: str
+    limit: ImmutableMatrix
+    residue: ImmutableMatrix
+
+
+@dataclass(frozen=True)
+class RateFacts:
+    """What is derived together with a rate matrix; see the attributes of :class:`RateMatrix`.
+
+    The determinant depends on the parameters through ``variable`` alone (an angle, a length). ``along(x)`` returns
+    the determinant and the inverse with ``variable`` set to x, for x in ``domain``: the way to the singular points.
+    """
+
+    name: str
+    frame: str
+    parameters: tuple[Expr, ...]
+    relations: tuple[Expr, ...]
+    inverse: ImmutableMatrix | None
+    determinant: Expr
+    condition_number: Expr
+    variable: Expr
+    along: Callable[[Expr], tuple[Expr, ImmutableMatrix | None]]
+    domain: Set = S.Reals
+
+
+class RateMatrix(ImmutableDenseMatrix):  # type: ignore[misc]
+    """B(p) of ``omega = B(p) dp/dt``: an immutable SymPy matrix that knows its inverse and where it has none.
+
+    Arithmetic with it gives plain SymPy matrices. A chart with four parameters and one relation (unit norm) has a
+    3 x 4 matrix; its inverse is 4 x 3 and keeps the relation, and its determinant is that of B with the gradient of
+    the relation as a fourth row.
+
+    Attributes
+    ----------
+    frame : str
+        ``"body"`` or ``"space"``: the components of omega.
+    parameters : tuple of Expr
+    inverse : ImmutableMatrix
+        ``dp/dt = inverse * omega``, 1/s for omega in rad/s.
+    determinant : Expr
+    singular_set : SingularSet
+        Zeros of the determinant, solved for exactly.
+    condition_number : Expr
+        Largest over smallest singular value (2-norm). A property here, where SymPy has a method.
+    limits : tuple of Limit
+        Behaviour of the inverse toward each singular point of one turn, from both sides.
+    """
+
+    facts: RateFacts
+
+    def __new__(cls, *args: Any, **kwargs: Any) -> Any:
+        """Rebuilding from SymPy arguments (``func(*args)``) gives the plain matrix."""
+        return ImmutableDenseMatrix(*args, **kwargs)
+
+    @classmethod
+    def _fromrep(cls, rep: Any) -> Any:
+        return ImmutableDenseMatrix._fromrep(rep)
+
+    @classmethod
+    def build(cls, matrix: Matrix, facts: RateFacts) -> Self:
+        plain = ImmutableDenseMatrix(matrix)
+        self: Self = Basic.__new__(cls, Integer(plain.rows), Integer(plain.cols), Tuple(*plain.flat()))
+        self._rows, self._cols, self._rep = plain.rows, plain.cols, plain._rep
+        self.facts = facts
+        return self
+
+    def __reduce__(self) -> Any:
+        return type(self).build, (self.as_immutable(), self.facts)
+
+    def as_immutable(self) -> ImmutableMatrix:
+        """Return the plain immutable matrix."""
+        return ImmutableDenseMatrix._fromrep(self._rep)
+
+    @property
+    def frame(self) -> str:
+        return self.facts.frame
+
+    @property
+    def parameters(self) -> tuple[Expr, ...]:
+        return self.facts.parameters
+
+    @property
+    def inverse(self) -> ImmutableMatrix:
+        if self.facts.inverse is None:
+            raise InputError(
+                f"the {self.facts.frame} rate matrix of {self.facts.name} has no inverse at {self.facts.parameters}: "
+                f"its determinant is 0 there"
+            )
+        return self.facts.inverse
+
+    @property
+    def determinant(self) -> Expr:
+        return self.facts.determinant
+
+    @property
+    def condition_number(self) -> Expr:
+        return self.facts.condition_number
+
+    @cached_property
+    def _coordinate(self) -> Symbol:
+        variable = self.facts.variable
+        return variable if isinstance(variable, Symbol) else Symbol("x", real=True)
+
+    @cached_property
+    def singular_set(self) -> SingularSet:
+        determinant, _ = self.facts.along(self._coordinate)
+        values = zeros_of(determinant, self._coordinate, self.facts.domain)
+        return SingularSet(self.facts.determinant, self.facts.variable, values)
+
+    @cached_property
+    def limits(self) -> tuple[Limit, ...]:
+        x = self._coordinate
+        _, inverse = self.facts.along(x)
+        return tuple(
+            Limit(
+                self.facts.variable,
+                point,
+                side,
+                inverse.applyfunc(lambda entry: limit(entry, x, point, side)),  # noqa: B023 applied at once
+                inverse.applyfunc(lambda entry: limit(entry * (x - point), x, point, side)),  # noqa: B023
+            )
+            for point in self.singular_set.points()
+            for side in ("-", "+")
+        )
+
+
+@dataclass(frozen=True)
+class Chart:
+    """An attitude description.
+
+    Attributes
+    ----------
+    name : str
+    parameters : tuple of Symbol
+    relations : tuple of Expr
+        Expressions that vanish on the chart (unit norm); hypotheses for proofs.
+    dcm : ImmutableMatrix, shape (3, 3)
+        ``dcm_sb`` in the parameters.
+    quaternion : ImmutableMatrix, shape (4, 1)
+        The same attitude as a unit quaternion in the parameters.
+    of_quaternion : callable
+        ``of_quaternion(q)``: the parameters as expressions in a unit quaternion, shape (n, 1).
+    rate_matrix : callable
+        ``rate_matrix(frame)``: the :class:`RateMatrix` B of ``omega = B dp/dt``.
+    unreached : Expr or None
+        Vanishes (as an expression in :data:`symrot.symbols.quaternion`) at the attitudes the chart cannot name.
+    about : str
+        One sentence: what the parameters are.
+    """
+
+    name: str
+    parameters: tuple[Symbol, ...]
+    relations: tuple[Expr, ...]
+    dcm: ImmutableMatrix
+    quaternion: ImmutableMatrix
+    of_quaternion: Callable[..., ImmutableMatrix]
+    rate_matrix: Callable[[str], RateMatrix]
+    unreached: Expr | None
+    about: str
+
+    def rates(self, frame: str = "body") -> ImmutableMatrix:
+        """Return the matrix of ``dp/dt = rates * omega``, the inverse of ``rate_matrix(frame)``."""
+        return self.rate_matrix(check_frame(frame)).inverse
+
+    def determinant(self, frame: str = "body") -> Expr:
+        """Return the determinant of ``rate_matrix(frame)``."""
+        return self.rate_matrix(check_frame(frame)).determinant
+
+    @property
+    def singular_set(self) -> SingularSet:
+        """Where the rate matrix has no inverse; the same in both frames."""
+        return self.rate_matrix("body").singular_set

@@ -1,0 +1,348 @@
+"""Euler angles: all 12 intrinsic and 12 extrinsic sequences, from the name of the sequence.
+
+Nothing about a sequence is typed in. An extrinsic sequence is the intrinsic one read backwards
+(``zyx`` with q1, q2, q3 is ``XYZ`` with q3, q2, q1), so every formula sees three factors from left to right,
+``dcm_sb = R_first R_middle R_last``. Convention: :mod:`symrot.conventions`. Proof: ``derivations/euler_body_rates.md``.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache, cached_property, partial
+from typing import Any
+
+from sympy import (
+    Abs,
+    Expr,
+    ImmutableMatrix,
+    Matrix,
+    Rational,
+    S,
+    Set,
+    Union,
+    atan2,
+    expand,
+    oo,
+    sqrt,
+    zeros,
+)
+
+from symrot import exact, symbols
+from symrot.conventions import SEQUENCES, parse_sequence
+from symrot.kinematics.chart import Chart, RateFacts, RateMatrix, zeros_of
+from symrot.kinematics.quaternion import elementary_quaternion, qmul
+from symrot.kinematics.rotations import check_frame, cross_sign, elementary_rotation, expressions, unit_vector
+
+__all__ = [
+    "EulerRateMatrix",
+    "Factor",
+    "chart",
+    "dcm",
+    "euler_of_dcm",
+    "euler_of_quaternion",
+    "factors",
+    "lock_indicator",
+    "quaternion_of_euler",
+    "rate_jacobian",
+    "sequences_at_lock",
+]
+
+
+@dataclass(frozen=True)
+class Factor:
+    """One factor of ``dcm_sb``: axis number, angle, and the place of that angle in the sequence."""
+
+    axis: int
+    angle: Expr
+    place: int
+
+    @cached_property
+    def rotation(self) -> ImmutableMatrix:
+        return elementary_rotation(self.axis, self.angle)
+
+    @cached_property
+    def direction(self) -> ImmutableMatrix:
+        return unit_vector(self.axis)
+
+
+def factors(sequence: str, angles: Sequence[Any] | None = None) -> tuple[Factor, Factor, Factor]:
+    """Return the factors of ``dcm_sb`` from left to right.
+
+    Parameters
+    ----------
+    sequence : str
+        One of :data:`symrot.conventions.SEQUENCES`.
+    angles : sequence of 3 Expr, optional
+        rad, in order of application; phi, theta, psi when left out.
+
+    Raises
+    ------
+    InputError
+        For an unknown sequence, or not exactly three angles.
+    """
+    axes, intrinsic = parse_sequence(sequence)
+    angles = expressions(symbols.angles if angles is None else angles, 3, f"the Euler sequence {sequence}")
+    applied = [Factor(axis, angle, place) for place, (axis, angle) in enumerate(zip(axes, angles, strict=True))]
+    first, middle, last = applied if intrinsic else applied[::-1]
+    return first, middle, last
+
+
+def dcm(sequence: str, angles: Sequence[Any] | None = None) -> ImmutableMatrix:
+    """Return ``dcm_sb`` of an Euler sequence, shape (3, 3).
+
+    Parameters
+    ----------
+    sequence : str
+        Intrinsic in upper case (``"ZXZ"``), extrinsic in lower case (``"zxz"``).
+    angles : sequence of 3 Expr, optional
+        rad, in order of application; phi, theta, psi when left out.
+
+    Raises
+    ------
+    InputError
+        For an unknown sequence, or not exactly three angles.
+
+    Notes
+    -----
+    Intrinsic: ``R1(q1) R2(q2) R3(q3)``; extrinsic: ``R3(q3) R2(q2) R1(q1)``. Equal to SciPy's
+    ``Rotation.from_euler(sequence, angles).as_matrix()``. Source: Goldstein, Classical Mechanics, 3rd ed., (4.46)
+    is the transpose for ZXZ.
+    """
+    first, middle, last = factors(sequence, angles)
+    return ImmutableMatrix(first.rotation * middle.rotation * last.rotation)
+
+
+def lock_indicator(sequence: str, dcm_sb: Matrix) -> Expr:
+    """Return the entry of the dcm that is +-1 where the sequence locks, and only there.
+
+    It is the cosine between the first axis and the last axis as the body carries it: ``e_first^T dcm e_last``.
+    """
+    first, _, last = factors(sequence)
+    return dcm_sb[first.axis, last.axis]
+
+
+def _core(sequence: str, frame: str, angles: Sequence[Any] | None) -> tuple[Matrix, Matrix, Matrix]:
+    """Return ``carry, core, order`` with ``B = carry * core * order``.
+
+    The axes of the three turns are taken into the frame of the middle turn first: there only the middle angle is
+    left. ``carry`` takes them on to the body or to space, ``order`` puts the columns in order of application.
+    """
+    first, middle, last = factors(sequence, angles)
+    if check_frame(frame) == "body":
+        carry = last.rotation.T
+        core = Matrix.hstack(middle.rotation.T * first.direction, middle.direction, last.direction)
+    else:
+        carry = first.rotation
+        core = Matrix.hstack(first.direction, middle.direction, middle.rotation * last.direction)
+    order = zeros(3)
+    for row, factor in enumerate((first, middle, last)):
+        order[row, factor.place] = 1
+    return carry, core, order
+
+
+def _solved(carry: Matrix, core: Matrix, order: Matrix) -> tuple[Expr, ImmutableMatrix | None]:
+    """Return determinant and inverse of ``carry * core * order``; no inverse where the determinant is 0.
+
+    ``carry`` is a rotation and ``order`` a permutation, so only ``core``, which has one angle, is solved.
+    """
+    core_determinant = core.det(method="berkowitz")
+    determinant = core_determinant * order.det()
+    if core_determinant == 0:
+        return determinant, None
+    adjugate = core.adjugate(method="berkowitz")
+    core_inverse = adjugate.applyfunc(lambda entry: entry / core_determinant)
+    return determinant, ImmutableMatrix(order.T * core_inverse * carry.T)
+
+
+def _along(
+    sequence: str, frame: str, angles: tuple[Expr, ...], middle: Expr
+) -> tuple[Expr, ImmutableMatrix | None]:
+    return _solved(*_core(sequence, frame, (angles[0], middle, angles[2])))
+
+
+class EulerRateMatrix(RateMatrix):
+    """B(q) of ``omega = B(q) dq/dt`` for an Euler sequence; see :class:`symrot.kinematics.chart.RateMatrix`.
+
+    Attributes
+    ----------
+    sequence : str
+    regular_sequences : tuple of str
+        The other sequences that are regular at every attitude where this one locks.
+    """
+
+    @property
+    def sequence(self) -> str:
+        return str(self.facts.name)
+
+    @cached_property
+    def regular_sequences(self) -> tuple[str, ...]:
+        meetings = sequences_at_lock(self.sequence)
+        return tuple(other for other, met in meetings.items() if met is S.EmptySet)
+
+    def regular_at(self, angles: Sequence[Any] | None = None) -> tuple[str, ...]:
+        """Return the sequences, of all 24, that are regular at the attitude of given angles of this sequence.
+
+        With symbols among the angles: those that are not singular for all values of the symbols.
+        """
+        attitude = dcm(self.sequence, self.parameters if angles is None else angles)
+        return tuple(other for other in SEQUENCES if not _is_one(lock_indicator(other, attitude) ** 2))
+
+
+def _is_one(value: Expr) -> bool:
+    if value.is_number and abs((value - 1).evalf(60)) > Rational(1, 10**40):
+        return False
+    return bool(exact.normal_form(value - 1) == 0)
+
+
+def rate_jacobian(sequence: str, frame: str = "body", angles: Sequence[Any] | None = None) -> EulerRateMatrix:
+    """Return B(q), with ``omega = B(q) * dq/dt``, of an Euler sequence.
+
+    Column i is the axis of turn i, carried by the turns between it and the frame.
+
+    Parameters
+    ----------
+    sequence : str
+        Intrinsic in upper case (``"ZXZ"``), extrinsic in lower case (``"zxz"``).
+    frame : str
+        ``"body"`` or ``"space"``: the components of omega.
+    angles : sequence of 3 Expr, optional
+        rad, in order of application; phi, theta, psi when left out.
+
+    Returns
+    -------
+    EulerRateMatrix, shape (3, 3), dimensionless
+        With ``.inverse``, ``.determinant``, ``.singular_set``, ``.condition_number``, ``.limits``,
+        ``.regular_sequences``.
+
+    Raises
+    ------
+    InputError
+        For an unknown sequence or frame, or not exactly three angles.
+
+    Notes
+    -----
+    The axes e of the first and last turn have the angle between them as the body carries them, ``c``, and the axis
+    of the middle turn is across both: ``B^T B`` has the eigenvalues 1, 1 + c, 1 - c in both frames.
+    Proof: ``derivations/euler_body_rates.md``. Source: Landau & Lifshitz, Mechanics, 3rd ed., eq. (35.1), for ZXZ.
+
+    Examples
+    --------
+    >>> rate_jacobian("ZXZ").row(2)
+    Matrix([[cos(theta), 0, 1]])
+    """
+    first, middle, last = factors(sequence, angles)
+    given = tuple(factor.angle for factor in sorted((first, middle, last), key=lambda factor: factor.place))
+    carry, core, order = _core(sequence, frame, given)
+    determinant, inverse = _solved(carry, core, order)
+    cosine = Abs((first.direction.T * middle.rotation * last.direction)[0])
+    return EulerRateMatrix.build(
+        carry * core * order,
+        RateFacts(
+            name=sequence,
+            frame=frame,
+            parameters=given,
+            relations=(),
+            inverse=inverse,
+            determinant=determinant,
+            condition_number=oo if inverse is None else sqrt((1 + cosine) / (1 - cosine)),
+            variable=given[1],
+            along=partial(_along, sequence, frame, given),
+        ),
+    )
+
+
+@cache
+def sequences_at_lock(sequence: str) -> dict[str, Set]:
+    """Return, for each other sequence, where on the singular set of ``sequence`` it is singular too.
+
+    With the middle angle at lock the first and last turn are about one line, and the attitude depends on one
+    combination of them, here the angle phi of the left factor alone. The values are sets of that angle: the empty
+    set for a sequence that is regular at every locked attitude, the reals for one that locks with it everywhere.
+    """
+    middle = rate_jacobian(sequence).singular_set
+    chi = symbols.phi
+    attitudes = []
+    for point in middle.points():
+        left, locked, _ = factors(sequence, (0, point, 0))
+        attitudes.append(elementary_rotation(left.axis, chi) * locked.rotation)
+    found = {}
+    for other in SEQUENCES:
+        if other != sequence:
+            indicators = {lock_indicator(other, attitude) for attitude in attitudes}
+            found[other] = Union(*(zeros_of((c - 1) * (c + 1), chi) for c in indicators))
+    return found
+
+
+def quaternion_of_euler(sequence: str, angles: Sequence[Any] | None = None) -> ImmutableMatrix:
+    """Return the unit quaternion of an Euler sequence, shape (4, 1): the product of its three turns."""
+    turns = (elementary_quaternion(factor.axis, factor.angle) for factor in factors(sequence, angles))
+    return ImmutableMatrix(qmul(*turns).applyfunc(expand))
+
+
+def euler_of_quaternion(sequence: str, q: Sequence[Any] | Matrix = symbols.quaternion) -> ImmutableMatrix:
+    """Return the angles of a quaternion of any norm, shape (3, 1), rad, in order of application.
+
+    The middle angle is in [0, pi] (proper) or [-pi/2, pi/2] (Tait-Bryan); the others in (-2 pi, 2 pi), to be taken
+    modulo 2 pi. Half-angle sums and differences by ``atan2``: full accuracy up to the lock, no ``acos`` or ``asin``.
+
+    Notes
+    -----
+    A proper sequence has ``q = (c + s e_i)(C + S e_j)(c' + s' e_i)``, whose components along 1, e_i, e_j, e_i x e_j
+    are cosines and sines of the half-sum times C and of the half-difference times S. A Tait-Bryan sequence times a
+    quarter turn about its middle axis is a proper one. Source: Bernardes & Viollet, PLoS ONE 17 (2022) e0276302.
+    """
+    first, middle, last = factors(sequence)
+    q = expressions(q, 4, "a quaternion")
+    cross, sign = cross_sign(first.axis, middle.axis)
+    proper = first.axis == last.axis
+    if not proper:
+        quarter = [1, *unit_vector(middle.axis)]
+        q = qmul(q, quarter)
+    a, b, c, d = q[0], q[1 + first.axis], q[1 + middle.axis], sign * q[1 + cross]
+    half_sum, half_difference = atan2(b, a), atan2(d, c)
+    low, high = sqrt(a**2 + b**2), sqrt(c**2 + d**2)
+    values = {
+        first.place: half_sum + half_difference,
+        middle.place: 2 * atan2(high, low) if proper else atan2(expand(c**2 + d**2 - a**2 - b**2), 2 * low * high),
+        last.place: (half_sum - half_difference) * (1 if proper else -sign),
+    }
+    return ImmutableMatrix([values[place] for place in range(3)])
+
+
+def euler_of_dcm(sequence: str, dcm_sb: Matrix) -> ImmutableMatrix:
+    """Return the angles of a dcm, shape (3, 1), rad, in order of application; ranges as arctangents give them.
+
+    The image of the last axis shows the first and the middle angle, the image of the first axis under the transpose
+    shows the last: each is an ``atan2`` of two entries.
+    """
+    first, middle, last = factors(sequence)
+    proper = first.axis == last.axis
+    image, back = dcm_sb * last.direction, dcm_sb.T * first.direction
+    lifted = middle.direction.cross(last.direction)  # where the middle turn moves the last axis to
+    across = lifted if proper else last.direction
+    across_back = -lifted if proper else first.direction
+    cosine, sine = image.dot(across), image.dot(first.direction.cross(across))
+    height = image.dot(first.direction)
+    width = sqrt(cosine**2 + sine**2)
+    values = {
+        first.place: atan2(sine, cosine),
+        middle.place: atan2(width, height) if proper else atan2(height * lifted.dot(first.direction), width),
+        last.place: atan2(-back.dot(last.direction.cross(across_back)), back.dot(across_back)),
+    }
+    return ImmutableMatrix([values[place] for place in range(3)])
+
+
+@cache
+def chart(sequence: str) -> Chart:
+    """Return the chart of an Euler sequence: every attitude, singular at lock."""
+    kind = "intrinsic" if parse_sequence(sequence)[1] else "extrinsic"
+    return Chart(
+        name=sequence,
+        parameters=symbols.angles,
+        relations=(),
+        dcm=dcm(sequence),
+        quaternion=quaternion_of_euler(sequence),
+        of_quaternion=partial(euler_of_quaternion, sequence),
+        rate_matrix=partial(rate_jacobian, sequence),
+        unreached=None,
+        about=f"Euler angles, {kind} sequence {sequence}, in order of application",
+    )

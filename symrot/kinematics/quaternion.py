@@ -1,0 +1,216 @@
+"""Quaternions: product, the dcm, rates in both frames. Everything follows from the Hamilton product.
+
+Convention: :mod:`symrot.conventions`: ``(q0, q1, q2, q3)``, scalar first, Hamilton (``i j = k``), body to space.
+A quaternion is an immutable column, shape (4, 1). Proof: ``derivations/quaternion_rates.md``.
+"""
+
+from collections.abc import Sequence
+from functools import cache, partial
+from typing import Any
+
+from sympy import Expr, ImmutableMatrix, Integer, Matrix, Rational, cos, expand, factor, sin, sympify
+
+from symrot import symbols
+from symrot.errors import InputError
+from symrot.kinematics.chart import Chart, RateFacts, RateMatrix, condition_of
+from symrot.kinematics.rotations import check_frame, cross_sign, expressions, unit_vector
+
+__all__ = [
+    "chart",
+    "conjugate",
+    "dcm_of",
+    "elementary_quaternion",
+    "left_matrix",
+    "norm_squared",
+    "qmul",
+    "quaternion_of_dcm",
+    "quaternion_rate_jacobian",
+    "quaternion_rates",
+    "right_matrix",
+    "unit_relation",
+]
+
+FORMS = ("unit", "homogeneous", "normalised")
+
+
+@cache
+def _unit_product(left: int, right: int) -> tuple[int, int]:
+    """Return ``(k, sign)`` with ``e_left e_right = sign e_k`` for the units 1, i, j, k numbered 0 to 3."""
+    if left == 0 or right == 0:
+        return left + right, 1
+    if left == right:
+        return 0, -1
+    m, sign = cross_sign(left - 1, right - 1)
+    return m + 1, sign
+
+
+def left_matrix(q: Sequence[Any] | Matrix) -> ImmutableMatrix:
+    """Return L(q), shape (4, 4), with ``q p = L(q) * p``."""
+    q = expressions(q, 4, "a quaternion")
+    matrix = [[Integer(0)] * 4 for _ in range(4)]
+    for left in range(4):
+        for right in range(4):
+            k, sign = _unit_product(left, right)
+            matrix[k][right] += sign * q[left]
+    return ImmutableMatrix(matrix)
+
+
+def right_matrix(q: Sequence[Any] | Matrix) -> ImmutableMatrix:
+    """Return R(q), shape (4, 4), with ``p q = R(q) * p``."""
+    q = expressions(q, 4, "a quaternion")
+    matrix = [[Integer(0)] * 4 for _ in range(4)]
+    for left in range(4):
+        for right in range(4):
+            k, sign = _unit_product(left, right)
+            matrix[k][left] += sign * q[right]
+    return ImmutableMatrix(matrix)
+
+
+def qmul(*factors: Sequence[Any] | Matrix) -> ImmutableMatrix:
+    """Return the Hamilton product of quaternions, shape (4, 1), from left to right; 1 of none."""
+    product = ImmutableMatrix([1, 0, 0, 0])
+    for q in factors:
+        product = left_matrix(product) * ImmutableMatrix(expressions(q, 4, "a quaternion"))
+    return product
+
+
+def conjugate(q: Sequence[Any] | Matrix) -> ImmutableMatrix:
+    """Return ``(q0, -q1, -q2, -q3)``, the inverse of a unit quaternion, shape (4, 1)."""
+    q0, q1, q2, q3 = expressions(q, 4, "a quaternion")
+    return ImmutableMatrix([q0, -q1, -q2, -q3])
+
+
+def norm_squared(q: Sequence[Any] | Matrix) -> Expr:
+    """Return ``q0^2 + q1^2 + q2^2 + q3^2``."""
+    return sum(component**2 for component in expressions(q, 4, "a quaternion"))
+
+
+def unit_relation(q: Sequence[Any] | Matrix = symbols.quaternion) -> Expr:
+    """Return the expression that vanishes for a unit quaternion, ``|q|^2 - 1``: a hypothesis for proofs."""
+    return norm_squared(q) - 1
+
+
+def elementary_quaternion(axis: int | str, angle: Any) -> ImmutableMatrix:
+    """Return the unit quaternion of a turn by ``angle`` (rad) about a coordinate axis, shape (4, 1)."""
+    half = sympify(angle) / 2
+    return ImmutableMatrix([cos(half), *(sin(half) * unit_vector(axis))])
+
+
+def dcm_of(q: Sequence[Any] | Matrix = symbols.quaternion, form: str = "unit") -> ImmutableMatrix:
+    """Return ``dcm_sb`` of a quaternion, shape (3, 3), whose columns are the turned axes ``q e_i q*``.
+
+    Parameters
+    ----------
+    q : sequence of 4 Expr
+    form : str
+        ``"homogeneous"``: ``q e_i q*`` as it is, quadratic in q, which is ``|q|^2`` times a rotation.
+        ``"unit"``: the relation ``|q|^2 = 1`` used on the diagonal, ``1 - 2 (q2^2 + q3^2)`` and so on; a rotation
+        only for unit q. ``"normalised"``: homogeneous over ``|q|^2``, a rotation for every q but 0.
+
+    Raises
+    ------
+    InputError
+        For another form, or not four components.
+    """
+    if form not in FORMS:
+        raise InputError(f"the form of a dcm is one of {', '.join(map(repr, FORMS))}; got {form!r}")
+    q = expressions(q, 4, "a quaternion")
+    columns = [qmul(q, [0, *unit_vector(i)], conjugate(q))[1:, 0].applyfunc(expand) for i in range(3)]
+    homogeneous = Matrix.hstack(*columns)
+    if form == "unit":
+        homogeneous += (1 - norm_squared(q)) * Matrix.eye(3)
+        homogeneous = homogeneous.applyfunc(expand)
+    elif form == "normalised":
+        homogeneous /= norm_squared(q)
+    return ImmutableMatrix(homogeneous)
+
+
+def quaternion_of_dcm(dcm_sb: Matrix, pivot: int = 0) -> ImmutableMatrix:
+    """Return a quaternion of a dcm by the branch whose divisor is ``q_pivot``, shape (4, 1).
+
+    Row ``pivot`` of the matrix ``4 q q^T``, whose entries are linear in the dcm, over ``2 sqrt`` of its diagonal
+    entry. All four branches agree up to sign where their divisor does not vanish; the pivot with the largest
+    divisor (at least 1/2) loses no digits (:func:`symrot.kinematics.conversions.dcm_to_quaternion`).
+    """
+    if dcm_sb.shape != (3, 3):
+        raise InputError(f"a dcm is a 3 x 3 matrix, got shape {dcm_sb.shape}")
+    if pivot not in range(4):
+        raise InputError(f"pivot is 0, 1, 2 or 3, the component divided by; got {pivot!r}")
+    squares = _four_q_q(dcm_sb)
+    return ImmutableMatrix(squares[pivot, :].T / (2 * squares[pivot, pivot] ** Rational(1, 2)))
+
+
+def _four_q_q(dcm_sb: Matrix) -> Matrix:
+    """Return ``4 q q^T``, shape (4, 4), of a unit quaternion from its dcm."""
+    trace = dcm_sb.trace()
+    matrix = Matrix.zeros(4)
+    matrix[0, 0] = 1 + trace
+    for i in range(3):
+        j, k = (i + 1) % 3, (i + 2) % 3
+        matrix[0, i + 1] = matrix[i + 1, 0] = dcm_sb[k, j] - dcm_sb[j, k]
+        matrix[i + 1, i + 1] = 1 + 2 * dcm_sb[i, i] - trace
+        matrix[j + 1, k + 1] = matrix[k + 1, j + 1] = dcm_sb[j, k] + dcm_sb[k, j]
+    return matrix
+
+
+def quaternion_rates(frame: str = "body", q: Sequence[Any] | Matrix = symbols.quaternion) -> ImmutableMatrix:
+    """Return M(q), shape (4, 3), of ``dq/dt = M(q) * omega``.
+
+    Body: ``1/2 q (0, omega_b)``; space: ``1/2 (0, omega_s) q``: the last three columns of L(q)/2 or R(q)/2. The
+    norm of q is kept exactly, for any q.
+
+    Raises
+    ------
+    InputError
+        If ``frame`` is neither ``"body"`` nor ``"space"``.
+    """
+    product = left_matrix(q) if check_frame(frame) == "body" else right_matrix(q)
+    return ImmutableMatrix(product[:, 1:] / 2)
+
+
+def quaternion_rate_jacobian(frame: str = "body", q: Sequence[Any] | Matrix = symbols.quaternion) -> RateMatrix:
+    """Return B(q), shape (3, 4), of ``omega = B(q) * dq/dt`` for unit q: ``2 q* dq`` or ``2 dq q*``.
+
+    Its determinant, with the gradient of ``|q|^2`` as a fourth row, is a constant: no attitude is singular.
+    """
+    q = expressions(q, 4, "a quaternion")
+    product = (left_matrix if check_frame(frame) == "body" else right_matrix)(conjugate(q))
+    matrix = 2 * product[1:, :]
+    bordered = Matrix.vstack(2 * Matrix([q]), matrix)
+    norm = norm_squared(q)
+    determinant = factor(bordered.det(method="berkowitz")).subs(norm, 1)
+    inverse = quaternion_rates(frame, q)
+    return RateMatrix.build(
+        matrix,
+        RateFacts(
+            name="quaternion",
+            frame=frame,
+            parameters=q,
+            relations=(norm - 1,),
+            inverse=inverse,
+            determinant=determinant,
+            condition_number=condition_of((matrix * matrix.T).applyfunc(factor)),
+            variable=norm,
+            along=partial(_constant, determinant, inverse),
+        ),
+    )
+
+
+def _constant(determinant: Expr, inverse: ImmutableMatrix, _: Expr) -> tuple[Expr, ImmutableMatrix]:
+    return determinant, inverse
+
+
+@cache
+def chart() -> Chart:
+    """Return the chart of unit quaternions: every attitude twice (q and -q), singular nowhere."""
+    return Chart(
+        name="quaternion",
+        parameters=symbols.quaternion,
+        relations=(unit_relation(),),
+        dcm=dcm_of(),
+        quaternion=ImmutableMatrix(symbols.quaternion),
+        of_quaternion=ImmutableMatrix,
+        rate_matrix=quaternion_rate_jacobian,
+        unreached=None,
+        about="unit quaternion, scalar first, body to space",
+    )

@@ -1,0 +1,132 @@
+"""Elementary rotations and the skew matrices of vectors: the bricks of every attitude description.
+
+Convention: :mod:`symrot.conventions`. Rotations are active: ``elementary_rotation(axis, angle) * v`` turns ``v``
+about the axis by the angle, right-handed.
+"""
+
+from collections.abc import Callable, Sequence
+from itertools import permutations
+from typing import Any
+
+from sympy import Expr, I, ImmutableMatrix, LeviCivita, Matrix, cos, eye, sin, sympify
+
+from symrot.conventions import AXES
+from symrot.errors import InputError
+
+__all__ = [
+    "FRAMES",
+    "angular_velocity",
+    "check_frame",
+    "cross_sign",
+    "elementary_rotation",
+    "expressions",
+    "function_of_skew",
+    "skew",
+    "unit_vector",
+    "vee",
+]
+
+FRAMES = ("body", "space")
+
+
+def check_frame(frame: str) -> str:
+    """Return ``frame``, or raise ``InputError`` when it is neither ``"body"`` nor ``"space"``."""
+    if frame not in FRAMES:
+        raise InputError(f"frame is 'body' or 'space', the frame whose components omega has; got {frame!r}")
+    return frame
+
+
+def expressions(values: Any, size: int, what: str) -> tuple[Expr, ...]:
+    """Return ``size`` values as SymPy expressions; ``InputError`` for another number of them."""
+    found = tuple(sympify(value) for value in values)
+    if len(found) != size:
+        raise InputError(f"{what} takes {size} values, got {len(found)}: {found}")
+    return found
+
+
+def axis_number(axis: int | str) -> int:
+    """Return 0, 1, 2 for an axis given as number or as letter, upper or lower case."""
+    if isinstance(axis, str) and len(axis) == 1 and axis.upper() in AXES:
+        return AXES.index(axis.upper())
+    if isinstance(axis, int) and not isinstance(axis, bool) and 0 <= axis < 3:
+        return axis
+    raise InputError(f"an axis is 0, 1, 2 or one of the letters X, Y, Z; got {axis!r}")
+
+
+def unit_vector(axis: int | str) -> ImmutableMatrix:
+    """Return the unit column of an axis, shape (3, 1)."""
+    return ImmutableMatrix(eye(3).col(axis_number(axis)))
+
+
+def cross_sign(first: int, second: int) -> tuple[int, int]:
+    """Return ``(m, sign)`` with ``e_first x e_second = sign * e_m``, for two different axes."""
+    ((m, sign),) = (
+        (k, int(LeviCivita(i, j, k))) for i, j, k in permutations(range(3)) if (i, j) == (first, second)
+    )
+    return m, sign
+
+
+def skew(vector: Sequence[Any] | Matrix) -> ImmutableMatrix:
+    """Return the matrix K of a vector, shape (3, 3), with ``K * u = vector x u``."""
+    v1, v2, v3 = expressions(vector, 3, "skew")
+    return ImmutableMatrix([[0, -v3, v2], [v3, 0, -v1], [-v2, v1, 0]])
+
+
+def vee(matrix: Matrix) -> ImmutableMatrix:
+    """Return the vector of a skew matrix, shape (3, 1): the inverse of :func:`skew`.
+
+    Only the entries (3,2), (1,3), (2,1) are read; that the matrix is skew is for the caller to prove.
+    """
+    if matrix.shape != (3, 3):
+        raise InputError(f"vee takes a 3 x 3 matrix, got shape {matrix.shape}")
+    return ImmutableMatrix([matrix[2, 1], matrix[0, 2], matrix[1, 0]])
+
+
+def elementary_rotation(axis: int | str, angle: Any) -> ImmutableMatrix:
+    """Return the active rotation about a coordinate axis, shape (3, 3).
+
+    Parameters
+    ----------
+    axis : int or str
+        0, 1, 2 or a letter X, Y, Z.
+    angle : Expr
+        rad, right-handed.
+
+    Notes
+    -----
+    The part along the axis stays, the part across it turns:
+    ``e e^T + cos(angle) (1 - e e^T) + sin(angle) skew(e)``.
+    """
+    e = unit_vector(axis)
+    along = e * e.T
+    angle = sympify(angle)
+    return ImmutableMatrix(along + cos(angle) * (eye(3) - along) + sin(angle) * skew(e))
+
+
+def angular_velocity(dcm_sb: Matrix, parameter: Expr, frame: str = "body") -> ImmutableMatrix:
+    """Return omega per unit rate of ``parameter``, shape (3, 1), by differentiating the dcm.
+
+    Body: ``vee(dcm^T d(dcm))``; space: ``vee(d(dcm) dcm^T)``. The definition; every other rate matrix is proven
+    against it.
+    """
+    rate = dcm_sb.diff(parameter)
+    return vee(dcm_sb.T * rate if check_frame(frame) == "body" else rate * dcm_sb.T)
+
+
+def function_of_skew(function: Callable[[Expr], Expr], at_zero: Expr, size: Expr) -> tuple[Expr, Expr, Expr]:
+    """Return ``c0, c1, c2`` with ``function(K) = c0 + c1 K + c2 K^2`` for a skew K of a vector of length ``size``.
+
+    ``K^3 = -size^2 K``: the eigenvalues of K are 0 and +-i size, and the interpolating polynomial through them is the
+    matrix function. ``function`` has real Taylor coefficients, so that its values at +-i size are conjugate.
+
+    Parameters
+    ----------
+    function : callable of one Expr
+        e.g. ``exp``.
+    at_zero : Expr
+        Its value (limit) at zero.
+    size : Expr
+        Length of the vector, positive.
+    """
+    real, imaginary = function(I * size).as_real_imag()
+    return sympify(at_zero), imaginary / size, (at_zero - real) / size**2
