@@ -67,7 +67,7 @@ _TABLE = (
         "gravity_gradient",
         (Field("mean_motion", "scalar", "rad/s", "rate n of the circular orbit", required=True, sign="positive"),),
         "center_of_mass",
-        "the tide on a circular orbit in the x-y plane of space, the centre of attraction at -(cos n t, sin n t, 0)",
+        "the tide on a circular orbit in the x-y plane of space, the radius along (cos n t, sin n t, 0)",
     ),
     TorqueKind(
         "damping",

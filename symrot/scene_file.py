@@ -1,0 +1,92 @@
+"""From a name or a path to the table of a scene file: which file, is it text, is it TOML."""
+
+from decimal import Decimal
+from pathlib import Path
+from typing import Any
+
+from symrot.errors import InputError
+from symrot.scene_reader import nearest
+
+__all__ = ["LARGEST_FILE", "SHIPPED", "find_scene", "read_toml", "shipped_names"]
+
+SHIPPED = Path(__file__).parent / "scenes"
+LARGEST_FILE = 1_000_000
+"""Bytes of the largest scene file that is read."""
+
+
+def shipped_names() -> list[str]:
+    """Return the names of the scenes that come with symrot, sorted."""
+    return sorted(path.stem for path in SHIPPED.glob("*.toml"))
+
+
+def find_scene(source: str | Path) -> Path:
+    """Return the file of a shipped scene, by name, or of a path.
+
+    Text without a suffix and without a folder is a shipped name first, and a file in the current folder second.
+
+    Raises
+    ------
+    InputError
+        When there is no such scene (with the shipped ones and the nearest name), or it is a folder.
+    """
+    if not isinstance(source, str | Path) or not str(source).strip() or "\0" in str(source):
+        raise InputError(f"expected the name of a scene or the path of a scene file, got {str(source)[:60]!r}")
+    path = Path(source)
+    is_name = isinstance(source, str) and path.name == source and not path.suffix
+    if is_name and (SHIPPED / f"{source}.toml").is_file():
+        return SHIPPED / f"{source}.toml"
+    if path.is_dir():
+        raise InputError(f"{source}: expected a scene file, got a folder")
+    if path.exists():
+        return path
+    names = shipped_names()
+    if is_name:
+        raise InputError(f"{source[:80]}: expected a shipped scene ({', '.join(names)}) or a file"
+                         f"{nearest(source, names)}")  # fmt: skip
+    raise InputError(f"{source}: expected a scene file, there is none{nearest(path.stem, names)}")
+
+
+def read_toml(path: Path, label: str) -> dict[str, Any]:
+    """Return the table of a TOML file; numbers with a point come as Decimal, as they are written.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    label : str
+        The file as an error names it.
+
+    Raises
+    ------
+    InputError
+        For a file that cannot be read, is larger than 1 MB, empty, not UTF-8 text or not TOML (with the line).
+    """
+    try:
+        with path.open("rb") as file:
+            content = file.read(LARGEST_FILE + 1)
+    except OSError as reason:
+        raise InputError(f"{label}: expected a readable scene file, got {reason.strerror or reason}") from None
+    if len(content) > LARGEST_FILE:
+        raise InputError(f"{label}: expected a scene file of at most {LARGEST_FILE // 1_000_000} MB, got a larger one")
+    try:
+        text = content.decode("utf-8-sig")
+    except UnicodeDecodeError as reason:
+        raise InputError(f"{label}: expected UTF-8 text, got byte 0x{content[reason.start]:02x} at position "
+                         f"{reason.start}") from None  # fmt: skip
+    if not text.strip():
+        raise InputError(f"{label}: expected a scene, got an empty file")
+    return _parse(text, label)
+
+
+def _parse(text: str, label: str) -> dict[str, Any]:
+    import tomllib  # compiles its patterns when imported
+
+    try:
+        return tomllib.loads(text, parse_float=Decimal)
+    except tomllib.TOMLDecodeError as reason:
+        said = str(reason).splitlines()[0][:200]
+        raise InputError(f"{label}: expected a TOML document, but {said[:1].lower()}{said[1:]}") from None
+    except RecursionError:
+        raise InputError(f"{label}: expected a TOML document, got one nested too deeply") from None
+    except (ValueError, ArithmeticError) as reason:  # an integer of more than 4300 digits, an impossible date
+        raise InputError(f"{label}: expected a TOML document, but {str(reason)[:200]}") from None
