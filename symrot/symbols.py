@@ -19,6 +19,11 @@ def unit_of(symbols: Iterable[Symbol]) -> dict[Symbol, str]:
     return {symbol: UNIT[symbol] for symbol in symbols}
 
 
+def constant(name: str) -> Symbol:
+    """Return the real symbol of a scene's own constant, e.g. the weight of a gravity torque; its unit is the scene's."""
+    return Symbol(name, real=True)
+
+
 (t,) = _make("t", "s")
 
 # Euler angles in order of application (precession, nutation, spin for ZXZ), and their rates
@@ -43,6 +48,14 @@ moments = I_xx, I_yy, I_zz = _make("I_xx I_yy I_zz", "kg m^2", positive=True)
 products = I_xy, I_xz, I_yz = _make("I_xy I_xz I_yz", "kg m^2")
 (m,) = _make("m", "kg", positive=True)
 position = x, y, z = _make("x y z", "m")
+
+# solids: dimensions, corners, uniform density of a solid; coordinates of the maps
+dimensions = a, b, c, h, L, r, R, R_1, R_2 = _make("a b c h L r R R_1 R_2", "m", positive=True)
+(e,) = _make("e", "m")  # x of the third corner of a triangle
+corners = _make(" ".join(f"{axis}_{n}" for n in range(1, 5) for axis in "xyz"), "m")
+(rho,) = _make("rho", "kg/m^3", positive=True)
+map_lengths = s, u, v, w = _make("s u v w", "m")
+map_shares = f_1, f_2, f_3 = _make("f_1 f_2 f_3", "1")
 
 # torque, body components
 torque_b = tau_1, tau_2, tau_3 = _make("tau_1 tau_2 tau_3", "N m")

@@ -13,7 +13,10 @@ from typing import Any, NamedTuple
 from symrot.errors import InputError
 from symrot.number import read, show
 
-__all__ = ["DENSITY_UNITS", "SHAPES", "Coordinate", "Dimension", "Shape", "check_dimensions", "find_shape"]
+__all__ = [
+    "DENSITY_UNITS", "SHAPES", "Coordinate", "Dimension", "Shape", "check_dimensions", "check_names", "find_shape",
+    "scalar_names", "scalars",
+]  # fmt: skip
 
 DENSITY_UNITS = {"solid": "kg/m^3", "surface": "kg/m^2", "curve": "kg/m", "points": "1"}
 """Unit of the density of each kind of shape; points carry their masses among their dimensions."""
@@ -31,11 +34,19 @@ class Dimension(NamedTuple):
 
 
 class Coordinate(NamedTuple):
-    """One coordinate of a map, with its limits as text over the dimensions."""
+    """One coordinate of a map, with its limits as text over the dimensions.
+
+    ``s, u, v, w`` are lengths in m, ``f_1, f_2, f_3`` shares of one, ``theta, phi`` angles in rad.
+    """
 
     name: str
     lower: str
     upper: str
+
+    @property
+    def angle(self) -> bool:
+        """Whether it is an angle, which the map holds only in ``cos`` and ``sin``."""
+        return "pi" in self.upper
 
 
 class Shape(NamedTuple):
@@ -58,7 +69,7 @@ class Shape(NamedTuple):
 _RELATIONS: dict[str, Callable[[Any, Any], bool]] = {"<": lt, "<=": le}
 
 _TURN = Coordinate("phi", "0", "2*pi")
-_UNIT = Coordinate("s", "0", "1")
+_SHARES = tuple(Coordinate(name, "0", "1") for name in ("f_1", "f_2", "f_3"))
 _ALONG_A = Coordinate("u", "-a/2", "a/2")
 _ALONG_B = Coordinate("v", "-b/2", "b/2")
 _ALONG_LENGTH = Coordinate("w", "-length/2", "length/2")
@@ -72,14 +83,14 @@ _TRIANGLE = (
     Dimension("height", "distance of the third corner from that side, along y", "h"),
     Dimension("apex", "x of the third corner", "e", "any"),
 )
-_TRIANGLE_MAP = ("base*u*(1 - s) + apex*s", "height*s")
+_TRIANGLE_MAP = ("base*f_1*(1 - f_2) + apex*f_2", "height*f_2")
 _SPHERE_MAP = ("s*sin(theta)*cos(phi)", "s*sin(theta)*sin(phi)", "s*cos(theta)")
 _HALF_TURN = Coordinate("theta", "0", "pi")
 
 
 def _corner(axis: str) -> str:
-    """Return the map of a tetrahedron on one axis: from corner 1 a share r to 2, of that s on to 3, of that t to 4."""
-    return f"{axis}1 + r*({axis}2 - {axis}1) + r*s*({axis}3 - {axis}2) + r*s*q*({axis}4 - {axis}3)"
+    """Return the map of a tetrahedron on one axis: f_1 of the way from corner 1 to 2, f_2 of that to 3, f_3 to 4."""
+    return f"{axis}1 + f_1*({axis}2 - {axis}1 + f_2*({axis}3 - {axis}2 + f_3*({axis}4 - {axis}3)))"
 
 
 _TABLE = (
@@ -101,8 +112,8 @@ _TABLE = (
     Shape(
         "cone", "solid", (Dimension("radius", "radius of the base", "R"), _HEIGHT),
         "origin at the centre of the base, z along the axis toward the apex at z = height",
-        (Coordinate("s", "0", "radius"), _TURN, Coordinate("w", "0", "1")),
-        ("s*(1 - w)*cos(phi)", "s*(1 - w)*sin(phi)", "height*w"),
+        (Coordinate("s", "0", "radius"), _TURN, _SHARES[0]),
+        ("s*(1 - f_1)*cos(phi)", "s*(1 - f_1)*sin(phi)", "height*f_1"),
     ),
     Shape(
         "frustum", "solid",
@@ -111,8 +122,8 @@ _TABLE = (
             _HEIGHT,
         ),
         "origin at the centre of the bottom, z along the axis toward the top at z = height",
-        (_UNIT, _TURN, Coordinate("w", "0", "1")),
-        ("s*(bottom + (top - bottom)*w)*cos(phi)", "s*(bottom + (top - bottom)*w)*sin(phi)", "height*w"),
+        (_SHARES[0], _TURN, _SHARES[1]),
+        ("f_1*(bottom + (top - bottom)*f_2)*cos(phi)", "f_1*(bottom + (top - bottom)*f_2)*sin(phi)", "height*f_2"),
     ),
     Shape(
         "sphere", "solid", (_RADIUS,), "origin at the centre",
@@ -137,7 +148,8 @@ _TABLE = (
             Dimension("c", "semi-axis along z", "c"),
         ),
         "origin at the centre, axes along the semi-axes",
-        (_UNIT, _HALF_TURN, _TURN), ("a*s*sin(theta)*cos(phi)", "b*s*sin(theta)*sin(phi)", "c*s*cos(theta)"),
+        (_SHARES[0], _HALF_TURN, _TURN),
+        ("a*f_1*sin(theta)*cos(phi)", "b*f_1*sin(theta)*sin(phi)", "c*f_1*cos(theta)"),
     ),
     Shape(
         "torus", "solid",
@@ -162,17 +174,17 @@ _TABLE = (
     Shape(
         "triangular_plate", "surface", _TRIANGLE,
         "origin at the first corner, corners (0, 0), (base, 0), (apex, height) in the plane z = 0",
-        (Coordinate("u", "0", "1"), _UNIT), (*_TRIANGLE_MAP, "0"),
+        _SHARES[:2], (*_TRIANGLE_MAP, "0"),
     ),
     Shape(
         "triangular_prism", "solid", (*_TRIANGLE, _LENGTH),
         "corners (0, 0), (base, 0), (apex, height) in x, y; z from -length/2 to length/2",
-        (Coordinate("u", "0", "1"), _UNIT, _ALONG_LENGTH), (*_TRIANGLE_MAP, "w"),
+        (*_SHARES[:2], _ALONG_LENGTH), (*_TRIANGLE_MAP, "w"),
     ),
     Shape(
         "tetrahedron", "solid", (Dimension("vertices", "the four corners [x, y, z]", "P", "any", "points", 4),),
         "origin and axes in which the corners are given",
-        (Coordinate("r", "0", "1"), _UNIT, Coordinate("q", "0", "1")), (_corner("x"), _corner("y"), _corner("z")),
+        _SHARES, (_corner("x"), _corner("y"), _corner("z")),
     ),
     Shape(
         "point_masses", "points",
@@ -276,13 +288,18 @@ def check_dimensions(shape: Shape, dimensions: Mapping[str, object], where: str 
     return found
 
 
-def scalars(dimensions: Mapping[str, Any]) -> dict[str, Any]:
+def scalar_names(shape: Shape) -> tuple[str, ...]:
+    """Return the names of the single numbers in the maps and closed forms of a shape; see :func:`scalars`."""
+    names: list[str] = []
+    for d in shape.dimensions:
+        names += [f"{axis}{n}" for n in range(1, (d.size or 0) + 1) for axis in "xyz"] if d.form == "points" else [d.name]
+    return tuple(names)
+
+
+def scalars(shape: Shape, dimensions: Mapping[str, Any]) -> dict[str, Any]:
     """Return the dimensions as single numbers by name; corner n of ``vertices`` becomes ``xn``, ``yn``, ``zn``."""
-    flat: dict[str, Any] = {}
-    for name, value in dimensions.items():
-        if isinstance(value, tuple):
-            corners = enumerate(value, 1)
-            flat.update({f"{axis}{n}": item for n, point in corners for axis, item in zip("xyz", point, strict=True)})
-        else:
-            flat[name] = value
-    return flat
+    values: list[Any] = []
+    for d in shape.dimensions:
+        given = dimensions[d.name]
+        values += [component for point in given for component in point] if d.form == "points" else [given]
+    return dict(zip(scalar_names(shape), values, strict=True))

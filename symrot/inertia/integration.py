@@ -1,0 +1,213 @@
+"""Exact integrals over the mapped solids: the map, its Jacobian, and moments of any polynomial. Standard library only.
+
+The Jacobian is computed from the map: its determinant for a solid, the root of the Gram determinant for a surface or a
+curve. Every integrand is a polynomial in the coordinates and in cosines and sines, so every integral is a rule: powers
+have polynomial antiderivatives, and products of whole powers of cos and sin over quarter turns follow from two-step
+recursion (Wallis). The result is a polynomial in the dimensions and pi.
+"""
+
+from collections.abc import Mapping
+from fractions import Fraction
+from functools import cache
+from itertools import combinations
+from typing import Any, NamedTuple
+
+from symrot.errors import InputError
+from symrot.expression import Node, evaluate, parse
+from symrot.inertia.polynomial import (
+    Polynomial,
+    constant,
+    cosine,
+    generator,
+    reduce_circular,
+    sine,
+    square_root,
+)
+from symrot.inertia.shapes import Coordinate, Shape, scalar_names, scalars
+from symrot.number import PI, show
+
+__all__ = [
+    "LARGEST_DEGREE", "Domain", "Moments", "density_polynomial", "domain", "exact_moments", "integrate", "moments",
+]  # fmt: skip
+
+LARGEST_DEGREE = 12
+"""Highest total degree of a density in x, y, z."""
+
+
+class Domain(NamedTuple):
+    """A mapped shape: position in the shape's axes (m), Jacobian, and the coordinates with their limits."""
+
+    position: tuple[Polynomial, ...]
+    jacobian: Polynomial
+    limits: tuple[tuple[Coordinate, Polynomial, Polynomial], ...]
+
+
+class Moments(NamedTuple):
+    """Integrals of 1, x_i and x_i x_j over a shape, weighted by a density."""
+
+    zeroth: Any
+    first: tuple[Any, ...]
+    second: tuple[tuple[Any, ...], ...]
+
+
+def _lifted(text: str, values: Mapping[str, Polynomial]) -> Polynomial:
+    functions = {"cos": lambda angle: cosine(angle.symbol()), "sin": lambda angle: sine(angle.symbol())}
+    found = evaluate(parse(text), values, functions, constant)
+    assert isinstance(found, Polynomial)
+    return found
+
+
+def _determinant(rows: list[list[Polynomial]]) -> Polynomial:
+    if not rows:
+        return constant(1)
+    total = constant(0)
+    for column, entry in enumerate(rows[0]):
+        if entry:
+            minor = [row[:column] + row[column + 1 :] for row in rows[1:]]
+            total = total + entry * _determinant(minor) * (-1) ** column
+    return total
+
+
+def _jacobian(position: tuple[Polynomial, ...], coordinates: tuple[Coordinate, ...]) -> Polynomial:
+    """Return the measure per unit of the coordinates: volume, area or length."""
+    columns = [[component.derivative(c.name) for component in position] for c in coordinates]
+    angles = [c.name for c in coordinates if c.angle]
+    if len(columns) == 3:
+        return reduce_circular(_determinant(columns), angles)
+    gram = [[sum((a * b for a, b in zip(p, q, strict=True)), constant(0)) for q in columns] for p in columns]
+    return square_root(reduce_circular(_determinant(gram), angles))
+
+
+def domain(shape: Shape, dimensions: Mapping[str, Any] | None = None) -> Domain:
+    """Return the mapped shape with its dimensions as generators, or as the exact numbers given."""
+    names = scalar_names(shape)
+    found = scalars(shape, dimensions) if dimensions is not None else {}
+    values = {name: constant(found[name]) if name in found else generator(name) for name in names}
+    values["pi"] = generator("pi")
+    limits = tuple((c, _lifted(c.lower, values), _lifted(c.upper, values)) for c in shape.coordinates)
+    values |= {c.name: generator(c.name) for c in shape.coordinates}
+    position = tuple(_lifted(text, values) for text in shape.position)
+    return Domain(position, _jacobian(position, shape.coordinates), limits)
+
+
+@cache
+def _quarter_turn(cosines: int, sines: int) -> tuple[Fraction, int]:
+    """Return the integral of cos^a sin^b over the first quadrant as (rational, power of pi)."""
+    if sines > 1:
+        rational, power = _quarter_turn(cosines, sines - 2)
+        return rational * Fraction(sines - 1, cosines + sines), power
+    if cosines > 1:
+        rational, power = _quarter_turn(cosines - 2, sines)
+        return rational * Fraction(cosines - 1, cosines + sines), power
+    return {(0, 0): (Fraction(1, 2), 1), (1, 1): (Fraction(1, 2), 0)}.get((cosines, sines), (Fraction(1), 0))
+
+
+def _circular(cosines: int, sines: int, lower: int, upper: int) -> Polynomial:
+    """Return the integral of cos^a sin^b between two numbers of quarter turns."""
+    total = constant(0)
+    for quadrant in range(lower, upper):
+        cosine_sign, sine_sign = ((1, 1), (-1, 1), (-1, -1), (1, -1))[quadrant % 4]
+        swapped = (sines, cosines) if quadrant % 2 else (cosines, sines)
+        rational, power = _quarter_turn(*swapped)
+        total = total + generator("pi") ** power * (rational * cosine_sign**cosines * sine_sign**sines)
+    return total
+
+
+def _quarters(limit: Polynomial) -> int:
+    turns = 2 * limit.collect(["pi"]).get((1,), constant(0)).value({})
+    if turns.denominator != 1:
+        raise ValueError("the limits of an angle are multiples of a quarter turn")
+    return int(turns)
+
+
+def integrate(integrand: Polynomial, limits: tuple[tuple[Coordinate, Polynomial, Polynomial], ...]) -> Polynomial:
+    """Return the integral over all coordinates, a polynomial in the dimensions and ``pi``."""
+    for coordinate, lower, upper in limits:
+        total = constant(0)
+        if coordinate.angle:
+            names = f"cos({coordinate.name})", f"sin({coordinate.name})"
+            for (cosines, sines), coefficient in integrand.collect(names).items():
+                total = total + coefficient * _circular(cosines, sines, _quarters(lower), _quarters(upper))
+        else:
+            for (power,), coefficient in integrand.collect([coordinate.name]).items():
+                total = total + coefficient * (upper ** (power + 1) - lower ** (power + 1)) / (power + 1)
+        integrand = total
+    return integrand
+
+
+def _degree(node: Node) -> int:
+    """Return a bound of the degree of a formula in x, y, z, found without expanding it."""
+    kind = node[0]
+    if kind == "number":
+        return 0
+    if kind == "symbol":
+        return int(node[1] in ("x", "y", "z"))
+    if kind == "neg":
+        return _degree(node[1])
+    if kind == "**":
+        return _degree(node[1]) * abs(int(node[2]))
+    left, right = _degree(node[1]), _degree(node[2])
+    return left + right if kind in "*/" else max(left, right)
+
+
+def density_polynomial(density: Node, values: Mapping[str, Polynomial], shown: object, where: str = "") -> Polynomial:
+    """Return a density over the coordinates of a map.
+
+    Parameters
+    ----------
+    density : Node
+        A formula in x, y, z (m, axes of the shape) and the names of ``values``.
+    values : mapping of str to Polynomial
+        x, y, z and the dimensions.
+    shown : object
+        The density as the user wrote it.
+
+    Raises
+    ------
+    InputError
+        If it is no polynomial in x, y, z, is of a degree above LARGEST_DEGREE, or uses another name.
+    """
+    prefix = f"{where}: " if where else ""
+    expected = f"{prefix}expected a density that is a polynomial in x, y, z, got {show(shown)}"
+    try:
+        if _degree(density) > LARGEST_DEGREE:
+            raise InputError(f"{expected} (its degree exceeds {LARGEST_DEGREE})")
+        found = evaluate(density, values, None, constant)
+    except KeyError as unknown:
+        names = ", ".join(sorted(values))
+        raise InputError(f"{expected} ({unknown.args[0]!r} is not one of {names})") from None
+    except (ValueError, ZeroDivisionError) as reason:
+        if isinstance(reason, InputError):
+            raise
+        raise InputError(f"{expected} ({reason})") from None
+    assert isinstance(found, Polynomial)
+    return found
+
+
+def moments(region: Domain, density: Polynomial | None = None) -> Moments:
+    """Return the moments of a mapped shape up to the second, as polynomials in the dimensions and ``pi``."""
+    weight = region.jacobian if density is None else region.jacobian * density
+    first = tuple(integrate(p * weight, region.limits) for p in region.position)
+    second = [[constant(0)] * 3 for _ in range(3)]
+    for i, j in ((0, 0), (1, 1), (2, 2), *combinations(range(3), 2)):
+        second[i][j] = second[j][i] = integrate(region.position[i] * region.position[j] * weight, region.limits)
+    return Moments(integrate(weight, region.limits), first, tuple(map(tuple, second)))
+
+
+def exact_moments(
+    shape: Shape, dimensions: Mapping[str, Any], density: Node, shown: object, where: str = ""
+) -> Moments:
+    """Return the moments of a shape with a polynomial density as numbers: kg, kg m, kg m^2.
+
+    ``dimensions`` are those of :func:`symrot.inertia.shapes.check_dimensions`; pi is taken to 2^-320.
+    """
+    region = domain(shape, dimensions)
+    values = dict(zip("xyz", region.position, strict=True))
+    values |= {name: constant(value) for name, value in scalars(shape, dimensions).items()}
+    found = moments(region, density_polynomial(density, values | {"pi": constant(PI)}, shown, where))
+    numbers = {"pi": PI}
+    return Moments(
+        found.zeroth.value(numbers),
+        tuple(entry.value(numbers) for entry in found.first),
+        tuple(tuple(entry.value(numbers) for entry in row) for row in found.second),
+    )

@@ -1,0 +1,194 @@
+"""Sparse polynomials with exact coefficients in named generators. Standard library only.
+
+The integrands of the mapped solids live here: polynomials in the coordinates, in the cosine and sine of the angles, in
+the dimensions and in ``pi``. The same code runs with the dimensions as generators (closed forms) or numbers (scenes).
+"""
+
+from collections.abc import Iterable, Mapping
+from fractions import Fraction
+from math import isqrt
+from typing import Union
+
+__all__ = ["Polynomial", "constant", "cosine", "generator", "reduce_circular", "sine", "square_root"]
+
+Monomial = tuple[tuple[str, int], ...]  # (generator, power > 0), ordered by generator
+Operand = Union["Polynomial", Fraction, int]
+
+
+class Polynomial:
+    """A polynomial as a mapping of monomials to nonzero coefficients; immutable by convention."""
+
+    __slots__ = ("terms",)
+
+    def __init__(self, terms: Mapping[Monomial, Fraction]) -> None:
+        self.terms = {monomial: coefficient for monomial, coefficient in terms.items() if coefficient}
+
+    def __repr__(self) -> str:
+        return f"Polynomial({self.terms})"
+
+    def __bool__(self) -> bool:
+        return bool(self.terms)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Polynomial) and self.terms == other.terms
+
+    def __hash__(self) -> int:
+        return hash(frozenset(self.terms.items()))
+
+    def __add__(self, other: Operand) -> "Polynomial":
+        total = dict(self.terms)
+        for monomial, coefficient in _lift(other).terms.items():
+            total[monomial] = total.get(monomial, Fraction(0)) + coefficient
+        return Polynomial(total)
+
+    def __neg__(self) -> "Polynomial":
+        return Polynomial({monomial: -coefficient for monomial, coefficient in self.terms.items()})
+
+    def __sub__(self, other: Operand) -> "Polynomial":
+        return self + -_lift(other)
+
+    def __mul__(self, other: Operand) -> "Polynomial":
+        total: dict[Monomial, Fraction] = {}
+        right = list(_lift(other).terms.items())
+        for monomial, coefficient in self.terms.items():
+            for factor, scale in right:
+                product = _join(monomial, factor)
+                total[product] = total.get(product, Fraction(0)) + coefficient * scale
+        return Polynomial(total)
+
+    __radd__, __rmul__ = __add__, __mul__
+
+    def __truediv__(self, other: Operand) -> "Polynomial":
+        """Divide by a number; ``ValueError`` for a divisor that holds a generator, ``ZeroDivisionError`` for zero."""
+        divisor = _lift(other)
+        if not divisor:
+            raise ZeroDivisionError("division by zero")
+        if set(divisor.terms) != {()}:
+            raise ValueError("a polynomial is divided by numbers only")
+        inverse = 1 / divisor.terms[()]
+        return Polynomial({monomial: coefficient * inverse for monomial, coefficient in self.terms.items()})
+
+    def __pow__(self, exponent: int) -> "Polynomial":
+        if exponent < 0:
+            return constant(1) / self**-exponent
+        power = constant(1)
+        for _ in range(exponent):
+            power = power * self
+        return power
+
+    def collect(self, names: Iterable[str]) -> dict[tuple[int, ...], "Polynomial"]:
+        """Return the coefficients of the powers of some generators, keyed by the exponents in the order given."""
+        order = tuple(names)
+        parts: dict[tuple[int, ...], dict[Monomial, Fraction]] = {}
+        for monomial, coefficient in self.terms.items():
+            powers = dict(monomial)
+            exponents = tuple(powers.pop(name, 0) for name in order)
+            parts.setdefault(exponents, {})[tuple(sorted(powers.items()))] = coefficient
+        return {exponents: Polynomial(part) for exponents, part in parts.items()}
+
+    def derivative(self, name: str) -> "Polynomial":
+        """Return the partial derivative by a coordinate, with ``d cos = -sin``, ``d sin = cos`` of an angle."""
+        inner = ((generator(name), constant(1)), (cosine(name), -sine(name)), (sine(name), cosine(name)))
+        total = constant(0)
+        for argument, rate in inner:
+            ((((symbol, _),), _),) = argument.terms.items()
+            for (power,), coefficient in self.collect([symbol]).items():
+                if power:
+                    total = total + coefficient * argument ** (power - 1) * power * rate
+        return total
+
+    def value(self, values: Mapping[str, Fraction]) -> Fraction:
+        """Return the number it stands for; ``KeyError`` for a generator without a value."""
+        total = Fraction(0)
+        for monomial, coefficient in self.terms.items():
+            for name, power in monomial:
+                coefficient *= values[name] ** power
+            total += coefficient
+        return total
+
+    def symbol(self) -> str:
+        """Return the name of a polynomial that is one generator; ``ValueError`` otherwise."""
+        ((monomial, coefficient),) = self.terms.items()
+        ((name, power),) = monomial
+        if power != 1 or coefficient != 1:
+            raise ValueError(f"expected one generator, got {self}")
+        return name
+
+
+def _join(left: Monomial, right: Monomial) -> Monomial:
+    if not left or not right:
+        return left or right
+    powers = dict(left)
+    for name, power in right:
+        powers[name] = powers.get(name, 0) + power
+    return tuple(sorted(powers.items()))
+
+
+def _lift(value: Operand) -> Polynomial:
+    return value if isinstance(value, Polynomial) else constant(value)
+
+
+def constant(value: Fraction | int) -> Polynomial:
+    """Return a number as a polynomial."""
+    return Polynomial({(): Fraction(value)})
+
+
+def generator(name: str) -> Polynomial:
+    """Return a generator as a polynomial."""
+    return Polynomial({((name, 1),): Fraction(1)})
+
+
+def cosine(angle: str) -> Polynomial:
+    """Return the generator that stands for the cosine of an angle."""
+    return generator(f"cos({angle})")
+
+
+def sine(angle: str) -> Polynomial:
+    """Return the generator that stands for the sine of an angle."""
+    return generator(f"sin({angle})")
+
+
+def reduce_circular(source: Polynomial, angles: Iterable[str]) -> Polynomial:
+    """Return the polynomial with ``cos^2 = 1 - sin^2`` applied until each cosine stands at most to the first power."""
+    for angle in angles:
+        reduced = constant(0)
+        for (power,), coefficient in source.collect([f"cos({angle})"]).items():
+            reduced = reduced + coefficient * cosine(angle) ** (power % 2) * (1 + -sine(angle) ** 2) ** (power // 2)
+        source = reduced
+    return source
+
+
+def square_root(source: Polynomial) -> Polynomial:
+    """Return the root, with a positive lowest term, of a polynomial that is a square; ``ValueError`` when it is none.
+
+    Term by term from the lowest one, as for a power series; the order is lexicographic in the generators by name.
+    """
+    names = sorted({name for monomial in source.terms for name, _ in monomial})
+
+    def lowest(polynomial: Polynomial) -> tuple[Monomial, Fraction]:
+        return min(polynomial.terms.items(), key=lambda term: [dict(term[0]).get(name, 0) for name in names])
+
+    def over(term: tuple[Monomial, Fraction], divisor: tuple[Monomial, Fraction]) -> Polynomial:
+        powers = dict(term[0])
+        for name, power in divisor[0]:
+            powers[name] = powers.get(name, 0) - power
+        if min(powers.values(), default=0) < 0:
+            raise ValueError("not the square of a polynomial")
+        return Polynomial({tuple(sorted((n, p) for n, p in powers.items() if p)): term[1] / divisor[1]})
+
+    if not source:
+        return source
+    monomial, coefficient = lowest(source)
+    scale = Fraction(isqrt(max(coefficient.numerator, 0)), isqrt(coefficient.denominator))
+    if scale**2 != coefficient or any(power % 2 for _, power in monomial):
+        raise ValueError("not the square of a polynomial")
+    first = tuple((name, power // 2) for name, power in monomial), scale
+    root = Polynomial({first[0]: first[1]})
+    for _ in source.terms:
+        rest = source - root * root
+        if not rest:
+            return root
+        root = root + over(lowest(rest), (first[0], 2 * first[1]))
+    if source == root * root:
+        return root
+    raise ValueError("not the square of a polynomial")
