@@ -14,7 +14,7 @@ from sympy import Abs, Expr, I, Integer, Pow, Rational, factorint, sqrt
 
 from symrot.errors import InputError
 
-__all__ = ["Radical", "Root", "radical"]
+__all__ = ["Radical", "Root", "is_root", "radical"]
 
 
 @dataclass(frozen=True)
@@ -29,9 +29,9 @@ class Root:
 
 @dataclass(frozen=True)
 class Radical:
-    """``expression = (rational * product(roots) / below)^power``."""
+    """``(rational * product(roots) / below)^power``, the root of ``base`` to that power."""
 
-    expression: Expr
+    base: Expr
     rational: Rational
     roots: tuple[Root, ...]
     below: Expr
@@ -40,7 +40,7 @@ class Radical:
     @property
     def parts(self) -> tuple[Expr, ...]:
         """The expressions that must be readable before this one is."""
-        return (self.below, *(root.power_expression for root in self.roots))
+        return (self.rational, self.below, *(root.power_expression for root in self.roots))
 
 
 def radical(node: Expr, lowest_terms: Callable[[Expr], tuple[Rational, Expr, Expr]]) -> Radical:
@@ -59,7 +59,7 @@ def radical(node: Expr, lowest_terms: Callable[[Expr], tuple[Rational, Expr, Exp
         If a negative power of an expression is asked for which is zero everywhere.
     """
     if node is I:
-        return Radical(node, Integer(1), (_imaginary_unit(),), Integer(1), 1)
+        return Radical(Integer(-1), Integer(1), (_imaginary_unit(),), Integer(1), 1)
     if isinstance(node, Abs):
         base, power, index = node.args[0] ** 2, 1, 2
     else:
@@ -69,7 +69,7 @@ def radical(node: Expr, lowest_terms: Callable[[Expr], tuple[Rational, Expr, Exp
     if not content:
         if power < 0:
             raise InputError(f"the formula divides by a power of {base}, which is zero everywhere")
-        return Radical(node, Integer(0), (), Integer(1), 1)
+        return Radical(base, Integer(0), (), Integer(1), 1)
     if index != 2:
         above, below = content.p * above, content.q * below
         rational, roots = Integer(1), []
@@ -79,9 +79,16 @@ def radical(node: Expr, lowest_terms: Callable[[Expr], tuple[Rational, Expr, Exp
         roots.append(_imaginary_unit())
     elif above != 1 or below != 1:
         inside = (above * below ** (index - 1)).expand()
-        shown = Abs(node.args[0]) if isinstance(node, Abs) and below == 1 else below * (above / below) ** Rational(1, index)
+        shown = below * (above / below) ** Rational(1, index)
         roots.append(Root(shown, inside, index, 1 + _nesting([inside])))
-    return Radical(node, rational, tuple(roots), below, power)
+    return Radical(base, rational, tuple(roots), below, power)
+
+
+def is_root(node: Expr) -> bool:
+    """Return whether the node is a fractional power, ``i``, or the absolute value of something real."""
+    if isinstance(node, Pow):
+        return bool(node.exp.is_Rational and not node.exp.is_Integer)
+    return node is I or (isinstance(node, Abs) and bool(node.args[0].is_extended_real))
 
 
 def _imaginary_unit() -> Root:
@@ -101,6 +108,5 @@ def _nesting(expressions: Iterable[Expr]) -> int:
     deepest = 0
     for node in expressions:
         below = _nesting(node.args)
-        own = node is I or isinstance(node, Abs) or (isinstance(node, Pow) and node.exp.is_Rational and not node.exp.is_Integer)
-        deepest = max(deepest, below + bool(own))
+        deepest = max(deepest, below + is_root(node))
     return deepest

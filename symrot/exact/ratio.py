@@ -1,0 +1,160 @@
+"""Fractions over a polynomial ring whose denominators are products of known factors.
+
+Formulas of rotation divide by few things (``sin(theta)``, a moment of inertia, ``1 + q0``), many times. Each is
+learnt once and carried as an exponent, so sums of equal denominators are sums of polynomials, and every factor is
+remembered with the expression by which somebody divided: the condition under which the formula means something.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from math import lcm
+from typing import Any
+
+from sympy import Expr
+from sympy.polys.domains import QQ
+from sympy.polys.rings import PolyElement, PolyRing
+
+from symrot.errors import InputError
+
+__all__ = ["Ratio", "Ratios"]
+
+
+@dataclass(frozen=True)
+class Ratio:
+    """``numerator / (constant * product of factors)``; factors by number, with exponents, in increasing order."""
+
+    numerator: PolyElement
+    constant: int = 1
+    factors: tuple[tuple[int, int], ...] = ()
+
+
+class Ratios:
+    """Arithmetic of :class:`Ratio` in one ring.
+
+    Parameters
+    ----------
+    ring : PolyRing
+        Over the integers or the rationals.
+    generators : sequence of Expr
+        What the generators of the ring stand for.
+    reduce : function
+        The normal form of a polynomial modulo the relations.
+    """
+
+    def __init__(
+        self, ring: PolyRing, generators: Sequence[Expr], reduce: Callable[[PolyElement], PolyElement]
+    ) -> None:
+        self.ring = ring
+        self.generators = generators
+        self.reduce = reduce
+        self.factors: list[PolyElement] = []  # primitive, not constant, leading coefficient positive
+        self.sources: list[Expr] = []  # what stood in the denominator where the factor was met first
+
+    def number(self, numerator: int, denominator: int = 1) -> Ratio:
+        """Return a rational number."""
+        return Ratio(self.ring.ground_new(self.ring.domain(numerator)), denominator)
+
+    def add(self, terms: Sequence[Ratio]) -> Ratio:
+        """Return the sum; terms of equal denominator are added before anything is cross-multiplied."""
+        groups: dict[tuple[int, tuple[tuple[int, int], ...]], PolyElement] = {}
+        for term in terms:
+            key = (term.constant, term.factors)
+            groups[key] = groups[key] + term.numerator if key in groups else term.numerator
+        if len(groups) == 1:
+            (((constant, factors), numerator),) = groups.items()
+            return Ratio(numerator, constant, factors)
+        common_constant = lcm(*(constant for constant, _ in groups))
+        common: dict[int, int] = {}
+        for _, factors in groups:
+            for number, power in factors:
+                common[number] = max(power, common.get(number, 0))
+        total = self.ring.zero
+        for (constant, factors), numerator in groups.items():
+            own = dict(factors)
+            for number, power in sorted(common.items()):
+                missing = power - own.get(number, 0)
+                if missing:
+                    numerator = numerator * self.factors[number] ** missing
+            total = total + numerator.mul_ground(self.ring.domain(common_constant // constant))
+        return Ratio(total, common_constant, tuple(sorted(common.items())))
+
+    def multiply(self, factors: Sequence[Ratio]) -> Ratio:
+        """Return the product, small numerators first."""
+        numerator, constant = self.ring.one, 1
+        below: dict[int, int] = {}
+        for factor in sorted(factors, key=lambda f: len(f.numerator)):
+            numerator = numerator * factor.numerator
+            constant *= factor.constant
+            for number, power in factor.factors:
+                below[number] = below.get(number, 0) + power
+        return Ratio(numerator, constant, tuple(sorted(below.items())))
+
+    def power(self, base: Ratio, exponent: int) -> Ratio:
+        """Return a fraction to a power >= 0."""
+        if exponent == 0:
+            return Ratio(self.ring.one)
+        below = tuple((number, power * exponent) for number, power in base.factors)
+        return Ratio(base.numerator**exponent, base.constant**exponent, below)
+
+    def invert(self, value: Ratio, source: Expr) -> Ratio:
+        """Return 1/value; the factors of its numerator are remembered as coming from ``source``.
+
+        Raises
+        ------
+        InputError
+            If the value is zero everywhere.
+        """
+        numerator = self.reduce(value.numerator)
+        if not numerator:
+            raise InputError(f"the formula divides by {source}, which is zero everywhere")
+        constant, below = self._split(numerator, source)
+        above = self.denominator(value).mul_ground(self.ring.domain(constant.denominator))
+        return Ratio(above if constant > 0 else -above, abs(constant.numerator), below)
+
+    def denominator(self, value: Ratio) -> PolyElement:
+        """Return the denominator multiplied out."""
+        below = self.ring.ground_new(self.ring.domain(value.constant))
+        for number, power in value.factors:
+            below = below * self.factors[number] ** power
+        return below
+
+    def _split(self, poly: PolyElement, source: Expr) -> tuple[Fraction, tuple[tuple[int, int], ...]]:
+        """Return a polynomial as a rational constant times known factors, learning the ones that are new."""
+        constant, poly = _primitive(poly)
+        powers: dict[int, int] = {}
+        shared = [min(column) for column in zip(*poly, strict=True)]
+        for place, power in enumerate(shared):
+            if power:
+                powers[self._learn(self.ring.gens[place], self.generators[place])] = power
+        if any(shared):
+            poly = poly.new({tuple(m - s for m, s in zip(mono, shared, strict=True)): c for mono, c in poly.items()})
+        for number, known in enumerate(self.factors):
+            while len(known) > 1 and not poly.is_ground:
+                quotient, rest = divmod(poly, known)
+                if rest:
+                    break
+                poly, powers[number] = quotient, powers.get(number, 0) + 1
+        if poly.is_ground:
+            constant *= Fraction(int(poly.LC.numerator), int(poly.LC.denominator))
+        else:
+            powers[self._learn(poly, source)] = 1
+        return constant, tuple(sorted(powers.items()))
+
+    def _learn(self, poly: PolyElement, source: Expr) -> int:
+        for number, known in enumerate(self.factors):
+            if known == poly:
+                return number
+        self.factors.append(poly)
+        self.sources.append(source)
+        return len(self.factors) - 1
+
+
+def _primitive(poly: PolyElement) -> tuple[Fraction, PolyElement]:
+    """Return (c, P) with poly = c*P; P has coprime integer coefficients, the leading one positive."""
+    scale: Any = 1
+    if poly.ring.domain is QQ:
+        scale, poly = poly.clear_denoms()
+    content, poly = poly.primitive()
+    constant = Fraction(int(content), int(scale))
+    return (-constant, -poly) if poly.LC < 0 else (constant, poly)
