@@ -30,6 +30,7 @@ from sympy import (
     Tuple,
     cancel,
     limit,
+    oo,
     pi,
     solveset,
     sqrt,
@@ -41,6 +42,7 @@ from symrot.kinematics.rotations import check_frame
 __all__ = ["Chart", "Limit", "RateMatrix", "SingularSet", "condition_of", "zeros_of"]
 
 _n = Symbol("n", integer=True)
+_NUMBERS = {S.Integers: "n any integer", S.Naturals: "n = 1, 2, ...", S.Naturals0: "n = 0, 1, 2, ..."}
 
 
 @dataclass(frozen=True)
@@ -60,9 +62,12 @@ class SingularSet:
         return bool(self.values is S.EmptySet)
 
     def points(self) -> tuple[Expr, ...]:
-        """Return the distinct values within [0, 2 pi), in increasing order."""
-        found = self.values.intersect(Interval.Ropen(0, 2 * pi))
-        return tuple(sorted(found, key=lambda value: float(value)))
+        """Return the distinct values within one turn, in increasing order: the first turn from 0 that has any."""
+        for turn in (Interval.Ropen(0, 2 * pi), Interval.Ropen(2 * pi, 4 * pi)):
+            found = self.values.intersect(turn)
+            if found is not S.EmptySet:
+                return tuple(sorted(found, key=float))
+        return ()
 
     def __contains__(self, value: Any) -> bool:
         return bool(self.values.contains(value) == S.true)
@@ -72,8 +77,7 @@ class SingularSet:
             return "empty"
         values = self.values
         if isinstance(values, ImageSet):
-            text = f"{self.variable} = {values.lamda.expr}, n any integer"
-            return text if values.base_set is S.Integers else f"{text} but 0"
+            return f"{self.variable} = {values.lamda.expr}, {_NUMBERS[values.base_set]}"
         return f"{self.variable} in {values}"
 
 
@@ -84,20 +88,32 @@ def condition_of(gram: Matrix) -> Expr:
 
 
 def zeros_of(equation: Expr, variable: Symbol, domain: Set = S.Reals) -> Set:
-    """Return the zeros in ``domain`` of a periodic or algebraic expression in one variable, exactly.
+    """Return the zeros in ``domain`` of an expression in one variable, exactly.
 
-    Zeros evenly spaced over the turn are returned as one family ``{first + n * spacing}``.
+    For algebraic expressions, and for those that are periodic in ``variable`` with 4 pi (angles and half angles) up
+    to a factor without zeros. Zeros evenly spaced over the period are returned as one family ``first + n * spacing``.
+
+    Parameters
+    ----------
+    equation : Expr
+    variable : Symbol
+    domain : Set
+        The reals, or a half line from zero.
     """
     if not equation.free_symbols:
         return domain if equation == 0 else S.EmptySet
     solution = solveset(equation, variable, domain)
-    if solution is S.EmptySet or isinstance(solution, FiniteSet):
+    period = solution.intersect(Interval.Ropen(4 * pi, 8 * pi))
+    if isinstance(solution, FiniteSet) or not isinstance(period, FiniteSet) or not period:
         return solution
-    turn = sorted(solution.intersect(Interval.Ropen(0, 2 * pi)), key=lambda value: float(value))
-    spacing = 2 * pi / len(turn)
-    if any(after - before != spacing for before, after in pairwise(turn)):
+    found = sorted(period, key=float)
+    spacing, first = 4 * pi / len(found), found[0] - 4 * pi
+    if any(after - before != spacing for before, after in pairwise(found)):
         return solution
-    return ImageSet(Lambda(_n, turn[0] + _n * spacing), S.Integers)
+    numbers = {S.Reals: S.Integers, Interval(0, oo): S.Naturals0, Interval.open(0, oo): S.Naturals}[domain]
+    if first != 0 and numbers is S.Naturals:
+        numbers = S.Naturals0
+    return ImageSet(Lambda(_n, first + _n * spacing), numbers)
 
 
 @dataclass(frozen=True)
@@ -223,6 +239,8 @@ class RateMatrix(ImmutableDenseMatrix):  # type: ignore[misc]
     def limits(self) -> tuple[Limit, ...]:
         x = self._coordinate
         _, inverse = self.facts.along(x)
+        if inverse is None:
+            return ()
         return tuple(
             Limit(
                 self.facts.variable,

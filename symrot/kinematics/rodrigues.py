@@ -1,0 +1,151 @@
+"""Rodrigues parameters, classical (axis tan(angle/2)) and modified (axis tan(angle/4), with the shadow set).
+
+Both are projections of the unit quaternions from a point on the scalar axis: from the centre, and from (-1, 0, 0, 0).
+A projection is given by a quaternion h(p) of any norm that is polynomial in the parameters; dcm and rates follow by
+the product alone, and are rational. Convention: :mod:`symrot.conventions`. Proof: ``derivations/rodrigues.md``.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache, partial
+from typing import Any
+
+from sympy import Expr, ImmutableMatrix, Integer, Interval, Matrix, Symbol, cancel, expand, factor, oo, sqrt
+
+from symrot import symbols
+from symrot.errors import InputError
+from symrot.kinematics.chart import Chart, RateFacts, RateMatrix, condition_of
+from symrot.kinematics.quaternion import conjugate, dcm_of, left_matrix, norm_squared, right_matrix
+from symrot.kinematics.rotations import check_frame, expressions
+
+__all__ = ["CLASSICAL", "MODIFIED", "Projection", "chart", "projection", "shadow"]
+
+
+@dataclass(frozen=True)
+class Projection:
+    """A projection ``p = (q1, q2, q3) / (centre + q0)`` of unit quaternions onto three parameters."""
+
+    name: str
+    parameters: tuple[Symbol, ...]
+    centre: int  # 0: from the centre of the sphere; 1: from (-1, 0, 0, 0)
+    about: str
+
+    def of_quaternion(self, q: Sequence[Any] | Matrix = symbols.quaternion) -> ImmutableMatrix:
+        """Return the parameters of a unit quaternion, shape (3, 1); they are infinite where centre + q0 = 0."""
+        q0, *vector = expressions(q, 4, "a quaternion")
+        return ImmutableMatrix([component / (self.centre + q0) for component in vector])
+
+    def homogeneous(self, values: Sequence[Any] | Matrix | None = None) -> ImmutableMatrix:
+        """Return a quaternion on the ray of the parameters, of any norm, polynomial in them, shape (4, 1).
+
+        The line from ``(-centre, 0, 0, 0)`` through ``(0, p)`` meets the unit sphere at
+        ``(-centre, 0) + k (centre or 1, p)``; the scale is free, the square root is not needed.
+        """
+        p = expressions(self.parameters if values is None else values, 3, self.name)
+        if self.centre == 0:
+            return ImmutableMatrix([1, *p])
+        square = sum(component**2 for component in p)
+        return ImmutableMatrix([1 - square, *(2 * component for component in p)])
+
+    def norm(self, values: Sequence[Any] | Matrix | None = None) -> Expr:
+        """Return the norm of :meth:`homogeneous`: a polynomial for the modified parameters, a root for the others."""
+        base, exponent = factor(norm_squared(self.homogeneous(values))).as_base_exp()
+        return base ** (exponent / 2)
+
+    def quaternion(self, values: Sequence[Any] | Matrix | None = None) -> ImmutableMatrix:
+        """Return the unit quaternion of the parameters, shape (4, 1)."""
+        return ImmutableMatrix(self.homogeneous(values) / self.norm(values))
+
+    def dcm(self, values: Sequence[Any] | Matrix | None = None) -> ImmutableMatrix:
+        """Return ``dcm_sb`` of the parameters, shape (3, 3), rational in them."""
+        h = self.homogeneous(values)
+        return ImmutableMatrix(dcm_of(h, "normalised").applyfunc(factor))
+
+    def rate_matrix(self, frame: str = "body") -> RateMatrix:
+        """Return B(p), shape (3, 3), with ``omega = B(p) * dp/dt``; never singular.
+
+        From ``omega = 2 h* dh / |h|^2`` (vector part), which holds for a quaternion of any norm.
+        """
+        return _rate_matrix(self, check_frame(frame))
+
+    def chart(self) -> Chart:
+        q0 = symbols.quaternion[0]
+        return Chart(
+            name=self.name,
+            parameters=self.parameters,
+            relations=(),
+            dcm=self.dcm(),
+            quaternion=self.quaternion(),
+            of_quaternion=self.of_quaternion,
+            rate_matrix=self.rate_matrix,
+            unreached=self.centre + q0,
+            about=self.about,
+        )
+
+
+@cache
+def _rate_matrix(which: Projection, frame: str) -> RateMatrix:
+    p, h = which.parameters, which.homogeneous()
+    square = norm_squared(h)
+    side = left_matrix if frame == "body" else right_matrix
+    numerators = (2 * side(conjugate(h))[1:, :] * h.jacobian(p)).applyfunc(expand)
+    matrix = (numerators / square).applyfunc(factor)
+    determinant = factor(expand(numerators.det(method="berkowitz")) / square**3)
+    # dp = (dq_vector - p dq0) / (centre + q0), with dq = q (0, omega) / 2 and q = h / |h|; |h| drops out
+    dh = side(h)[:, 1:] / 2
+    divisor = expand(which.centre * which.norm() + h[0])
+    inverse = ((dh[1:, :] - Matrix(p) * dh[0, :]) / divisor).applyfunc(expand)
+    size = Symbol("size", positive=True)
+    straight = {p[0]: size, p[1]: Integer(0), p[2]: Integer(0)}
+    length = sqrt(sum(component**2 for component in p))
+    # a turn of p turns B with it, so that its singular values depend on the length of p alone
+    condition = condition_of((matrix.T * matrix).xreplace(straight).applyfunc(factor))
+    return RateMatrix.build(
+        matrix,
+        RateFacts(
+            name=which.name,
+            frame=frame,
+            parameters=p,
+            relations=(),
+            inverse=ImmutableMatrix(inverse),
+            determinant=determinant,
+            condition_number=condition.xreplace({size: length}),
+            variable=length,
+            along=partial(_along, p, determinant, ImmutableMatrix(inverse)),
+            domain=Interval(0, oo),
+        ),
+    )
+
+
+def _along(
+    parameters: tuple[Symbol, ...], determinant: Expr, inverse: ImmutableMatrix, size: Expr
+) -> tuple[Expr, ImmutableMatrix]:
+    """Return determinant and inverse at ``p = size * n``, for a unit axis n."""
+    straight = dict(zip(parameters, (size, Integer(0), Integer(0)), strict=True))
+    turned = dict(zip(parameters, (size * n for n in symbols.axis), strict=True))
+    return determinant.xreplace(straight), inverse.xreplace(turned)
+
+
+CLASSICAL = Projection("rodrigues", symbols.rodrigues, 0, "classical Rodrigues parameters, axis times tan(angle/2)")
+MODIFIED = Projection("mrp", symbols.mrp, 1, "modified Rodrigues parameters, axis times tan(angle/4)")
+
+
+def projection(name: str) -> Projection:
+    """Return the projection called ``"rodrigues"`` or ``"mrp"``."""
+    for which in (CLASSICAL, MODIFIED):
+        if which.name == name:
+            return which
+    raise InputError(f"a set of Rodrigues parameters is 'rodrigues' or 'mrp'; got {name!r}")
+
+
+def chart(name: str) -> Chart:
+    """Return the chart of ``"rodrigues"`` (no half turns) or ``"mrp"`` (no full turns; see :func:`shadow`)."""
+    return projection(name).chart()
+
+
+def shadow(values: Sequence[Any] | Matrix | None = None) -> ImmutableMatrix:
+    """Return the modified parameters of the same attitude by -q, shape (3, 1): the shadow set, ``-s / |s|^2``.
+
+    Of the two sets one has length at most 1; switching there keeps the parameters bounded for every motion.
+    """
+    return ImmutableMatrix(MODIFIED.of_quaternion(-MODIFIED.quaternion(values)).applyfunc(cancel))

@@ -1,0 +1,241 @@
+"""Rotation vector (axis times angle): the exponential map and its Jacobians, and the axis-angle pair.
+
+Everything is a function of one skew matrix K, read off its eigenvalues
+(:func:`symrot.kinematics.rotations.function_of_skew`). The coefficients have removable singularities at zero angle;
+their values there are limits. Convention: :mod:`symrot.conventions`. Proof: ``derivations/rotation_vector.md``.
+"""
+
+from collections.abc import Callable, Sequence
+from functools import cache, partial
+from typing import Any
+
+from sympy import (
+    Abs,
+    Expr,
+    ImmutableMatrix,
+    Integer,
+    Interval,
+    Matrix,
+    Max,
+    Min,
+    Symbol,
+    atan2,
+    cos,
+    exp,
+    eye,
+    oo,
+    sin,
+    sinh,
+    sqrt,
+    sympify,
+)
+
+from symrot import symbols
+from symrot.kinematics.chart import Chart, RateFacts, RateMatrix
+from symrot.kinematics.rotations import check_frame, expressions, function_of_skew, skew
+
+__all__ = [
+    "axis_angle_chart",
+    "axis_angle_jacobian",
+    "axis_angle_of_quaternion",
+    "chart",
+    "dcm",
+    "dcm_of_axis_angle",
+    "jacobian",
+    "quaternion_of_axis_angle",
+    "quaternion_of_rotation_vector",
+    "rotation_vector_of_quaternion",
+]
+
+_size = Symbol("a", positive=True)
+
+
+def _stretch(z: Expr) -> Expr:
+    """Return ``sinh(z/2) / (z/2)``: by how much the exponential map stretches what lies across the vector."""
+    return 2 * sinh(z / 2) / z
+
+
+def _jacobian_function(frame: str) -> Callable[[Expr], Expr]:
+    """Return f with ``B = f(K)``: the mean of ``exp(-s K)`` (body) or ``exp(s K)`` (space) over s in [0, 1].
+
+    ``(1 - exp(-z)) / z = exp(-z/2) sinh(z/2) / (z/2)``: half a turn, and a stretch.
+    """
+    sign = {"body": -1, "space": 1}[check_frame(frame)]
+    return lambda z: exp(sign * z / 2) * _stretch(z)
+
+
+@cache
+def _coefficients(which: str) -> tuple[Expr, Expr, Expr]:
+    functions: dict[str, Callable[[Expr], Expr]] = {
+        "dcm": exp,
+        "body": _jacobian_function("body"),
+        "space": _jacobian_function("space"),
+        "body inverse": lambda z: exp(z / 2) / _stretch(z),
+        "space inverse": lambda z: exp(-z / 2) / _stretch(z),
+    }
+    return function_of_skew(functions[which], Integer(1), _size)
+
+
+def _combine(which: str, vector: Sequence[Expr], size: Expr) -> ImmutableMatrix:
+    c0, c1, c2 = (c.xreplace({_size: size}) for c in _coefficients(which))
+    matrix = skew(vector)
+    return ImmutableMatrix(c0 * eye(3) + c1 * matrix + c2 * matrix**2)
+
+
+def length(vector: Sequence[Expr]) -> Expr:
+    """Return ``sqrt(v1^2 + v2^2 + v3^2)``."""
+    return sqrt(sum(component**2 for component in vector))
+
+
+def dcm(vector: Sequence[Any] | Matrix = symbols.rotation_vector) -> ImmutableMatrix:
+    """Return ``dcm_sb = exp(skew(v))``, shape (3, 3), of a rotation vector in rad (Rodrigues' formula)."""
+    vector = expressions(vector, 3, "a rotation vector")
+    return _combine("dcm", vector, length(vector))
+
+
+def jacobian(frame: str = "body", vector: Sequence[Any] | Matrix = symbols.rotation_vector) -> RateMatrix:
+    """Return B(v), shape (3, 3), with ``omega = B(v) * dv/dt``: the Jacobian of the exponential map.
+
+    Body: the right Jacobian ``1 - (1 - cos a)/a^2 K + (a - sin a)/a^3 K^2``, a = |v|; space: the left one, its
+    transpose. Singular at ``a = 2 pi n`` but 0, where different vectors across name one attitude.
+
+    Raises
+    ------
+    InputError
+        For an unknown frame, or not three components.
+    """
+    vector = expressions(vector, 3, "a rotation vector")
+    size = length(vector)
+    stretch = sin(size / 2) / (size / 2)
+    return RateMatrix.build(
+        _combine(check_frame(frame), vector, size),
+        RateFacts(
+            name="rotation_vector",
+            frame=frame,
+            parameters=vector,
+            relations=(),
+            inverse=_combine(f"{frame} inverse", vector, size),
+            determinant=stretch**2,
+            condition_number=1 / Abs(stretch),  # singular values: 1 along v, |stretch| <= 1 across
+            variable=size,
+            along=partial(_along, frame),
+            domain=Interval.open(0, oo),
+        ),
+    )
+
+
+def _along(frame: str, size: Expr) -> tuple[Expr, ImmutableMatrix]:
+    """Return determinant and inverse at ``v = size * n``, for a unit axis n."""
+    vector = tuple(size * n for n in symbols.axis)
+    return (sin(size / 2) / (size / 2)) ** 2, _combine(f"{frame} inverse", vector, size)
+
+
+def quaternion_of_rotation_vector(vector: Sequence[Any] | Matrix = symbols.rotation_vector) -> ImmutableMatrix:
+    """Return the unit quaternion of a rotation vector in rad, shape (4, 1)."""
+    vector = expressions(vector, 3, "a rotation vector")
+    size = length(vector)
+    return ImmutableMatrix([cos(size / 2), *(sin(size / 2) / size * component for component in vector)])
+
+
+def rotation_vector_of_quaternion(q: Sequence[Any] | Matrix = symbols.quaternion) -> ImmutableMatrix:
+    """Return the rotation vector of a quaternion, shape (3, 1), rad, of length up to 2 pi (up to pi for q0 >= 0)."""
+    axis_and_angle = axis_angle_of_quaternion(q)
+    return ImmutableMatrix(axis_and_angle[3] * axis_and_angle[:3, 0])
+
+
+def dcm_of_axis_angle(axis: Sequence[Any] | Matrix = symbols.axis, angle: Any = symbols.alpha) -> ImmutableMatrix:
+    """Return ``dcm_sb`` of a turn by ``angle`` (rad) about a unit axis, shape (3, 3)."""
+    axis, angle = expressions(axis, 3, "an axis"), sympify(angle)
+    c0, c1, c2 = function_of_skew(lambda z: exp(angle * z), Integer(1), Integer(1))
+    matrix = skew(axis)
+    return ImmutableMatrix(c0 * eye(3) + c1 * matrix + c2 * matrix**2)
+
+
+def quaternion_of_axis_angle(
+    axis: Sequence[Any] | Matrix = symbols.axis, angle: Any = symbols.alpha
+) -> ImmutableMatrix:
+    """Return the unit quaternion of a turn by ``angle`` (rad) about a unit axis, shape (4, 1)."""
+    axis, half = expressions(axis, 3, "an axis"), sympify(angle) / 2
+    return ImmutableMatrix([cos(half), *(sin(half) * component for component in axis)])
+
+
+def axis_angle_of_quaternion(q: Sequence[Any] | Matrix = symbols.quaternion) -> ImmutableMatrix:
+    """Return ``(n1, n2, n3, alpha)`` of a quaternion of any norm, shape (4, 1); no axis at zero angle.
+
+    ``alpha = 2 atan2(|(q1, q2, q3)|, q0)`` in [0, 2 pi]: accurate where ``2 acos(q0)`` loses every digit.
+    """
+    q0, *vector = expressions(q, 4, "a quaternion")
+    size = length(vector)
+    return ImmutableMatrix([*(component / size for component in vector), 2 * atan2(size, q0)])
+
+
+def axis_angle_jacobian(frame: str = "body") -> RateMatrix:
+    """Return B, shape (3, 4), with ``omega = B * d(n1, n2, n3, alpha)/dt`` for a unit axis.
+
+    ``omega_b = n dalpha + sin(alpha) dn - (1 - cos(alpha)) n x dn``; plus for space. The determinant is that with
+    the gradient of ``|n|^2 / 2`` as a first row. Singular at ``alpha = 2 pi k``: there is no axis.
+
+    Notes
+    -----
+    The exponential map of ``alpha n``: what lies across the axis (K^2 = -1 there) is turned and stretched by
+    ``f(i) = (1 - exp(-i alpha)) / i = 2 sin(alpha/2) exp(-i alpha/2)``.
+    """
+    n, alpha = symbols.axis, symbols.alpha
+    sign = {"body": -1, "space": 1}[check_frame(frame)]
+    stretch, matrix = 2 * sin(alpha / 2), skew(n)
+    real, imaginary = stretch * cos(alpha / 2), sign * stretch * sin(alpha / 2)
+    determinant, inverse = _axis_angle_along(frame, alpha)
+    return RateMatrix.build(
+        Matrix.hstack(real * eye(3) + imaginary * matrix, Matrix(n)),
+        RateFacts(
+            name="axis_angle",
+            frame=frame,
+            parameters=(*n, alpha),
+            relations=(sum(component**2 for component in n) - 1,),
+            inverse=inverse,
+            determinant=determinant,
+            condition_number=Max(1, Abs(stretch)) / Min(1, Abs(stretch)),
+            variable=alpha,
+            along=partial(_axis_angle_along, frame),
+        ),
+    )
+
+
+def _axis_angle_along(frame: str, alpha: Expr) -> tuple[Expr, ImmutableMatrix]:
+    sign = {"body": 1, "space": -1}[frame]
+    matrix, stretch = skew(symbols.axis), 2 * sin(alpha / 2)
+    across = -cos(alpha / 2) / stretch * matrix**2 + Integer(sign) / 2 * matrix
+    return stretch**2, ImmutableMatrix(Matrix.vstack(across, Matrix([symbols.axis])))
+
+
+@cache
+def chart() -> Chart:
+    """Return the chart of rotation vectors: every attitude, singular at |v| = 2 pi, 4 pi, ..."""
+    return Chart(
+        name="rotation_vector",
+        parameters=symbols.rotation_vector,
+        relations=(),
+        dcm=dcm(),
+        quaternion=quaternion_of_rotation_vector(),
+        of_quaternion=rotation_vector_of_quaternion,
+        rate_matrix=jacobian,
+        unreached=None,
+        about="rotation vector, axis times angle, rad",
+    )
+
+
+@cache
+def axis_angle_chart() -> Chart:
+    """Return the chart of a unit axis and an angle: every attitude, singular at zero angle."""
+    n, alpha = symbols.axis, symbols.alpha
+    return Chart(
+        name="axis_angle",
+        parameters=(*n, alpha),
+        relations=(sum(component**2 for component in n) - 1,),
+        dcm=dcm_of_axis_angle(),
+        quaternion=quaternion_of_axis_angle(),
+        of_quaternion=axis_angle_of_quaternion,
+        rate_matrix=axis_angle_jacobian,
+        unreached=None,
+        about="unit axis and angle, rad",
+    )
