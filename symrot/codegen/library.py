@@ -1,0 +1,345 @@
+"""Compile C source once, keep the result in the user's cache, and find it again without running a compiler.
+
+An entry is keyed by the source, the identity of the compiler (resolved path, size, time of change), the flags and the
+processor; it is named by its own checksum, so a truncated or altered file is noticed and built anew instead of loaded.
+Files appear by atomic rename, so any number of processes may build at once. The directory is private (mode 0700), and
+one that belongs to another user is not used. Where the cache cannot be written, a temporary directory of this process
+takes its place and :func:`cache` says why.
+
+Environment: ``CC`` names the compiler; ``SYMROT_CACHE`` the cache directory, else ``XDG_CACHE_HOME/symrot``, else the
+platform's own place. This module imports neither SymPy nor NumPy nor SciPy.
+"""
+
+import os
+import re
+import sys
+from dataclasses import dataclass
+from hashlib import sha256
+from pathlib import Path
+
+from symrot.errors import CompilerError
+
+__all__ = ["FLAGS", "Cache", "Compiler", "build", "cache", "clear", "compiler", "fetch", "store"]
+
+NATIVE = "-march=native"
+FLAGS = ("-std=c99", "-O2", NATIVE, "-ffp-contract=fast", "-fno-math-errno", "-fPIC", "-shared")
+COMPILERS = ("cc", "gcc", "clang")
+SECONDS_TO_COMPILE = 300  # a compiler that takes longer is taken to hang
+SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
+ROOM = "kernels"  # the only directory inside the cache that is written, checked and cleared
+OWN_FILE = re.compile(r"(\w+-[0-9a-f]{32}\.(so|dll|dylib|index|text)|\.symrot-\w+)\Z")
+
+
+@dataclass(frozen=True)
+class Compiler:
+    """A C compiler: the words that start it, and what identifies the program found."""
+
+    command: tuple[str, ...]
+    identity: str
+
+
+@dataclass(frozen=True)
+class Cache:
+    """Where compiled kernels are kept; ``reason`` says why it is not the user's cache, or is empty."""
+
+    directory: Path
+    reason: str
+
+
+def compiler() -> Compiler:
+    """Return the C compiler named by ``CC``, or the first of cc, gcc, clang on the path; no program is run.
+
+    Raises
+    ------
+    CompilerError
+        If there is none; the sentence names ``CC``.
+    """
+    chosen = os.environ.get("CC", "").strip()
+    candidates = [(chosen,), tuple(chosen.split())] if chosen else [(name,) for name in COMPILERS]
+    for command in candidates:
+        path = _which(command[0])
+        if path is not None:
+            return Compiler((path, *command[1:]), _identity(path, command[1:]))
+    wanted = f"CC={chosen!r} names no program" if chosen else f"none of {', '.join(COMPILERS)} is on the path"
+    raise CompilerError(f"a C compiler is needed: {wanted}; set CC to one, or use method 'scipy'")
+
+
+def cache() -> Cache:
+    """Return the directory in use and, when it is a temporary one, the reason."""
+    directory, reason = _room()
+    return Cache(directory, reason)
+
+
+def build(source: str, name: str, flags: tuple[str, ...] = FLAGS) -> Path:
+    """Return the shared library compiled from ``source``, from the cache where it is there and sound.
+
+    Parameters
+    ----------
+    source : str
+        One whole C translation unit; it is compiled from standard input.
+    name : str
+        Letters, digits and underscores; begins the file's name, for people.
+    flags : tuple of str
+        As the compiler takes them. A compiler that does not know ``-march=native`` is asked again without it.
+
+    Raises
+    ------
+    CompilerError
+        If there is no compiler, or it refuses the source: its first complaint is quoted.
+    """
+    tool = compiler()
+    processor = _processor() if NATIVE in flags else ""
+    key = _digest("\0".join((source, tool.identity, *flags, processor, sys.platform)))
+    directory, _ = _room()
+    entry = f"{name}-{key}.index"
+    found = _sound_library(directory, entry, name)
+    if found is None and directory != _temporary.path and _temporary.path is not None:
+        found = _sound_library(_temporary.path, entry, name)
+    return found if found is not None else _compile(tool, source, name, entry, flags)
+
+
+def store(key: str, text: str) -> None:
+    """Keep a small text under a key (any string). A cache that cannot be written keeps it for this process only."""
+    _keep(_text_name(key), f"{_digest(text)}\n{text}".encode())
+
+
+def fetch(key: str) -> str | None:
+    """Return the text stored under the key, or None where there is none or it is damaged."""
+    for directory in _rooms():
+        kept = _read(directory / _text_name(key))
+        if kept is not None:
+            checksum, _, text = kept.decode("utf-8", "replace").partition("\n")
+            if checksum == _digest(text):
+                return text
+    return None
+
+
+def clear() -> tuple[Path, ...]:
+    """Remove every file of ours from the cache and return their paths; what is not ours stays where it is."""
+    removed = []
+    for directory in _rooms():
+        for path in sorted(directory.iterdir()):
+            if OWN_FILE.match(path.name) and path.is_file() and not path.is_symlink():
+                path.unlink(missing_ok=True)
+                removed.append(path)
+    return tuple(removed)
+
+
+# ------------------------------------------------------------------------------------------------ identities
+
+
+def _digest(text: str) -> str:
+    return sha256(text.encode("utf-8", "surrogatepass")).hexdigest()[:32]
+
+
+def _which(program: str) -> str | None:
+    """Return the full path of an executable file, searched as the shell does (shutil is slow to import)."""
+    endings = ("", ".exe") if sys.platform == "win32" else ("",)
+    places = [""] if os.path.dirname(program) else os.environ.get("PATH", os.defpath).split(os.pathsep)
+    for place in places:
+        for ending in endings:
+            path = os.path.join(place, program + ending)
+            if os.path.isfile(path) and os.access(path, os.X_OK):
+                return os.path.abspath(path)
+    return None
+
+
+def _identity(path: str, arguments: tuple[str, ...]) -> str:
+    real = os.path.realpath(path)
+    found = os.stat(real)
+    return "\0".join((real, str(found.st_size), str(found.st_mtime_ns), *arguments))
+
+
+def _processor() -> str:
+    """Return what tells processors apart for ``-march=native``: the first one's family, model and features."""
+    try:
+        with open("/proc/cpuinfo", encoding="ascii", errors="replace") as stream:
+            first = stream.read(16384).split("\n\n")[0]
+    except OSError:
+        # No such file: the machine's own name stands for its processor.
+        return " ".join(os.uname()) if hasattr(os, "uname") else os.environ.get("PROCESSOR_IDENTIFIER", "")
+    telling = ("vendor", "cpu family", "model", "stepping", "flags", "CPU ", "Features", "isa", "uarch", "cpu\t")
+    return "\n".join(line for line in first.splitlines() if line.startswith(telling))
+
+
+# ------------------------------------------------------------------------------------------------ places
+
+
+class _Temporary:
+    """The private directory of this process, made when first needed and removed at exit."""
+
+    path: Path | None = None
+    reason = ""
+
+    def use(self, reason: str) -> Path:
+        if self.path is None:
+            import atexit
+            import shutil
+            import tempfile
+
+            try:
+                self.path = Path(tempfile.mkdtemp(prefix="symrot-"))
+            except OSError as error:
+                raise CompilerError(
+                    f"compiled kernels need a directory: {reason}, and no temporary one can be made: {error}"
+                ) from error
+            atexit.register(shutil.rmtree, self.path, ignore_errors=True)
+            self.reason = reason
+        return self.path
+
+
+_temporary = _Temporary()
+
+
+def _cache_directory() -> Path:
+    if chosen := os.environ.get("SYMROT_CACHE"):
+        return Path(chosen)
+    if chosen := os.environ.get("XDG_CACHE_HOME"):
+        return Path(chosen) / "symrot"
+    if sys.platform == "win32" and (chosen := os.environ.get("LOCALAPPDATA")):
+        return Path(chosen) / "symrot"
+    home = os.path.expanduser("~")
+    return Path(home, "Library/Caches" if sys.platform == "darwin" else ".cache", "symrot")
+
+
+def _foreign(path: Path) -> str:
+    """Return why a file or directory is not to be trusted, or an empty text."""
+    found = path.lstat()
+    if hasattr(os, "getuid") and found.st_uid != os.getuid():
+        return f"{path} belongs to another user (uid {found.st_uid})"
+    if path.is_symlink():
+        return f"{path} is a symbolic link"
+    return ""
+
+
+def _room() -> tuple[Path, str]:
+    """Return the directory for new entries and why it is a temporary one, or an empty text."""
+    room = _cache_directory() / ROOM
+    try:
+        room.mkdir(mode=0o700, parents=True, exist_ok=True)
+        reason = _foreign(room)
+        if not reason and room.stat().st_mode & 0o077:
+            room.chmod(0o700)
+        if not reason and not os.access(room, os.W_OK):
+            reason = f"{room} cannot be written"
+    except OSError as error:
+        reason = f"{room} cannot be used: {error.strerror or error}"
+    return (_temporary.use(reason), reason) if reason else (room, "")
+
+
+def _rooms() -> list[Path]:
+    """Return every directory that may hold entries of ours: the one in use, and the temporary one if there is one."""
+    directory, _ = _room()
+    return list(dict.fromkeys(path for path in (directory, _temporary.path) if path is not None))
+
+
+# ------------------------------------------------------------------------------------------------ files
+
+
+def _read(path: Path) -> bytes | None:
+    """Return a file's bytes, or None where it is missing, unreadable or not ours."""
+    try:
+        return None if _foreign(path) else path.read_bytes()
+    except OSError:
+        return None
+
+
+def _replace(path: Path, content: bytes) -> None:
+    """Write a file so that others see the old one or the new one, never a part."""
+    passing = path.with_name(f".symrot-{os.getpid()}_{os.urandom(4).hex()}")
+    try:
+        passing.write_bytes(content)
+        os.replace(passing, path)
+    finally:
+        passing.unlink(missing_ok=True)
+
+
+def _keep(name: str, content: bytes) -> Path:
+    """Write a file into the cache, or into the temporary directory where the cache is full or read-only."""
+    directory, _ = _room()
+    try:
+        _replace(directory / name, content)
+    except OSError as error:
+        reason = f"{directory} cannot be written: {error.strerror or error}"
+        if directory == _temporary.path:
+            raise CompilerError(f"compiled kernels need room on a disk: {reason}") from error
+        directory = _temporary.use(reason)
+        return _keep_here(directory / name, content)
+    return directory / name
+
+
+def _keep_here(path: Path, content: bytes) -> Path:
+    try:
+        _replace(path, content)
+    except OSError as error:
+        raise CompilerError(f"compiled kernels need room on a disk: {path.parent}: {error.strerror or error}") from error
+    return path
+
+
+def _text_name(key: str) -> str:
+    return f"text-{_digest(key)}.text"
+
+
+def _library_name(name: str, content: bytes) -> str:
+    return f"{name}-{sha256(content).hexdigest()[:32]}{SUFFIX}"
+
+
+def _sound_library(directory: Path, entry: str, name: str) -> Path | None:
+    """Return the library an index entry points to, if its content still has the checksum in its name."""
+    pointer = _read(directory / entry)
+    if pointer is None:
+        return None
+    library = pointer.decode("ascii", "replace").strip()
+    if not OWN_FILE.match(library):
+        return None
+    content = _read(directory / library)
+    return directory / library if content is not None and _library_name(name, content) == library else None
+
+
+# ------------------------------------------------------------------------------------------------ the compiler
+
+
+def _compile(tool: Compiler, source: str, name: str, entry: str, flags: tuple[str, ...]) -> Path:
+    import tempfile
+
+    try:
+        with tempfile.TemporaryDirectory(prefix="symrot-", ignore_cleanup_errors=True) as place:
+            output = Path(place) / f"{name}{SUFFIX}"
+            complaint = _run(tool, source, flags, output)
+            if complaint and NATIVE in flags:
+                portable = tuple(flag for flag in flags if flag != NATIVE)
+                complaint = complaint if _run(tool, source, portable, output) else ""
+            if complaint:
+                raise CompilerError(f"the C compiler {tool.command[0]} refuses {name}: {complaint}")
+            content = output.read_bytes()
+    except OSError as error:
+        raise CompilerError(f"compiling {name} needs a temporary directory: {error}") from error
+    library = _keep(_library_name(name, content), content)
+    _keep_here(library.with_name(entry), library.name.encode())
+    return library
+
+
+def _run(tool: Compiler, source: str, flags: tuple[str, ...], output: Path) -> str:
+    """Run the compiler; return its first complaint, or an empty text when the library is there."""
+    import subprocess
+
+    command = [*tool.command, *flags, "-x", "c", "-", "-o", str(output), "-lm"]
+    try:
+        done = subprocess.run(
+            command,
+            input=source.encode(),
+            capture_output=True,
+            timeout=SECONDS_TO_COMPILE,
+            env={**os.environ, "LC_ALL": "C"},
+            check=False,
+        )
+    except subprocess.TimeoutExpired:
+        return f"no answer within {SECONDS_TO_COMPILE} s"
+    except OSError as error:
+        return f"it cannot be run: {error.strerror or error}"
+    if done.returncode == 0 and output.is_file() and output.stat().st_size:
+        return ""
+    lines = [line.strip() for line in done.stderr.decode("utf-8", "replace").splitlines() if line.strip()]
+    errors = [line for line in lines if "error" in line.lower()]
+    silence = f"exit status {done.returncode}, no message" if done.returncode else "no library was written"
+    return (errors or lines or [silence])[0]

@@ -1,0 +1,338 @@
+/*
+ * Dormand-Prince 8(5,3) with dense output of order 7: the whole loop of steps around one inlined right-hand side.
+ *
+ * Included after an emitted kernel, in one translation unit that has defined
+ *     SYMROT_STATES       number of states N
+ *     SYMROT_PARAMETERS   number of parameters
+ *     SYMROT_RHS          the kernel: void name(double t, const double y[N], const double p[], double dy[N])
+ *     SYMROT_BLOCKS       edges of the blocks of states whose errors are judged apart, e.g. {0, 3, 7}
+ *     SYMROT_SCALES       per block: 0 judges the error against the block's own size (a rate),
+ *                         a positive number against that number (an attitude of unit norm: 1)
+ * and included dop853_tableau.h. C99 that is also valid C++; no malloc, no globals, no input or output, reentrant.
+ *
+ * States are padded to a multiple of 4 so that every sum over stages is a few full vectors. A stage's own sum is taken in
+ * two parts: all earlier stages first, while the kernel is still busy, then the newest one, element by element, because a
+ * vector load of what was just stored in single numbers would wait for the stores to retire.
+ *
+ * Source: E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed., sections II.4 to II.6.
+ */
+#include <float.h>
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#if defined(_WIN32)
+#define SYMROT_EXPORT __declspec(dllexport)
+#else
+#define SYMROT_EXPORT
+#endif
+#if defined(__GNUC__)
+#define SYMROT_APART __attribute__((noinline))  /* rarely run: keep it out of the loop of steps */
+#define SYMROT_ALIGNED __attribute__((aligned(32)))
+#else
+#define SYMROT_APART
+#define SYMROT_ALIGNED
+#endif
+
+enum {
+    SYMROT_WIDTH = (SYMROT_STATES + 3)/4*4,
+    SYMROT_STAGES = 16,
+    SYMROT_TERMS = 8,                                 /* coefficients of the dense output */
+    SYMROT_ROW = 2 + SYMROT_TERMS*SYMROT_STATES       /* one recorded step: t, h, coefficients */
+};
+
+enum { SYMROT_DONE = 0, SYMROT_PAUSED = 1, SYMROT_FULL = 2, SYMROT_NOT_FINITE = 3, SYMROT_UNDERFLOW = 4 };
+
+typedef struct {
+    double t;            /* reached so far */
+    double h;            /* next step, signed; 0 before the first one */
+    double stop;         /* end of the span, on either side of t */
+    double first, last;  /* times at which the kernel is called for the two ends: just inside the span at a switching time */
+    double tolerance;    /* of one step */
+    double max_step;     /* positive */
+    int64_t next;        /* first sample not yet written */
+    int64_t accepted, rejected, evaluations, recorded;
+    double y[SYMROT_STATES], dy[SYMROT_STATES];
+} symrot_run;
+
+#define EACH(i) for (int i = 0; i < SYMROT_WIDTH; ++i)
+#define EACH_STATE(i) for (int i = 0; i < SYMROT_STATES; ++i)
+
+/* ONE_BY_ONE(X): X(0) X(1) ... without a loop, so that numbers stay in registers between kernel and sum. */
+#define ONE_BY_ONE_1(X) X(0)
+#define ONE_BY_ONE_2(X) ONE_BY_ONE_1(X) X(1)
+#define ONE_BY_ONE_3(X) ONE_BY_ONE_2(X) X(2)
+#define ONE_BY_ONE_4(X) ONE_BY_ONE_3(X) X(3)
+#define ONE_BY_ONE_5(X) ONE_BY_ONE_4(X) X(4)
+#define ONE_BY_ONE_6(X) ONE_BY_ONE_5(X) X(5)
+#define ONE_BY_ONE_7(X) ONE_BY_ONE_6(X) X(6)
+#define ONE_BY_ONE_8(X) ONE_BY_ONE_7(X) X(7)
+#define ONE_BY_ONE_9(X) ONE_BY_ONE_8(X) X(8)
+#define ONE_BY_ONE_10(X) ONE_BY_ONE_9(X) X(9)
+#define JOIN(a, b) a##b
+#define COUNTED(n) JOIN(ONE_BY_ONE_, n)
+#if SYMROT_STATES <= 10
+#define ONE_BY_ONE(X) COUNTED(SYMROT_STATES)(X)
+#else
+#define ONE_BY_ONE(X) for (int i_ = 0; i_ < SYMROT_STATES; ++i_) { X(i_) }
+#endif
+
+static const int symrot_edges[] = SYMROT_BLOCKS;
+static const double symrot_scales[] = SYMROT_SCALES;
+enum { SYMROT_COUNT = (int)(sizeof(symrot_scales)/sizeof(symrot_scales[0])) };
+
+static const double SAFETY = 0.9, SHRINK = 1.0/3.0, COLLAPSE = 0.1, GROWTH = 6.0;  /* of the step; dop853.f's values */
+static const double RATE_FLOOR = 1e-3;  /* a rate below RATE_FLOOR/h turns the body by less than that in one step */
+
+/* Return x^(-1/16) to 0.5 %, which is enough for a step size: the exponent field is nearly a logarithm. */
+static inline double inverse_root_16(double x)
+{
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    bits = UINT64_C(0x43EFA00000000000) - bits/16;
+    memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
+static inline double square_sum(const double *v, int block)
+{
+    double sum = 0.0;
+    for (int i = symrot_edges[block]; i < symrot_edges[block + 1]; ++i) sum += v[i]*v[i];
+    return sum;
+}
+
+/* Return the square of the size that the error of a block is compared with. */
+static inline double scale_squared(const double *y, const double *y1, double h, int block)
+{
+    const double fixed = symrot_scales[block];
+    if (fixed > 0.0) return fixed*fixed;
+    const double before = square_sum(y, block), after = square_sum(y1, block), floor = (RATE_FLOOR/h)*(RATE_FLOOR/h);
+    const double larger = before > after ? before : after;
+    return larger > floor ? larger : floor;
+}
+
+/* Choose a first step from the rates |y'|/|y| and sqrt(|y''|/|y|) of the fastest block. */
+static SYMROT_APART double first_step(const symrot_run *run, const double *p)
+{
+    double y1[SYMROT_STATES], dy1[SYMROT_STATES], rate = 0.0, bend = 0.0;
+    const double span = fabs(run->stop - run->t), side = run->stop < run->t ? -1.0 : 1.0;
+
+    for (int b = 0; b < SYMROT_COUNT; ++b) {
+        const double size = symrot_scales[b] > 0.0 ? symrot_scales[b] : sqrt(square_sum(run->y, b));
+        const double block = sqrt(square_sum(run->dy, b))/size;
+        if (size > 0.0 && block > rate) rate = block;
+    }
+    const double probe = side*fmin(fmin(0.01/rate, 1e-3*span), run->max_step);
+    EACH_STATE(i) y1[i] = run->y[i] + probe*run->dy[i];
+    SYMROT_RHS(run->first + probe, y1, p, dy1);
+    EACH_STATE(i) dy1[i] = (dy1[i] - run->dy[i])/probe;
+    for (int b = 0; b < SYMROT_COUNT; ++b) {
+        const double size = symrot_scales[b] > 0.0 ? symrot_scales[b] : sqrt(square_sum(run->y, b));
+        const double block = sqrt(sqrt(square_sum(dy1, b))/size);
+        if (size > 0.0 && block > bend) bend = block;
+    }
+    const double fastest = rate > bend ? rate : bend;
+    const double h = pow(run->tolerance, 0.125)/fastest;
+    return side*fmin(fmin(h, run->max_step), span);  /* fmin passes over the NaN and infinity of a motion at rest */
+}
+
+/* Fill the coefficients of the dense output of the step from y to y1; k has stages 1 to 13 and receives 14 to 16. */
+static SYMROT_APART void dense_coefficients(double t, double h, const double *y, const double *step, const double *p,
+    double (*k)[SYMROT_WIDTH], double (*term)[SYMROT_WIDTH])
+{
+    double z[SYMROT_WIDTH] SYMROT_ALIGNED;
+#define K(s) k[s][i]
+    EACH(i) z[i] = y[i] + h*DOP853_SUM_14(K);
+    SYMROT_RHS(t + DOP853_NODE_14*h, z, p, k[14]);
+    EACH(i) z[i] = y[i] + h*DOP853_SUM_15(K);
+    SYMROT_RHS(t + DOP853_NODE_15*h, z, p, k[15]);
+    EACH(i) z[i] = y[i] + h*DOP853_SUM_16(K);
+    SYMROT_RHS(t + DOP853_NODE_16*h, z, p, k[16]);
+    EACH(i) {
+        const double rise = step[i], bend = h*k[1][i] - rise;
+        term[0][i] = y[i];
+        term[1][i] = rise;
+        term[2][i] = bend;
+        term[3][i] = rise - h*k[13][i] - bend;
+        term[4][i] = h*DOP853_DENSE_5(K);
+        term[5][i] = h*DOP853_DENSE_6(K);
+        term[6][i] = h*DOP853_DENSE_7(K);
+        term[7][i] = h*DOP853_DENSE_8(K);
+    }
+#undef K
+}
+
+/* Evaluate the dense output at the fraction s of its step; term has the given stride between coefficients. */
+static inline void dense_value(const double *term, int stride, double s, double *out)
+{
+    const double r = 1.0 - s;
+    EACH_STATE(i) {
+        const double *c = term + i;
+        out[i] = c[0] + s*(c[stride] + r*(c[2*stride] + s*(c[3*stride] + r*(c[4*stride] + s*(c[5*stride]
+            + r*(c[6*stride] + s*c[7*stride]))))));
+    }
+}
+
+/* Tell the caller the numbers of states and parameters that this library was built for. */
+SYMROT_EXPORT void symrot_dop853_sizes(int64_t sizes[2])
+{
+    sizes[0] = SYMROT_STATES;
+    sizes[1] = SYMROT_PARAMETERS;
+}
+
+/* Evaluate a record of `steps` rows, all in one direction, at `count` times in any order; the ends extrapolate. */
+SYMROT_EXPORT void symrot_dop853_dense(const double *record, int64_t steps, const double *times, int64_t count,
+    double *states)
+{
+    const double side = record[1] < 0.0 ? -1.0 : 1.0;
+    for (int64_t n = 0; n < count; ++n) {
+        int64_t low = 0, high = steps;  /* the last row that starts before the time */
+        while (high - low > 1) {
+            const int64_t middle = (low + high)/2;
+            if ((record[middle*SYMROT_ROW] - times[n])*side < 0.0) low = middle;
+            else high = middle;
+        }
+        const double *row = record + low*SYMROT_ROW;
+        dense_value(row + 2, SYMROT_STATES, (times[n] - row[0])/row[1], states + n*SYMROT_STATES);
+    }
+}
+
+/*
+ * Step from run->t towards run->stop.
+ *
+ * in    p          parameters of the kernel
+ * in    times      count sample times, sorted from run->t towards run->stop
+ * out   states     count rows of N states
+ * out   record     room rows of SYMROT_ROW numbers, one per step, or room = 0
+ * in    attempts   most steps to try in this call
+ *
+ * Returns SYMROT_DONE; SYMROT_PAUSED after `attempts` steps or SYMROT_FULL when the record has no room (call again to
+ * continue from where it stands); SYMROT_NOT_FINITE or SYMROT_UNDERFLOW when the motion cannot be followed beyond run->t.
+ */
+SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *times, int64_t count, double *states,
+    double *record, int64_t room, int64_t attempts)
+{
+    double k[SYMROT_STAGES + 1][SYMROT_WIDTH] SYMROT_ALIGNED, term[SYMROT_TERMS][SYMROT_WIDTH] SYMROT_ALIGNED;
+    double y[SYMROT_WIDTH] SYMROT_ALIGNED, y1[SYMROT_WIDTH] SYMROT_ALIGNED, z[SYMROT_WIDTH] SYMROT_ALIGNED;
+    double step[SYMROT_WIDTH] SYMROT_ALIGNED, error5[SYMROT_WIDTH] SYMROT_ALIGNED, error3[SYMROT_WIDTH] SYMROT_ALIGNED;
+    const double stop = run->stop, side = stop < run->t ? -1.0 : 1.0;
+    const double weight = 1.0/(run->tolerance*run->tolerance), tiny = 1e-30*fabs(stop - run->t);
+    double t = run->t, h = run->h, growth = GROWTH;
+    int64_t next = run->next, accepted = 0, rejected = 0, dense = 0, recorded = 0;
+    int status = SYMROT_PAUSED, broken = 0;
+
+    memset(k, 0, sizeof k);
+    memset(y, 0, sizeof y);
+    memset(z, 0, sizeof z);
+    if (h == 0.0) {
+        SYMROT_RHS(run->first, run->y, p, run->dy);
+        h = run->h = stop == t ? 0.0 : first_step(run, p);
+        run->evaluations += 2;
+        for (; next < count && times[next] == t; ++next) EACH_STATE(i) states[next*SYMROT_STATES + i] = run->y[i];
+    }
+    EACH_STATE(i) y[i] = run->y[i];
+    EACH_STATE(i) k[1][i] = run->dy[i];
+    if (t == stop) status = SYMROT_DONE;
+
+    while (status == SYMROT_PAUSED && accepted + rejected < attempts) {
+        double t1 = t + h;
+        if ((t1 + 0.01*h - stop)*side >= 0.0) t1 = stop;
+        h = t1 - t;
+        if (t1 == t || (fabs(h) <= tiny + 4.0*DBL_EPSILON*fabs(t) && t1 != stop)) {
+            status = broken ? SYMROT_NOT_FINITE : SYMROT_UNDERFLOW;
+            break;
+        }
+        if (room > 0 && recorded == room) { status = SYMROT_FULL; break; }
+        const double last = t1 == stop ? run->last : t1;
+
+#define K(s) k[s][i]
+#define ADD_NEWEST(i) z[i] += newest*latest[i];
+#define STAGE(s, previous, time) \
+        EACH(i) z[i] = y[i] + h*(DOP853_OLD_##s(K)); \
+        { \
+            const double newest = h*DOP853_NEW_##s, *const latest = k[previous]; \
+            ONE_BY_ONE(ADD_NEWEST) \
+        } \
+        SYMROT_RHS(time, z, p, k[s]);
+
+        STAGE(2, 1, t + DOP853_NODE_2*h)
+        STAGE(3, 2, t + DOP853_NODE_3*h)
+        STAGE(4, 3, t + DOP853_NODE_4*h)
+        STAGE(5, 4, t + DOP853_NODE_5*h)
+        STAGE(6, 5, t + DOP853_NODE_6*h)
+        STAGE(7, 6, t + DOP853_NODE_7*h)
+        STAGE(8, 7, t + DOP853_NODE_8*h)
+        STAGE(9, 8, t + DOP853_NODE_9*h)
+        STAGE(10, 9, t + DOP853_NODE_10*h)
+        STAGE(11, 10, t + DOP853_NODE_11*h)
+        STAGE(12, 11, last)
+
+        EACH(i) {
+            step[i] = h*DOP853_WEIGHTS(K);
+            y1[i] = y[i] + step[i];
+            error3[i] = step[i] - h*DOP853_WEIGHTS_3(K);
+            error5[i] = h*DOP853_ERROR_5(K);
+        }
+        double worst = 0.0;
+        for (int b = 0; b < SYMROT_COUNT; ++b) {
+            const double e5 = square_sum(error5, b), e3 = square_sum(error3, b);
+            const double error = e5*e5/((e5 + 0.01*e3)*scale_squared(y, y1, h, b) + DBL_MIN)*weight;
+            worst = worst > error ? worst : error;  /* keeps a NaN once error is one */
+        }
+        const double factor = SAFETY*inverse_root_16(worst);
+
+        if (!(worst <= 1.0)) {
+            ++rejected;
+            broken = !(worst < INFINITY);
+            h *= broken ? COLLAPSE : factor > SHRINK ? factor : SHRINK;
+            growth = 1.0;
+            continue;
+        }
+        ++accepted;
+        SYMROT_RHS(last, y1, p, k[13]);
+
+        const int sampled = next < count && (times[next] - t1)*side <= 0.0;
+        if (room > 0 || (sampled && times[next] != t1)) {
+            dense_coefficients(t, h, y, step, p, k, term);
+            ++dense;
+        }
+        if (room > 0) {
+            double *row = record + recorded*SYMROT_ROW;
+            row[0] = t;
+            row[1] = h;
+            for (int j = 0; j < SYMROT_TERMS; ++j) EACH_STATE(i) row[2 + j*SYMROT_STATES + i] = term[j][i];
+            ++recorded;
+        }
+        if (sampled)
+            for (; next < count && (times[next] - t1)*side <= 0.0; ++next) {
+                double *out = states + next*SYMROT_STATES;
+                if (times[next] == t1) EACH_STATE(i) out[i] = y1[i];
+                else dense_value(term[0], SYMROT_WIDTH, (times[next] - t)/h, out);
+            }
+
+        EACH(i) { y[i] = y1[i]; k[1][i] = k[13][i]; }
+        t = t1;
+        if (t == stop) status = SYMROT_DONE;
+        h *= factor < growth ? (factor > SHRINK ? factor : SHRINK) : growth;
+        if (fabs(h) > run->max_step) h = side*run->max_step;
+        growth = GROWTH;
+    }
+
+    run->t = t;
+    run->h = h;
+    run->next = next;
+    run->accepted += accepted;
+    run->rejected += rejected;
+    run->evaluations += 12*accepted + 11*rejected + 3*dense;
+    run->recorded = recorded;
+    EACH_STATE(i) { run->y[i] = y[i]; run->dy[i] = k[1][i]; }
+    return status;
+}
+
+#ifdef __cplusplus
+}
+#endif
