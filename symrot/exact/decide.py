@@ -9,14 +9,33 @@ zero normal form still proves the identity; a nonzero one proves nothing, and "f
 """
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
-from sympy import Expr, Matrix, MatrixBase, MatrixExpr, sympify
+from sympy import Expr, Ge, Matrix, MatrixBase, MatrixExpr, Ne, sympify, zeros
 
 from symrot.errors import InputError
+from symrot.exact.counterexample import Counterexample, closed_form_witness, rational_witness
 from symrot.exact.ring import FormulaRing, as_zero
 
-__all__ = ["is_zero", "normal_form"]
+__all__ = ["Verdict", "decide", "is_zero", "normal_form"]
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What is known about ``left = right`` and why.
+
+    ``verdict`` is ``"true"`` (proven wherever both sides are defined), ``"false"`` (``counterexample`` shows it) or
+    ``"undecided"`` (``stopped_by`` holds the terms about which too little is known). ``conditions`` are the
+    denominators that must not vanish and the radicands that must not be negative; ``residual`` is the normal form of
+    left - right.
+    """
+
+    verdict: str
+    residual: Any
+    conditions: tuple[Any, ...] = ()
+    counterexample: Counterexample | None = None
+    stopped_by: tuple[Expr, ...] = ()
 
 
 def normal_form(expression: Any, relations: Sequence[Any] = ()) -> Any:
@@ -50,8 +69,7 @@ def normal_form(expression: Any, relations: Sequence[Any] = ()) -> Any:
     """
     entries, shape = flatten(expression)
     ring = FormulaRing(entries, [as_zero(relation) for relation in relations])
-    reduced = [ring.expression(ring.ratio(entry)) for entry in entries]
-    return reduced[0] if shape is None else Matrix(*shape, reduced)
+    return _shaped([ring.expression(ring.ratio(entry)) for entry in entries], shape)
 
 
 def is_zero(expression: Any, relations: Sequence[Any] = ()) -> bool:
@@ -59,6 +77,43 @@ def is_zero(expression: Any, relations: Sequence[Any] = ()) -> bool:
     entries, _ = flatten(expression)
     ring = FormulaRing(entries, [as_zero(relation) for relation in relations])
     return not any(ring.reduce(ring.ratio(entry).numerator) for entry in entries)
+
+
+def decide(left: Any, right: Any, relations: Sequence[Any] = ()) -> Verdict:
+    """Decide ``left = right`` under hypotheses.
+
+    Parameters
+    ----------
+    left, right : Expr or Matrix
+        Of equal shape; ``0`` stands for the zero matrix of any shape.
+    relations : sequence of Expr or Eq
+        Hypotheses, as for :func:`normal_form`.
+
+    Raises
+    ------
+    InputError
+        If the shapes differ, or for what :func:`normal_form` refuses.
+    """
+    (lefts, shape), (rights, other) = flatten(left), flatten(right)
+    if shape is not None and other is None and rights == [0]:
+        rights, other = list(zeros(*shape)), shape
+    if shape != other:
+        raise InputError(f"two sides of an equation have one shape, got {_shape_text(shape)} = {_shape_text(other)}")
+    ring = FormulaRing([*lefts, *rights], [as_zero(relation) for relation in relations])
+    residuals = [ring.expression(ring.difference(a, b)) for a, b in zip(lefts, rights, strict=True)]
+    conditions = _conditions(ring)
+    residual = _shaped(residuals, shape)
+    wrong = [place for place, value in enumerate(residuals) if value != 0]
+    if not wrong:
+        return Verdict("true", residual, conditions)
+    for search in (rational_witness, closed_form_witness):
+        for place in wrong[:4]:
+            entry = None if shape is None else (place // shape[1] + 1, place % shape[1] + 1)
+            found = search(ring, lefts[place], rights[place], entry)
+            if found is not None:
+                return Verdict("false", residual, conditions, found)
+    stopped_by = (*ring.outside_scope, *(root.expression for root in ring.roots), *ring.hypotheses)
+    return Verdict("undecided", residual, conditions, None, stopped_by)
 
 
 def flatten(expression: Any) -> tuple[list[Expr], tuple[int, int] | None]:
@@ -78,3 +133,20 @@ def flatten(expression: Any) -> tuple[list[Expr], tuple[int, int] | None]:
         raise InputError(f"exact decision takes a formula or a matrix of formulas, got {expression!r}")
     return [expression], None
 
+
+def _conditions(ring: FormulaRing) -> tuple[Any, ...]:
+    """Return what both sides need to be defined, less what the assumptions on the symbols grant."""
+    nonzero = [source for source in ring.ratios.sources if not source.is_nonzero and not source.is_number]
+    radicands = [found.base for found in ring.radicals.values() if found.power % 2 and not found.base.is_number]
+    unique = dict.fromkeys(
+        [*(Ne(source, 0) for source in nonzero), *(Ge(base, 0) for base in radicands if not base.is_nonnegative)]
+    )
+    return tuple(sorted(unique, key=str))
+
+
+def _shaped(entries: list[Expr], shape: tuple[int, int] | None) -> Any:
+    return entries[0] if shape is None else Matrix(*shape, entries)
+
+
+def _shape_text(shape: tuple[int, int] | None) -> str:
+    return "a scalar" if shape is None else f"a {shape[0]} x {shape[1]} matrix"

@@ -185,6 +185,11 @@ class FormulaRing:
             known = self._read_already[expression] = self._read(expression)
         return known
 
+    def difference(self, left: Expr, right: Expr) -> Ratio:
+        """Return left - right as a fraction."""
+        minus_right = self.ratios.multiply([self.ratios.number(-1), self.ratio(right)])
+        return self.ratios.add([self.ratio(left), minus_right])
+
     def _read(self, node: Expr) -> Ratio:
         ratios = self.ratios
         if node in self.symbols:

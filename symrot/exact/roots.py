@@ -70,9 +70,10 @@ def radical(node: Expr, lowest_terms: Callable[[Expr], tuple[Rational, Expr, Exp
         if power < 0:
             raise InputError(f"the formula divides by a power of {base}, which is zero everywhere")
         return Radical(base, Integer(0), (), Integer(1), 1)
+    roots: list[Root] = []
     if index != 2:
         above, below = content.p * above, content.q * below
-        rational, roots = Integer(1), []
+        rational = Integer(1)
     else:
         rational, roots = _square_root_of_number(content)
     if above == -1 and below == 1 and index == 2:

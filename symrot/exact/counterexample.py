@@ -1,0 +1,369 @@
+"""Witnesses: exact points at which two formulas differ, made small enough to be read.
+
+Two kinds. Where only symbols, free angles and unit vectors occur, the point is rational, ``cos x = 4/5, sin x = 3/5``
+or ``q = (1/2, 1/2, 1/2, 1/2)``, and both sides are rational numbers. Otherwise symbols get rational values, both sides
+become closed-form numbers, and 50-digit interval arithmetic proves that they differ.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import product
+from random import Random
+from typing import Any
+
+from mpmath import iv
+from sympy import Abs, Expr, Rational, cos, cot, csc, exp, log, pi, sec, sin, tan
+from sympy.core.function import AppliedUndef
+from sympy.polys.rings import PolyElement
+
+from symrot.exact.angles import base_angle
+from symrot.exact.ratio import Ratio
+from symrot.exact.ring import FormulaRing
+
+__all__ = ["Counterexample", "closed_form_witness", "rational_witness"]
+
+ATTEMPTS = 60
+"""Random points tried: a nonzero polynomial of degree d vanishes at one with a chance of about d/40."""
+
+DIGITS = 50
+
+
+@dataclass(frozen=True)
+class Counterexample:
+    """A point where the two sides differ.
+
+    ``values`` pairs what is given with its exact value; ``entry`` is the place in a matrix, (row, column) from 1, or
+    None; ``lhs`` and ``rhs`` are exact numbers.
+    """
+
+    values: tuple[tuple[Expr, Expr], ...]
+    entry: tuple[int, int] | None
+    lhs: Expr
+    rhs: Expr
+
+    def __str__(self) -> str:
+        place = f", entry {self.entry}" if self.entry else ""
+        point = ", ".join(f"{name} = {value}" for name, value in self.values)
+        return f"at {point}{place}: {self.lhs} against {self.rhs}" if point else f"{self.lhs} against {self.rhs}{place}"
+
+
+@dataclass(frozen=True)
+class Coordinate:
+    """Something that can be chosen: generators that are chosen together, and the choices, the simplest first."""
+
+    generators: tuple[int, ...]
+    simple: tuple[tuple[Fraction, ...], ...]
+    random: Callable[[Random], tuple[Fraction, ...]]
+    atom: Expr | None = None  # of an angle
+
+
+def rational_witness(
+    ring: FormulaRing, left: Expr, right: Expr, entry: tuple[int, int] | None
+) -> Counterexample | None:
+    """Return a rational point where left and right differ, or None if none was found or the point would not be real.
+
+    The two must be readable in the ring.
+    """
+    if ring.outside_scope or ring.roots or not _angles_are_free(ring):
+        return None
+    coordinates, solved = _coordinates(ring)
+    sides = ring.ratio(left), ring.ratio(right)
+    residual = ring.difference(left, right).numerator
+
+    def point(choices: Sequence[tuple[Fraction, ...]]) -> dict[int, Fraction] | None:
+        """Return the value of every generator, or None where a side is undefined or the sides are equal."""
+        values: dict[int, Fraction] = {}
+        for coordinate, choice in zip(coordinates, choices, strict=True):
+            values.update(zip(coordinate.generators, choice, strict=True))
+        for generator, hypothesis in solved:
+            if not _solve(hypothesis, generator, values):
+                return None
+        admissible = (
+            all(_assumed(leaf, values[number]) for leaf, number in ring.symbols.items())
+            and not any(_value(hypothesis, values) for hypothesis in ring.hypothesis_numerators)
+            and all(_value(factor, values) for factor in ring.ratios.factors)
+        )
+        return values if admissible and _value(residual, values) else None
+
+    source = Random(1)
+    for _ in range(ATTEMPTS):
+        choices = [coordinate.random(source) for coordinate in coordinates]
+        if point(choices) is not None:
+            break
+    else:
+        return None
+    for place, coordinate in enumerate(coordinates):
+        for simpler in coordinate.simple:
+            trial = [*choices[:place], simpler, *choices[place + 1 :]]
+            if point(trial) is not None:
+                choices = trial
+                break
+    values = point(choices)
+    assert values is not None
+    lhs, rhs = (_rational(_ratio_value(ring, side, values)) for side in sides)
+    return Counterexample(tuple(_named(ring, coordinates, values)), entry, lhs, rhs)
+
+
+def closed_form_witness(
+    ring: FormulaRing, left: Expr, right: Expr, entry: tuple[int, int] | None
+) -> Counterexample | None:
+    """Return a point with rational symbols where 50-digit intervals of left and right are disjoint, or None."""
+    if ring.hypotheses:
+        return None
+    leaves = _variables(left - right)
+    source = Random(2)
+    simple = [Rational(1), Rational(2), Rational(-1), Rational(1, 2), Rational(3), Rational(-1, 3)]
+    for attempt in range(ATTEMPTS):
+        pool = simple if attempt < ATTEMPTS // 2 else [Rational(n, 7) for n in range(-40, 41) if n]
+        values = {leaf: source.choice([v for v in pool if _assumed(leaf, v)] or [Rational(1)]) for leaf in leaves}
+        if not all(_nonnegative(found.base.xreplace(values)) for found in ring.radicals.values() if found.base != -1):
+            continue
+        sides = left.xreplace(values), right.xreplace(values)
+        enclosures = [enclosure(side) for side in sides]
+        if None not in enclosures and 0 not in enclosures[0] - enclosures[1]:
+            return Counterexample(tuple(values.items()), entry, *sides)
+    return None
+
+
+# -- rational points ------------------------------------------------------------------------------------------------
+
+
+def _coordinates(ring: FormulaRing) -> tuple[list[Coordinate], list[tuple[int, PolyElement]]]:
+    """Return what can be chosen freely, and the hypotheses that then fix a generator each (linear in it)."""
+    taken: set[int] = set()
+    coordinates: list[Coordinate] = []
+    solved: list[tuple[int, PolyElement]] = []
+    leaf_numbers = set(ring.symbols.values())
+    for hypothesis in ring.hypothesis_numerators:
+        sphere = _sphere(hypothesis)
+        if sphere and not taken & set(sphere):
+            coordinates.append(Coordinate(sphere, _simple_sphere(len(sphere)), _random_sphere(len(sphere))))
+            taken |= set(sphere)
+            continue
+        degrees = hypothesis.degrees() if hypothesis else ()
+        linear = [n for n, degree in enumerate(degrees) if degree == 1 and n in leaf_numbers - taken]
+        if linear:
+            solved.append((linear[0], hypothesis))
+            taken.add(linear[0])
+    for atom, place in ring.sines.items():
+        pair = (place, ring.cosines[atom])
+        coordinates.append(Coordinate(pair, _simple_circle(), _random_sphere(2), atom))
+    for leaf, number in ring.symbols.items():
+        if number not in taken:
+            simple = tuple((Fraction(v),) for v in (0, 1, -1, 2, 3) if _assumed(leaf, Fraction(v)))
+            coordinates.append(Coordinate((number,), simple, _random_number(leaf)))
+    return coordinates, solved[::-1]
+
+
+def _sphere(poly: PolyElement) -> tuple[int, ...] | None:
+    """Return the generators of ``sum of their squares = 1``, or None."""
+    if not poly:
+        return None
+    constant = poly.coeff(1)
+    places = []
+    for mono, coefficient in poly.items():
+        if not any(mono):
+            continue
+        if sorted(mono)[-1] != 2 or sum(mono) != 2 or coefficient != -constant:
+            return None
+        places.append(mono.index(2))
+    return tuple(sorted(places)) if constant and len(places) > 1 else None
+
+
+def _simple_circle() -> tuple[tuple[Fraction, ...], ...]:
+    """Return (sine, cosine) of the quarter turns and of the 3-4-5 triangle."""
+    points = ("0 1", "1 0", "0 -1", "-1 0", "3/5 4/5", "4/5 3/5")
+    return tuple(tuple(map(Fraction, point.split())) for point in points)
+
+
+def _simple_sphere(size: int) -> tuple[tuple[Fraction, ...], ...]:
+    """Return axis points, (3/5, 4/5) points, (1, 2, 2)/3 and (1/2)^4 points."""
+    points = [tuple(Fraction(int(i == j)) for i in range(size)) for j in range(size)]
+    for numbers in ("3/5 4/5", "1/3 2/3 2/3", "1/2 1/2 1/2 1/2"):
+        seed = tuple(map(Fraction, numbers.split()))
+        for places in product(range(size), repeat=len(seed)):
+            if list(places) == sorted(set(places)):
+                point = [Fraction(0)] * size
+                for place, value in zip(places, seed, strict=True):
+                    point[place] = value
+                points.append(tuple(point))
+    return tuple(points)
+
+
+def _random_sphere(size: int) -> Callable[[Random], tuple[Fraction, ...]]:
+    """Return a source of rational points of the unit sphere, by stereographic projection."""
+
+    def draw(source: Random) -> tuple[Fraction, ...]:
+        flat = [Fraction(source.randint(-9, 9), source.randint(1, 5)) for _ in range(size - 1)]
+        square = sum((value * value for value in flat), Fraction(0))
+        return (*(2 * value / (1 + square) for value in flat), (1 - square) / (1 + square))
+
+    return draw
+
+
+def _random_number(leaf: Expr) -> Callable[[Random], tuple[Fraction, ...]]:
+    """Return a source of rationals that obey the symbol's assumptions."""
+
+    def draw(source: Random) -> tuple[Fraction, ...]:
+        for _ in range(20):
+            value = Fraction(source.randint(-20, 20), 1 if leaf.is_integer else source.randint(1, 4))
+            if _assumed(leaf, value):
+                break
+        return (value,)
+
+    return draw
+
+
+def _assumed(leaf: Expr, value: Any) -> bool:
+    """Return whether a rational value agrees with the assumptions on a symbol."""
+    return not (
+        (leaf.is_positive and value <= 0)
+        or (leaf.is_negative and value >= 0)
+        or (leaf.is_nonnegative and value < 0)
+        or (leaf.is_nonzero and value == 0)
+        or (leaf.is_integer and Fraction(int(value.numerator), int(value.denominator)).denominator != 1)
+    )
+
+
+def _solve(hypothesis: PolyElement, generator: int, values: dict[int, Fraction]) -> bool:
+    """Solve a hypothesis that is linear in a generator for its value; False where that is impossible."""
+    values[generator] = Fraction(0)
+    if any(power and place not in values for mono in hypothesis for place, power in enumerate(mono)):
+        return False
+    constant = _value(hypothesis, values)
+    values[generator] = Fraction(1)
+    slope = _value(hypothesis, values) - constant
+    if not slope:
+        return False
+    values[generator] = -constant / slope
+    return True
+
+
+def _value(poly: PolyElement, values: dict[int, Fraction]) -> Fraction:
+    total = Fraction(0)
+    for mono, coefficient in poly.items():
+        term = Fraction(int(coefficient.numerator), int(coefficient.denominator))
+        for place, power in enumerate(mono):
+            if power:
+                term *= values[place] ** power
+        total += term
+    return total
+
+
+def _ratio_value(ring: FormulaRing, ratio: Ratio, values: dict[int, Fraction]) -> Fraction:
+    return _value(ratio.numerator, values) / _value(ring.ratios.denominator(ratio), values)
+
+
+def _named(
+    ring: FormulaRing, coordinates: list[Coordinate], values: dict[int, Fraction]
+) -> Iterator[tuple[Expr, Expr]]:
+    """Yield every symbol and angle with its value; quarter turns as angles, others as cosine and sine."""
+    zero, one = Fraction(0), Fraction(1)
+    quarter_turns = {(zero, one): 0, (one, zero): 1, (zero, -one): 2, (-one, zero): 3}
+    for leaf, number in ring.symbols.items():
+        yield leaf, _rational(values[number])
+    for coordinate in coordinates:
+        if coordinate.atom is None:
+            continue
+        sine, cosine = (values[number] for number in coordinate.generators)
+        base = base_angle(coordinate.atom, ring.bases[coordinate.atom])
+        if (sine, cosine) in quarter_turns:
+            yield coordinate.atom, quarter_turns[sine, cosine] * pi / 2 * coordinate.atom / base
+        else:
+            yield cos(base), _rational(cosine)
+            yield sin(base), _rational(sine)
+
+
+def _rational(value: Fraction) -> Rational:
+    return Rational(value.numerator, value.denominator)
+
+
+def _angles_are_free(ring: FormulaRing) -> bool:
+    """Return whether the angles can be given any values, whatever the symbols are.
+
+    So it is when each has a symbol, or a function of time, of its own, to which it is proportional.
+    """
+    holders = [*ring.bases, *ring.symbols]
+    for atom in ring.bases:
+        factors = atom.args if atom.is_Mul else (atom,)
+        if not all(f.is_Symbol or isinstance(f, AppliedUndef) for f in factors):
+            return False
+        others = [holder for holder in holders if holder is not atom]
+        if not any(not any(other.has(factor) for other in others) for factor in factors) or atom in ring.symbols:
+            return False
+    return True
+
+
+# -- closed-form numbers --------------------------------------------------------------------------------------------
+
+
+def _variables(expression: Expr) -> list[Expr]:
+    """Return symbols, functions of time and their derivatives, outermost first, in an order free of hashing."""
+    found: list[Expr] = []
+    stack = [expression]
+    while stack:
+        node = stack.pop()
+        if node.is_Symbol or isinstance(node, AppliedUndef) or node.is_Derivative:
+            if node not in found:
+                found.append(node)
+        else:
+            stack.extend(node.args)
+    return sorted(found, key=str)
+
+
+INTERVAL = {
+    sin: iv.sin,
+    cos: iv.cos,
+    tan: lambda x: iv.sin(x) / iv.cos(x),
+    cot: lambda x: iv.cos(x) / iv.sin(x),
+    sec: lambda x: 1 / iv.cos(x),
+    csc: lambda x: 1 / iv.sin(x),
+    exp: iv.exp,
+    log: iv.log,
+    Abs: abs,
+}
+
+
+def _nonnegative(number: Expr) -> bool:
+    held = enclosure(number)
+    return held is not None and bool(held.a >= 0)
+
+
+def enclosure(number: Expr) -> Any:
+    """Return a 50-digit interval that holds a closed-form real number, or None where it cannot tell."""
+    iv.dps = DIGITS
+    try:
+        return _enclose(number)
+    except (KeyError, ZeroDivisionError, ValueError, TypeError):  # an unknown function, a pole, a complex number
+        return None
+
+
+def _enclose(node: Expr) -> Any:
+    if node.is_Rational:
+        return iv.mpf(int(node.p)) / int(node.q)
+    if node is pi:
+        return +iv.pi
+    if node.is_Add:
+        return sum((_enclose(term) for term in node.args), iv.mpf(0))
+    if node.is_Mul:
+        total = iv.mpf(1)
+        for factor in node.args:
+            total = total * _enclose(factor)
+        return total
+    if node.is_Pow:
+        return _enclose_power(_enclose(node.base), node.exp)
+    value = INTERVAL[type(node)](*(_enclose(argument) for argument in node.args))
+    if not (value.a > -iv.inf and value.b < iv.inf):
+        raise ValueError(f"{node} has a pole in its interval")
+    return value
+
+
+def _enclose_power(base: Any, exponent: Expr) -> Any:
+    if exponent.is_Integer:
+        if exponent < 0 and 0 in base:
+            raise ZeroDivisionError
+        return base ** int(exponent)
+    if not base.a > 0:
+        raise ValueError("a fractional power is taken of positive numbers here")
+    return iv.exp(_enclose(exponent) * iv.log(base))
