@@ -9,13 +9,13 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from symrot.errors import InputError
+from symrot import expression
 from symrot.inertia.composite import MassProperties, Part, mass_properties
 from symrot.inertia.principal import Principal, principal_axes, require_admissible, why_not_propagable
 from symrot.inertia.shapes import SHAPES, Shape, check_dimensions
 from symrot.inertia.tensor import about_point
 from symrot.scene_attitude import Matrix, Vector, read_attitude
-from symrot.scene_reader import Entry, choice, expected, flag, nearest, number, read_table, table, text, vector
+from symrot.scene_reader import Entry, Reader, choice, expected, flag, nearest, number, read_table, table, text, vector
 
 __all__ = ["Body", "read_body"]
 
@@ -24,6 +24,9 @@ WAYS = ("shape", "part", "principal", "inertia")
 WAYS_SPOKEN = "exactly one of shape, [[body.part]], principal, inertia"
 LARGEST_MOMENT = Fraction(10) ** 120
 MOST_PARTS = 1000
+LONGEST_DENSITY = 400
+
+_POSITION = {"x", "y", "z"}
 
 _ZERO: Vector = (Fraction(0), Fraction(0), Fraction(0))
 _UNTURNED: Matrix = (
@@ -172,8 +175,23 @@ def _amount(shape: Shape) -> dict[str, Entry]:
         return {}
     return {
         "mass": Entry(number("a mass in kg", "positive")),
-        "density": Entry(number(f"a density in {shape.density_unit}", "positive")),
+        "density": Entry(_density(shape.density_unit)),
     }
+
+
+def _density(unit: str) -> Reader:
+    """Return a reader of a positive number, or of a polynomial in x, y, z, which stays text."""
+    uniform = number(f"a density in {unit}", "positive")
+
+    def reader(value: Any, where: str) -> Any:
+        if isinstance(value, str) and len(value) <= LONGEST_DENSITY and _POSITION & set(value):
+            names = expression.names(expression.parse(value, where))
+            if names <= _POSITION:
+                return value
+            expected(where, f"a density in {unit}, a number or a polynomial in x, y, z", value)
+        return uniform(value, where)
+
+    return reader
 
 
 def _read_shape_table(value: Mapping[str, Any], where: str, others: Mapping[str, Entry]) -> tuple[Part, dict[str, Any]]:
@@ -238,16 +256,9 @@ def _placed(properties: MassProperties, found: Mapping[str, Any], where: str, sp
     return Body(properties.mass, inertia, center, about, description, principal_axes(inertia, where))
 
 
-def _properties(parts: list[Part], where: str) -> MassProperties:
-    try:
-        return mass_properties(parts)
-    except InputError as reason:
-        raise InputError(f"{where}: {reason}") from None
-
-
 def _read_shape(value: Mapping[str, Any], where: str) -> Body:
     part, found = _read_shape_table(value, where, _PLACED)
-    return _placed(_properties([part], where), found, where, part.shape.replace("_", " "))
+    return _placed(mass_properties([part], where), found, where, part.shape.replace("_", " "))
 
 
 _PART = {
@@ -269,7 +280,7 @@ def _parts(value: Any, where: str) -> list[Part]:
 def _read_parts(value: Mapping[str, Any], where: str) -> Body:
     found = read_table(value, where, {"part": Entry(_parts, required=True), **_PLACED}, "a body of parts")
     parts: list[Part] = found["part"]
-    return _placed(_properties(parts, f"{where}.part"), found, where, f"body of {len(parts)} parts")
+    return _placed(mass_properties(parts, f"{where}.part"), found, where, f"body of {len(parts)} parts")
 
 
 _WAYS: dict[str, Callable[[Mapping[str, Any], str], Body]] = {
