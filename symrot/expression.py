@@ -16,7 +16,7 @@ from typing import Any
 
 from symrot.errors import InputError
 
-__all__ = ["FUNCTIONS", "Node", "children", "evaluate", "names", "operations", "parse", "text"]
+__all__ = ["FUNCTIONS", "Node", "children", "evaluate", "names", "operations", "parse", "rename", "text"]
 
 Node = tuple[Any, ...]
 
@@ -81,10 +81,7 @@ class _Reader:
         left = self.operand()
         while _BINDING.get(self.peek(), 0) > binding:
             _, mark, position = self.next()
-            if mark == "**":
-                left = ("**", left, self.power(position))
-            else:
-                left = (mark, left, self.expression(_BINDING[mark]))
+            left = (mark, left, self.power(position) if mark == "**" else self.expression(_BINDING[mark]))
         self.depth -= 1
         return left
 
@@ -183,6 +180,21 @@ def children(node: Node) -> tuple[Node, ...]:
     return (node[1],) if kind in ("**", "neg") else (node[1], node[2])
 
 
+def rename(node: Node, symbols: Mapping[str, str] | None = None, functions: Mapping[str, str] | None = None) -> Node:
+    """Return a formula with some symbols and functions called differently; names that are not listed stay."""
+    kind = node[0]
+    if kind == "number":
+        return node
+    if kind == "symbol":
+        return ("symbol", (symbols or {}).get(node[1], node[1]))
+    if kind == "call":
+        name = (functions or {}).get(node[1], node[1])
+        return ("call", name, tuple(rename(argument, symbols, functions) for argument in node[2]))
+    if kind == "**":
+        return ("**", rename(node[1], symbols, functions), node[2])
+    return (kind, *(rename(child, symbols, functions) for child in node[1:]))
+
+
 def names(node: Node) -> set[str]:
     """Return the names of the symbols in a formula."""
     if node[0] == "symbol":
@@ -270,7 +282,8 @@ def text(node: Node, binding: int = 0, literal: Callable[[Fraction], str] = str)
         inner = "-" + text(node[1], _UNARY, literal)
         return f"({inner})" if binding > 10 else inner
     if kind == "**":
-        return f"{text(node[1], 41, literal)}**{node[2]}" if node[2] >= 0 else f"{text(node[1], 41, literal)}**({node[2]})"
+        power = str(node[2]) if node[2] >= 0 else f"({node[2]})"
+        return f"{text(node[1], 41, literal)}**{power}"
     own, mark = _INFIX[kind]
     inner = f"{text(node[1], own, literal)}{mark}{text(node[2], own + 1, literal)}"
     return f"({inner})" if binding > own else inner

@@ -1,0 +1,50 @@
+"""Print a program as a NumPy function: one sample, or arrays of samples along the last axis."""
+
+from fractions import Fraction
+
+from symrot.codegen.banner import Description, banner
+from symrot.expression import FUNCTIONS as KNOWN
+from symrot.expression import Node, names, rename, text
+from symrot.kernel import Argument, Program
+
+__all__ = ["numpy_source"]
+
+FUNCTIONS = {"asin": "arcsin", "acos": "arccos", "atan": "arctan", "atan2": "arctan2"}
+
+
+def _literal(value: Fraction) -> str:
+    return repr(float(value))
+
+
+def _expression(node: Node) -> str:
+    return text(rename(node, functions={name: f"np.{FUNCTIONS.get(name, name)}" for name in KNOWN}), 0, _literal)
+
+
+def _unpacked(argument: Argument, used: set[str]) -> list[str]:
+    return [f"    {name} = {argument.name}[{i}]" for i, (name, *_) in enumerate(argument.components) if name in used]
+
+
+def numpy_source(program: Program, description: Description) -> str:
+    """Return the text of a module with one function; same program, same bytes.
+
+    The function takes the input arguments in order and returns each output argument as an array of shape (size,) or
+    (size, n).
+    """
+    inputs = [a for a in program.signature.arguments if a.role == "in" and a.size]
+    outputs = [a for a in program.signature.arguments if a.role == "out"]
+    used = set().union(*(names(node) for _, node in program.temporaries + program.outputs))
+    shape = next(a.name for a in inputs if not a.is_scalar and a.name != "p")
+    results = dict(program.outputs)
+    lines = [*banner(program, description, '"""', "", '"""')]
+    lines = [lines[0] + lines[1].strip(), *(line[1:] if line.startswith(" ") else line for line in lines[2:])]
+    lines += ["", "import numpy as np", "", "", f"def {program.signature.name}({', '.join(a.name for a in inputs)}):"]
+    lines += [line for argument in inputs if not argument.is_scalar for line in _unpacked(argument, used)]
+    lines += [f"    {name} = {_expression(node)}" for name, node in program.temporaries]
+    for argument in outputs:
+        lines.append(f"    {argument.name} = np.empty(({argument.size}, *np.shape({shape})[1:]))")
+        lines += [
+            f"    {argument.name}[{index}] = {_expression(results[name])}"
+            for index, (name, *_) in enumerate(argument.components)
+        ]
+    lines.append(f"    return {', '.join(a.name for a in outputs)}")
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,88 @@
+"""Derive the kernels of a plan: from its structure to programs and C text."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from sympy import Expr, Symbol
+
+from symrot import symbols
+from symrot.codegen.banner import Description
+from symrot.codegen.c_source import c_function
+from symrot.codegen.lower import Lowered, lower
+from symrot.dynamics.equations import PLANAR_ANGLE, Equations, equations_of_motion
+from symrot.dynamics.invariants import find_invariants
+from symrot.kernel import Argument, Signature
+from symrot.kinematics.quaternion import dcm_of
+from symrot.scene_kernel import Conserved, SceneKernel
+
+__all__ = ["derive_scene_kernel", "rates_program", "scene_description"]
+
+MEANING = {
+    **{f"omega_{i + 1}": f"angular velocity about body axis {i + 1}" for i in range(3)},
+    **{f"q{i}": "attitude, body to space" for i in range(4)},
+    "theta": "angle turned since the start",
+}
+TIME = Argument("t", "in", (("t", "s", "time"),), is_scalar=True)
+
+
+def _unit(symbol: Symbol) -> str:
+    return "rad" if symbol == PLANAR_ANGLE else symbols.UNIT[symbol]
+
+
+def _state_argument(equations: Equations) -> Argument:
+    return Argument("y", "in", tuple((str(s), _unit(s), MEANING[str(s)]) for s in equations.states))
+
+
+def rates_program(equations: Equations, name: str) -> Lowered:
+    """Return the right-hand side ``dy/dt`` of a plan as a program of the given name."""
+    per_second = {"rad/s": "rad/s^2", "1": "1/s", "rad": "rad/s"}
+    results = tuple((f"d{s}", per_second[_unit(s)], f"rate of {s}") for s in equations.states)
+    signature = Signature(name, (TIME, _state_argument(equations), Argument("dy", "out", results)))
+    return lower(signature, [(f"d{s}", r) for s, r in zip(equations.states, equations.rates, strict=True)],
+                 equations.definitions)  # fmt: skip
+
+
+def _quantities(equations: Equations, found: Mapping[str, Expr]) -> Lowered:
+    outputs: list[tuple[str, str, Expr]] = [
+        (f"omega_{i + 1} of t", "rad/s", omega) for i, omega in enumerate(equations.motion.omega_b)
+    ]
+    momentum = equations.momentum_b
+    outputs += [(f"momentum_{i + 1}", "kg m^2/s", value) for i, value in enumerate(momentum)]
+    outputs.append(("kinetic_energy", "J", equations.kinetic_energy))
+    if equations.potential is not None:
+        outputs.append(("energy", "J", equations.kinetic_energy + equations.potential))
+    if equations.motion.quaternion is not None:
+        outputs += [(f"q{i} of t", "1", q) for i, q in enumerate(equations.motion.quaternion)]
+        momentum_s = dcm_of(equations.motion.quaternion) * momentum
+        outputs += [(f"momentum_{axis}", "kg m^2/s", value) for axis, value in zip("xyz", momentum_s, strict=True)]
+    outputs += [(name, "", value) for name, value in found.items()]
+    results = Argument("out", "out", tuple((name, unit, "") for name, unit, _ in outputs))
+    signature = Signature("quantities", (TIME, _state_argument(equations), results))
+    return lower(signature, [(name, value) for name, _, value in outputs])
+
+
+def derive_scene_kernel(structure: Mapping[str, Any]) -> SceneKernel:
+    """Return the kernels of a plan's structure, with its conserved quantities proven."""
+    equations = equations_of_motion(structure)
+    rates = rates_program(equations, "symrot_rates")
+    invariants = find_invariants(equations, structure)
+    kept = {f"conserved_{i}": item.value for i, item in enumerate(invariants) if item.kept}
+    quantities = _quantities(equations, kept)
+    conserved = tuple(
+        Conserved(item.name, item.unit, f"conserved_{i}" if item.kept else "", item.kept, item.reason)
+        for i, item in enumerate(invariants)
+    )
+    return SceneKernel(
+        rates.program, rates.parameters, quantities.program, quantities.parameters, conserved,
+        c_function(rates.program, "static inline "),
+    )  # fmt: skip
+
+
+def scene_description(title: str, name: str, target: str) -> Description:
+    """Return what an emitted file says of a scene's own kernel."""
+    return Description(
+        title=f"equations of motion of the scene {name!r} ({title})",
+        domain="all states; q need not be of unit norm, its rate keeps the norm",
+        derivation="derivations/euler_equations.md, derivations/quaternion_rates.md",
+        command=f"symrot emit {name} --target {target}",
+    )

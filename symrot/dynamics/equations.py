@@ -1,0 +1,152 @@
+"""Equations of motion of a plan: Euler's equations and the quaternion rates, for just the states it keeps.
+
+Everything is derived here from the plan's structure: ``I domega/dt = tau - omega x (I omega + h)`` in body axes
+about the centre of mass or a fixed point, and ``dq/dt = 1/2 q (0, omega_b)``.
+Proof: ``derivations/euler_equations.md``, ``derivations/quaternion_rates.md``.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import reduce
+from operator import add
+from typing import Any
+
+from sympy import Expr, Integer, Matrix, S, Symbol, cos, diag, eye, sin, zeros
+
+from symrot import symbols
+from symrot.dynamics.torques import Motion, TorqueLaw, collected_cross, torque_law
+from symrot.kinematics.quaternion import qmul, quaternion_rates, unit_relation
+from symrot.symbols import constant
+
+__all__ = ["Equations", "angular_acceleration", "equations_of_motion", "inertia_matrix", "inverse"]
+
+PLANAR_ANGLE = constant("theta")
+TENSOR_NAMES = (("I_xx", "I_xy", "I_xz"), ("I_xy", "I_yy", "I_yz"), ("I_xz", "I_yz", "I_zz"))
+
+
+@dataclass(frozen=True)
+class Equations:
+    """First-order equations of motion and the quantities they follow."""
+
+    states: tuple[Symbol, ...]
+    rates: tuple[Expr, ...]  # d(states)/dt
+    definitions: tuple[tuple[Symbol, Expr], ...]  # named quantities that the rates use
+    motion: Motion  # omega_b, attitude and inertia as formulas in t and the states
+    laws: tuple[TorqueLaw, ...]
+    momentum_b: Matrix  # I omega + h, kg m^2/s, body components
+    relations: tuple[Expr, ...]  # what is zero whatever the motion: unit norms
+
+    @property
+    def explicit_rates(self) -> tuple[Expr, ...]:
+        """Return the rates in the states alone, the named quantities put in."""
+        rates = self.rates
+        for symbol, value in reversed(self.definitions):
+            rates = tuple(rate.xreplace({symbol: value}) for rate in rates)
+        return rates
+
+    @property
+    def kinetic_energy(self) -> Expr:
+        """Return ``omega . I omega / 2`` in J."""
+        omega_b = self.motion.omega_b
+        return omega_b.dot(self.motion.inertia * omega_b) / 2
+
+    @property
+    def potential(self) -> Expr | None:
+        """Return the sum of the potentials in J, or None when a torque has none."""
+        potentials = [law.potential for law in self.laws]
+        return None if None in potentials else reduce(add, potentials, S.Zero)
+
+
+def inertia_matrix(structure: Mapping[str, Any]) -> Matrix:
+    """Return the tensor of a plan: ``principal`` names with repeats for equal moments, or the ``tensor`` pattern."""
+    if structure["form"] == "principal":
+        moments = dict(zip("ABC", symbols.principal, strict=True))
+        return diag(*(moments[name] for name in structure["moments"]))
+    entries = {str(s): s for s in symbols.moments + symbols.products}
+    kept = {name: entries[name] if name in structure["entries"] else S.Zero for name in entries}
+    return Matrix(3, 3, [kept[name] for row in TENSOR_NAMES for name in row])
+
+
+def angular_acceleration(inertia: Matrix, omega_b: Matrix, torque: Matrix, momentum: Matrix | None = None) -> Matrix:
+    """Return ``I^-1 (tau - omega x (I omega + h))``, rad/s^2, body components, shape (3, 1).
+
+    Parameters
+    ----------
+    inertia : Matrix, shape (3, 3)
+        kg m^2, about the centre of mass or a fixed point.
+    omega_b : Matrix, shape (3, 1)
+        rad/s.
+    torque : Matrix, shape (3, 1)
+        N m, about the same point, body components.
+    momentum : Matrix, shape (3, 1), optional
+        h of an internal rotor, kg m^2/s.
+    """
+    rotor = zeros(3, 1) if momentum is None else momentum
+    gyroscopic = collected_cross(omega_b, inertia * omega_b, omega_b)
+    return inverse(inertia) * (torque - omega_b.cross(rotor) - gyroscopic)
+
+
+def inverse(tensor: Matrix) -> Matrix:
+    """Return the inverse of a symbolic tensor, shape (3, 3), from the cross products of its columns."""
+    if tensor.is_diagonal():
+        return diag(*(1 / entry for entry in tensor.diagonal()))
+    first, second, third = (tensor.col(i) for i in range(3))
+    rows = [second.cross(third), third.cross(first), first.cross(second)]
+    return Matrix.hstack(*rows).T / first.dot(rows[0]).expand()
+
+
+def _motion(structure: Mapping[str, Any]) -> tuple[Motion, tuple[Symbol, ...], list[Expr]]:
+    """Return the motion, the attitude states and the relations of a plan."""
+    inertia = inertia_matrix(structure["inertia"])
+    axis = structure["planar"]
+    if axis is None:
+        omega_b = Matrix(symbols.omega_b)
+        if not structure["attitude"]:
+            return Motion(omega_b, None, inertia), (), []
+        return Motion(omega_b, symbols.quaternion, inertia), symbols.quaternion, [unit_relation(symbols.quaternion)]
+    omega_b = Matrix([w if i == axis else 0 for i, w in enumerate(symbols.omega_b)])
+    if not structure["attitude"]:
+        return Motion(omega_b, None, inertia), (), []
+    start = [
+        constant(f"initial_q{i}") if pattern == "*" else Integer(pattern)
+        for i, pattern in enumerate(structure["initial_quaternion"])
+    ]
+    turn = [cos(PLANAR_ANGLE / 2), *(sin(PLANAR_ANGLE / 2) * eye(3).col(axis))]
+    free = [q for q in start if q.is_Symbol]
+    return Motion(omega_b, tuple(qmul(start, turn)), inertia), (PLANAR_ANGLE,), [unit_relation(start)] if free else []
+
+
+def equations_of_motion(structure: Mapping[str, Any]) -> Equations:
+    """Return the equations of motion of a plan's structure.
+
+    Parameters
+    ----------
+    structure : mapping
+        ``inertia`` (``form`` and the pattern of equal moments or zero entries), ``torques`` (see
+        :func:`symrot.dynamics.torques.torque_law`), ``attitude`` (whether it is computed), ``planar`` (the axis
+        number of a motion about one body axis, else None, with ``initial_quaternion``), ``constant`` (numbers of the
+        components of omega_b that keep their value).
+    """
+    motion, attitude, relations = _motion(structure)
+    laws = tuple(torque_law(torque, motion) for torque in structure["torques"])
+    torque = reduce(add, (law.torque for law in laws), zeros(3, 1))
+    rotor = reduce(add, (law.momentum for law in laws), zeros(3, 1))
+    momentum_b = motion.inertia * motion.omega_b + rotor
+    definitions = tuple(item for law in laws for item in law.definitions)
+    if motion.inertia.is_diagonal():
+        acceleration = angular_acceleration(motion.inertia, motion.omega_b, torque, rotor)
+    else:
+        named_l, named_m = (Matrix([constant(f"{letter}_{i}") for i in (1, 2, 3)]) for letter in "LM")
+        moment = torque - motion.omega_b.cross(named_l)
+        definitions += (*zip(named_l, momentum_b, strict=True), *zip(named_m, moment, strict=True))
+        acceleration = inverse(motion.inertia) * named_m
+    moving = [i for i in range(3) if i not in structure["constant"] and structure["planar"] in (None, i)]
+    states = [symbols.omega_b[i] for i in moving]
+    rates = [acceleration[i] for i in moving]
+    if structure["planar"] is None:
+        rates += list(quaternion_rates("body") * motion.omega_b) if attitude else []
+    elif attitude:
+        rates.append(symbols.omega_b[structure["planar"]])
+    return Equations(
+        (*states, *attitude), tuple(rates), definitions, motion, laws, momentum_b, tuple(relations)
+    )

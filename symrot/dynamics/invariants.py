@@ -1,0 +1,104 @@
+"""What a motion keeps: candidates from the symmetries of mechanics, each proven along the equations of motion.
+
+A candidate F(t, states) is kept if and only if ``dF/dt = dF/dt|_t + grad F . rates`` has normal form zero; nothing
+is taken from a list of known integrals. The others are reported as lost, with what takes them.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from sympy import Expr, Matrix, sqrt
+
+from symrot import symbols
+from symrot.dynamics.equations import Equations
+from symrot.dynamics.torques import field_value
+from symrot.exact import is_zero
+from symrot.kinematics.quaternion import dcm_of
+
+__all__ = ["Invariant", "find_invariants", "rate_along"]
+
+
+@dataclass(frozen=True)
+class Invariant:
+    """A quantity that a motion keeps or, with ``kept`` false, one that it would keep without some torque."""
+
+    name: str
+    unit: str
+    value: Expr  # in t, the states and the constants
+    kept: bool
+    reason: str
+
+
+def rate_along(expression: Expr, equations: Equations) -> Expr:
+    """Return the rate of change of a quantity along the motion."""
+    rates = zip(equations.states, equations.explicit_rates, strict=True)
+    return expression.diff(symbols.t) + sum(expression.diff(state) * rate for state, rate in rates)
+
+
+def _candidates(equations: Equations, structure: Mapping[str, Any]) -> Iterable[tuple[str, str, Expr, Expr]]:
+    """Yield (name, unit, value, what is differentiated): the same, or its square where the value is a root."""
+    momentum, potential = equations.momentum_b, equations.potential
+    energy = None if potential is None else equations.kinetic_energy + potential
+    if energy is not None:
+        yield "energy", "J", energy, energy
+    if equations.motion.quaternion is None:
+        square = momentum.dot(momentum)
+        yield "angular momentum", "kg m^2/s", sqrt(square), square
+    else:
+        momentum_s = dcm_of(equations.motion.quaternion) * momentum
+        for axis, component in zip("xyz", momentum_s, strict=True):
+            yield f"angular momentum {axis}", "kg m^2/s", component, component
+        for torque in structure["torques"]:
+            yield from _of_torque(torque, momentum_s, energy)
+    for number, omega in enumerate(symbols.omega_b):
+        others = [equations.motion.inertia[i, i] for i in range(3) if i != number]
+        if omega in equations.states and others[0] == others[1]:
+            yield f"spin omega_{number + 1}", "rad/s", omega, omega
+
+
+def _of_torque(
+    torque: Mapping[str, Any], momentum_s: Matrix, energy: Expr | None
+) -> Iterable[tuple[str, str, Expr, Expr]]:
+    """Yield what one torque of the table singles out: the vertical of gravity, the normal of an orbit."""
+    prefix = torque["prefix"]
+    if torque["kind"] == "gravity" and torque["fields"]["direction"].count("0") < 2:
+        pattern = torque["fields"]["direction"]
+        down = field_value(f"{prefix}direction", pattern)
+        vertical = -momentum_s.dot(down)
+        yield "vertical angular momentum", "kg m^2/s", vertical, vertical
+    if torque["kind"] == "gravity_gradient" and energy is not None:
+        jacobi = energy - symbols.constant(f"{prefix}mean_motion") * momentum_s[2]
+        yield "Jacobi integral", "J", jacobi, jacobi
+
+
+def _reason(name: str, kept: bool, equations: Equations, kinds: Sequence[str]) -> str:
+    if not kinds:
+        return "no torque acts"
+    acting = " and ".join(kind.replace("_", " ") for kind in kinds)
+    if not kept:
+        return f"changed by {acting}"
+    if name == "energy":
+        return "; ".join(dict.fromkeys(law.keeps for law in equations.laws if law.keeps)) or f"{acting} does no work"
+    if name == "Jacobi integral":
+        return "in axes that turn with the orbit the tide is at rest"
+    if name.startswith("spin"):
+        return "equal moments, and no torque about that axis"
+    if name == "angular momentum":
+        return f"{acting} changes only its direction in the body"
+    return f"{acting} has no moment about that axis of space"
+
+
+def find_invariants(equations: Equations, structure: Mapping[str, Any]) -> tuple[Invariant, ...]:
+    """Return the invariants of a motion, then the candidates it does not keep.
+
+    Quantities that hold no state (a component of omega_b that the plan already took as constant) are left out.
+    """
+    kinds = [torque["kind"] for torque in structure["torques"]]
+    found = []
+    for name, unit, value, tested in _candidates(equations, structure):
+        if not tested.free_symbols & {symbols.t, *equations.states}:
+            continue
+        kept = is_zero(rate_along(tested, equations), equations.relations)
+        found.append(Invariant(name, unit, value, kept, _reason(name, kept, equations, kinds)))
+    return tuple(sorted(found, key=lambda item: not item.kept))

@@ -1,0 +1,171 @@
+"""The torques of :mod:`symrot.dynamics.torque_kinds` as formulas: one law per kind, in a table.
+
+Each law gives the torque in body components and, where it has one, the potential from which the torque follows;
+:func:`torque_of_potential` derives the torque from the potential, so that neither is believed on its word.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from itertools import combinations_with_replacement
+from typing import Any
+
+import sympy
+from sympy import Expr, ImmutableMatrix, Integer, Matrix, Rational, Symbol, cos, sin, sqrt, zeros
+
+from symrot import symbols
+from symrot.dynamics.torque_kinds import EXPRESSION_NAMES, TORQUE_KINDS
+from symrot.expression import FUNCTIONS, Node, evaluate, parse
+from symrot.kinematics.quaternion import conjugate, dcm_of, qmul, quaternion_rates
+from symrot.symbols import constant
+
+__all__ = ["LAWS", "Motion", "TorqueLaw", "collected_cross", "field_value", "formula", "torque_law", "torque_of_potential"]
+
+
+@dataclass(frozen=True)
+class Motion:
+    """The quantities that a torque may depend on, all as formulas in the states."""
+
+    omega_b: Matrix  # rad/s, shape (3, 1)
+    quaternion: tuple[Expr, ...] | None  # body to space; None when the attitude is not computed
+    inertia: Matrix  # kg m^2, shape (3, 3)
+
+    def to_body(self, vector_s: Matrix) -> Matrix:
+        """Return the body components of a vector given in space components."""
+        return dcm_of(self.quaternion).T * vector_s
+
+
+@dataclass(frozen=True)
+class TorqueLaw:
+    """A torque (N m, body components) with what is known of it."""
+
+    torque: Matrix = field(default_factory=lambda: zeros(3, 1))
+    potential: Expr | None = None  # J; None where the torque has none
+    momentum: Matrix = field(default_factory=lambda: zeros(3, 1))  # kg m^2/s, relative to the body
+    definitions: tuple[tuple[Symbol, Expr], ...] = ()  # named quantities that the torque uses
+    keeps: str = ""  # why energy survives it
+
+
+def _constant_body(motion: Motion, torque: Matrix) -> TorqueLaw:
+    return TorqueLaw(torque)
+
+
+def _constant_space(motion: Motion, torque: Matrix) -> TorqueLaw:
+    return TorqueLaw(motion.to_body(torque))
+
+
+def _gravity(motion: Motion, weight: Expr, center_of_mass: Matrix, direction: Matrix) -> TorqueLaw:
+    down_b = motion.to_body(direction)
+    return TorqueLaw(
+        weight * center_of_mass.cross(down_b),
+        potential=-weight * center_of_mass.dot(down_b),
+        keeps="gravity has a potential",
+    )
+
+
+def _gravity_gradient(motion: Motion, mean_motion: Expr) -> TorqueLaw:
+    phase = mean_motion * symbols.t
+    radius_b = motion.to_body(Matrix([cos(phase), sin(phase), 0]))
+    named = Matrix([constant(f"radius_{i}") for i in (1, 2, 3)])
+    return TorqueLaw(
+        3 * mean_motion**2 * collected_cross(named, motion.inertia * named, named),
+        potential=3 * mean_motion**2 * radius_b.dot(motion.inertia * radius_b) / 2,
+        keeps="the tide has a potential",
+        definitions=tuple(zip(named, radius_b, strict=True)),
+    )
+
+
+def _damping(motion: Motion, linear: Matrix, quadratic: Expr) -> TorqueLaw:
+    omega_b = motion.omega_b
+    torque = -linear.multiply_elementwise(omega_b)
+    if quadratic != 0:
+        torque -= quadratic * sqrt(omega_b.dot(omega_b)) * omega_b
+    return TorqueLaw(torque)
+
+
+def _spring(motion: Motion, stiffness: Expr, attitude: Matrix) -> TorqueLaw:
+    error = qmul(conjugate(tuple(attitude)), motion.quaternion)
+    return TorqueLaw(
+        -2 * stiffness * error[0] * Matrix(error[1:]),
+        potential=2 * stiffness * (1 - error[0] ** 2),
+        keeps="the spring has a potential",
+    )
+
+
+def _rotor(motion: Motion, angular_momentum: Matrix) -> TorqueLaw:
+    return TorqueLaw(potential=Integer(0), momentum=angular_momentum, keeps="the rotor does no work on the body")
+
+
+def _expression(motion: Motion, torque: Matrix, frame: str) -> TorqueLaw:
+    return TorqueLaw(torque if frame == "body" else motion.to_body(torque))
+
+
+def collected_cross(left: Matrix, right: Matrix, variables: Matrix) -> Matrix:
+    """Return ``left x right`` with products of two variables collected: (C - B) r_2 r_3, zero for equal moments."""
+    pairs = [a * b for a, b in combinations_with_replacement(variables, 2)]
+    return left.cross(right).applyfunc(lambda entry: entry.expand().collect(pairs))
+
+
+LAWS: dict[str, Callable[..., TorqueLaw]] = {
+    "constant_body": _constant_body,
+    "constant_space": _constant_space,
+    "gravity": _gravity,
+    "gravity_gradient": _gravity_gradient,
+    "damping": _damping,
+    "spring": _spring,
+    "rotor": _rotor,
+    "expression": _expression,
+}
+if LAWS.keys() != TORQUE_KINDS.keys():
+    raise AssertionError(f"torque kinds without a law, or laws without a kind: {LAWS.keys() ^ TORQUE_KINDS.keys()}")
+
+
+_FUNCTIONS: dict[str, Callable[..., Expr]] = {
+    name: sympy.Abs if name == "abs" else getattr(sympy, name) for name in FUNCTIONS
+}
+
+
+def formula(node: Node, values: Mapping[str, Expr]) -> Expr:
+    """Return a formula tree as an exact SymPy expression in the given values; ``pi`` is known."""
+    known = {"pi": sympy.pi, **values}
+    return evaluate(node, known, _FUNCTIONS, lambda value: Rational(value.numerator, value.denominator))
+
+
+def torque_law(structure: Mapping[str, Any], motion: Motion) -> TorqueLaw:
+    """Return the law of one torque of a plan.
+
+    Parameters
+    ----------
+    structure : mapping
+        ``kind``, ``prefix`` (of its constants' names) and ``fields``: for each field the pattern of its value or
+        values, ``"0"``, ``"1"``, ``"-1"`` where the plan may rely on that number, ``"*"`` where it stays a symbol.
+        An expression has ``formulas`` (three texts), ``parameters`` (names) and ``frame`` instead.
+    motion : Motion
+        What it may depend on.
+    """
+    prefix = structure["prefix"]
+    if structure["kind"] == "expression":
+        values = dict(zip(EXPRESSION_NAMES[:4], (symbols.t, *motion.omega_b), strict=True))
+        values.update(zip(EXPRESSION_NAMES[4:], motion.quaternion or (), strict=False))
+        values.update({name: constant(f"{prefix}{name}") for name in structure["parameters"]})
+        torque = Matrix([formula(parse(source), values) for source in structure["formulas"]])
+        return _expression(motion, torque, structure["frame"])
+    arguments = {name: field_value(f"{prefix}{name}", pattern) for name, pattern in structure["fields"].items()}
+    return LAWS[structure["kind"]](motion, **arguments)
+
+
+def field_value(name: str, pattern: str | list[str]) -> Any:
+    """Return the symbol, exact number, vector (numbered from 1) or quaternion (from 0) of a pattern."""
+    if isinstance(pattern, str):
+        return constant(name) if pattern == "*" else Integer(pattern)
+    first = 0 if len(pattern) == 4 else 1
+    return Matrix([field_value(f"{name}_{i}", entry) for i, entry in enumerate(pattern, start=first)])
+
+
+def torque_of_potential(law: TorqueLaw) -> Matrix:
+    """Return the torque that follows from the potential of a law, body components: minus its rotational gradient.
+
+    With ``dq = 1/2 q (0, omega_b) dt`` the work of the torque is ``tau . omega_b dt = -dV``, for every omega_b.
+    """
+    rates = quaternion_rates("body") * Matrix(symbols.omega_b)
+    change = sum(law.potential.diff(q) * rate for q, rate in zip(symbols.quaternion, rates, strict=True))
+    return -ImmutableMatrix([change.diff(w) for w in symbols.omega_b])

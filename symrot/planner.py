@@ -1,0 +1,342 @@
+"""Skip what a scene does not need: from a scene to the least set of equations that answers it. No SymPy.
+
+A plan starts from the most general structure (full tensor, every constant free, full attitude) and applies a table of
+rules. Each rule looks at exact numbers, changes the structure or leaves it, and names the derivation that justifies
+it. The structure, not the numbers, decides which kernel is needed: a second scene of the same structure has it already.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property
+from typing import Any
+
+from symrot import expression
+from symrot.number import equal
+from symrot.scene import Initial, Scene
+
+__all__ = ["ATTITUDE_QUANTITIES", "RULES", "Plan", "Row", "make_plan"]
+
+Structure = dict[str, Any]
+
+ATTITUDE_QUANTITIES = frozenset(
+    {"quaternion", "euler", "dcm", "omega_space", "herpolhode", "angular_momentum_space", "axis"}
+)
+PRODUCTS = {"I_xy": (0, 1), "I_xz": (0, 2), "I_yz": (1, 2)}
+MOMENTS = {"I_xx": (0, 0), "I_yy": (1, 1), "I_zz": (2, 2)}
+NEVER_NEEDS_ATTITUDE = ("constant_body", "damping", "rotor")
+UNIT_FIELDS = ("direction", "attitude")  # fields whose components may be exactly one
+RESERVED = frozenset(
+    {"t", "theta", "pi", *"ABC", *MOMENTS, *PRODUCTS}
+    | {f"{name}_{i}" for name in ("omega", "L", "M", "radius", "initial_q") for i in range(4)}
+    | {f"q{i}" for i in range(4)} | {f"initial_q{i}" for i in range(4)}
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Row:
+    """One line of an explained plan: what it is about, whether it is skipped, and why."""
+
+    item: str
+    skipped: bool
+    why: str
+    derivation: str  # name of the derivation that justifies it, "" where it is a matter of what was asked
+    structure: Structure  # after this rule
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The least set of equations for a scene, with the numbers that go into it."""
+
+    scene: Scene
+    structure: Structure
+    rows: tuple[Row, ...]
+
+    @cached_property
+    def constants(self) -> dict[str, Fraction]:
+        """The physical constants of the structure by name, exact."""
+        return _constants(self.scene, self.structure)
+
+    @cached_property
+    def states(self) -> tuple[str, ...]:
+        """The names of the states, in the order of the kernel: angular velocity, then attitude."""
+        axis = self.structure["planar"]
+        moving = [i for i in range(3) if i not in self.structure["constant"] and axis in (None, i)]
+        names = [f"omega_{i + 1}" for i in moving]
+        if self.structure["attitude"]:
+            names += ["q0", "q1", "q2", "q3"] if axis is None else ["theta"]
+        return tuple(names)
+
+    @cached_property
+    def initial_state(self) -> tuple[float, ...]:
+        """The initial values of :attr:`states`."""
+        start = self.scene.initial
+        values = {f"omega_{i + 1}": value for i, value in enumerate(start.omega_b)}
+        values |= {f"q{i}": value for i, value in enumerate(start.quaternion)} | {"theta": Fraction(0)}
+        return tuple(float(values[name]) for name in self.states)
+
+    def explain(self) -> str:
+        """Return the plan as a table for people: item, kept or skipped, rule, derivation, operations saved."""
+        from symrot.report.explain import explanation
+
+        return explanation(self)
+
+
+def make_plan(scene: Scene, initial: Initial | None = None) -> Plan:
+    """Return the plan of a scene, perhaps with another initial state.
+
+    Parameters
+    ----------
+    scene : Scene
+        The problem.
+    initial : Initial, optional
+        Instead of the scene's own.
+    """
+    if initial is not None:
+        scene = replace(scene, initial=initial)
+    structure = _general(scene)
+    rows = []
+    for item, rule in RULES:
+        structure, skipped, why, derivation = rule(scene, structure)
+        rows.append(Row(item, skipped, why, derivation, structure))
+    return Plan(scene, structure, tuple(rows))
+
+
+# --- the general structure --------------------------------------------------------------------------------------------
+
+
+def _general(scene: Scene) -> Structure:
+    taken: set[str] = set(RESERVED)
+    return {
+        "inertia": {"form": "tensor", "entries": sorted([*MOMENTS, *PRODUCTS])},
+        "torques": [_general_torque(number, torque, taken) for number, torque in enumerate(scene.torques, start=1)],
+        "attitude": True,
+        "planar": None,
+        "initial_quaternion": None,
+        "constant": [],
+    }
+
+
+def _general_torque(number: int, torque: Any, taken: set[str]) -> Structure:
+    if torque.kind == "expression":
+        names = list(torque.values["parameters"])
+        found: Structure = {
+            "formulas": list(torque.values["torque"]), "parameters": names, "frame": torque.values["frame"]
+        }  # fmt: skip
+    else:
+        fields = {
+            name: ["*"] * len(value) if isinstance(value, tuple) else "*"
+            for name, value in torque.values.items()
+            if value is not None
+        }
+        names, found = list(fields), {"fields": fields}
+    prefix = f"torque{number}_" if taken & set(names) else ""
+    taken |= set(names)
+    return {"kind": torque.kind, "prefix": prefix, **found}
+
+
+def _pattern(value: Fraction, unit: bool) -> str:
+    return "0" if value == 0 else str(value) if unit and abs(value) == 1 else "*"
+
+
+def _constants(scene: Scene, structure: Structure) -> dict[str, Fraction]:
+    inertia, found = scene.body.inertia, {}
+    if structure["inertia"]["form"] == "principal":
+        for letter, number in zip(structure["inertia"]["moments"], range(3), strict=True):
+            found.setdefault(letter, inertia[number][number])
+    else:
+        places = MOMENTS | PRODUCTS
+        found = {name: inertia[places[name][0]][places[name][1]] for name in structure["inertia"]["entries"]}
+    for torque, given in zip(structure["torques"], scene.torques, strict=True):
+        prefix = torque["prefix"]
+        if given.kind == "expression":
+            found |= {f"{prefix}{name}": value for name, value in given.values["parameters"].items()}
+            continue
+        for name, pattern in torque["fields"].items():
+            value = given.values[name]
+            if isinstance(pattern, str):
+                found |= {f"{prefix}{name}": value} if pattern == "*" else {}
+                continue
+            first = 0 if len(pattern) == 4 else 1
+            for index, (entry, mark) in enumerate(zip(value, pattern, strict=True), start=first):
+                found |= {f"{prefix}{name}_{index}": entry} if mark == "*" else {}
+    for number in structure["constant"]:
+        if structure["planar"] in (None, number):
+            found[f"omega_{number + 1}"] = scene.initial.omega_b[number]
+    for number, mark in enumerate(structure["initial_quaternion"] or ()):
+        found |= {f"initial_q{number}": scene.initial.quaternion[number]} if mark == "*" else {}
+    return found
+
+
+# --- the rules --------------------------------------------------------------------------------------------------------
+
+Outcome = tuple[Structure, bool, str, str]
+
+
+def _products_of_inertia(scene: Scene, structure: Structure) -> Outcome:
+    inertia = scene.body.inertia
+    kept = [name for name, (i, j) in PRODUCTS.items() if inertia[i][j] != 0]
+    if kept:
+        entries = sorted([*MOMENTS, *kept])
+        why = f"{', '.join(kept)} {'is' if len(kept) == 1 else 'are'} not zero"
+        return structure | {"inertia": {"form": "tensor", "entries": entries}}, len(kept) < 3, why, "euler_equations"
+    why = "the axes of the body are principal axes"
+    return structure | {"inertia": {"form": "principal", "moments": "ABC"}}, True, why, "euler_equations"
+
+
+def _equal_moments(scene: Scene, structure: Structure) -> Outcome:
+    if structure["inertia"]["form"] != "principal":
+        return structure, False, "products of inertia are not zero", ""
+    moments = [scene.body.inertia[i][i] for i in range(3)]
+    letters = ""
+    for number, moment in enumerate(moments):
+        same = next((j for j in range(number) if equal(moments[j], moment)), number)
+        letters += letters[same] if same < number else "ABC"[number]
+    if letters == "ABC":
+        return structure, False, "three different principal moments", ""
+    why = "three equal moments" if letters == "AAA" else f"two equal moments: {scene.body.principal.kind} body"
+    return structure | {"inertia": {"form": "principal", "moments": letters}}, True, why, "symmetric_top"
+
+
+def _special_constants(scene: Scene, structure: Structure) -> Outcome:
+    torques, found = [], []
+    for torque, given in zip(structure["torques"], scene.torques, strict=True):
+        if given.kind == "expression":
+            torques.append(torque)
+            continue
+        fields: dict[str, Any] = {}
+        for name, pattern in torque["fields"].items():
+            value, unit = given.values[name], name in UNIT_FIELDS
+            many = isinstance(pattern, list)
+            fields[name] = [_pattern(entry, unit) for entry in value] if many else _pattern(value, unit)
+            found += [f"{name}_{i}" for i, mark in enumerate(fields[name], 1) if many and mark != "*"]
+            found += [name] if fields[name] == "0" else []
+        torques.append(torque | {"fields": fields})
+    if not structure["torques"]:
+        return structure, True, "no torque acts: Euler's equations are free", "euler_equations"
+    why = f"{', '.join(found)} exactly zero or one" if found else "no component of a torque is exactly zero"
+    return structure | {"torques": torques}, bool(found), why, ""
+
+
+def _depends_on_attitude(torque: Structure) -> bool:
+    if torque["kind"] == "expression":
+        used = set().union(*(expression.names(expression.parse(source)) for source in torque["formulas"]))
+        return torque["frame"] == "space" or bool(used & {"q0", "q1", "q2", "q3"})
+    return torque["kind"] not in NEVER_NEEDS_ATTITUDE
+
+
+def _attitude(scene: Scene, structure: Structure) -> Outcome:
+    asked = [name for name in scene.output.quantities if name in ATTITUDE_QUANTITIES]
+    if asked:
+        return structure, False, f"the output asks for {', '.join(asked)}", "quaternion_rates"
+    needed = [torque["kind"] for torque in structure["torques"] if _depends_on_attitude(torque)]
+    if needed:
+        return structure, False, f"the torque {', '.join(needed)} depends on it", "quaternion_rates"
+    why = "neither a torque nor the output needs it"
+    return structure | {"attitude": False}, True, why, "attitude_not_needed"
+
+
+def _torque_along(torque: Structure, axis: int, scene: Scene, given: Any) -> bool:
+    """Whether the torque keeps to a body axis while the body turns about that axis only."""
+    others = [i for i in range(3) if i != axis]
+    fields = torque.get("fields", {})
+    if torque["kind"] == "constant_body":
+        return all(fields["torque"][i] == "0" for i in others)
+    if torque["kind"] == "rotor":
+        return all(fields["angular_momentum"][i] == "0" for i in others)
+    if torque["kind"] == "constant_space":
+        return _lies_along(given.values["torque"], axis, scene)
+    if torque["kind"] == "gravity":  # a pendulum: level axis, centre of mass beside it
+        direction = _in_body(given.values["direction"], scene)
+        return _negligible(direction[axis], direction) and fields["center_of_mass"][axis] == "0"
+    return torque["kind"] == "damping"
+
+
+def _in_body(vector_s: tuple[Fraction, ...], scene: Scene) -> tuple[Fraction, ...]:
+    """Return the body components, at the start, of a vector in space components."""
+    q0, *q = scene.initial.quaternion
+    twice = [2 * sum(a * b for a, b in zip(q, vector_s, strict=True)) * c for c in q]
+    turned = (
+        q[1] * vector_s[2] - q[2] * vector_s[1], q[2] * vector_s[0] - q[0] * vector_s[2],
+        q[0] * vector_s[1] - q[1] * vector_s[0],
+    )  # fmt: skip
+    scalar = q0 * q0 - sum(a * a for a in q)
+    return tuple(scalar * v + t - 2 * q0 * c for v, t, c in zip(vector_s, twice, turned, strict=True))
+
+
+def _negligible(value: Fraction, vector: tuple[Fraction, ...]) -> bool:
+    return abs(value) <= max(map(abs, vector)) / 2**200
+
+
+def _lies_along(vector_s: tuple[Fraction, ...], axis: int, scene: Scene) -> bool:
+    vector = _in_body(vector_s, scene)
+    return all(_negligible(vector[i], vector) for i in range(3) if i != axis)
+
+
+def _one_axis(scene: Scene, structure: Structure) -> Outcome:
+    omega_b = scene.initial.omega_b
+    if structure["inertia"]["form"] != "principal":
+        return structure, False, "the axes of the body are not principal axes", ""
+    turning = [i for i in range(3) if omega_b[i] != 0]
+    axes = turning if len(turning) == 1 else [] if turning else [0, 1, 2]
+    pairs = list(zip(structure["torques"], scene.torques, strict=True))
+    along = [axis for axis in axes if all(_torque_along(torque, axis, scene, given) for torque, given in pairs)]
+    if not along:
+        return structure, False, "the body does not turn about one principal axis only", ""
+    axis = along[0]
+    start = [_pattern(q, unit=True) for q in scene.initial.quaternion] if structure["attitude"] else None
+    planar = structure | {"planar": axis, "initial_quaternion": start}
+    if not structure["torques"] or (all(torque["kind"] == "rotor" for torque in structure["torques"])):
+        planar = planar | {"constant": [axis]}
+    why = f"omega and torque stay along principal axis {axis + 1}: the attitude is one angle"
+    return planar, True, why, "planar_motion"
+
+
+def _constant_spin(scene: Scene, structure: Structure) -> Outcome:
+    if structure["planar"] is not None:
+        return structure, False, "already one axis", ""
+    if structure["inertia"]["form"] != "principal":
+        return structure, False, "the axes of the body are not principal axes", ""
+    letters = structure["inertia"]["moments"]
+    if letters == "AAA" and not structure["torques"]:
+        why = "a spherical body without torque keeps its angular velocity"
+        return structure | {"constant": [0, 1, 2]}, True, why, "spherical_body"
+    for axis in range(3):
+        others = [letters[i] for i in range(3) if i != axis]
+        if others[0] == others[1] and all(_no_moment_about(torque, axis) for torque in structure["torques"]):
+            why = f"equal moments about the other axes and no torque about axis {axis + 1}"
+            return structure | {"constant": [axis]}, True, why, "symmetric_spin"
+    return structure, False, "no axis of symmetry without torque about it", ""
+
+
+def _no_moment_about(torque: Structure, axis: int) -> bool:
+    """Whether a torque on a body with symmetry about the axis has no component along it, for every motion."""
+    others = [i for i in range(3) if i != axis]
+    fields = torque.get("fields", {})
+    if torque["kind"] == "constant_body":
+        return bool(fields["torque"][axis] == "0")
+    if torque["kind"] == "damping":
+        return bool(fields["linear"][axis] == "0" and fields["quadratic"] == "0")
+    if torque["kind"] == "gravity":
+        return all(fields["center_of_mass"][i] == "0" for i in others)
+    if torque["kind"] == "rotor":
+        return all(fields["angular_momentum"][i] == "0" for i in others)
+    if torque["kind"] == "expression":
+        return torque["frame"] == "body" and torque["formulas"][axis].strip() in ("0", "0.0")
+    return bool(torque["kind"] == "gravity_gradient")
+
+
+RULES: tuple[tuple[str, Callable[[Scene, Structure], Outcome]], ...] = (
+    ("products of inertia", _products_of_inertia),
+    ("unequal moments", _equal_moments),
+    ("torque terms", _special_constants),
+    ("attitude", _attitude),
+    ("rotation out of one axis", _one_axis),
+    ("rate of spin", _constant_spin),
+)
+"""The rules in their order: (what it is about, rule). Each returns structure, whether something is skipped, why, derivation."""
+
+
+def same_kernel(left: Mapping[str, Any], right: Mapping[str, Any]) -> bool:
+    """Return whether two structures share a kernel."""
+    return left == right
