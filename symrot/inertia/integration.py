@@ -136,7 +136,7 @@ def integrate(integrand: Polynomial, limits: tuple[tuple[Coordinate, Polynomial,
 
 
 def _degree(node: Node) -> int:
-    """Return a bound of the degree of a formula in x, y, z, found without expanding it."""
+    """Return a bound of the degree of a formula in x, y, z, found without expanding it; ``ValueError`` for a call."""
     kind = node[0]
     if kind == "number":
         return 0
@@ -146,6 +146,8 @@ def _degree(node: Node) -> int:
         return _degree(node[1])
     if kind == "**":
         return _degree(node[1]) * abs(int(node[2]))
+    if kind == "call":
+        raise ValueError(f"it calls {node[1]}")
     left, right = _degree(node[1]), _degree(node[2])
     return left + right if kind in "*/" else max(left, right)
 
@@ -202,6 +204,12 @@ def exact_moments(
     ``dimensions`` are those of :func:`symrot.inertia.shapes.check_dimensions`; pi is taken to 2^-320.
     """
     region = domain(shape, dimensions)
+    measure = integrate(region.jacobian, region.limits).value({"pi": PI})
+    if not measure:
+        prefix = f"{where}: " if where else ""
+        raise InputError(f"{prefix}expected a {shape.name} that fills space, got corners in one plane")
+    if measure < 0:  # corners in the other order
+        region = region._replace(jacobian=-region.jacobian)
     values = dict(zip("xyz", region.position, strict=True))
     values |= {name: constant(value) for name, value in scalars(shape, dimensions).items()}
     found = moments(region, density_polynomial(density, values | {"pi": constant(PI)}, shown, where))

@@ -4,14 +4,17 @@ The integrands of the mapped solids live here: polynomials in the coordinates, i
 the dimensions and in ``pi``. The same code runs with the dimensions as generators (closed forms) or numbers (scenes).
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from fractions import Fraction
 from math import isqrt
 from typing import Union
 
-__all__ = ["Polynomial", "constant", "cosine", "generator", "reduce_circular", "sine", "square_root"]
+__all__ = [
+    "Polynomial", "constant", "cosine", "exact_quotient", "generator", "reduce_circular", "sine", "square_root",
+]  # fmt: skip
 
 Monomial = tuple[tuple[str, int], ...]  # (generator, power > 0), ordered by generator
+Term = tuple[Monomial, Fraction]
 Operand = Union["Polynomial", Fraction, int]
 
 
@@ -158,37 +161,53 @@ def reduce_circular(source: Polynomial, angles: Iterable[str]) -> Polynomial:
     return source
 
 
+def _exponents(names: list[str]) -> Callable[[Term], list[int]]:
+    """Return the key of the lexicographic order of terms."""
+    return lambda term: [dict(term[0]).get(name, 0) for name in names]
+
+
+def _term_quotient(term: Term, divisor: Term) -> Polynomial | None:
+    powers = dict(term[0])
+    for name, power in divisor[0]:
+        powers[name] = powers.get(name, 0) - power
+    if min(powers.values(), default=0) < 0:
+        return None
+    return Polynomial({tuple(sorted((n, p) for n, p in powers.items() if p)): term[1] / divisor[1]})
+
+
+def exact_quotient(dividend: Polynomial, divisor: Polynomial) -> Polynomial | None:
+    """Return the quotient of two polynomials when it is a polynomial, else None: division from the highest term on."""
+    order = _exponents(sorted({name for monomial in (*dividend.terms, *divisor.terms) for name, _ in monomial}))
+    highest = max(divisor.terms.items(), key=order)
+    quotient, rest = constant(0), dividend
+    while rest:
+        term = _term_quotient(max(rest.terms.items(), key=order), highest)
+        if term is None:
+            return None
+        quotient, rest = quotient + term, rest - term * divisor
+    return quotient
+
+
 def square_root(source: Polynomial) -> Polynomial:
     """Return the root, with a positive lowest term, of a polynomial that is a square; ``ValueError`` when it is none.
 
-    Term by term from the lowest one, as for a power series; the order is lexicographic in the generators by name.
+    Term by term from the lowest one, as for a power series.
     """
-    names = sorted({name for monomial in source.terms for name, _ in monomial})
-
-    def lowest(polynomial: Polynomial) -> tuple[Monomial, Fraction]:
-        return min(polynomial.terms.items(), key=lambda term: [dict(term[0]).get(name, 0) for name in names])
-
-    def over(term: tuple[Monomial, Fraction], divisor: tuple[Monomial, Fraction]) -> Polynomial:
-        powers = dict(term[0])
-        for name, power in divisor[0]:
-            powers[name] = powers.get(name, 0) - power
-        if min(powers.values(), default=0) < 0:
-            raise ValueError("not the square of a polynomial")
-        return Polynomial({tuple(sorted((n, p) for n, p in powers.items() if p)): term[1] / divisor[1]})
-
+    order = _exponents(sorted({name for monomial in source.terms for name, _ in monomial}))
     if not source:
         return source
-    monomial, coefficient = lowest(source)
+    monomial, coefficient = min(source.terms.items(), key=order)
     scale = Fraction(isqrt(max(coefficient.numerator, 0)), isqrt(coefficient.denominator))
     if scale**2 != coefficient or any(power % 2 for _, power in monomial):
         raise ValueError("not the square of a polynomial")
-    first = tuple((name, power // 2) for name, power in monomial), scale
-    root = Polynomial({first[0]: first[1]})
+    lowest = tuple((name, power // 2) for name, power in monomial)
+    root = Polynomial({lowest: scale})
     for _ in source.terms:
         rest = source - root * root
         if not rest:
             return root
-        root = root + over(lowest(rest), (first[0], 2 * first[1]))
-    if source == root * root:
-        return root
+        term = _term_quotient(min(rest.terms.items(), key=order), (lowest, 2 * scale))
+        if term is None:
+            break
+        root = root + term
     raise ValueError("not the square of a polynomial")

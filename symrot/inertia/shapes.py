@@ -292,7 +292,8 @@ def scalar_names(shape: Shape) -> tuple[str, ...]:
     """Return the names of the single numbers in the maps and closed forms of a shape; see :func:`scalars`."""
     names: list[str] = []
     for d in shape.dimensions:
-        names += [f"{axis}{n}" for n in range(1, (d.size or 0) + 1) for axis in "xyz"] if d.form == "points" else [d.name]
+        corners = [f"{axis}{n}" for n in range(1, (d.size or 0) + 1) for axis in "xyz"]
+        names += corners if d.form == "points" else [d.name]
     return tuple(names)
 
 

@@ -1,0 +1,62 @@
+"""Bodies over any numbers: moved, turned, added and subtracted. Standard library only.
+
+One code serves symbolic bodies (:class:`symrot.inertia.solids.Solid`) and the exact numbers of a scene.
+"""
+
+from collections.abc import Iterable
+from typing import Any, NamedTuple, Protocol
+
+from symrot.inertia import tensor
+from symrot.inertia.tensor import IDENTITY, Tensor, Vector
+
+__all__ = ["Body", "MassProperties", "compose", "place"]
+
+_ORIGIN = (0, 0, 0)
+
+
+class Body(Protocol):
+    """Anything with a mass (kg), a centre of mass (m) and an inertia tensor about it (kg m^2)."""
+
+    @property
+    def mass(self) -> Any: ...
+    @property
+    def center_of_mass(self) -> Any: ...
+    @property
+    def inertia(self) -> Any: ...
+
+
+class MassProperties(NamedTuple):
+    """Mass in kg, centre of mass in m, inertia tensor about the centre of mass in kg m^2 (products with minus sign)."""
+
+    mass: Any
+    center_of_mass: Vector
+    inertia: Tensor
+
+    def inertia_about(self, point: Any) -> Tensor:
+        """Return the inertia tensor about a point (m), by the parallel axis theorem."""
+        offset = [p - c for p, c in zip(tensor.vector(point), self.center_of_mass, strict=True)]
+        return tensor.about_point(self.inertia, self.mass, offset)
+
+
+def place(body: Body, at: Any = _ORIGIN, rotation: Any = IDENTITY) -> MassProperties:
+    """Return a body turned by ``rotation`` about the origin, then moved by ``at`` (m), in the axes of the whole."""
+    turned = tensor.apply(rotation, body.center_of_mass)
+    center = tuple(a + c for a, c in zip(tensor.vector(at), turned, strict=True))
+    return MassProperties(body.mass, tensor.vector(center), tensor.rotate(body.inertia, rotation))
+
+
+def compose(added: Iterable[Body], subtracted: Iterable[Body] = ()) -> MassProperties:
+    """Return the mass properties of several bodies taken together, less the subtracted ones (holes).
+
+    All are in the same axes. Works over any numbers, SymPy expressions included; the total mass must not be zero.
+    """
+    signed = [(1, body) for body in added] + [(-1, body) for body in subtracted]
+    mass = sum(sign * body.mass for sign, body in signed)
+    centers = [tensor.vector(body.center_of_mass) for _, body in signed]
+    first = [sum(sign * body.mass * c[k] for (sign, body), c in zip(signed, centers, strict=True)) for k in range(3)]
+    center = tensor.vector([moment / mass for moment in first])
+    inertia: Tensor = tensor.scale(0, IDENTITY)
+    for (sign, body), c in zip(signed, centers, strict=True):
+        offset = [a - b for a, b in zip(c, center, strict=True)]
+        inertia = tensor.add(inertia, tensor.scale(sign, tensor.about_point(body.inertia, body.mass, offset)))
+    return MassProperties(mass, center, inertia)

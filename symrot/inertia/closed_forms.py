@@ -1,0 +1,72 @@
+"""Closed forms of the uniform solids, read from ``closed_forms.toml`` and evaluated exactly. Standard library only.
+
+The file is printed from :mod:`symrot.inertia.solids`, where the formulas are derived; so a scene needs no SymPy.
+"""
+
+from collections.abc import Mapping
+from fractions import Fraction
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from symrot.errors import InputError
+from symrot.expression import Node, evaluate, parse
+from symrot.inertia import tensor
+from symrot.inertia.bodies import MassProperties
+from symrot.inertia.shapes import Shape, scalars
+from symrot.number import PI
+
+__all__ = ["CLOSED_FORMS", "closed_form", "uniform"]
+
+CLOSED_FORMS = Path(__file__).with_name("closed_forms.toml")
+
+
+@cache
+def _table() -> dict[str, dict[str, str]]:
+    import tomllib  # here, so that a body given by its moments does not load it
+
+    return tomllib.loads(CLOSED_FORMS.read_text(encoding="utf-8"))
+
+
+@cache
+def closed_form(shape: str) -> dict[str, Node]:
+    """Return the formulas of a shape: ``measure``, ``center_x`` .., ``xx`` .. ``yz`` of mass ``m`` about the centre."""
+    return {key: parse(text) for key, text in _table()[shape].items()}
+
+
+def uniform(
+    shape: Shape,
+    dimensions: Mapping[str, Any],
+    mass: Fraction | None = None,
+    density: Fraction | None = None,
+    where: str = "",
+) -> MassProperties:
+    """Return the mass properties of a uniform shape in its own axes, as Fractions.
+
+    Parameters
+    ----------
+    shape : Shape
+        Any but separate points.
+    dimensions : mapping
+        From :func:`symrot.inertia.shapes.check_dimensions`.
+    mass, density : Fraction
+        One of them, in kg, or in kg per unit of the measure.
+    where : str
+        Place of the shape, put in front of a complaint.
+
+    Raises
+    ------
+    InputError
+        If the corners of the shape lie in a plane.
+    """
+    forms = closed_form(shape.name)
+    values = scalars(shape, dimensions) | {"pi": PI}
+    measure = abs(Fraction(evaluate(forms["measure"], values)))  # signed by the order of the corners
+    if not measure:
+        prefix = f"{where}: " if where else ""
+        raise InputError(f"{prefix}expected a {shape.name} that fills space, got corners in one plane")
+    total = mass if density is None else density * measure
+    assert total is not None
+    found = {key: Fraction(evaluate(form, {**values, "m": total})) for key, form in forms.items()}
+    inertia = tensor.matrix([[found["".join(sorted(i + j))] for j in "xyz"] for i in "xyz"])
+    return MassProperties(total, tensor.vector([found[f"center_{axis}"] for axis in "xyz"]), inertia)

@@ -1,0 +1,150 @@
+"""The parts of a scene's body, composed to exact mass properties. Standard library only."""
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+from symrot.errors import InputError
+from symrot.expression import Node, parse
+from symrot.inertia import tensor
+from symrot.inertia.bodies import MassProperties, compose, place
+from symrot.inertia.closed_forms import uniform
+from symrot.inertia.principal import principal_axes, require_admissible
+from symrot.inertia.shapes import Shape, check_dimensions, find_shape
+from symrot.inertia.tensor import IDENTITY
+from symrot.number import read, show
+
+__all__ = ["MassProperties", "Part", "mass_properties"]
+
+_ORIGIN = (0, 0, 0)
+_ROTATION_TOLERANCE = Fraction(1, 10**9)  # a matrix of rounded decimals is refused, one of doubles is not
+
+
+class Part(NamedTuple):
+    """A part of a body, as a scene gives it.
+
+    ``at`` is the position (m) of the part's own origin in the axes of the body, ``rotation`` the 3x3 matrix that maps
+    components in the part's axes to the body's. Either ``mass`` (kg) or ``density`` (kg per unit of the measure, or a
+    polynomial text in x, y, z of the part's axes); neither for point masses, which bring their own.
+    """
+
+    shape: str
+    dimensions: Mapping[str, Any]
+    mass: Any = None
+    density: Any = None
+    at: Sequence[Any] = _ORIGIN
+    rotation: Sequence[Sequence[Any]] = IDENTITY
+    subtract: bool = False
+
+
+def _prefix(where: str) -> str:
+    return f"{where}: " if where else ""
+
+
+def _points(part: Part, dimensions: Mapping[str, Any], where: str) -> MassProperties:
+    if part.mass is not None or part.density is not None:
+        raise InputError(f"{_prefix(where)}expected no mass or density of point_masses, whose masses are in 'masses'")
+    nothing = tensor.scale(Fraction(0), IDENTITY)
+    pairs = zip(dimensions["masses"], dimensions["points"], strict=True)
+    return compose([MassProperties(mass, point, nothing) for mass, point in pairs])
+
+
+def _of_density(shape: Shape, dimensions: Mapping[str, Any], density: Node, part: Part, where: str) -> MassProperties:
+    from symrot.inertia.integration import exact_moments  # here, so that a uniform body does not load it
+
+    found = exact_moments(shape, dimensions, density, part.density, where)
+    if found.zeroth <= 0:
+        raise InputError(
+            f"{_prefix(where)}expected a density with a positive mass, got {show(part.density)} with a mass of "
+            f"{float(found.zeroth):.15g} kg"
+        )
+    center = tensor.vector([moment / found.zeroth for moment in found.first])
+    about_origin = tensor.inertia_of_second_moments(found.second)
+    return MassProperties(found.zeroth, center, tensor.about_center_of_mass(about_origin, found.zeroth, center))
+
+
+def _positive(value: Any, name: str, where: str) -> Fraction:
+    dot = f"{where}.{name}" if where else name
+    found = read(value, dot)
+    if found <= 0:
+        raise InputError(f"{dot}: expected a positive number, got {show(value)}")
+    return found
+
+
+def _density_node(density: Any, where: str) -> Node:
+    """Return a density as a formula; a positive constant is checked as such."""
+    if isinstance(density, str):
+        node = parse(density, f"{where}.density" if where else "density")
+        if node[0] != "number":
+            return node
+    return ("number", _positive(density, "density", where))
+
+
+def _in_own_axes(part: Part, where: str) -> MassProperties:
+    shape = find_shape(part.shape, where)
+    dimensions = check_dimensions(shape, part.dimensions, where)
+    if shape.kind == "points":
+        return _points(part, dimensions, where)
+    if (part.mass is None) == (part.density is None):
+        given = "both" if part.mass is not None else "neither"
+        wanted = f"either a mass (kg) or a density ({shape.density_unit})"
+        raise InputError(f"{_prefix(where)}expected {wanted} of a {shape.name}, got {given}")
+    if part.mass is not None:
+        return uniform(shape, dimensions, mass=_positive(part.mass, "mass", where), where=where)
+    density = _density_node(part.density, where)
+    if density[0] == "number":
+        return uniform(shape, dimensions, density=density[1], where=where)
+    return _of_density(shape, dimensions, density, part, where)
+
+
+def _placed(part: Part, where: str) -> MassProperties:
+    body = _in_own_axes(part, where)
+    dot = f"{where}." if where else ""
+    try:
+        at = tensor.vector([read(value, f"{dot}at") for value in part.at])
+        rotation = tensor.matrix([[read(value, f"{dot}rotation") for value in row] for row in part.rotation])
+    except (TypeError, ValueError) as reason:
+        if isinstance(reason, InputError):
+            raise
+        raise InputError(f"{_prefix(where)}expected at = [x, y, z] and a 3x3 rotation ({reason})") from None
+    error = tensor.subtract(tensor.multiply(rotation, tensor.transpose(rotation)), IDENTITY)
+    if max(abs(entry) for row in error for entry in row) > _ROTATION_TOLERANCE or tensor.determinant(rotation) < 0:
+        raise InputError(f"{dot}rotation: expected a right-handed rotation matrix, got {show(part.rotation)}")
+    return place(body, at, rotation)
+
+
+def mass_properties(parts: Sequence[Part], where: str = "") -> MassProperties:
+    """Return the mass properties of a body from its parts, as exact Fractions in the axes of the body.
+
+    Parameters
+    ----------
+    parts : sequence of Part
+        At least one that is not subtracted.
+    where : str
+        Place of the parts, put in front of every complaint; with several parts, their number too.
+
+    Returns
+    -------
+    MassProperties
+        Exact for rational dimensions, up to pi (2^-320) and the rounding of the rotations given.
+
+    Raises
+    ------
+    InputError
+        For a part that is no body, a total mass that is not positive, or moments that no body has: a hole that is
+        larger than what it is cut from.
+    """
+    if not parts:
+        raise InputError(f"{_prefix(where)}expected at least one part, got none")
+    places = [where] if len(parts) == 1 else [f"{where or 'part'}[{n}]" for n in range(len(parts))]
+    placed = [_placed(part, spot) for part, spot in zip(parts, places, strict=True)]
+    added = [body for body, part in zip(placed, parts, strict=True) if not part.subtract]
+    subtracted = [body for body, part in zip(placed, parts, strict=True) if part.subtract]
+    total = sum(body.mass for body in added) - sum(body.mass for body in subtracted)
+    if total <= 0:
+        raise InputError(f"{_prefix(where)}expected parts with a positive total mass, got {float(total):.15g} kg")
+    whole = compose(added, subtracted)
+    for value in (whole.mass, *whole.center_of_mass, *(entry for row in whole.inertia for entry in row)):
+        read(value, where, "dimensions whose mass and moments of inertia are within the range of a double")
+    require_admissible(principal_axes(whole.inertia, where), where)
+    return whole

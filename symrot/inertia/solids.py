@@ -1,0 +1,413 @@
+"""Mass properties of solids, symbolic in the dimensions, by exact integration in mapped coordinates.
+
+Nothing here is typed in: a shape is its map (:mod:`symrot.inertia.shapes`); the Jacobian, the measure, the mass, the
+centre of mass and the inertia tensor are computed (:mod:`symrot.inertia.integration`) and brought to factored form.
+``python -m symrot.inertia.solids`` prints ``closed_forms.toml``.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cache, cached_property
+from typing import Any
+
+from sympy import (
+    Abs,
+    Add,
+    Expr,
+    ImmutableMatrix,
+    Integer,
+    Mul,
+    Poly,
+    Rational,
+    Symbol,
+    cancel,
+    cos,
+    expand,
+    factor,
+    factor_terms,
+    pi,
+    sin,
+    sqrt,
+    sstr,
+    sympify,
+    tan,
+)
+
+from symrot import symbols
+from symrot.errors import InputError
+from symrot.expression import evaluate, parse
+from symrot.inertia import tensor
+from symrot.inertia.bodies import compose
+from symrot.inertia.integration import LARGEST_DEGREE, Domain, Moments, domain, moments
+from symrot.inertia.polynomial import Polynomial, constant, exact_quotient, generator
+from symrot.inertia.shapes import SHAPES, Dimension, Shape, check_names, find_shape, scalar_names
+from symrot.number import read, show
+
+__all__ = ["Integral", "Solid", "closed_forms_text", "solid"]
+
+_CONSTANTS = {"pi": pi}
+_FUNCTIONS = {"sqrt": sqrt, "sin": sin, "cos": cos, "tan": tan, "abs": Abs}
+_DIMENSION_SYMBOLS = {str(symbol): symbol for symbol in (*symbols.dimensions, symbols.e, *symbols.corners)}
+_MAP_ANGLES = symbols.theta, symbols.phi
+_MAP_SYMBOLS = {str(symbol): symbol for symbol in (*symbols.map_lengths, *symbols.map_shares, *_MAP_ANGLES)}
+
+
+@dataclass(frozen=True)
+class Integral:
+    """One integral: integrand with the Jacobian, limits (coordinate, lower, upper), and value."""
+
+    quantity: str
+    integrand: Expr
+    limits: tuple[tuple[Symbol, Expr, Expr], ...]
+    value: Expr
+
+
+@dataclass(frozen=True)
+class Solid:
+    """A body of one shape, in the axes of the shape.
+
+    Parameters
+    ----------
+    shape : Shape
+        Its map, limits and axes.
+    dimensions : mapping of str to Expr
+        Lengths in m, by the names that the map uses.
+    measure : Expr
+        Volume (m^3), area (m^2), length (m), or number of points.
+    density : Expr
+        In x, y, z; kg per unit of the measure.
+    mass : Expr, kg
+    center_of_mass : ImmutableMatrix, shape (3, 1), m
+    inertia : ImmutableMatrix, shape (3, 3), kg m^2
+        About the centre of mass, products with the minus sign.
+    """
+
+    shape: Shape
+    dimensions: Mapping[str, Any]
+    measure: Expr
+    density: Expr
+    mass: Expr
+    center_of_mass: ImmutableMatrix
+    inertia: ImmutableMatrix
+
+    @property
+    def volume(self) -> Expr:
+        """The measure: volume, area or length."""
+        return self.measure
+
+    @cached_property
+    def position(self) -> ImmutableMatrix:
+        """The map: position in m over its coordinates, shape (3, 1); empty for separate points."""
+        return ImmutableMatrix([self._over(component) for component in _mapped(self.shape.name).position])
+
+    @cached_property
+    def jacobian(self) -> Expr:
+        """Measure per unit of the coordinates of the map, from the derivatives of the map."""
+        return _tidy(self._over(_mapped(self.shape.name).jacobian))
+
+    @cached_property
+    def limits(self) -> tuple[tuple[Symbol, Expr, Expr], ...]:
+        """The coordinates of the map, each with its lower and upper limit."""
+        found = _mapped(self.shape.name).limits
+        return tuple((_MAP_SYMBOLS[c.name], self._over(low), self._over(high)) for c, low, high in found)
+
+    @cached_property
+    def steps(self) -> tuple[Integral, ...]:
+        """The integrals behind the result: measure, mass, first moments and second moments about the origin."""
+        if not self.limits:
+            return ()
+        weight = self.density.xreplace(dict(zip(symbols.position, self.position, strict=True))) * self.jacobian
+        inertia = tensor.matrix(self.inertia_about((0, 0, 0)))
+        half_trace = tensor.trace(inertia) / 2
+        wanted = [("measure", self.jacobian, self.measure), ("mass", weight, self.mass)]
+        for i, axis in enumerate("xyz"):
+            wanted.append((f"first moment {axis}", self.position[i] * weight, self.mass * self.center_of_mass[i]))
+        for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)):
+            value = half_trace - inertia[i][i] if i == j else -inertia[i][j]
+            integrand = self.position[i] * self.position[j] * weight
+            wanted.append((f"second moment {'xyz'[i]}{'xyz'[j]}", integrand, value))
+        return tuple(Integral(name, integrand, self.limits, _tidy(value)) for name, integrand, value in wanted)
+
+    def inertia_about(self, point: Any) -> ImmutableMatrix:
+        """Return the inertia tensor about a point (m, axes of the shape), by the parallel axis theorem, kg m^2."""
+        offset = [_scalar(p) - c for p, c in zip(tensor.vector(point), self.center_of_mass, strict=True)]
+        return _tidied(tensor.about_point(self.inertia, self.mass, offset))
+
+    def with_mass(self, mass: Any) -> "Solid":
+        """Return the same body with its density scaled to a total mass (kg)."""
+        total = _scalar(mass)
+        inertia = _tidied(tensor.scale(total / self.mass, self.inertia))
+        return replace(self, mass=total, density=_tidy(self.density * total / self.mass), inertia=inertia)
+
+    def _over(self, polynomial: Polynomial) -> Expr:
+        return _expression(polynomial, {**_MAP_SYMBOLS, **self.dimensions})
+
+
+def _tidy(expression: Expr) -> Expr:
+    return factor(expression)
+
+
+def _tidy_measure(expression: Expr) -> Expr:
+    """Return a measure as common factors of a sum: ``pi*L*(R_2**2 - R_1**2)``."""
+    return factor_terms(expand(expression))
+
+
+def _tidied(rows: tensor.Tensor) -> ImmutableMatrix:
+    return ImmutableMatrix(3, 3, [_tidy(sympify(entry)) for row in rows for entry in row])
+
+
+def _expression(polynomial: Polynomial, values: Mapping[str, Expr]) -> Expr:
+    """Return a polynomial as an expression; a generator without a value is ``pi`` or the cos or sin of a coordinate."""
+    known = {**_CONSTANTS, **values}
+    used = {name for monomial in polynomial.terms for name, _ in monomial}
+    generators = {name: known[name] if name in known else evaluate(parse(name), known, _FUNCTIONS) for name in used}
+    terms = [
+        Mul(Rational(c.numerator, c.denominator), *(generators[name] ** power for name, power in monomial))
+        for monomial, c in polynomial.terms.items()
+    ]
+    return Add(*terms)
+
+
+@cache
+def _mapped(name: str) -> Domain:
+    return domain(SHAPES[name])
+
+
+@cache
+def _default_dimensions(name: str) -> dict[str, Symbol]:
+    """Return the symbol of each single number of a shape."""
+    shape = SHAPES[name]
+    plain = {d.name: d.symbol for d in shape.dimensions if d.form == "length"}
+    return {n: _DIMENSION_SYMBOLS[plain.get(n, f"{n[0]}_{n[1:]}")] for n in scalar_names(shape)}
+
+
+def _properties(found: Moments, values: Mapping[str, Expr]) -> tuple[Expr, ImmutableMatrix, ImmutableMatrix]:
+    """Return mass, centre of mass, and inertia per mass about it, from moments that are polynomials."""
+    if not found.zeroth:
+        raise InputError("expected a density with a mass other than zero")
+    mass = _expression(found.zeroth, values)
+    center = [_ratio(entry, found.zeroth, values) for entry in found.first]
+    second = [[_ratio(entry, found.zeroth, values) for entry in row] for row in found.second]
+    specific = tensor.inertia_of_second_moments(second)
+    return mass, ImmutableMatrix(center), _tidied(tensor.about_center_of_mass(specific, Integer(1), center))
+
+
+def _ratio(numerator: Polynomial, denominator: Polynomial, values: Mapping[str, Expr]) -> Expr:
+    """Return a quotient in lowest terms."""
+    quotient = exact_quotient(numerator, denominator)
+    if quotient is not None:
+        return _expression(quotient, values)
+    return cancel(_expression(numerator, values) / _expression(denominator, values))
+
+
+@cache
+def _uniform(name: str) -> tuple[Expr, ImmutableMatrix, ImmutableMatrix]:
+    """Return measure, centre of mass and inertia per mass of a shape in its default symbols."""
+    found = moments(_mapped(name))
+    measure, center, specific = _properties(found, _default_dimensions(name))
+    return _tidy_measure(measure), center, specific
+
+
+def _scalar(value: Any) -> Expr:
+    """Return a number, text or expression as an exact expression; a text may name the symbols of the shapes."""
+    if isinstance(value, Expr):
+        return value
+    if isinstance(value, str):
+        return _formula(value, {**_DIMENSION_SYMBOLS, "m": symbols.m})
+    return _rational(read(value))
+
+
+def _formula(text: str, known: Mapping[str, Expr]) -> Expr:
+    """Return the expression that a text stands for; its names are the known ones."""
+    values = {**known, **_CONSTANTS}
+    try:
+        return sympify(evaluate(parse(text), values, _FUNCTIONS, _rational))
+    except KeyError as unknown:
+        expected = ", ".join(sorted(values))
+        raise InputError(f"expected a formula in {expected}, got {unknown.args[0]!r} in {show(text)}") from None
+
+
+def _rational(value: Fraction) -> Rational:
+    return Rational(value.numerator, value.denominator)
+
+
+def _dimension(value: Any, dimension: Dimension, shape: Shape) -> Expr:
+    found = _scalar(value)
+    refused = {"positive": found.is_nonpositive, "zero": found.is_negative, "any": False}[dimension.least]
+    if refused or found.is_real is False or found.is_finite is False:
+        least = {"positive": "positive", "zero": "zero or positive", "any": "finite"}[dimension.least]
+        meant = f"{dimension.name} ({dimension.meaning}) of a {shape.name}"
+        raise InputError(f"expected a {least} {meant}, got {show(value)}")
+    return found
+
+
+def _dimensions(shape: Shape, given: Mapping[str, Any]) -> dict[str, Expr]:
+    """Return an expression for each single number of the shape: the one given, or its default symbol."""
+    check_names(shape, {d.name: None for d in shape.dimensions} | dict(given))
+    found: dict[str, Expr] = dict(_default_dimensions(shape.name))
+    for d in shape.dimensions:
+        if d.name not in given:
+            continue
+        if d.form == "length":
+            found[d.name] = _dimension(given[d.name], d, shape)
+            continue
+        points = _points(given[d.name], d)
+        found |= {f"{axis}{n}": p[k] for n, p in enumerate(points, 1) for k, axis in enumerate("xyz")}
+    for left, relation, right in shape.conditions:
+        gap = found[right] - found[left]
+        if gap.is_negative or (relation == "<" and gap.is_zero):
+            raise InputError(f"expected {left} {relation} {right} of a {shape.name}, got {found[left]}, {found[right]}")
+    return found
+
+
+def _points(given: Any, dimension: Dimension) -> list[tuple[Expr, ...]]:
+    try:
+        points = [tuple(map(_scalar, tensor.vector(point))) for point in given]
+    except (TypeError, ValueError) as reason:
+        if isinstance(reason, InputError):
+            raise
+        raise InputError(f"expected {dimension.meaning} as lists of three, got {show(given)}") from None
+    if len(points) != (dimension.size or len(points)):
+        raise InputError(f"expected {dimension.size} points, {dimension.meaning}, got {len(points)}")
+    return points
+
+
+def _density(given: Any, dimensions: Mapping[str, Expr]) -> Poly:
+    """Return a density as a polynomial in x, y, z with symbolic coefficients."""
+    axes = {str(axis): axis for axis in symbols.position}
+    if isinstance(given, str):
+        found = _formula(given, {**_DIMENSION_SYMBOLS, "rho": symbols.rho, **dimensions, **axes})
+    else:
+        found = _scalar(given)
+    found = found.xreplace({free: axes[free.name] for free in found.free_symbols if free.name in axes})
+    if not found.is_polynomial(*symbols.position):
+        raise InputError(f"expected a density that is a polynomial in x, y, z, got {show(given)}")
+    polynomial = Poly(found, *symbols.position)
+    if polynomial.total_degree() > LARGEST_DEGREE:
+        raise InputError(f"expected a density of degree at most {LARGEST_DEGREE} in x, y, z, got {show(given)}")
+    return polynomial
+
+
+def solid(name: str, *, mass: Any = None, density: Any = None, **dimensions: Any) -> Solid:
+    """Return the mass properties of a shape by exact integration.
+
+    Parameters
+    ----------
+    name : str
+        A key of :data:`symrot.inertia.shapes.SHAPES`.
+    mass : number, str or Expr, kg, optional
+        Of a uniform body; the symbol ``m`` when neither mass nor density is given.
+    density : number, str or Expr, optional
+        Instead of the mass, kg per unit of the measure: a polynomial in x, y, z (m, axes of the shape). A text may use
+        the names of the dimensions: ``"1 + z/height"``.
+    **dimensions : number, str or Expr, m
+        By the names of the table; a dimension left out is its symbol of the table.
+
+    Raises
+    ------
+    InputError
+        For an unknown shape or dimension, a length that is not positive, a density that is no polynomial, or both a
+        mass and a density.
+
+    Notes
+    -----
+    Axes and origin are those of the shape. Source of the method: Goldstein, Poole & Safko, section 5.3.
+
+    Examples
+    --------
+    >>> solid("cylinder").inertia[0, 0]
+    m*(L**2 + 3*R**2)/12
+    """
+    shape = find_shape(name)
+    if mass is not None and density is not None:
+        raise InputError("expected a mass or a density, got both")
+    if shape.kind == "points":
+        return _point_masses(shape, mass, density, dimensions)
+    values = _dimensions(shape, dimensions)
+    measure, center, specific = _uniform(name)
+    defaults = _default_dimensions(name)
+    chosen = {symbol: values[key] for key, symbol in defaults.items() if values[key] != symbol}
+    measure = _tidy_measure(measure.xreplace(chosen)) if chosen else measure
+    if measure.is_zero:
+        raise InputError(f"expected a {name} that fills space, got corners in one plane")
+    if measure.is_negative:  # the same tetrahedron, with its corners in the other order
+        return solid(name, mass=mass, density=density, vertices=[dimensions["vertices"][n] for n in (0, 1, 3, 2)])
+    if density is None:
+        total = symbols.m if mass is None else _dimension(mass, _MASS, shape)
+        uniform = _tidy(total / measure)
+    else:
+        profile = _density(density, values)
+        uniform = profile.as_expr()
+        if profile.total_degree() > 0:
+            return _weighted(shape, values, profile, measure)
+        total = _tidy(uniform * measure)
+    if chosen:
+        center, specific = center.xreplace(chosen), specific.xreplace(chosen)
+    inertia = _tidied(tensor.scale(total, specific))
+    return Solid(shape, values, measure, uniform, total, center.applyfunc(_tidy), inertia)
+
+
+_MASS = Dimension("mass", "kg", "m")
+
+
+def _weighted(shape: Shape, values: Mapping[str, Expr], profile: Poly, measure: Expr) -> Solid:
+    """Return a body whose density varies: its coefficients stand in the integrand as generators of their own."""
+    region = _mapped(shape.name)
+    density, coefficients = constant(0), {}
+    for n, (powers, coefficient) in enumerate(profile.terms()):
+        coefficients[f"density_{n}"] = coefficient
+        term = generator(f"density_{n}")
+        for component, power in zip(region.position, powers, strict=True):
+            term = term * component**power
+        density = density + term
+    mass, center, specific = _properties(moments(region, density), {**values, **coefficients})
+    inertia = _tidied(tensor.scale(mass, specific))
+    return Solid(shape, values, measure, profile.as_expr(), _tidy(mass), center.applyfunc(_tidy), inertia)
+
+
+@dataclass(frozen=True)
+class _PointMass:
+    mass: Expr
+    center_of_mass: tuple[Expr, ...]
+    inertia: tensor.Tensor
+
+
+def _point_masses(shape: Shape, mass: Any, density: Any, dimensions: Mapping[str, Any]) -> Solid:
+    check_names(shape, dimensions)
+    if mass is not None or density is not None:
+        raise InputError("expected the masses of point_masses in 'masses', got a mass or density besides")
+    points = _points(dimensions["points"], shape.dimensions[1])
+    masses = [_dimension(each, shape.dimensions[0], shape) for each in dimensions["masses"]]
+    if len(points) != len(masses) or not points:
+        raise InputError(f"expected as many masses as points, at least one; got {len(masses)} and {len(points)}")
+    nothing = tensor.scale(Integer(0), tensor.IDENTITY)
+    body = compose([_PointMass(m, p, nothing) for m, p in zip(masses, points, strict=True)])
+    values = {"masses": tuple(masses), "points": tuple(points)}
+    center = ImmutableMatrix(body.center_of_mass).applyfunc(_tidy)
+    return Solid(shape, values, Integer(len(points)), Integer(1), body.mass, center, _tidied(body.inertia))
+
+
+def closed_forms_text() -> str:
+    """Return ``closed_forms.toml``: the uniform shapes, as text over their dimensions and mass m."""
+    lines = [
+        "# Uniform bodies: measure (m^3, m^2, m), centre of mass (m), inertia about it (kg m^2), axes of the shape.",
+        "# m is the mass (kg), lengths in m. Printed by `python -m symrot.inertia.solids`; do not edit.",
+    ]
+    for shape in SHAPES.values():
+        if shape.kind == "points":
+            continue
+        measure, center, specific = _uniform(shape.name)
+        names = {symbol: Symbol(name) for name, symbol in _default_dimensions(shape.name).items()}
+        inertia = _tidied(tensor.scale(symbols.m, specific))
+        entries = {f"center_{axis}": _tidy(center[i].xreplace(names)) for i, axis in enumerate("xyz")}
+        pairs = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+        entries |= {"xyz"[i] + "xyz"[j]: _tidy(inertia[i, j].xreplace(names)) for i, j in pairs}
+        lines += ["", f"# {shape.axes}", f"[{shape.name}]"]
+        lines += [f'measure = "{sstr(_tidy_measure(measure.xreplace(names)))}"']
+        lines += [f'{key} = "{sstr(value)}"' for key, value in entries.items()]
+    return "\n".join(lines) + "\n"
+
+
+if __name__ == "__main__":
+    print(closed_forms_text(), end="")
