@@ -88,7 +88,7 @@ def _in_own_axes(part: Part, where: str) -> MassProperties:
     if (part.mass is None) == (part.density is None):
         given = "both" if part.mass is not None else "neither"
         wanted = f"either a mass (kg) or a density ({shape.density_unit})"
-        raise InputError(f"{_prefix(where)}expected {wanted} of a {shape.name}, got {given}")
+        raise InputError(f"{_prefix(where)}expected {wanted} of the {shape.name}, got {given}")
     if part.mass is not None:
         return uniform(shape, dimensions, mass=_positive(part.mass, "mass", where), where=where)
     density = _density_node(part.density, where)

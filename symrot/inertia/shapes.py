@@ -73,7 +73,7 @@ _SHARES = tuple(Coordinate(name, "0", "1") for name in ("f_1", "f_2", "f_3"))
 _ALONG_A = Coordinate("u", "-a/2", "a/2")
 _ALONG_B = Coordinate("v", "-b/2", "b/2")
 _ALONG_LENGTH = Coordinate("w", "-length/2", "length/2")
-_RADIUS = Dimension("radius", "radius", "R")
+_RADIUS = Dimension("radius", "from the centre or the axis", "R")
 _LENGTH = Dimension("length", "length along z", "L")
 _HEIGHT = Dimension("height", "height along z", "h")
 _INNER = Dimension("inner", "inner radius", "R_1", "zero")
@@ -247,7 +247,7 @@ def check_names(shape: Shape, dimensions: Mapping[str, object], where: str = "")
     unknown, missing = sorted(set(dimensions) - set(expected)), [name for name in expected if name not in dimensions]
     if unknown or missing:
         fault = f"'{unknown[0]}' is none of them" if unknown else f"'{missing[0]}' is missing"
-        raise InputError(f"{_prefix(where)}expected the dimensions {', '.join(expected)} of a {shape.name}; {fault}")
+        raise InputError(f"{_prefix(where)}expected the dimensions {', '.join(expected)} of the {shape.name}; {fault}")
 
 
 def check_dimensions(shape: Shape, dimensions: Mapping[str, object], where: str = "") -> dict[str, Any]:
@@ -278,7 +278,7 @@ def check_dimensions(shape: Shape, dimensions: Mapping[str, object], where: str 
     for left, relation, right in shape.conditions:
         if not _RELATIONS[relation](found[left], found[right]):
             raise InputError(
-                f"{_prefix(where)}expected {left} {relation} {right} of a {shape.name}; "
+                f"{_prefix(where)}expected {left} {relation} {right} of the {shape.name}; "
                 f"got {left} = {show(dimensions[left])}, {right} = {show(dimensions[right])}"
             )
     lists = [d.name for d in shape.dimensions if d.form != "length" and d.size is None]

@@ -5,7 +5,7 @@ centre of mass and the inertia tensor are computed (:mod:`symrot.inertia.integra
 ``python -m symrot.inertia.solids`` prints ``closed_forms.toml``.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cache, cached_property
@@ -26,6 +26,7 @@ from sympy import (
     expand,
     factor,
     factor_terms,
+    nan,
     pi,
     sin,
     sqrt,
@@ -69,8 +70,8 @@ class Solid:
 
     Parameters
     ----------
-    shape : Shape
-        Its map, limits and axes.
+    name : str
+        Of the shape.
     dimensions : mapping of str to Expr
         Lengths in m, by the names that the map uses.
     measure : Expr
@@ -83,13 +84,18 @@ class Solid:
         About the centre of mass, products with the minus sign.
     """
 
-    shape: Shape
+    name: str
     dimensions: Mapping[str, Any]
     measure: Expr
     density: Expr
     mass: Expr
     center_of_mass: ImmutableMatrix
     inertia: ImmutableMatrix
+
+    @property
+    def shape(self) -> Shape:
+        """The entry of the table: map, limits, axes and origin."""
+        return SHAPES[self.name]
 
     @property
     def volume(self) -> Expr:
@@ -99,17 +105,18 @@ class Solid:
     @cached_property
     def position(self) -> ImmutableMatrix:
         """The map: position in m over its coordinates, shape (3, 1); empty for separate points."""
-        return ImmutableMatrix([self._over(component) for component in _mapped(self.shape.name).position])
+        known = {**_CONSTANTS, **_MAP_SYMBOLS, **self.dimensions}
+        return ImmutableMatrix([evaluate(parse(t), known, _FUNCTIONS, _rational) for t in self.shape.position])
 
     @cached_property
     def jacobian(self) -> Expr:
         """Measure per unit of the coordinates of the map, from the derivatives of the map."""
-        return _tidy(self._over(_mapped(self.shape.name).jacobian))
+        return _tidy(self._over(_mapped(self.name).jacobian))
 
     @cached_property
     def limits(self) -> tuple[tuple[Symbol, Expr, Expr], ...]:
         """The coordinates of the map, each with its lower and upper limit."""
-        found = _mapped(self.shape.name).limits
+        found = _mapped(self.name).limits
         return tuple((_MAP_SYMBOLS[c.name], self._over(low), self._over(high)) for c, low, high in found)
 
     @cached_property
@@ -235,9 +242,9 @@ def _rational(value: Fraction) -> Rational:
 def _dimension(value: Any, dimension: Dimension, shape: Shape) -> Expr:
     found = _scalar(value)
     refused = {"positive": found.is_nonpositive, "zero": found.is_negative, "any": False}[dimension.least]
-    if refused or found.is_real is False or found.is_finite is False:
+    if refused or found is nan or found.is_real is False or found.is_finite is False:
         least = {"positive": "positive", "zero": "zero or positive", "any": "finite"}[dimension.least]
-        meant = f"{dimension.name} ({dimension.meaning}) of a {shape.name}"
+        meant = f"{dimension.name} of the {shape.name} ({dimension.meaning})"
         raise InputError(f"expected a {least} {meant}, got {show(value)}")
     return found
 
@@ -257,7 +264,7 @@ def _dimensions(shape: Shape, given: Mapping[str, Any]) -> dict[str, Expr]:
     for left, relation, right in shape.conditions:
         gap = found[right] - found[left]
         if gap.is_negative or (relation == "<" and gap.is_zero):
-            raise InputError(f"expected {left} {relation} {right} of a {shape.name}, got {found[left]}, {found[right]}")
+            raise InputError(f"expected {left} {relation} {right} of the {shape.name}, got {found[left]}, {found[right]}")
     return found
 
 
@@ -342,10 +349,12 @@ def solid(name: str, *, mass: Any = None, density: Any = None, **dimensions: Any
         if profile.total_degree() > 0:
             return _weighted(shape, values, profile, measure)
         total = _tidy(uniform * measure)
+        if total.is_nonpositive:
+            raise InputError(f"expected a positive density of the {name}, got {show(density)}")
     if chosen:
         center, specific = center.xreplace(chosen), specific.xreplace(chosen)
     inertia = _tidied(tensor.scale(total, specific))
-    return Solid(shape, values, measure, uniform, total, center.applyfunc(_tidy), inertia)
+    return Solid(shape.name, values, measure, uniform, total, center.applyfunc(_tidy), inertia)
 
 
 _MASS = Dimension("mass", "kg", "m")
@@ -362,8 +371,10 @@ def _weighted(shape: Shape, values: Mapping[str, Expr], profile: Poly, measure: 
             term = term * component**power
         density = density + term
     mass, center, specific = _properties(moments(region, density), {**values, **coefficients})
+    if mass.is_nonpositive:
+        raise InputError(f"expected a density with a positive mass, got {profile.as_expr()} with a mass of {mass} kg")
     inertia = _tidied(tensor.scale(mass, specific))
-    return Solid(shape, values, measure, profile.as_expr(), _tidy(mass), center.applyfunc(_tidy), inertia)
+    return Solid(shape.name, values, measure, profile.as_expr(), _tidy(mass), center.applyfunc(_tidy), inertia)
 
 
 @dataclass(frozen=True)
@@ -378,6 +389,8 @@ def _point_masses(shape: Shape, mass: Any, density: Any, dimensions: Mapping[str
     if mass is not None or density is not None:
         raise InputError("expected the masses of point_masses in 'masses', got a mass or density besides")
     points = _points(dimensions["points"], shape.dimensions[1])
+    if not isinstance(dimensions["masses"], Sequence) or isinstance(dimensions["masses"], str):
+        raise InputError(f"expected a list of masses, got {show(dimensions['masses'])}")
     masses = [_dimension(each, shape.dimensions[0], shape) for each in dimensions["masses"]]
     if len(points) != len(masses) or not points:
         raise InputError(f"expected as many masses as points, at least one; got {len(masses)} and {len(points)}")
@@ -385,7 +398,7 @@ def _point_masses(shape: Shape, mass: Any, density: Any, dimensions: Mapping[str
     body = compose([_PointMass(m, p, nothing) for m, p in zip(masses, points, strict=True)])
     values = {"masses": tuple(masses), "points": tuple(points)}
     center = ImmutableMatrix(body.center_of_mass).applyfunc(_tidy)
-    return Solid(shape, values, Integer(len(points)), Integer(1), body.mass, center, _tidied(body.inertia))
+    return Solid(shape.name, values, Integer(len(points)), Integer(1), body.mass, center, _tidied(body.inertia))
 
 
 def closed_forms_text() -> str:
