@@ -7,12 +7,10 @@ and the circular functions) is rounded once, to a relative error below 2^-300. S
 __all__ = ["PI", "Angle", "cos", "equal", "read", "read_angle", "show", "sin", "sqrt", "tan"]
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
-from functools import cached_property
 from math import isfinite, isqrt
-from typing import NoReturn, SupportsFloat
+from typing import NamedTuple, NoReturn, SupportsFloat
 
 from symrot import expression
 from symrot.errors import InputError
@@ -155,8 +153,7 @@ def equal(a: Fraction, b: Fraction) -> bool:
     return a == b or abs(a - b) * 2**200 < max(abs(a), abs(b))
 
 
-@dataclass(frozen=True)
-class Angle:
+class Angle(NamedTuple):
     """An angle ``rational + half_turns * pi``, in rad, so that a right angle has an exact sine and cosine."""
 
     rational: Fraction
@@ -167,12 +164,12 @@ class Angle:
         """The angle in rad; rounded to 2^-300 when it holds a part of pi."""
         return self.rational + self.half_turns * PI if self.half_turns else self.rational
 
-    @cached_property
+    @property
     def sin(self) -> Fraction:
         """The sine: exact for every rational value of it, else to 2^-250."""
         return sin(self.radians) if self.rational else _sin_half_turns(self.half_turns)
 
-    @cached_property
+    @property
     def cos(self) -> Fraction:
         """The cosine: exact for every rational value of it, else to 2^-250."""
         return cos(self.radians) if self.rational else _sin_half_turns(self.half_turns + Fraction(1, 2))

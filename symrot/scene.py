@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from symrot.scene_attitude import Vector, read_attitude, read_sequence, to_body
 from symrot.scene_body import Body, read_body
@@ -42,16 +42,14 @@ QUANTITIES: dict[str, tuple[str, str]] = {
 """What a scene may ask for: name -> (unit, meaning)."""
 
 
-@dataclass(frozen=True)
-class Initial:
+class Initial(NamedTuple):
     """The state at the start: ``omega_b`` (rad/s, body components) and a unit ``quaternion`` (to 2^-200)."""
 
     omega_b: Vector
     quaternion: tuple[Fraction, Fraction, Fraction, Fraction]
 
 
-@dataclass(frozen=True)
-class Span:
+class Span(NamedTuple):
     """Sample times: ``samples`` of them, evenly from ``start`` to ``stop`` (s), both included."""
 
     start: Fraction
@@ -59,8 +57,7 @@ class Span:
     samples: int
 
 
-@dataclass(frozen=True)
-class Output:
+class Output(NamedTuple):
     """The quantities asked for; ``sequence`` is the Euler sequence of ``euler``, ``degrees`` the unit of its angles."""
 
     quantities: tuple[str, ...]

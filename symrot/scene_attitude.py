@@ -86,10 +86,8 @@ def _about(axis: Vector, angle: Angle) -> Attitude:
     x, y, z = axis
     square = x * x + y * y + z * z
     length = sqrt(square)
-    half = angle.scaled(Fraction(1, 2))
-    along = half.sin / length
-    sine, versine = angle.sin / length, (1 - angle.cos) / square
-    cosine = angle.cos
+    half, cosine = angle.scaled(Fraction(1, 2)), angle.cos
+    along, sine, versine = half.sin / length, angle.sin / length, (1 - cosine) / square
     dcm = (
         (cosine + versine * x * x, versine * x * y - sine * z, versine * x * z + sine * y),
         (versine * x * y + sine * z, cosine + versine * y * y, versine * y * z - sine * x),

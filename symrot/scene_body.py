@@ -5,9 +5,8 @@ Ways: ``shape`` with its dimensions and mass or density; ``[[body.part]]``, a co
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
+from typing import Any, NamedTuple
 
 from symrot import expression
 from symrot.inertia.composite import MassProperties, Part, mass_properties
@@ -37,8 +36,7 @@ _UNTURNED: Matrix = (
 _NEGLIGIBLE = Fraction(1, 2**200)  # as symrot.number.equal
 
 
-@dataclass(frozen=True)
-class Body:
+class Body(NamedTuple):
     """A rigid body about the point it turns about, in the axes in which it was given.
 
     ``inertia`` (kg m^2) is about that point; ``center_of_mass`` (m) is relative to it, None when it is unknown;

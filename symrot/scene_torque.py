@@ -1,9 +1,8 @@
 """The torques of a scene: read by the table of :mod:`symrot.dynamics.torque_kinds`, and fitted to the body."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
+from typing import Any, NamedTuple
 
 from symrot import expression
 from symrot.dynamics.torque_kinds import EXPRESSION_NAMES, TORQUE_KINDS, Field, TorqueKind
@@ -20,8 +19,7 @@ LONGEST_FORMULA = 2000
 MOST_PARAMETERS = 100
 
 
-@dataclass(frozen=True)
-class Torque:
+class Torque(NamedTuple):
     """One torque: its kind and the values of its fields, all there, by the names of the table of torques.
 
     Vectors are tuples of three Fractions, an attitude a unit quaternion, ``linear`` of a damping three numbers. Gravity
