@@ -5,10 +5,12 @@ Oracles: textbook identities, their mutations, and 50-digit evaluation by mpmath
 
 import subprocess
 import sys
+from fractions import Fraction
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from mpmath import mp
 from sympy import (
     Abs,
     Eq,
@@ -25,6 +27,7 @@ from sympy import (
     csc,
     exp,
     eye,
+    lambdify,
     nan,
     oo,
     pi,
@@ -294,8 +297,8 @@ arguments = st.builds(
     lambda numerators, denominator, twelfths: sum(
         (Rational(n, denominator) * a for n, a in zip(numerators, ATOMS, strict=True)), Rational(twelfths, 12) * pi
     ),
-    st.tuples(*[st.integers(-3, 3)] * 3),
-    st.sampled_from([1, 2, 3]),
+    st.tuples(*[st.integers(-2, 2)] * 3),
+    st.sampled_from([1, 1, 2]),
     st.sampled_from([0, 0, 3, 4, 6, 7]),
 )
 leaves = st.one_of(
@@ -309,9 +312,16 @@ formulas = st.recursive(
         st.builds(lambda a, b: a * b, inner, inner),
         st.builds(lambda a: a**2, inner),
     ),
-    max_leaves=6,
+    max_leaves=5,
 )
-POINT = {x: Rational(37, 41), y: Rational(-29, 23), z: Rational(53, 31), A: Rational(7, 5), B: Rational(11, 3)}
+POINT = {x: "37/41", y: "-29/23", z: "53/31", A: "7/5", B: "11/3"}
+RATIONALS = [Fraction(text) for text in POINT.values()]
+
+
+def at_a_generic_point(formula):
+    """Return the value to 50 digits, by mpmath."""
+    with mp.workdps(50):
+        return lambdify(list(POINT), formula, "mpmath")(*(mp.mpf(f.numerator) / f.denominator for f in RATIONALS))
 
 
 def rewritten(formula):
@@ -320,26 +330,24 @@ def rewritten(formula):
     return shifted.expand(trig=True)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=40, deadline=None)
 @given(formulas)
 def test_a_formula_equals_itself_rewritten(formula):
     assert is_zero(formula - rewritten(formula))
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=40, deadline=None)
 @given(formulas, formulas)
 def test_zero_is_never_said_of_what_50_digits_see(left, right):
     """normal_form is 0 if and only if the value at a generic point is; generic points lie on no identity's locus."""
-    difference = left - rewritten(right) + right
-    value = (difference - right).subs(POINT).evalf(50, chop=False) if difference != right else 0
-    assert is_zero(difference - right) == (abs(value) < Rational(1, 10**40))
+    difference = left - rewritten(right)
+    assert is_zero(difference) == (abs(at_a_generic_point(difference)) < 1e-40)
 
 
 @settings(max_examples=40, deadline=None)
 @given(formulas)
 def test_the_normal_form_has_the_value_of_the_formula(formula):
-    value, reduced = (f.subs(POINT).evalf(50) for f in (formula, normal_form(formula)))
-    assert abs(value - reduced) < Rational(1, 10**40)
+    assert abs(at_a_generic_point(formula) - at_a_generic_point(normal_form(formula))) < 1e-38
 
 
 def test_no_output_depends_on_hashing():
