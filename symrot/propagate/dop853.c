@@ -52,11 +52,12 @@ typedef struct {
     double h;            /* next step, signed; 0 before the first one */
     double stop;         /* end of the span, on either side of t */
     double first, last;  /* times at which the kernel is called for the two ends: just inside the span at a switching time */
-    double tolerance;    /* of one step */
+    double tolerance;    /* of one step of length `pace` or more; a shorter one is allowed its share of it */
+    double pace;
     double max_step;     /* positive */
     int64_t next;        /* first sample not yet written */
     int64_t accepted, rejected, evaluations, recorded;
-    double y[SYMROT_STATES], dy[SYMROT_STATES];
+    double y[SYMROT_STATES], carry[SYMROT_STATES], dy[SYMROT_STATES];
 } symrot_run;
 
 #define EACH(i) for (int i = 0; i < SYMROT_WIDTH; ++i)
@@ -86,6 +87,7 @@ static const double symrot_scales[] = SYMROT_SCALES;
 enum { SYMROT_COUNT = (int)(sizeof(symrot_scales)/sizeof(symrot_scales[0])) };
 
 static const double SAFETY = 0.9, SHRINK = 1.0/3.0, COLLAPSE = 0.1, GROWTH = 6.0;  /* of the step; dop853.f's values */
+static const double ROUND_OFF = 2.0*DBL_EPSILON;  /* no step can be asked to be better than that */
 static const double RATE_FLOOR = 1e-3;  /* a rate below RATE_FLOOR/h turns the body by less than that in one step */
 
 /* Return x^(-1/16) to 0.5 %, which is enough for a step size: the exponent field is nearly a logarithm. */
@@ -218,9 +220,10 @@ SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *
 {
     double k[SYMROT_STAGES + 1][SYMROT_WIDTH] SYMROT_ALIGNED, term[SYMROT_TERMS][SYMROT_WIDTH] SYMROT_ALIGNED;
     double y[SYMROT_WIDTH] SYMROT_ALIGNED, y1[SYMROT_WIDTH] SYMROT_ALIGNED, z[SYMROT_WIDTH] SYMROT_ALIGNED;
-    double step[SYMROT_WIDTH] SYMROT_ALIGNED, error5[SYMROT_WIDTH] SYMROT_ALIGNED, error3[SYMROT_WIDTH] SYMROT_ALIGNED;
+    double step[SYMROT_WIDTH] SYMROT_ALIGNED, carry[SYMROT_WIDTH] SYMROT_ALIGNED;
+    double error5[SYMROT_WIDTH] SYMROT_ALIGNED, error3[SYMROT_WIDTH] SYMROT_ALIGNED;
     const double stop = run->stop, side = stop < run->t ? -1.0 : 1.0;
-    const double weight = 1.0/(run->tolerance*run->tolerance), tiny = 1e-30*fabs(stop - run->t);
+    const double pace = run->pace, tiny = 1e-30*fabs(stop - run->t);
     double t = run->t, h = run->h, growth = GROWTH;
     int64_t next = run->next, accepted = 0, rejected = 0, dense = 0, recorded = 0;
     int status = SYMROT_PAUSED, broken = 0;
@@ -228,6 +231,7 @@ SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *
     memset(k, 0, sizeof k);
     memset(y, 0, sizeof y);
     memset(z, 0, sizeof z);
+    memset(carry, 0, sizeof carry);
     if (h == 0.0) {
         SYMROT_RHS(run->first, run->y, p, run->dy);
         h = run->h = stop == t ? 0.0 : first_step(run, p);
@@ -235,7 +239,7 @@ SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *
         for (; next < count && times[next] == t; ++next) EACH_STATE(i) states[next*SYMROT_STATES + i] = run->y[i];
     }
     EACH_STATE(i) y[i] = run->y[i];
-    EACH_STATE(i) k[1][i] = run->dy[i];
+    EACH_STATE(i) { carry[i] = run->carry[i]; k[1][i] = run->dy[i]; }
     if (t == stop) status = SYMROT_DONE;
 
     while (status == SYMROT_PAUSED && accepted + rejected < attempts) {
@@ -272,11 +276,14 @@ SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *
         STAGE(12, 11, last)
 
         EACH(i) {
-            step[i] = h*DOP853_WEIGHTS(K);
+            const double sum = DOP853_WEIGHTS(K);
+            step[i] = h*sum + carry[i];
             y1[i] = y[i] + step[i];
-            error3[i] = step[i] - h*DOP853_WEIGHTS_3(K);
+            error3[i] = h*(sum - DOP853_WEIGHTS_3(K));
             error5[i] = h*DOP853_ERROR_5(K);
         }
+        const double share = run->tolerance*(fabs(h) < pace ? fabs(h)/pace : 1.0);
+        const double allowed = share > ROUND_OFF ? share : ROUND_OFF, weight = 1.0/(allowed*allowed);
         double worst = 0.0;
         for (int b = 0; b < SYMROT_COUNT; ++b) {
             const double e5 = square_sum(error5, b), e3 = square_sum(error3, b);
@@ -314,7 +321,12 @@ SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *
                 else dense_value(term[0], SYMROT_WIDTH, (times[next] - t)/h, out);
             }
 
-        EACH(i) { y[i] = y1[i]; k[1][i] = k[13][i]; }
+        EACH(i) {
+            const double rise = y1[i] - y[i];  /* Knuth's sum: what rounding took from y1 goes into the next step */
+            carry[i] = (y[i] - (y1[i] - rise)) + (step[i] - rise);
+            y[i] = y1[i];
+            k[1][i] = k[13][i];
+        }
         t = t1;
         if (t == stop) status = SYMROT_DONE;
         h *= factor < growth ? (factor > SHRINK ? factor : SHRINK) : growth;
@@ -329,7 +341,7 @@ SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *
     run->rejected += rejected;
     run->evaluations += 12*accepted + 11*rejected + 3*dense;
     run->recorded = recorded;
-    EACH_STATE(i) { run->y[i] = y[i]; run->dy[i] = k[1][i]; }
+    EACH_STATE(i) { run->y[i] = y[i]; run->carry[i] = carry[i]; run->dy[i] = k[1][i]; }
     return status;
 }
 

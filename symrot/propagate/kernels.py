@@ -1,0 +1,107 @@
+"""The kernel of a plan: from the cache if it is there, else derived, emitted and compiled, and kept.
+
+The key is the structure of the plan and the version of symrot's own files; numbers are not part of it. While the
+compiler works on the rates, the invariants are proven.
+"""
+
+import json
+import os
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from threading import Thread
+from typing import Any
+
+from symrot.codegen import library
+from symrot.errors import CompilerError
+from symrot.planner import Plan
+from symrot.propagate.dop853 import translation_unit
+from symrot.scene_kernel import SceneKernel
+
+__all__ = ["compiled", "missing_compiler", "scene_kernel"]
+
+PACKAGE = Path(__file__).parents[1]
+ATTITUDE_SCALE = 1.0  # a quaternion has unit norm; an error of an angle counts in rad
+RATE_SCALE = 0.0  # an error of omega counts relative to omega
+
+
+@cache
+def _version() -> str:
+    """Return what identifies the code that derives: names, sizes and times of symrot's own files."""
+    found = []
+    for directory, _, files in os.walk(PACKAGE):
+        for name in files:
+            if name.endswith((".py", ".c", ".h", ".toml")):
+                status = (Path(directory) / name).stat()
+                found.append(f"{Path(directory, name).relative_to(PACKAGE)} {status.st_size} {status.st_mtime_ns}")
+    return "\n".join(sorted(found))
+
+
+def _key(plan: Plan) -> str:
+    return f"scene kernel\n{json.dumps(plan.structure, sort_keys=True)}\n{_version()}"
+
+
+def scene_kernel(plan: Plan, on_source: Callable[[str, int], object] = lambda source, parameters: None) -> SceneKernel:
+    """Return the kernel of a plan, from the cache or derived.
+
+    ``on_source`` gets the C text of the rates and the number of their parameters as soon as they are known.
+    """
+    saved = library.fetch(_key(plan))
+    if saved is not None:
+        kernel = SceneKernel(json.loads(saved))
+        on_source(kernel.source, len(kernel.rate_parameters))
+        return kernel
+    from symrot.codegen.scene_kernels import derive_scene_kernel
+
+    kernel = derive_scene_kernel(plan.structure, on_source)
+    library.store(_key(plan), json.dumps(kernel.data))
+    return kernel
+
+
+def missing_compiler() -> str:
+    """Return an empty text, or the sentence that says why there is no C compiler."""
+    try:
+        library.compiler()
+    except CompilerError as error:
+        return str(error)
+    return ""
+
+
+def compiled(plan: Plan) -> tuple[SceneKernel, Path]:
+    """Return the kernel of a plan and the library with kernel and stepper.
+
+    Raises
+    ------
+    CompilerError
+        If the compiler refuses the source.
+    """
+    outcome: dict[str, Any] = {}
+
+    def build(source: str, parameters: int) -> None:
+        try:
+            outcome["path"] = library.build(_library_source(plan, source, parameters), "motion")
+        except Exception as error:  # carried over to the thread that asked
+            outcome["error"] = error
+
+    workers: list[Thread] = []
+
+    def start(source: str, parameters: int) -> None:
+        workers.append(Thread(target=build, args=(source, parameters)))
+        workers[0].start()
+
+    try:
+        kernel = scene_kernel(plan, start)
+    finally:
+        for worker in workers:
+            worker.join()
+    if "error" in outcome:
+        raise outcome["error"]
+    return kernel, outcome["path"]
+
+
+def _library_source(plan: Plan, source: str, parameters: int) -> str:
+    rates = sum(name.startswith("omega") for name in plan.states)
+    count = len(plan.states)
+    edges = [0, *([rates] if 0 < rates < count else []), count]
+    scales = [RATE_SCALE] * (rates > 0) + [ATTITUDE_SCALE] * (count > rates)
+    return translation_unit(source, "symrot_rates", count, parameters, edges, scales)

@@ -1,0 +1,319 @@
+"""From a scene to its motion: choose a method, bind the kernel to numbers once, then propagate as often as asked."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from symrot import number
+from symrot.errors import InputError
+from symrot.planner import Plan, make_plan
+from symrot.propagate import dop853
+from symrot.propagate.dop853 import Stats
+from symrot.propagate.kernels import compiled, missing_compiler, scene_kernel
+from symrot.propagate.trajectory import ARRAY_FUNCTIONS, Trajectory
+from symrot.scene import Initial, Scene, load_scene
+from symrot.scene_kernel import SceneKernel, bind
+
+__all__ = ["METHODS", "Choice", "Motion", "Propagator", "choose_method", "propagate", "propagator"]
+
+Floats = NDArray[np.float64]
+
+METHODS = {
+    "auto": "the first of the table that fits",
+    "constant": "nothing to integrate: every state keeps its value",
+    "dop853": "Dormand-Prince 8(5,3) in C around the emitted kernel",
+    "scipy": "SciPy's DOP853 around the emitted NumPy kernel; scipy:NAME for another of its methods",
+}
+
+
+class Choice(NamedTuple):
+    """A method and why it was taken."""
+
+    method: str
+    reason: str
+
+
+AUTO: tuple[tuple[str, Callable[[Plan], str]], ...] = (
+    ("constant", lambda plan: "" if plan.states else "the plan leaves no state to integrate"),
+    ("dop853", lambda plan: "" if missing_compiler() else "a C compiler is there"),
+    ("scipy", lambda plan: missing_compiler()),
+)
+"""What ``auto`` tries, in order: (method, condition); a condition returns the reason to take it, or nothing."""
+
+
+def choose_method(plan: Plan, method: str = "auto") -> Choice:
+    """Return the method for a plan.
+
+    Raises
+    ------
+    InputError
+        If there is no such method.
+    """
+    if method == "auto":
+        return next(Choice(name, reason) for name, condition in AUTO if (reason := condition(plan)))
+    name, _, solver = method.partition(":")
+    if name not in METHODS or (solver and name != "scipy") or name == "constant":
+        listed = ", ".join(name for name in METHODS if name != "constant")
+        raise InputError(f"method: expected one of {listed} or scipy:NAME, got {method!r}")
+    return Choice(method, "asked for") if plan.states else choose_method(plan)
+
+
+class Motion:
+    """A plan with its kernel, bound to numbers."""
+
+    def __init__(self, plan: Plan, choice: Choice, tolerance: float) -> None:
+        self.plan, self.choice, self.tolerance = plan, choice, tolerance
+        self.library: Path | None = None
+        if choice.method == "dop853":
+            self.kernel, self.library = compiled(plan)
+        else:
+            self.kernel = scene_kernel(plan)
+        self.start = float(plan.scene.span.start)
+
+    @cached_property
+    def rate_parameters(self) -> list[float]:
+        return bind(self.kernel.rate_parameters, self.plan.constants)
+
+    @cached_property
+    def _quantity_values(self) -> dict[str, float]:
+        names = [name for name, _ in self.kernel.quantity_parameters]
+        return dict(zip(names, bind(self.kernel.quantity_parameters, self.plan.constants), strict=True))
+
+    @cached_property
+    def quantity_names(self) -> frozenset[str]:
+        return frozenset(name for name, _ in self.kernel.quantities.outputs)
+
+    def evaluate(self, t: Floats, states: Floats, names: Sequence[str]) -> Floats:
+        """Return quantities of the kernel at states of shape (n, N), as an array of shape (n, len(names))."""
+        values: dict[str, Any] = {"t": t, **dict(zip(self.plan.states, states.T, strict=True)), **self._quantity_values}
+        found = self.kernel.quantities.evaluate(values, ARRAY_FUNCTIONS, float, names)
+        result = np.empty((len(t), len(names)))
+        for index, name in enumerate(names):
+            result[:, index] = found[name]
+        return result
+
+    @cached_property
+    def _initial(self) -> tuple[Floats, Floats]:
+        return np.array([self.start]), np.array([self.plan.initial_state]).reshape(1, -1)
+
+    def initial_quantity(self, name: str, values: Floats) -> float:
+        """Return a conserved quantity at the start."""
+        if name == "quaternion norm":
+            return 1.0
+        output = next(item.output for item in self.kernel.conserved if item.name == name)
+        return float(self.evaluate(*self._initial, [output])[0, 0])
+
+    def integrate(self, times: Floats) -> tuple[Floats, Stats]:
+        """Return the states at the times, shape (n, N), and what it cost."""
+        return INTEGRATORS[self.choice.method.partition(":")[0]](self, times)
+
+    @cached_property
+    def rates(self) -> Callable[[float, Floats], Floats]:
+        """The emitted NumPy kernel as ``f(t, y)``."""
+        from symrot.codegen.numpy_kernel import load_numpy_kernel
+
+        function = load_numpy_kernel(self.kernel.rates)
+        parameters = self.rate_parameters
+        return (lambda t, y: function(t, y, parameters)) if parameters else function
+
+    def solution(self, trajectory: Trajectory) -> Callable[[ArrayLike], Floats]:
+        """Return omega and quaternion as a function of time over the trajectory's span."""
+        times = trajectory.t
+        span = (min(self.start, float(times.min())), max(self.start, float(times.max()))) if len(times) else (self.start,) * 2
+        states = self._dense(span)
+        names = [f"omega_{i} of t" for i in (1, 2, 3)]
+        names += [f"q{i} of t" for i in range(4)] if trajectory.has_attitude else []
+
+        def at(t: ArrayLike) -> Floats:
+            wanted = np.asarray(t, dtype=float)
+            flat = np.atleast_1d(wanted).ravel()
+            found = self.evaluate(flat, states(flat), names).T
+            return found.reshape(len(names), *wanted.shape)
+
+        return at
+
+    def _dense(self, span: tuple[float, float]) -> Callable[[Floats], Floats]:
+        """Return the states as a function of time."""
+        if self.choice.method == "constant":
+            return lambda t: np.empty((len(t), 0))
+        if self.library is None:
+            return lambda t: self.integrate(t)[0]
+        return dop853.record(
+            self.library, self.rate_parameters, self.plan.initial_state, self.start, span, self.tolerance
+        )
+
+
+def _keep(motion: Motion, times: Floats) -> tuple[Floats, Stats]:
+    return np.empty((len(times), 0)), Stats(0, 0, 0, 0.0)
+
+
+def _dop853(motion: Motion, times: Floats) -> tuple[Floats, Stats]:
+    assert motion.library is not None
+    return dop853.integrate(
+        motion.library, motion.rate_parameters, motion.plan.initial_state, motion.start, times, motion.tolerance
+    )
+
+
+def _scipy(motion: Motion, times: Floats) -> tuple[Floats, Stats]:
+    from symrot.propagate import fallback
+
+    solver = motion.choice.method.partition(":")[2] or "DOP853"
+    return fallback.integrate(motion.rates, motion.plan.initial_state, motion.start, times, motion.tolerance, solver)
+
+
+INTEGRATORS: dict[str, Callable[[Motion, Floats], tuple[Floats, Stats]]] = {
+    "constant": _keep,
+    "dop853": _dop853,
+    "scipy": _scipy,
+}
+
+
+class Propagator:
+    """Propagates one scene; made by :func:`propagator`.
+
+    Derivation, compilation and binding are done when it is made; a call does the motion and nothing else.
+    """
+
+    def __init__(self, scene: Scene, method: str, tolerance: float) -> None:
+        self.scene, self.tolerance, self._method = scene, tolerance, method
+        self._motion = self._prepare(make_plan(scene))
+
+    def _prepare(self, plan: Plan) -> Motion:
+        return Motion(plan, choose_method(plan, self._method), self.tolerance)
+
+    @property
+    def plan(self) -> Plan:
+        """What is computed, what is skipped."""
+        return self._motion.plan
+
+    @property
+    def method(self) -> str:
+        """The method that is used."""
+        return self._motion.choice.method
+
+    @property
+    def reason(self) -> str:
+        """Why that method."""
+        return self._motion.choice.reason
+
+    @property
+    def kernel(self) -> SceneKernel:
+        """The derived kernels."""
+        return self._motion.kernel
+
+    @cached_property
+    def sample_times(self) -> Floats:
+        """The scene's own sample times, s."""
+        span = self.scene.span
+        return np.linspace(float(span.start), float(span.stop), span.samples)
+
+    def __call__(
+        self, t: ArrayLike | None = None, *, omega: ArrayLike | None = None, quaternion: ArrayLike | None = None
+    ) -> Trajectory:
+        """Return the motion at the times ``t``.
+
+        Parameters
+        ----------
+        t : array, shape (n,), optional
+            Sample times in s, increasing or in any order, before or after the initial time; default: the scene's own.
+        omega : array, shape (3,), optional
+            Another initial angular velocity, body components, rad/s.
+        quaternion : array, shape (4,), optional
+            Another initial attitude, scalar first; it is normalised.
+
+        Raises
+        ------
+        InputError
+            For times or states that are not finite or have the wrong shape.
+        PropagationError
+            If the motion cannot be followed to the last time.
+        """
+        times = self.sample_times if t is None else _times(t)
+        motion = self._motion
+        if omega is not None or quaternion is not None:
+            motion = self._prepare(make_plan(self.scene, _initial(self.scene, omega, quaternion)))
+        states, stats = motion.integrate(times)
+        message = f"{motion.choice.method}: {motion.choice.reason}"
+        return Trajectory(motion, times, states, motion.choice.method, stats, message)
+
+
+def _times(t: ArrayLike) -> Floats:
+    try:
+        times = np.array(t, dtype=np.float64, ndmin=1)
+    except (TypeError, ValueError):
+        raise InputError(f"t: expected an array of times in s, got {number.show(t)}") from None
+    if times.ndim != 1:
+        raise InputError(f"t: expected a one-dimensional array of times in s, got shape {times.shape}")
+    if not np.isfinite(times).all():
+        raise InputError(f"t: expected finite times in s, got {times[~np.isfinite(times)][0]}")
+    return times
+
+
+def _vector(values: ArrayLike, size: int, name: str, unit: str) -> list[float]:
+    try:
+        array = np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise InputError(f"{name}: expected {size} numbers in {unit}, got {number.show(values)}") from None
+    if array.shape != (size,) or not np.isfinite(array).all():
+        raise InputError(f"{name}: expected {size} finite numbers in {unit}, got {number.show(array.tolist())}")
+    found: list[float] = array.tolist()
+    return found
+
+
+def _initial(scene: Scene, omega: ArrayLike | None, quaternion: ArrayLike | None) -> Initial:
+    initial = scene.initial
+    if omega is not None:
+        x, y, z = (number.read(value, "omega") for value in _vector(omega, 3, "omega", "rad/s"))
+        initial = replace(initial, omega_b=(x, y, z))
+    if quaternion is not None:
+        q = [number.read(value, "quaternion") for value in _vector(quaternion, 4, "quaternion", "1")]
+        norm = number.sqrt(sum((value * value for value in q), start=q[0] * 0))
+        if norm == 0:
+            raise InputError(f"quaternion: expected a quaternion that is not zero, got {number.show(q)}")
+        initial = replace(initial, quaternion=(q[0] / norm, q[1] / norm, q[2] / norm, q[3] / norm))
+    return initial
+
+
+def propagator(scene: Scene | str | Path, method: str = "auto", tolerance: float | None = None) -> Propagator:
+    """Return the propagator of a scene: derived, specialised, emitted and compiled, or taken from the cache.
+
+    Parameters
+    ----------
+    scene : Scene, str or Path
+        A scene, the name of a shipped one, or the path of a scene file.
+    method : str
+        One of :data:`METHODS`; ``"scipy:LSODA"`` and the like for SciPy's.
+    tolerance : float, optional
+        Error of the trajectory to aim for: attitude in rad, angular velocity relative to its size; default: the
+        scene's own.
+
+    Raises
+    ------
+    InputError
+        For a scene or an option that cannot be used.
+    CompilerError
+        If ``dop853`` is asked for and there is no compiler, or the compiler refuses the kernel.
+    """
+    if not isinstance(scene, Scene):
+        scene = load_scene(scene)
+    return Propagator(scene, method, float(scene.tolerance) if tolerance is None else _tolerance(tolerance))
+
+
+def _tolerance(tolerance: float) -> float:
+    from symrot.scene import TOLERANCES
+
+    low, high = TOLERANCES
+    found = number.read(tolerance, "tolerance")
+    if not low <= found <= high:
+        raise InputError(f"tolerance: expected a number from {float(low):g} to {float(high):g}, got {tolerance}")
+    return float(found)
+
+
+def propagate(scene: Scene | str | Path, method: str = "auto", tolerance: float | None = None) -> Trajectory:
+    """Return the motion of a scene at its own sample times; see :func:`propagator`."""
+    return propagator(scene, method, tolerance)()

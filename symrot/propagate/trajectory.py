@@ -1,0 +1,224 @@
+"""A motion at its sample times: states, and every quantity computed from them when it is asked for."""
+
+from collections.abc import Mapping
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from symrot.errors import InputError
+from symrot.kinematics import conversions
+from symrot.propagate.dop853 import Stats
+
+if TYPE_CHECKING:
+    from symrot.propagate.propagator import Motion
+
+__all__ = ["Invariant", "Trajectory"]
+
+Floats = NDArray[np.float64]
+
+ARRAY_FUNCTIONS = {
+    "sqrt": np.sqrt, "sin": np.sin, "cos": np.cos, "tan": np.tan, "exp": np.exp, "log": np.log, "abs": np.abs,
+    "sinh": np.sinh, "cosh": np.cosh, "tanh": np.tanh, "asin": np.arcsin, "acos": np.arccos, "atan": np.arctan,
+    "atan2": np.arctan2,
+}  # fmt: skip
+
+
+class Invariant(NamedTuple):
+    """A conserved quantity along a trajectory.
+
+    ``drift`` is the largest change since the start, relative to ``scale``: the kinetic plus potential magnitude for an
+    energy, the length of the angular momentum for its components, one for the norm of the quaternion.
+    """
+
+    name: str
+    unit: str
+    reason: str
+    values: Floats  # shape (n,)
+    scale: float
+    drift: float
+
+
+class Trajectory:
+    """What a propagator returns. Conventions: :mod:`symrot.conventions`.
+
+    Attributes
+    ----------
+    t : array, shape (n,)
+        Sample times in s, as they were asked for.
+    y : array, shape (N, n)
+        The integrated states, in the order of ``states`` (solve_ivp's layout).
+    method, stats : str, Stats
+        How it was propagated, and what that cost: steps, evaluations, seconds.
+    status, message, success : int, str, bool
+        As of solve_ivp; a motion that cannot be followed raises instead.
+    """
+
+    status = 0
+    success = True
+
+    def __init__(self, motion: "Motion", t: Floats, states: Floats, method: str, stats: Stats, message: str) -> None:
+        self._motion, self._states = motion, states
+        self.t, self.method, self.stats, self.message = t, method, stats, message
+
+    def __len__(self) -> int:
+        return len(self.t)
+
+    def __repr__(self) -> str:
+        name = self._motion.plan.scene.name
+        return f"<Trajectory of {name}: {len(self.t)} samples, {self.method}, {self.stats.accepted} steps>"
+
+    @property
+    def plan(self) -> Any:
+        """The plan that was followed."""
+        return self._motion.plan
+
+    @property
+    def scene(self) -> Any:
+        """The scene, with the initial state that was used."""
+        return self._motion.plan.scene
+
+    @property
+    def states(self) -> tuple[str, ...]:
+        """Names of the integrated states."""
+        return self._motion.plan.states
+
+    @property
+    def y(self) -> Floats:
+        """The integrated states, shape (N, n)."""
+        return self._states.T
+
+    def _evaluate(self, *names: str) -> Floats:
+        """Return quantities of the kernel, shape (n, len(names))."""
+        return self._motion.evaluate(self.t, self._states, names)
+
+    @property
+    def has_attitude(self) -> bool:
+        """Whether the attitude was computed; the plan skips it when nothing asks for it."""
+        return bool(self._motion.plan.structure["attitude"])
+
+    def _need_attitude(self) -> None:
+        if not self.has_attitude:
+            raise InputError(
+                "the attitude was not computed, since neither a torque nor the output of the scene asks for it: expected "
+                '"quaternion" among output.quantities'
+            )
+
+    @cached_property
+    def omega(self) -> Floats:
+        """Angular velocity, body components, rad/s, shape (n, 3)."""
+        return self._evaluate("omega_1 of t", "omega_2 of t", "omega_3 of t")
+
+    @cached_property
+    def quaternion(self) -> Floats:
+        """Attitude, unit, scalar first, body to space, shape (n, 4)."""
+        self._need_attitude()
+        return conversions.normalize(self._evaluate("q0 of t", "q1 of t", "q2 of t", "q3 of t"))
+
+    @cached_property
+    def dcm(self) -> Floats:
+        """``dcm_sb``, shape (n, 3, 3)."""
+        return conversions.quaternion_to_dcm(self.quaternion)
+
+    def euler(self, sequence: str, degrees: bool = False) -> Floats:
+        """Return Euler angles in order of application, shape (n, 3), rad.
+
+        At gimbal lock, where only a sum or difference of two angles is defined, see
+        :func:`symrot.kinematics.conversions.quaternion_to_euler` for the choice; :meth:`gimbal_lock` says where.
+        """
+        return conversions.quaternion_to_euler(self.quaternion, sequence, degrees=degrees)[0]
+
+    def gimbal_lock(self, sequence: str) -> NDArray[np.bool_]:
+        """Return where a sequence is singular, shape (n,)."""
+        return conversions.quaternion_to_euler(self.quaternion, sequence)[1]
+
+    def _to_space(self, vectors_b: Floats) -> Floats:
+        return np.einsum("nij,nj->ni", self.dcm, vectors_b)
+
+    @cached_property
+    def omega_space(self) -> Floats:
+        """Angular velocity, space components, rad/s, shape (n, 3)."""
+        return self._to_space(self.omega)
+
+    polhode = omega
+    herpolhode = omega_space
+
+    @cached_property
+    def angular_momentum_body(self) -> Floats:
+        """Angular momentum (with that of a rotor), body components, kg m^2/s, shape (n, 3)."""
+        return self._evaluate("momentum_1", "momentum_2", "momentum_3")
+
+    @cached_property
+    def angular_momentum_space(self) -> Floats:
+        """Angular momentum (with that of a rotor), space components, kg m^2/s, shape (n, 3)."""
+        return self._to_space(self.angular_momentum_body)
+
+    @cached_property
+    def kinetic_energy(self) -> Floats:
+        """Kinetic energy in J, shape (n,)."""
+        return self._evaluate("kinetic_energy")[:, 0]
+
+    @cached_property
+    def energy(self) -> Floats:
+        """Kinetic and potential energy in J, shape (n,); of torques without a potential, only the kinetic part."""
+        known = self._motion.quantity_names
+        return self._evaluate("energy" if "energy" in known else "kinetic_energy")[:, 0]
+
+    @property
+    def axis_number(self) -> int:
+        """The body axis that :attr:`axis` follows: the symmetry axis, or the third one."""
+        principal = self.scene.body.principal
+        return 2 if principal.symmetry_axis is None or not principal.given_axes else int(principal.symmetry_axis)
+
+    @cached_property
+    def axis(self) -> Floats:
+        """The symmetry axis of the body (its third axis if it has none), space components, shape (n, 3)."""
+        return self.dcm[:, :, self.axis_number]
+
+    @cached_property
+    def invariants(self) -> list[Invariant]:
+        """The conserved quantities of the scene along this trajectory, each proven when the kernel was derived."""
+        found = []
+        kept = [item for item in self._motion.kernel.conserved if item.kept]
+        for item in kept:
+            values = self._evaluate(item.output)[:, 0]
+            found.append(self._invariant(item.name, item.unit, item.reason, values, self._scale(item.name, values)))
+        if "q0" in self.states:
+            first = self.states.index("q0")
+            norm = np.sqrt(np.einsum("ni,ni->n", self._states[:, first:], self._states[:, first:]))
+            found.append(self._invariant("quaternion norm", "1", "rotations keep lengths", norm, 1.0))
+        return found
+
+    def _invariant(self, name: str, unit: str, reason: str, values: Floats, scale: float) -> Invariant:
+        start = self._motion.initial_quantity(name, values)
+        change = float(np.max(np.abs(values - start), initial=0.0))
+        return Invariant(name, unit, reason, values, scale, change / scale if scale > 0 else change)
+
+    def _scale(self, name: str, values: Floats) -> float:
+        if not len(values):
+            return 1.0
+        if "momentum" in name:
+            return float(np.sqrt(np.max(np.sum(self.angular_momentum_body**2, axis=1))))
+        if name.startswith("spin"):
+            return float(np.max(np.abs(values)))
+        return float(max(np.max(np.abs(values)), np.max(np.abs(self.kinetic_energy))))
+
+    def sol(self, t: ArrayLike) -> Floats:
+        """Return omega and quaternion at any time of the span by dense output, shape (7, m), or (3, m) without attitude.
+
+        A single time gives shape (7,). Steps are recorded on the first call.
+        """
+        return self._motion.solution(self)(t)
+
+    def quantity(self, name: str) -> Floats:
+        """Return a quantity by the name that scenes use for it (``output.quantities``)."""
+        if name == "euler":
+            output = self.scene.output
+            return self.euler(output.sequence, degrees=output.degrees)
+        value: Floats = getattr(self, name)
+        return value
+
+    def as_mapping(self) -> Mapping[str, Floats]:
+        """Return time and the quantities that the scene asks for, by name."""
+        return {"t": self.t, **{name: self.quantity(name) for name in self.scene.output.quantities}}
