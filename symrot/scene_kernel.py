@@ -4,17 +4,19 @@
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 from typing import Any, NamedTuple
 
 from symrot import number
 from symrot.expression import Node, evaluate
 from symrot.kernel import Program, node_from_json, node_to_json
 
-__all__ = ["Conserved", "SceneKernel", "bind"]
+__all__ = ["Conserved", "Parameters", "SceneKernel", "bind"]
 
 EXACT_FUNCTIONS = {"sqrt": number.sqrt, "sin": number.sin, "cos": number.cos, "abs": abs}
+
+Parameters = tuple[tuple[str, Node], ...]  # name in the kernel, formula over the physical constants
 
 
 class Conserved(NamedTuple):
@@ -27,42 +29,70 @@ class Conserved(NamedTuple):
     reason: str
 
 
-@dataclass(frozen=True)
 class SceneKernel:
-    """What is derived once for a structure and used for every scene that has it."""
+    """What is derived once for a structure and used for every scene that has it.
 
-    rates: Program
-    rate_parameters: tuple[tuple[str, Node], ...]
-    quantities: Program
-    quantity_parameters: tuple[tuple[str, Node], ...]
-    conserved: tuple[Conserved, ...]
-    source: str  # C text of the rates
+    Programs are made from the saved data when they are first used: a propagation in C never needs the rates.
+    """
 
-    def to_json(self) -> dict[str, Any]:
-        """Return plain data from which :meth:`from_json` makes an equal kernel."""
-        return {
-            "rates": self.rates.to_json(),
-            "rate_parameters": [[name, node_to_json(node)] for name, node in self.rate_parameters],
-            "quantities": self.quantities.to_json(),
-            "quantity_parameters": [[name, node_to_json(node)] for name, node in self.quantity_parameters],
-            "conserved": [list(item) for item in self.conserved],
-            "source": self.source,
-        }
+    def __init__(self, data: Mapping[str, Any]) -> None:
+        self.data = data
 
     @classmethod
-    def from_json(cls, data: Mapping[str, Any]) -> "SceneKernel":
-        """Return the kernel that :meth:`to_json` saved."""
-        return cls(
-            Program.from_json(data["rates"]),
-            tuple((name, node_from_json(node)) for name, node in data["rate_parameters"]),
-            Program.from_json(data["quantities"]),
-            tuple((name, node_from_json(node)) for name, node in data["quantity_parameters"]),
-            tuple(Conserved(*item) for item in data["conserved"]),
-            data["source"],
-        )
+    def of(
+        cls, rates: Program, rate_parameters: Parameters, quantities: Program, quantity_parameters: Parameters,
+        conserved: tuple[Conserved, ...], source: str,
+    ) -> "SceneKernel":  # fmt: skip
+        """Return the kernel of freshly derived programs."""
+        return cls({
+            "rates": rates.to_json(),
+            "rate_parameters": _saved(rate_parameters),
+            "quantities": quantities.to_json(),
+            "quantity_parameters": _saved(quantity_parameters),
+            "conserved": [list(item) for item in conserved],
+            "source": source,
+        })
+
+    @cached_property
+    def rates(self) -> Program:
+        """``dy/dt`` of the states."""
+        return Program.from_json(self.data["rates"])
+
+    @cached_property
+    def rate_parameters(self) -> Parameters:
+        """What the parameters of the rates are."""
+        return _loaded(self.data["rate_parameters"])
+
+    @cached_property
+    def quantities(self) -> Program:
+        """Angular velocity, attitude, momentum, energy and what is conserved, of time and states."""
+        return Program.from_json(self.data["quantities"])
+
+    @cached_property
+    def quantity_parameters(self) -> Parameters:
+        """What the parameters of the quantities are."""
+        return _loaded(self.data["quantity_parameters"])
+
+    @cached_property
+    def conserved(self) -> tuple[Conserved, ...]:
+        """The candidates for conserved quantities, those that are kept first."""
+        return tuple(Conserved(*item) for item in self.data["conserved"])
+
+    @property
+    def source(self) -> str:
+        """C text of the rates, the function ``symrot_rates``, taking parameters even if it has none."""
+        return str(self.data["source"])
 
 
-def bind(parameters: tuple[tuple[str, Node], ...], constants: Mapping[str, Fraction]) -> list[float]:
+def _saved(parameters: Parameters) -> list[Any]:
+    return [[name, node_to_json(node)] for name, node in parameters]
+
+
+def _loaded(data: list[Any]) -> Parameters:
+    return tuple((name, node_from_json(node)) for name, node in data)
+
+
+def bind(parameters: Parameters, constants: Mapping[str, Fraction]) -> list[float]:
     """Return the parameters of a kernel for the constants of a scene: exact arithmetic, one rounding each."""
     values = {"pi": number.PI, **constants}
     return [float(evaluate(node, values, EXACT_FUNCTIONS)) for _, node in parameters]

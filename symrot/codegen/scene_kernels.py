@@ -1,6 +1,6 @@
 """Derive the kernels of a plan: from its structure to programs and C text."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from sympy import Expr, Symbol
@@ -22,6 +22,7 @@ MEANING = {
     **{f"q{i}": "attitude, body to space" for i in range(4)},
     "theta": "angle turned since the start",
 }
+RATES = "symrot_rates"  # the name of the kernel in a compiled library
 TIME = Argument("t", "in", (("t", "s", "time"),), is_scalar=True)
 
 
@@ -61,10 +62,18 @@ def _quantities(equations: Equations, found: Mapping[str, Expr]) -> Lowered:
     return lower(signature, [(name, value) for name, _, value in outputs])
 
 
-def derive_scene_kernel(structure: Mapping[str, Any]) -> SceneKernel:
-    """Return the kernels of a plan's structure, with its conserved quantities proven."""
+def derive_scene_kernel(
+    structure: Mapping[str, Any], on_source: Callable[[str, int], object] = lambda source, parameters: None
+) -> SceneKernel:
+    """Return the kernels of a plan's structure, with its conserved quantities proven.
+
+    ``on_source`` gets the C text of the rates and the number of their parameters as soon as they are there, so that a compiler can work while the rest is
+    derived.
+    """
     equations = equations_of_motion(structure)
-    rates = rates_program(equations, "symrot_rates")
+    rates = rates_program(equations, RATES)
+    source = _with_parameters(rates)
+    on_source(source, len(rates.parameters))
     invariants = find_invariants(equations, structure)
     kept = {f"conserved_{i}": item.value for i, item in enumerate(invariants) if item.kept}
     quantities = _quantities(equations, kept)
@@ -72,10 +81,19 @@ def derive_scene_kernel(structure: Mapping[str, Any]) -> SceneKernel:
         Conserved(item.name, item.unit, f"conserved_{i}" if item.kept else "", item.kept, item.reason)
         for i, item in enumerate(invariants)
     )
-    return SceneKernel(
-        rates.program, rates.parameters, quantities.program, quantities.parameters, conserved,
-        c_function(rates.program, "static inline "),
-    )  # fmt: skip
+    return SceneKernel.of(
+        rates.program, rates.parameters, quantities.program, quantities.parameters, conserved, source
+    )
+
+
+def _with_parameters(rates: Lowered) -> str:
+    """Return the C text of the rates under one calling convention: ``(t, y, p, dy)``, with or without parameters."""
+    text = c_function(rates.program, "static inline ")
+    if rates.parameters:
+        return text
+    bare = text.replace(f" {RATES}(", f" {RATES}_bare(", 1)
+    adapter = f"static inline void {RATES}(double t, const double *y, const double *p, double *dy)"
+    return f"{bare}\n{adapter}\n{{\n    (void)p;\n    {RATES}_bare(t, y, dy);\n}}\n"
 
 
 def scene_description(title: str, name: str, target: str) -> Description:

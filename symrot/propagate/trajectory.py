@@ -141,8 +141,15 @@ class Trajectory:
         """Angular velocity, space components, rad/s, shape (n, 3)."""
         return self._to_space(self.omega)
 
-    polhode = omega
-    herpolhode = omega_space
+    @property
+    def polhode(self) -> Floats:
+        """The path of omega in the body, on the energy ellipsoid: :attr:`omega`."""
+        return self.omega
+
+    @property
+    def herpolhode(self) -> Floats:
+        """The path of omega in space, on the invariable plane: :attr:`omega_space`."""
+        return self.omega_space
 
     @cached_property
     def angular_momentum_body(self) -> Floats:
