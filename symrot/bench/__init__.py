@@ -1,0 +1,1 @@
+"""Measurements, each a module run as ``python -m symrot.bench.NAME``."""
