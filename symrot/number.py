@@ -38,7 +38,9 @@ def show(value: object, limit: int = 60) -> str:
         return str(value).lower()
     if isinstance(value, str):
         text = repr(value[: limit + 1])
-    elif isinstance(value, Fraction | Decimal):
+    elif isinstance(value, Fraction) and abs(value) < LARGEST:
+        text = str(value) if value.denominator == 1 else f"{float(value):.15g}"
+    elif isinstance(value, Decimal):
         text = str(value).lower().replace("infinity", "inf")
     elif isinstance(value, list | tuple):
         text = "[" + ", ".join(show(item, limit // 2) for item in value[:12]) + (", ..]" if len(value) > 12 else "]")
@@ -46,8 +48,10 @@ def show(value: object, limit: int = 60) -> str:
         text = "{" + ", ".join(f"{key} = {show(item, limit // 2)}" for key, item in list(value.items())[:12]) + "}"
     elif isinstance(value, int) and value.bit_length() > 4 * limit:
         text = f"an integer of {value.bit_length()} bits"
+    elif hasattr(value, "isoformat"):
+        text = str(value)
     else:
-        text = repr(value)
+        text = " ".join(repr(value).split())
     return text if len(text) <= limit + 2 else text[:limit] + ".."
 
 

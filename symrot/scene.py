@@ -137,8 +137,9 @@ def _read_initial(value: Any, where: str) -> Initial:
     found = read_table(value, where, entries, "the initial state")
     given = [key for key in ("omega", "omega_space") if found[key] is not None]
     if len(given) != 1:
-        expected(f"{where}.omega", "exactly one of omega (body axes) and omega_space, three numbers in rad/s",
-                 {key: value[key] for key in given}, "both are given" if given else "none is given")  # fmt: skip
+        spoken = "exactly one of omega (body axes) and omega_space, three numbers in rad/s"
+        both = {key: value[key] for key in given}
+        expected(f"{where}.omega", spoken if both else f"{spoken}, got neither", both or ...)
     attitude = found["attitude"] or read_attitude({"quaternion": [1, 0, 0, 0]}, where)
     omega_b = found["omega"] if given == ["omega"] else to_body(attitude.dcm, found["omega_space"])
     return Initial(omega_b, attitude.quaternion)

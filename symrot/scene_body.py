@@ -64,7 +64,7 @@ def read_body(value: Any, where: str) -> Body:
     ways = [way for way in WAYS if way in found]
     if len(ways) != 1:
         if not ways:
-            expected(where, f"{WAYS_SPOKEN}", found, "none of them is given" + _nearest_way(found))
+            expected(where, WAYS_SPOKEN, found, _nearest_way(found) or "none of them is given")
         expected(where, WAYS_SPOKEN, found, f"{' and '.join(ways)} are given")
     body = _WAYS[ways[0]](found, where)
     _require_turnable(body, found.get(ways[0]), f"{where}.{ways[0]}")
@@ -159,7 +159,7 @@ _PLACED = {**_ABOUT, "fixed_point": Entry(vector("m")), "name": Entry(text, defa
 
 def _shape_name(value: Any, where: str) -> Shape:
     if not isinstance(value, str) or value not in SHAPES:
-        expected(where, f"one of the shapes {', '.join(SHAPES)}{nearest(value, SHAPES)}", value)
+        expected(where, f"one of the shapes {', '.join(SHAPES)}", value, nearest(value, SHAPES))
     return SHAPES[value]
 
 
@@ -206,8 +206,9 @@ def _read_shape_table(value: Mapping[str, Any], where: str, others: Mapping[str,
     }, f"a {shape.name}")  # fmt: skip
     amounts = [key for key in ("mass", "density") if found.get(key) is not None]
     if shape.kind != "points" and len(amounts) != 1:
-        expected(f"{where}.mass", f"exactly one of mass and density of a {shape.name}",
-                 {key: value[key] for key in amounts}, "both are given" if amounts else "none is given")  # fmt: skip
+        spoken = f"exactly one of mass (kg) and density ({shape.density_unit}) of a {shape.name}"
+        given = {key: value[key] for key in amounts}
+        expected(f"{where}.mass", spoken if given else f"{spoken}, got neither", given or ...)
     for name in dimensions:
         _bounded(found[name], f"{where}.{name}")
     part = Part(

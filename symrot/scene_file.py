@@ -32,18 +32,19 @@ def find_scene(source: str | Path) -> Path:
     if not isinstance(source, str | Path) or not str(source).strip() or "\0" in str(source):
         raise InputError(f"expected the name of a scene or the path of a scene file, got {str(source)[:60]!r}")
     path = Path(source)
-    is_name = isinstance(source, str) and path.name == source and not path.suffix
-    if is_name and (SHIPPED / f"{source}.toml").is_file():
-        return SHIPPED / f"{source}.toml"
-    if path.is_dir():
-        raise InputError(f"{source}: expected a scene file, got a folder")
-    if path.exists():
-        return path
     names = shipped_names()
-    if is_name:
-        raise InputError(f"{source[:80]}: expected a shipped scene ({', '.join(names)}) or a file"
-                         f"{nearest(source, names)}")  # fmt: skip
-    raise InputError(f"{source}: expected a scene file, there is none{nearest(path.stem, names)}")
+    is_name = isinstance(source, str) and path.name == source and not path.suffix
+    if is_name and source in names:
+        return SHIPPED / f"{source}.toml"
+    try:
+        if path.is_dir():
+            raise InputError(f"{source}: expected a scene file, got a folder")
+        if path.exists():
+            return path
+    except OSError as reason:
+        raise InputError(f"{str(source)[:80]}: expected a scene file, got {reason.strerror}") from None
+    said = " ".join(filter(None, (nearest(path.stem, names), f"the shipped scenes are {', '.join(names)}")))
+    raise InputError(f"{source}: expected a scene or a scene file, there is none ({said})")
 
 
 def read_toml(path: Path, label: str) -> dict[str, Any]:
@@ -85,8 +86,9 @@ def _parse(text: str, label: str) -> dict[str, Any]:
         return tomllib.loads(text, parse_float=Decimal)
     except tomllib.TOMLDecodeError as reason:
         said = str(reason).splitlines()[0][:200]
-        raise InputError(f"{label}: expected a TOML document, but {said[:1].lower()}{said[1:]}") from None
+        raise InputError(f"{label}: expected a TOML document, got a fault: {said[:1].lower()}{said[1:]}") from None
     except RecursionError:
         raise InputError(f"{label}: expected a TOML document, got one nested too deeply") from None
     except (ValueError, ArithmeticError) as reason:  # an integer of more than 4300 digits, an impossible date
-        raise InputError(f"{label}: expected a TOML document, but {str(reason)[:200]}") from None
+        said = str(reason).partition(":")[0][:200]
+        raise InputError(f"{label}: expected a TOML document, got a fault: {said[:1].lower()}{said[1:]}") from None

@@ -12,7 +12,7 @@ from symrot.errors import InputError
 from symrot.number import read, show
 
 __all__ = [
-    "LARGEST", "Entry", "Reader", "choice", "expected", "flag", "nearest", "number", "positive", "read_table", "text",
+    "LARGEST", "Entry", "Reader", "choice", "expected", "flag", "nearest", "number", "read_table", "text",
     "under", "vector",
 ]  # fmt: skip
 
@@ -43,11 +43,11 @@ def expected(where: str, expectation: str, value: object = ..., reason: str = ""
 
 
 def nearest(word: object, known: Iterable[str]) -> str:
-    """Return ``" (did you mean 'x'?)"`` for the known word nearest to a mistyped one, or nothing."""
+    """Return ``"did you mean 'x'?"`` for the known word nearest to a mistyped one, or nothing."""
     from difflib import get_close_matches  # only on the way to an error
 
-    found = get_close_matches(str(word)[:80], list(known), 1, 0.6)
-    return f" (did you mean '{found[0]}'?)" if found else ""
+    found = get_close_matches(str(word)[:80], list(known), 1, 0.5)
+    return f"did you mean '{found[0]}'?" if found else ""
 
 
 def table(value: object, where: str, expectation: str = "a table") -> Mapping[str, Any]:
@@ -62,11 +62,11 @@ def read_table(value: object, where: str, entries: Mapping[str, Entry], what: st
     found = table(value, where, f"{what} with the keys {', '.join(entries)}")
     for key in found:
         if key not in entries:
-            expected(under(where, str(key)[:80]), f"one of the keys {', '.join(entries)}", found[key],
-                     f"unknown key '{str(key)[:80]}'" + nearest(key, entries))  # fmt: skip
+            reason = ", ".join(filter(None, ("unknown key", nearest(key, entries))))
+            expected(under(where, str(key)[:80]), f"one of the keys {', '.join(entries)} of {what}", found[key], reason)
     for key, entry in entries.items():
         if entry.required and key not in found:
-            expected(under(where, key), f"a value, the key is missing from {what}")
+            expected(under(where, key), f"a value, the key is missing ({what} needs it)")
     return {
         key: entry.read(found[key], under(where, key)) if key in found else entry.default
         for key, entry in entries.items()
@@ -74,8 +74,12 @@ def read_table(value: object, where: str, entries: Mapping[str, Entry], what: st
 
 
 def number(expectation: str = "a number", sign: str = "any") -> Reader:
-    """Return a reader of one number; ``sign`` is any, positive or nonnegative."""
-    spoken = {"any": expectation, "positive": f"{expectation} > 0", "nonnegative": f"{expectation} >= 0"}[sign]
+    """Return a reader of one number; ``sign`` is any, positive or nonnegative; the expectation begins with "a "."""
+    spoken = {
+        "any": expectation,
+        "positive": f"a positive {expectation.removeprefix('a ')}",
+        "nonnegative": f"{expectation}, zero or more",
+    }[sign]
 
     def reader(value: Any, where: str) -> Fraction:
         found = read(value, where, spoken)
@@ -86,11 +90,6 @@ def number(expectation: str = "a number", sign: str = "any") -> Reader:
         return found
 
     return reader
-
-
-def positive(unit: str) -> Reader:
-    """Return a reader of a positive number in a unit."""
-    return number(f"a number in {unit}", "positive")
 
 
 def vector(unit: str, sign: str = "any") -> Reader:
@@ -128,7 +127,7 @@ def choice(*options: str) -> Reader:
 
     def reader(value: Any, where: str) -> str:
         if not isinstance(value, str) or value not in options:
-            expected(where, "one of " + ", ".join(f'"{option}"' for option in options) + nearest(value, options), value)
+            expected(where, "one of " + ", ".join(f'"{option}"' for option in options), value, nearest(value, options))
         return value
 
     return reader

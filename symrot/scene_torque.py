@@ -35,7 +35,7 @@ class Torque(NamedTuple):
 
 
 def _scalar_or_vector(field: Field) -> Reader:
-    one = number(f"a number in {field.unit}, or three of them,", field.sign)
+    one = number(f"a number in {field.unit}, or three of them", field.sign)
     three = vector(field.unit, field.sign)
 
     def reader(value: Any, where: str) -> Vector:
@@ -159,7 +159,7 @@ def _fit_expression(values: dict[str, Any], body: Body, where: str) -> dict[str,
         for name in sorted(expression.names(expression.parse(formula))):
             if name not in known:
                 allowed = ", ".join([*EXPRESSION_NAMES, *parameters])
-                reason = f"'{name}' is unknown, parameters gives it no number{nearest(name, known)}"
+                reason = ", ".join(filter(None, (f"'{name}' has no number in parameters", nearest(name, known))))
                 expected(f"{where}.torque[{index}]", f"a formula in {allowed}", formula, reason)
             if name == "pi":
                 parameters["pi"] = PI
