@@ -36,9 +36,7 @@ from symrot.errors import InputError
 
 AXES = "XYZ"
 
-INTRINSIC_SEQUENCES: tuple[str, ...] = tuple(
-    a + b + c for a, b, c in product(AXES, repeat=3) if a != b != c
-)
+INTRINSIC_SEQUENCES: tuple[str, ...] = tuple(a + b + c for a, b, c in product(AXES, repeat=3) if a != b != c)
 EXTRINSIC_SEQUENCES: tuple[str, ...] = tuple(name.lower() for name in INTRINSIC_SEQUENCES)
 SEQUENCES: tuple[str, ...] = INTRINSIC_SEQUENCES + EXTRINSIC_SEQUENCES
 

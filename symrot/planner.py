@@ -5,7 +5,7 @@ rules. Each rule looks at exact numbers, changes the structure or leaves it, and
 it. The structure, not the numbers, decides which kernel is needed: a second scene of the same structure has it already.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
@@ -140,7 +140,8 @@ def _pattern(value: Fraction, unit: bool) -> str:
 
 
 def _constants(scene: Scene, structure: Structure) -> dict[str, Fraction]:
-    inertia, found = scene.body.inertia, {}
+    inertia = scene.body.inertia
+    found: dict[str, Fraction] = {}
     if structure["inertia"]["form"] == "principal":
         for letter, number in zip(structure["inertia"]["moments"], range(3), strict=True):
             found.setdefault(letter, inertia[number][number])
@@ -249,7 +250,7 @@ def _torque_along(torque: Structure, axis: int, scene: Scene, given: Any) -> boo
     if torque["kind"] == "gravity":  # a pendulum: level axis, centre of mass beside it
         direction = _in_body(given.values["direction"], scene)
         return _negligible(direction[axis], direction) and fields["center_of_mass"][axis] == "0"
-    return torque["kind"] == "damping"
+    return bool(torque["kind"] == "damping")
 
 
 def _in_body(vector_s: tuple[Fraction, ...], scene: Scene) -> tuple[Fraction, ...]:
@@ -334,9 +335,4 @@ RULES: tuple[tuple[str, Callable[[Scene, Structure], Outcome]], ...] = (
     ("rotation out of one axis", _one_axis),
     ("rate of spin", _constant_spin),
 )
-"""The rules in their order: (what it is about, rule). Each returns structure, whether something is skipped, why, derivation."""
-
-
-def same_kernel(left: Mapping[str, Any], right: Mapping[str, Any]) -> bool:
-    """Return whether two structures share a kernel."""
-    return left == right
+"""The rules in their order: (what it is about, rule). A rule returns structure, whether it skips, why, derivation."""

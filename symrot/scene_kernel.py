@@ -3,7 +3,7 @@
 :mod:`symrot.codegen.scene_kernels` derives it; the cache keeps it as JSON; the propagator binds it to numbers.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -14,7 +14,12 @@ from symrot.kernel import Program, node_from_json, node_to_json
 
 __all__ = ["Conserved", "Parameters", "SceneKernel", "bind"]
 
-EXACT_FUNCTIONS = {"sqrt": number.sqrt, "sin": number.sin, "cos": number.cos, "abs": abs}
+EXACT_FUNCTIONS: dict[str, Callable[..., Fraction]] = {
+    "sqrt": number.sqrt,
+    "sin": number.sin,
+    "cos": number.cos,
+    "abs": abs,
+}
 
 Parameters = tuple[tuple[str, Node], ...]  # name in the kernel, formula over the physical constants
 
@@ -44,14 +49,16 @@ class SceneKernel:
         conserved: tuple[Conserved, ...], source: str,
     ) -> "SceneKernel":  # fmt: skip
         """Return the kernel of freshly derived programs."""
-        return cls({
-            "rates": rates.to_json(),
-            "rate_parameters": _saved(rate_parameters),
-            "quantities": quantities.to_json(),
-            "quantity_parameters": _saved(quantity_parameters),
-            "conserved": [list(item) for item in conserved],
-            "source": source,
-        })
+        return cls(
+            {
+                "rates": rates.to_json(),
+                "rate_parameters": _saved(rate_parameters),
+                "quantities": quantities.to_json(),
+                "quantity_parameters": _saved(quantity_parameters),
+                "conserved": [list(item) for item in conserved],
+                "source": source,
+            }
+        )
 
     @cached_property
     def rates(self) -> Program:

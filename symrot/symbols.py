@@ -8,7 +8,7 @@ UNIT: dict[Symbol, str] = {}
 
 
 def _make(names: str, unit: str, **assumptions: bool) -> tuple[Symbol, ...]:
-    assumptions = {"real": True} if not assumptions else assumptions
+    assumptions = assumptions or {"real": True}
     made = tuple(Symbol(name, **assumptions) for name in names.split())
     UNIT.update(dict.fromkeys(made, unit))
     return made
@@ -20,7 +20,7 @@ def unit_of(symbols: Iterable[Symbol]) -> dict[Symbol, str]:
 
 
 def constant(name: str) -> Symbol:
-    """Return the real symbol of a scene's own constant, e.g. the weight of a gravity torque; its unit is the scene's."""
+    """Return the real symbol of a constant of a scene, e.g. the weight in a gravity torque."""
     return Symbol(name, real=True)
 
 
@@ -59,3 +59,22 @@ map_shares = f_1, f_2, f_3 = _make("f_1 f_2 f_3", "1")
 
 # torque, body components
 torque_b = tau_1, tau_2, tau_3 = _make("tau_1 tau_2 tau_3", "N m")
+
+# rates of change, for derivations
+omega_rates = domega_1, domega_2, domega_3 = _make("domega_1 domega_2 domega_3", "rad/s^2")  # body components
+quaternion_rates = dq0, dq1, dq2, dq3 = _make("dq0 dq1 dq2 dq3", "1/s")
+
+# vectors in body components, for derivations
+center_of_mass = c_1, c_2, c_3 = _make("c_1 c_2 c_3", "m")  # from the fixed point
+vertical = gamma_1, gamma_2, gamma_3 = _make("gamma_1 gamma_2 gamma_3", "1")  # a direction fixed in space
+radius = r_1, r_2, r_3 = _make("r_1 r_2 r_3", "1")  # direction of the attracting centre's radius
+normal = k_1, k_2, k_3 = _make("k_1 k_2 k_3", "1")  # normal of the orbit
+rotor = h_1, h_2, h_3 = _make("h_1 h_2 h_3", "kg m^2/s")  # angular momentum of a rotor relative to the body
+offset = d_x, d_y, d_z = _make("d_x d_y d_z", "m")
+
+# scalars, for derivations
+(W,) = _make("W", "N", positive=True)  # weight
+(n,) = _make("n", "rad/s", positive=True)  # mean motion
+(Omega,) = _make("Omega", "rad/s", positive=True)
+excess = delta_1, delta_2 = _make("delta_1 delta_2", "kg m^2", positive=True)  # of one moment over another
+(epsilon,) = _make("epsilon", "1")

@@ -37,9 +37,9 @@ def _argument(argument: Argument) -> list[str]:
         return [f"{head:<12} {unit:<10} {meaning}"]
     lines = [head]
     for index, (name, unit, meaning) in enumerate(argument.components):
-        shown = f"     [{index}] {name:<12} {unit:<10} {meaning}".rstrip()
-        lines += wrap(shown, WIDTH, subsequent_indent=" " * 34, drop_whitespace=True, break_long_words=False) or [shown]
-    return [line if line.startswith(head) else "     " + line.strip() if line.startswith("[") else line for line in lines]
+        start = f"     [{index}] {name:<12} {unit:<10} "
+        lines += wrap(meaning, WIDTH, initial_indent=start, subsequent_indent=" " * len(start)) or [start.rstrip()]
+    return lines
 
 
 def banner(program: Program, description: Description, start: str, each: str, end: str) -> list[str]:
@@ -54,7 +54,7 @@ def banner(program: Program, description: Description, start: str, each: str, en
     start, each, end : str
         Comment marks of the language: first line, before each line, last line.
     """
-    lines = [f"{program.signature.name}: {description.title}", ""]
+    lines = [*wrap(f"{program.signature.name}: {description.title}", WIDTH), ""]
     for argument in program.signature.arguments:
         if argument.size:
             lines += _argument(argument)

@@ -2,8 +2,9 @@
 
 from dataclasses import replace
 from fractions import Fraction
+from textwrap import wrap
 
-from symrot.codegen.banner import Description, banner
+from symrot.codegen.banner import WIDTH, Description, banner
 from symrot.expression import Node, names, rename, text
 from symrot.kernel import Argument, Program
 
@@ -26,6 +27,16 @@ def c_expression(node: Node) -> str:
 def c_arguments(program: Program) -> str:
     """Return the parameter list of the one-sample function."""
     return ", ".join(_declared(argument) for argument in program.signature.arguments if argument.size)
+
+
+def _head(name: str, arguments: str, qualifier: str = "") -> str:
+    """Return a function's head, its arguments on lines of their own where one line is too long."""
+    head = f"{qualifier}void {name}({arguments})"
+    if len(head) <= WIDTH:
+        return head
+    unbroken = arguments.replace(", ", ",\0").replace(" ", "\1").replace("\0", " ")  # break after commas only
+    lines = wrap(unbroken, WIDTH - 4, break_long_words=False)
+    return f"{qualifier}void {name}(\n    " + "\n    ".join(lines).replace("\1", " ") + ")"
 
 
 def _declared(argument: Argument) -> str:
@@ -82,7 +93,7 @@ def c_function(program: Program, qualifier: str = "") -> str:
     qualifier : str
         In front of the definition, e.g. ``"static inline "``.
     """
-    head = f"{qualifier}void {program.signature.name}({c_arguments(program)})"
+    head = _head(program.signature.name, c_arguments(program), qualifier)
     lines = [head, "{", *_silenced(program, "    "), *_body(program, "{i}", "    "), "}"]
     return "\n".join(lines) + "\n"
 
@@ -103,7 +114,7 @@ def _batch(program: Program) -> list[str]:
     used = _used(program)
     each = {a.name: f"{a.name}_k" for a in scalars}  # a scalar of one sample is an array in a batch
     return [
-        f"void {program.signature.name}_batch({_batch_arguments(program)})",
+        _head(f"{program.signature.name}_batch", _batch_arguments(program)),
         "{",
         *_silenced(program, "    "),
         "    for (size_t k = 0; k < n; ++k) {",
@@ -138,11 +149,12 @@ def c_header(program: Program, description: Description) -> str:
     guard = f"SYMROT_{name.upper()}_H"
     return "\n".join([
         *banner(program, description, "/*", " *", " */"), f"#ifndef {guard}", f"#define {guard}", "",
-        "#include <stddef.h>", "", "#ifndef SYMROT_RESTRICT", "#ifdef __cplusplus", "#define SYMROT_RESTRICT __restrict",
-        "#else", "#define SYMROT_RESTRICT restrict", "#endif", "#endif", "", "#ifdef __cplusplus", 'extern "C" {', "#endif",
-        "", "/* one sample */", f"void {name}({c_arguments(program)});", "",
+        "#include <stddef.h>", "", "#ifndef SYMROT_RESTRICT", "#ifdef __cplusplus",
+        "#define SYMROT_RESTRICT __restrict", "#else", "#define SYMROT_RESTRICT restrict", "#endif", "#endif", "",
+        "#ifdef __cplusplus", 'extern "C" {', "#endif",
+        "", "/* one sample */", f"{_head(name, c_arguments(program))};", "",
         "/* n samples; component i of sample k stands at [i*n + k] */",
-        f"void {name}_batch({_batch_arguments(program)});", "",
+        f"{_head(f'{name}_batch', _batch_arguments(program))};", "",
         "#ifdef __cplusplus", "}", "#endif", "", "#endif",
     ]) + "\n"  # fmt: skip
 
@@ -150,6 +162,7 @@ def c_header(program: Program, description: Description) -> str:
 def c_source(program: Program, description: Description) -> str:
     """Return the C99 text of a kernel. Same program, same bytes: no clock, no path, no environment."""
     return "\n".join([
-        *banner(program, description, "/*", " *", " */"), *_includes(program), f'#include "{program.signature.name}.h"', "",
+        *banner(program, description, "/*", " *", " */"), *_includes(program),
+        f'#include "{program.signature.name}.h"', "",
         c_function(program), *_batch(program),
     ]) + "\n"  # fmt: skip

@@ -202,7 +202,7 @@ class _Gather:
 
 
 def _oriented(value: Expr) -> tuple[int, Expr]:
-    """Return sign and magnitude-like part of a constant: the same part for a and for -a, for (A - C)/A and (C - A)/A."""
+    """Return sign and size of a constant: the same size for a and for -a, for (A - C)/A and for (C - A)/A."""
     sign, factors = 1, []
     for factor in Mul.make_args(value):
         base, power = factor.as_base_exp()

@@ -12,7 +12,9 @@ from symrot.kernel import Program
 
 __all__ = ["load_numpy_kernel"]
 
-_UNNAMED = Description("kernel of a scene", "all states", "derivations/euler_equations.md", "symrot emit --target numpy")
+_UNNAMED = Description(
+    "kernel of a scene", "all states", "derivations/euler_equations.md", "symrot emit --target numpy"
+)
 
 
 def load_numpy_kernel(program: Program) -> Callable[..., Any]:

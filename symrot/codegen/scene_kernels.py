@@ -1,6 +1,8 @@
 """Derive the kernels of a plan: from its structure to programs and C text."""
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
+from fractions import Fraction
 from typing import Any
 
 from sympy import Expr, Symbol
@@ -11,11 +13,12 @@ from symrot.codegen.c_source import c_function
 from symrot.codegen.lower import Lowered, lower
 from symrot.dynamics.equations import PLANAR_ANGLE, Equations, equations_of_motion
 from symrot.dynamics.invariants import find_invariants
-from symrot.kernel import Argument, Signature
+from symrot.expression import text
+from symrot.kernel import Argument, Program, Signature
 from symrot.kinematics.quaternion import dcm_of
-from symrot.scene_kernel import Conserved, SceneKernel
+from symrot.scene_kernel import Conserved, Parameters, SceneKernel, bind
 
-__all__ = ["derive_scene_kernel", "rates_program", "scene_description"]
+__all__ = ["derive_scene_kernel", "rates_program", "scene_description", "with_values"]
 
 MEANING = {
     **{f"omega_{i + 1}": f"angular velocity about body axis {i + 1}" for i in range(3)},
@@ -67,8 +70,8 @@ def derive_scene_kernel(
 ) -> SceneKernel:
     """Return the kernels of a plan's structure, with its conserved quantities proven.
 
-    ``on_source`` gets the C text of the rates and the number of their parameters as soon as they are there, so that a compiler can work while the rest is
-    derived.
+    ``on_source`` gets the C text of the rates and the number of their parameters as soon as they are there, so that
+    a compiler can work while the rest is derived.
     """
     equations = equations_of_motion(structure)
     rates = rates_program(equations, RATES)
@@ -81,19 +84,27 @@ def derive_scene_kernel(
         Conserved(item.name, item.unit, f"conserved_{i}" if item.kept else "", item.kept, item.reason)
         for i, item in enumerate(invariants)
     )
-    return SceneKernel.of(
-        rates.program, rates.parameters, quantities.program, quantities.parameters, conserved, source
-    )
+    return SceneKernel.of(rates.program, rates.parameters, quantities.program, quantities.parameters, conserved, source)
 
 
 def _with_parameters(rates: Lowered) -> str:
     """Return the C text of the rates under one calling convention: ``(t, y, p, dy)``, with or without parameters."""
-    text = c_function(rates.program, "static inline ")
+    source = c_function(rates.program, "static inline ")
     if rates.parameters:
-        return text
-    bare = text.replace(f" {RATES}(", f" {RATES}_bare(", 1)
+        return source
+    bare = source.replace(f" {RATES}(", f" {RATES}_bare(", 1)
     adapter = f"static inline void {RATES}(double t, const double *y, const double *p, double *dy)"
     return f"{bare}\n{adapter}\n{{\n    (void)p;\n    {RATES}_bare(t, y, dy);\n}}\n"
+
+
+def with_values(program: Program, parameters: Parameters, constants: Mapping[str, Fraction]) -> Program:
+    """Return the program with the value of each parameter beside its formula, as the emitted head shows them."""
+    values = bind(parameters, constants)
+    shown = tuple(
+        (name, "", f"{text(formula)} = {value!r}") for (name, formula), value in zip(parameters, values, strict=True)
+    )
+    arguments = tuple(replace(a, components=shown) if a.name == "p" else a for a in program.signature.arguments)
+    return replace(program, signature=replace(program.signature, arguments=arguments))
 
 
 def scene_description(title: str, name: str, target: str) -> Description:

@@ -15,10 +15,11 @@ from sympy import Expr, Integer, Matrix, S, Symbol, cos, diag, eye, sin, zeros
 
 from symrot import symbols
 from symrot.dynamics.torques import Motion, TorqueLaw, collected_cross, torque_law
+from symrot.errors import InputError
 from symrot.kinematics.quaternion import qmul, quaternion_rates, unit_relation
 from symrot.symbols import constant
 
-__all__ = ["Equations", "angular_acceleration", "equations_of_motion", "inertia_matrix", "inverse"]
+__all__ = ["Equations", "angular_acceleration", "equations_of_motion", "euler_equations", "inertia_matrix", "inverse"]
 
 PLANAR_ANGLE = constant("theta")
 TENSOR_NAMES = (("I_xx", "I_xy", "I_xz"), ("I_xy", "I_yy", "I_yz"), ("I_xz", "I_yz", "I_zz"))
@@ -82,8 +83,47 @@ def angular_acceleration(inertia: Matrix, omega_b: Matrix, torque: Matrix, momen
         h of an internal rotor, kg m^2/s.
     """
     rotor = zeros(3, 1) if momentum is None else momentum
-    gyroscopic = collected_cross(omega_b, inertia * omega_b, omega_b)
-    return inverse(inertia) * (torque - omega_b.cross(rotor) - gyroscopic)
+    gyroscopic = collected_cross(inertia * omega_b, omega_b, omega_b)  # (B - C) omega_2 omega_3, ...
+    return inverse(inertia) * (torque - omega_b.cross(rotor) + gyroscopic)
+
+
+def euler_equations(inertia: Any = symbols.principal, torque: Any = symbols.torque_b) -> Matrix:
+    """Return the angular acceleration of a rigid body, solved from Euler's equations in body axes.
+
+    Parameters
+    ----------
+    inertia : 3 principal moments or 3x3 tensor, of Expr
+        kg m^2, about the centre of mass or a fixed point.
+    torque : 3 Expr, optional
+        N m, about the same point, body components; ``None`` for a free body.
+
+    Returns
+    -------
+    Matrix, shape (3, 1)
+        rad/s^2, body components, in omega_1, omega_2, omega_3.
+
+    Raises
+    ------
+    InputError
+        For an inertia that is not 3 moments or a symmetric 3x3 tensor, or a torque of other size.
+
+    Notes
+    -----
+    Proof: ``derivations/euler_equations.md``. Source: Landau & Lifshitz, Mechanics, 3rd ed., eq. (36.4).
+
+    Examples
+    --------
+    >>> euler_equations(torque=None)[0]
+    omega_2*omega_3*(B - C)/A
+    """
+    given = Matrix(inertia)
+    tensor = diag(*given) if len(given) == 3 else given
+    if tensor.shape != (3, 3) or not tensor.is_symmetric():
+        raise InputError(f"inertia: expected 3 principal moments or a symmetric 3x3 tensor in kg m^2, got {inertia}")
+    moment = zeros(3, 1) if torque is None else Matrix(torque)
+    if len(moment) != 3:
+        raise InputError(f"torque: expected 3 body components in N m, got {torque}")
+    return angular_acceleration(tensor, Matrix(symbols.omega_b), moment.reshape(3, 1))
 
 
 def inverse(tensor: Matrix) -> Matrix:
@@ -147,6 +187,4 @@ def equations_of_motion(structure: Mapping[str, Any]) -> Equations:
         rates += list(quaternion_rates("body") * motion.omega_b) if attitude else []
     elif attitude:
         rates.append(symbols.omega_b[structure["planar"]])
-    return Equations(
-        (*states, *attitude), tuple(rates), definitions, motion, laws, momentum_b, tuple(relations)
-    )
+    return Equations((*states, *attitude), tuple(rates), definitions, motion, laws, momentum_b, tuple(relations))

@@ -18,7 +18,16 @@ from symrot.expression import FUNCTIONS, Node, evaluate, parse
 from symrot.kinematics.quaternion import conjugate, dcm_of, qmul, quaternion_rates
 from symrot.symbols import constant
 
-__all__ = ["LAWS", "Motion", "TorqueLaw", "collected_cross", "field_value", "formula", "torque_law", "torque_of_potential"]
+__all__ = [
+    "LAWS",
+    "Motion",
+    "TorqueLaw",
+    "collected_cross",
+    "field_value",
+    "formula",
+    "torque_law",
+    "torque_of_potential",
+]
 
 
 @dataclass(frozen=True)
@@ -167,5 +176,5 @@ def torque_of_potential(law: TorqueLaw) -> Matrix:
     With ``dq = 1/2 q (0, omega_b) dt`` the work of the torque is ``tau . omega_b dt = -dV``, for every omega_b.
     """
     rates = quaternion_rates("body") * Matrix(symbols.omega_b)
-    change = sum(law.potential.diff(q) * rate for q, rate in zip(symbols.quaternion, rates, strict=True))
-    return -ImmutableMatrix([change.diff(w) for w in symbols.omega_b])
+    gradient = Matrix([sympy.S.Zero if law.potential is None else law.potential]).jacobian(symbols.quaternion)
+    return -ImmutableMatrix((gradient * rates).jacobian(symbols.omega_b).T)

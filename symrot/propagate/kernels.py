@@ -18,7 +18,7 @@ from symrot.planner import Plan
 from symrot.propagate.dop853 import translation_unit
 from symrot.scene_kernel import SceneKernel
 
-__all__ = ["compiled", "missing_compiler", "scene_kernel"]
+__all__ = ["compiled", "error_blocks", "missing_compiler", "scene_kernel"]
 
 PACKAGE = Path(__file__).parents[1]
 ATTITUDE_SCALE = 1.0  # a quaternion has unit norm; an error of an angle counts in rad
@@ -99,9 +99,13 @@ def compiled(plan: Plan) -> tuple[SceneKernel, Path]:
     return kernel, outcome["path"]
 
 
-def _library_source(plan: Plan, source: str, parameters: int) -> str:
+def error_blocks(plan: Plan) -> tuple[list[int], list[float]]:
+    """Return the edges and the scales of the blocks of states whose errors are judged apart: omega, attitude."""
     rates = sum(name.startswith("omega") for name in plan.states)
     count = len(plan.states)
     edges = [0, *([rates] if 0 < rates < count else []), count]
-    scales = [RATE_SCALE] * (rates > 0) + [ATTITUDE_SCALE] * (count > rates)
-    return translation_unit(source, "symrot_rates", count, parameters, edges, scales)
+    return edges, [RATE_SCALE] * (rates > 0) + [ATTITUDE_SCALE] * (count > rates)
+
+
+def _library_source(plan: Plan, source: str, parameters: int) -> str:
+    return translation_unit(source, "symrot_rates", len(plan.states), parameters, *error_blocks(plan))

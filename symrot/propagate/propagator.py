@@ -1,7 +1,6 @@
 """From a scene to its motion: choose a method, bind the kernel to numbers once, then propagate as often as asked."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -14,7 +13,7 @@ from symrot.errors import InputError
 from symrot.planner import Plan, make_plan
 from symrot.propagate import dop853
 from symrot.propagate.dop853 import Stats
-from symrot.propagate.kernels import compiled, missing_compiler, scene_kernel
+from symrot.propagate.kernels import compiled, error_blocks, missing_compiler, scene_kernel
 from symrot.propagate.trajectory import ARRAY_FUNCTIONS, Trajectory
 from symrot.scene import Initial, Scene, load_scene
 from symrot.scene_kernel import SceneKernel, bind
@@ -113,18 +112,21 @@ class Motion:
         return INTEGRATORS[self.choice.method.partition(":")[0]](self, times)
 
     @cached_property
-    def rates(self) -> Callable[[float, Floats], Floats]:
-        """The emitted NumPy kernel as ``f(t, y)``."""
+    def rates(self) -> Callable[..., Any]:
+        """The emitted NumPy kernel as ``f(t, y, p)``."""
         from symrot.codegen.numpy_kernel import load_numpy_kernel
 
         function = load_numpy_kernel(self.kernel.rates)
-        parameters = self.rate_parameters
-        return (lambda t, y: function(t, y, parameters)) if parameters else function
+        return function if self.rate_parameters else lambda t, y, p: function(t, y)
 
     def solution(self, trajectory: Trajectory) -> Callable[[ArrayLike], Floats]:
         """Return omega and quaternion as a function of time over the trajectory's span."""
         times = trajectory.t
-        span = (min(self.start, float(times.min())), max(self.start, float(times.max()))) if len(times) else (self.start,) * 2
+        span = (
+            (min(self.start, float(times.min())), max(self.start, float(times.max())))
+            if len(times)
+            else (self.start,) * 2
+        )
         states = self._dense(span)
         names = [f"omega_{i} of t" for i in (1, 2, 3)]
         names += [f"q{i} of t" for i in range(4)] if trajectory.has_attitude else []
@@ -141,11 +143,19 @@ class Motion:
         """Return the states as a function of time."""
         if self.choice.method == "constant":
             return lambda t: np.empty((len(t), 0))
-        if self.library is None:
-            return lambda t: self.integrate(t)[0]
-        return dop853.record(
-            self.library, self.rate_parameters, self.plan.initial_state, self.start, span, self.tolerance
-        )
+        start = (self.rate_parameters, self.plan.initial_state, self.start)
+        if self.library is not None:
+            return dop853.record(self.library, *start, span, self.tolerance)
+        from symrot.propagate import fallback
+
+        return fallback.record(self.rates, *start, span, self.tolerance, **self.scipy_options)
+
+    @property
+    def scipy_options(self) -> dict[str, Any]:
+        """How the fallback judges errors, and by which of SciPy's methods it steps."""
+        blocks, scales = error_blocks(self.plan)
+        solver = self.choice.method.partition(":")[2]
+        return {"blocks": blocks, "scales": scales, **({"method": solver} if solver else {})}
 
 
 def _keep(motion: Motion, times: Floats) -> tuple[Floats, Stats]:
@@ -162,8 +172,8 @@ def _dop853(motion: Motion, times: Floats) -> tuple[Floats, Stats]:
 def _scipy(motion: Motion, times: Floats) -> tuple[Floats, Stats]:
     from symrot.propagate import fallback
 
-    solver = motion.choice.method.partition(":")[2] or "DOP853"
-    return fallback.integrate(motion.rates, motion.plan.initial_state, motion.start, times, motion.tolerance, solver)
+    start = (motion.rate_parameters, motion.plan.initial_state, motion.start)
+    return fallback.integrate(motion.rates, *start, times, motion.tolerance, **motion.scipy_options)
 
 
 INTEGRATORS: dict[str, Callable[[Motion, Floats], tuple[Floats, Stats]]] = {
@@ -269,13 +279,13 @@ def _initial(scene: Scene, omega: ArrayLike | None, quaternion: ArrayLike | None
     initial = scene.initial
     if omega is not None:
         x, y, z = (number.read(value, "omega") for value in _vector(omega, 3, "omega", "rad/s"))
-        initial = replace(initial, omega_b=(x, y, z))
+        initial = initial._replace(omega_b=(x, y, z))
     if quaternion is not None:
         q = [number.read(value, "quaternion") for value in _vector(quaternion, 4, "quaternion", "1")]
         norm = number.sqrt(sum((value * value for value in q), start=q[0] * 0))
         if norm == 0:
             raise InputError(f"quaternion: expected a quaternion that is not zero, got {number.show(q)}")
-        initial = replace(initial, quaternion=(q[0] / norm, q[1] / norm, q[2] / norm, q[3] / norm))
+        initial = initial._replace(quaternion=(q[0] / norm, q[1] / norm, q[2] / norm, q[3] / norm))
     return initial
 
 

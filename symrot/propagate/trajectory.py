@@ -101,8 +101,8 @@ class Trajectory:
     def _need_attitude(self) -> None:
         if not self.has_attitude:
             raise InputError(
-                "the attitude was not computed, since neither a torque nor the output of the scene asks for it: expected "
-                '"quaternion" among output.quantities'
+                "the attitude was not computed, since neither a torque nor the output of the scene asks for it: "
+                'expected "quaternion" among output.quantities'
             )
 
     @cached_property
@@ -134,7 +134,8 @@ class Trajectory:
         return conversions.quaternion_to_euler(self.quaternion, sequence)[1]
 
     def _to_space(self, vectors_b: Floats) -> Floats:
-        return np.einsum("nij,nj->ni", self.dcm, vectors_b)
+        vectors_s: Floats = np.einsum("nij,nj->ni", self.dcm, vectors_b)
+        return vectors_s
 
     @cached_property
     def omega_space(self) -> Floats:
@@ -212,9 +213,9 @@ class Trajectory:
         return float(max(np.max(np.abs(values)), np.max(np.abs(self.kinetic_energy))))
 
     def sol(self, t: ArrayLike) -> Floats:
-        """Return omega and quaternion at any time of the span by dense output, shape (7, m), or (3, m) without attitude.
+        """Return omega and quaternion at any time of the span by dense output, shape (7, m).
 
-        A single time gives shape (7,). Steps are recorded on the first call.
+        Without attitude the shape is (3, m). A single time gives shape (7,). Steps are recorded on the first call.
         """
         return self._motion.solution(self)(t)
 
