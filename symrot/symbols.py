@@ -63,6 +63,9 @@ torque_b = tau_1, tau_2, tau_3 = _make("tau_1 tau_2 tau_3", "N m")
 # rates of change, for derivations
 omega_rates = domega_1, domega_2, domega_3 = _make("domega_1 domega_2 domega_3", "rad/s^2")  # body components
 quaternion_rates = dq0, dq1, dq2, dq3 = _make("dq0 dq1 dq2 dq3", "1/s")
+rotation_vector_rates = _make("dv1 dv2 dv3", "rad/s")
+rodrigues_rates = _make("dg1 dg2 dg3", "1/s")
+mrp_rates = _make("ds1 ds2 ds3", "1/s")
 
 # vectors in body components, for derivations
 center_of_mass = c_1, c_2, c_3 = _make("c_1 c_2 c_3", "m")  # from the fixed point

@@ -1,0 +1,207 @@
+"""Derivations: chains of equations, each of which holds or cannot be written down.
+
+A :class:`Derivation` is built step by step. A step whose two sides are not equal by the exact normal form
+(:mod:`symrot.exact`) raises :class:`ProofError`, so whatever a derivation shows has been proven while it was built.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from sympy import Expr, ImmutableMatrix, Matrix, MatrixBase, MatrixExpr, S, factor, sympify
+
+from symrot.errors import SymrotError
+from symrot.exact.decide import decide, normal_form
+from symrot.exact.ring import as_zero
+
+__all__ = ["Derivation", "Passage", "ProofError", "Section", "Step"]
+
+
+class ProofError(SymrotError):
+    """A step of a derivation that does not hold."""
+
+
+@dataclass(frozen=True)
+class Section:
+    """A heading."""
+
+    title: str
+
+
+@dataclass(frozen=True)
+class Passage:
+    """What is given or defined, in words, perhaps with equations (left, right); nothing in it is proven."""
+
+    text: str
+    equations: tuple[tuple[Any, Any], ...] = ()
+
+
+@dataclass(frozen=True)
+class Step:
+    """A proven relation ``left = right``, or ``left > 0``.
+
+    Attributes
+    ----------
+    claim : str
+        What it says, a sentence.
+    left, right : Expr or Matrix
+        As the derivation built them, not simplified.
+    reason : str
+        Why, the end of a sentence that begins with "because".
+    relation : str
+        ``"="`` or ``">"``.
+    hypotheses : tuple of Expr
+        Each is zero where the step holds.
+    conditions : tuple
+        Denominators that must not vanish, radicands that must not be negative.
+    named : str
+        LaTeX of what the left side is, shown in its place where its formula is long; empty otherwise.
+    shown : Any
+        The right side as a reader wants it (LaTeX, or a product left as it is), where that differs; None otherwise.
+    source : str
+        Book and page, where the step is printed elsewhere.
+    """
+
+    claim: str
+    left: Any
+    right: Any
+    reason: str
+    relation: str = "="
+    hypotheses: tuple[Expr, ...] = ()
+    conditions: tuple[Any, ...] = ()
+    named: str = ""
+    shown: Any = None
+    source: str = ""
+
+
+@dataclass
+class Derivation:
+    """A page of a textbook in code: what is given, and what follows from it, step by step.
+
+    Parameters
+    ----------
+    name : str
+        Of the catalogue file, e.g. ``"symmetric_top"``.
+    title : str
+    source : str
+        Where it is treated in print.
+    about : str
+        What it shows and what it is for, one paragraph.
+    """
+
+    name: str
+    title: str
+    source: str = ""
+    about: str = ""
+    items: list[Section | Passage | Step] = field(default_factory=list)
+
+    @property
+    def steps(self) -> tuple[Step, ...]:
+        """The proven steps, in order."""
+        return tuple(item for item in self.items if isinstance(item, Step))
+
+    def section(self, title: str) -> None:
+        """Begin a section."""
+        self.items.append(Section(title))
+
+    def given(self, text: str, *equations: tuple[Any, Any]) -> None:
+        """State what is assumed, in words and perhaps in equations ``(left, right)``; text in a pair is LaTeX."""
+        self.items.append(Passage(text, tuple(equations)))
+
+    def define(self, text: str, left: Any, right: Any) -> Any:
+        """Give something a name, ``left`` (a symbol, or LaTeX), and return what it stands for."""
+        self.items.append(Passage(text, ((left, right),)))
+        return right
+
+    def step(
+        self,
+        claim: str,
+        left: Any,
+        right: Any,
+        *,
+        because: str,
+        relations: Sequence[Any] = (),
+        named: str = "",
+        shown: Any = None,
+        source: str = "",
+    ) -> Step:
+        """Add ``left = right``, proven; return the step.
+
+        Parameters
+        ----------
+        claim : str
+        left, right : Expr or Matrix
+            Of equal shape; 0 stands for a zero matrix.
+        because : str
+        relations : sequence of Expr or Eq
+            Hypotheses, e.g. unit norm.
+        named : str
+            LaTeX to show in place of the left side.
+        shown : str, Expr or Matrix
+            To show in place of the right side: the same thing, written for a reader.
+        source : str
+
+        Raises
+        ------
+        ProofError
+            If left - right does not reduce to zero: what is left of it, and a point where the sides differ.
+        InputError
+            For what :func:`symrot.exact.decide.decide` refuses.
+        """
+        verdict = decide(left, right, relations)
+        if verdict.verdict != "true":
+            shown = f" ({verdict.counterexample})" if verdict.counterexample else ""
+            raise ProofError(
+                f"{self.name}, step {len(self.steps) + 1}, {claim!r} does not hold: left - right = "
+                f"{_short(verdict.residual)}{shown}"
+            )
+        hypotheses = tuple(zero for zero in map(as_zero, relations) if zero != 0)
+        right = Matrix.zeros(*left.shape) if right == 0 and isinstance(left, MatrixBase) else right
+        left, right = _frozen(left), _frozen(right)
+        return self._add(Step(claim, left, right, because, "=", hypotheses, verdict.conditions, named, shown, source))
+
+    def positive(self, claim: str, expression: Any, *, because: str, named: str = "") -> Step:
+        """Add ``expression > 0``, which must follow from the signs of the symbols in it; return the step.
+
+        Raises
+        ------
+        ProofError
+            If it does not follow term by term, factor by factor.
+        """
+        reduced = factor(normal_form(expression))
+        if reduced.is_positive is not True:
+            raise ProofError(f"{self.name}, {claim!r}: the signs of the symbols do not make {reduced} positive")
+        return self._add(Step(claim, _frozen(expression), S.Zero, because, ">", named=named))
+
+    def _add(self, step: Step) -> Step:
+        self.items.append(step)
+        return step
+
+    def markdown(self) -> str:
+        """Return the derivation as a Markdown page, with the formulas in ``$$``."""
+        from symrot.proof_pages import markdown
+
+        return markdown(self)
+
+    def latex(self) -> str:
+        """Return the derivation as a LaTeX document."""
+        from symrot.proof_pages import latex_document
+
+        return latex_document(self)
+
+
+def _frozen(side: Any) -> Any:
+    side = sympify(side)
+    if isinstance(side, MatrixExpr):
+        side = side.as_explicit()
+    return ImmutableMatrix(side) if isinstance(side, MatrixBase) else side
+
+
+def _short(residual: Any) -> str:
+    """Return the first wrong entry of a residual, cut to a line."""
+    if isinstance(residual, MatrixBase):
+        place = next(n for n, entry in enumerate(residual) if entry != 0)
+        text = f"{residual[place]} in entry ({place // residual.cols + 1}, {place % residual.cols + 1})"
+    else:
+        text = str(residual)
+    return text if len(text) <= 160 else text[:157] + "..."
