@@ -127,7 +127,7 @@ def shipped_scenes() -> list[tuple[str, str, str]]:
 
 
 def _schema(value: Any, where: str) -> int:
-    if isinstance(value, bool) or value != SCHEMA:
+    if isinstance(value, bool) or not isinstance(value, int) or value != SCHEMA:
         expected(where, f"{SCHEMA}, the format this symrot reads", value)
     return SCHEMA
 

@@ -43,8 +43,9 @@ def find_scene(source: str | Path) -> Path:
             return path
     except OSError as reason:
         raise InputError(f"{str(source)[:80]}: expected a scene file, got {reason.strerror}") from None
+    label = str(source) if str(source).isprintable() else repr(str(source))
     said = " ".join(filter(None, (nearest(path.stem, names), f"the shipped scenes are {', '.join(names)}")))
-    raise InputError(f"{source}: expected a scene or a scene file, there is none ({said})")
+    raise InputError(f"{label}: expected a scene or a scene file, there is none ({said})")
 
 
 def read_toml(path: Path, label: str) -> dict[str, Any]:

@@ -32,7 +32,8 @@ class Entry(NamedTuple):
 
 def under(where: str, key: str) -> str:
     """Return the place of a key in the table at ``where``: mass in ``"f.toml: body"`` is ``"f.toml: body.mass"``."""
-    return f"{where}{key}" if where.endswith(": ") or not where else f"{where}.{key}"
+    shown = str(key)[:80] if str(key).isprintable() else repr(key)[:80]
+    return f"{where}{shown}" if where.endswith(": ") or not where else f"{where}.{shown}"
 
 
 def expected(where: str, expectation: str, value: object = ..., reason: str = "") -> NoReturn:
@@ -63,7 +64,7 @@ def read_table(value: object, where: str, entries: Mapping[str, Entry], what: st
     for key in found:
         if key not in entries:
             reason = ", ".join(filter(None, ("unknown key", nearest(key, entries))))
-            expected(under(where, str(key)[:80]), f"one of the keys {', '.join(entries)} of {what}", found[key], reason)
+            expected(under(where, key), f"one of the keys {', '.join(entries)} of {what}", found[key], reason)
     for key, entry in entries.items():
         if entry.required and key not in found:
             expected(under(where, key), f"a value, the key is missing ({what} needs it)")
@@ -109,9 +110,9 @@ def vector(unit: str, sign: str = "any") -> Reader:
 
 
 def text(value: Any, where: str) -> str:
-    """Read a text of one line or more, at most 1000 characters."""
-    if not isinstance(value, str) or len(value) > 1000:
-        expected(where, "a text of at most 1000 characters", value)
+    """Read a line of text: at most 1000 characters, none of which could disturb a terminal."""
+    if not isinstance(value, str) or len(value) > 1000 or not value.isprintable():
+        expected(where, "a line of text of at most 1000 characters", value)
     return value
 
 

@@ -10,7 +10,7 @@ from symrot.errors import InputError
 from symrot.number import PI, read, show, sqrt
 from symrot.scene_attitude import Vector, read_attitude
 from symrot.scene_body import Body
-from symrot.scene_reader import Entry, Reader, choice, expected, nearest, number, read_table, table, vector
+from symrot.scene_reader import Entry, Reader, choice, expected, nearest, number, read_table, table, under, vector
 
 __all__ = ["Torque", "read_torque"]
 
@@ -87,8 +87,8 @@ def _parameters(value: Any, where: str) -> dict[str, Fraction]:
         expected(where, f"at most {MOST_PARAMETERS} parameters", len(found))
     taken = {*EXPRESSION_NAMES, *expression.FUNCTIONS, "pi"}
     for name in found:
-        if not (name.isascii() and name.isidentifier()) or len(name) > 40 or name in taken:
-            expected(f"{where}.{name[:40]}", "a parameter named by letters, digits and underscores, and not as what a "
+        if not isinstance(name, str) or not (name.isascii() and name.isidentifier()) or len(name) > 40 or name in taken:
+            expected(under(where, name), "a parameter named by letters, digits and underscores, and not as what a "
                      f"formula knows already ({', '.join(sorted(taken))})", name)  # fmt: skip
     return {name: _parameter(item, f"{where}.{name}") for name, item in found.items()}
 

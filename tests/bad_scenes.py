@@ -64,6 +64,8 @@ CHANGES = [
     ("unknown table", {"torque": "[[torques]]\nkind = \"rotor\""}, ("torques", "did you mean 'torque'")),
     ("unknown key at the top", {"head": "schema = 1\ntitel = 'x'"}, ("titel", "did you mean 'title'")),
     ("title is a number", {"head": "schema = 1\ntitle = 5"}, ("title", "text", "got 5")),
+    ("title that clears the screen", {"head": 'schema = 1\ntitle = "\\u001b[2J"'}, ("title", "line", "x1b")),
+    ("key of two lines", {"head": 'schema = 1\n"a\\nb" = 1'}, (": 'a\\nb': ", "unknown key")),
     ("a date", {"head": "schema = 1\ntitle = 2024-01-01"}, ("title", "text", "2024")),
     ("no body", {"body": ""}, ("body", "missing")),
     ("body is a number", {"head": "schema = 1\nbody = 3", "body": ""}, ("body", "table", "got 3")),

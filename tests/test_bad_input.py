@@ -1,6 +1,12 @@
 """Every scene that cannot be used is refused in one clear sentence, quickly."""
 
+import copy
+import random
 import time
+import tomllib
+from decimal import Decimal
+from functools import reduce
+from operator import getitem
 from pathlib import Path
 
 import pytest
@@ -8,6 +14,7 @@ from bad_scenes import GOOD, PARTS, SHAPE, TOP, bad_scenes, base_scene
 
 from symrot.errors import InputError
 from symrot.scene import Scene, load_scene
+from symrot.scene_file import SHIPPED
 
 BAD = bad_scenes()
 
@@ -54,6 +61,35 @@ def test_a_scene_that_is_not_there_is_named(source, words):
         load_scene(source)
     for word in words:
         assert word in str(error.value)
+
+
+STRANGE = [
+    None, True, 0, -1, 1e308, 1e-308, float("nan"), float("inf"), 10**400, Decimal("sNaN"), "", "x", "1/0", "tan(pi/2)",
+    "(9**64)**64", "sqrt(-1)", "\n", [], [1], [1, 2, 3], [None] * 3, [0, 0, 0], {}, {"a": 1}, b"x", 1j, object(), "1/x",
+]  # fmt: skip
+
+
+def places(node, place=()):
+    """Yield the place of every value in a nested scene."""
+    items = node.items() if isinstance(node, dict) else enumerate(node) if isinstance(node, list) else ()
+    for key, value in items:
+        yield (*place, key)
+        yield from places(value, (*place, key))
+
+
+@pytest.mark.parametrize("path", sorted(SHIPPED.glob("*.toml")), ids=lambda path: path.stem)
+def test_a_strange_value_anywhere_is_read_or_refused_in_one_sentence(path):
+    """Every value of every shipped scene is replaced by things that it should never be: no other error gets out."""
+    chance = random.Random(path.stem)
+    content = tomllib.loads(path.read_text(), parse_float=Decimal)
+    for *table, key in places(content):
+        for value in chance.sample(STRANGE, 4):
+            changed = copy.deepcopy(content)
+            reduce(getitem, table, changed)[key] = value
+            try:
+                Scene.from_dict(changed, "mine")
+            except InputError as error:
+                assert str(error).startswith("mine: ") and "expected" in str(error) and "\n" not in str(error)
 
 
 @pytest.mark.parametrize("content", [None, [], "schema = 1", 3, {}, {"schema": 1}, {1: 2}])
