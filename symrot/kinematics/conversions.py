@@ -1,0 +1,483 @@
+"""Numeric conversions between attitude descriptions, for arrays of any leading shape. NumPy alone.
+
+Conventions: :mod:`symrot.conventions`: quaternions ``(..., 4)`` scalar first, body to space; dcm ``(..., 3, 3)`` is
+``dcm_sb``; Euler angles ``(..., 3)`` in order of application; angles in rad unless ``degrees=True``.
+
+Accuracy. Errors are a few units of 1e-16 for every attitude: near the identity (relative, down to 1e-300 rad), near
+half turns, at gimbal lock. No formula uses acos or asin.
+
+Bad rows. Quaternions need not be unit and may have any magnitude. A zero, infinite or NaN quaternion gives NaN in its
+own row; other rows are untouched. There are no warnings. What is not unique is chosen as the docstring says and, for
+Euler angles and Rodrigues parameters, reported in a mask. Only wrong shapes and types are errors (``InputError``).
+
+Inside, an array is taken apart into blocks of components, one contiguous row per component, so that every operation
+runs over many samples and its temporaries stay in cache.
+"""
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symrot.conventions import parse_sequence
+from symrot.errors import InputError
+
+__all__ = [
+    "LOCK",
+    "axis_angle_to_quaternion",
+    "canonical",
+    "dcm_to_euler",
+    "dcm_to_quaternion",
+    "euler_to_dcm",
+    "euler_to_quaternion",
+    "from_scipy_order",
+    "mrp_shadow",
+    "mrp_to_quaternion",
+    "multiply",
+    "normalize",
+    "quaternion_to_axis_angle",
+    "quaternion_to_dcm",
+    "quaternion_to_euler",
+    "quaternion_to_mrp",
+    "quaternion_to_rodrigues",
+    "quaternion_to_rotation_vector",
+    "rodrigues_to_quaternion",
+    "rotation_vector_to_quaternion",
+    "to_scipy_order",
+]
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+Components = Sequence[Array] | Array  # one array per component, all of one length
+
+LOCK = 2.0**-51  # rad from lock: below it a quaternion in double precision cannot tell the two angles apart
+TWO_PI, TWO_PI_LOW = 2 * np.pi, 2.4492935982947064e-16  # their sum is 2 pi to 107 bits
+BLOCK = 8192  # samples taken at once
+SAFE = 1e-250, 1e250  # squared lengths in between neither lose digits to underflow nor overflow
+
+
+def array_of(values: Any, *shape: int, what: str) -> Array:
+    """Return ``values`` as float64, with last dimensions ``shape``; ``InputError`` otherwise."""
+    try:
+        array = np.asarray(values)
+        real = array.dtype.kind in "fiu"
+    except ValueError:  # rows of different lengths
+        real = False
+    if not real:
+        raise InputError(f"{what} is an array of real numbers, last dimensions {shape}; got {type(values).__name__}")
+    if array.ndim < len(shape) or array.shape[array.ndim - len(shape) :] != shape:
+        raise InputError(f"{what} has last dimensions {shape}; got an array of shape {array.shape}")
+    return array.astype(np.float64, copy=False)
+
+
+@np.errstate(all="ignore")
+def _by_components(function: Callable[..., Components], rows: Array, width: int) -> Array:
+    """Return ``function`` of the components of ``rows``, shape (..., n), as an array of shape (..., width)."""
+    flat = rows.reshape(-1, rows.shape[-1])
+    result: Array = np.empty((len(flat), width))
+    for start in range(0, len(flat), BLOCK):
+        block = slice(start, start + BLOCK)
+        for place, component in enumerate(function(*np.ascontiguousarray(flat[block].T))):
+            result[block, place] = component
+    return result.reshape(*rows.shape[:-1], width)
+
+
+def _sum_of_squares(components: Components) -> Array:
+    total: Array = components[0] * components[0]
+    for component in components[1:]:
+        total += component * component
+    return total
+
+
+def _largest(components: Components) -> Array:
+    largest: Array = np.max(np.abs(components), axis=0)
+    return largest
+
+
+def _in_range(*components: Array) -> tuple[Components, Array]:
+    """Return the samples, those of extreme magnitude divided by their largest entry, and the squared lengths.
+
+    Samples that are zero, infinite or NaN become NaN.
+    """
+    squares = _sum_of_squares(components)
+    extreme = ~((squares > SAFE[0]) & (squares < SAFE[1]))
+    if not extreme.any():
+        return components, squares
+    fixed = np.array(components)
+    largest = _largest(fixed[:, extreme])
+    fixed[:, extreme] = np.where(np.isfinite(largest), fixed[:, extreme] / largest, np.nan)
+    return fixed, _sum_of_squares(fixed)
+
+
+def _length(*components: Array) -> Array:
+    """Return the lengths without overflow or underflow; zero for a zero sample."""
+    squares = _sum_of_squares(components)
+    length: Array = np.sqrt(squares)
+    extreme = ~((squares > SAFE[0]) & (squares < SAFE[1]))
+    if extreme.any():
+        rows = np.array(components)[:, extreme]
+        largest = _largest(rows)
+        length[extreme] = largest * np.sqrt(_sum_of_squares(rows / np.where(largest > 0, largest, 1.0)))
+    return length
+
+
+def _canonical(*q: Array) -> Components:
+    sign: Array = np.sign(q[0])
+    for component in q[1:]:
+        undecided = sign == 0
+        if not undecided.any():
+            break
+        sign[undecided] = np.sign(component[undecided])
+    np.copyto(sign, 1.0, where=sign == 0)
+    return [sign * component for component in q]
+
+
+def _normalize(*q: Array) -> Components:
+    rows, squares = _in_range(*q)
+    norm = np.sqrt(squares)
+    return [row / norm for row in rows]
+
+
+def normalize(q: Any) -> Array:
+    """Return unit quaternions, shape (..., 4). No overflow at 1e200, no underflow at 1e-200; NaN for a bad row."""
+    return _by_components(_normalize, array_of(q, 4, what="a quaternion"), 4)
+
+
+def canonical(q: Any) -> Array:
+    """Return q or -q, shape (..., 4): with q0 > 0, or, for a half turn, its first nonzero entry positive."""
+    return _by_components(_canonical, array_of(q, 4, what="a quaternion"), 4)
+
+
+def multiply(p: Any, q: Any) -> Array:
+    """Return the Hamilton products ``p q``, shape (..., 4), broadcast together."""
+    p, q = np.broadcast_arrays(array_of(p, 4, what="a quaternion"), array_of(q, 4, what="a quaternion"))
+
+    def product(p0: Array, p1: Array, p2: Array, p3: Array, q0: Array, q1: Array, q2: Array, q3: Array) -> Components:
+        return (
+            p0 * q0 - p1 * q1 - p2 * q2 - p3 * q3,
+            p0 * q1 + p1 * q0 + (p2 * q3 - p3 * q2),
+            p0 * q2 + p2 * q0 + (p3 * q1 - p1 * q3),
+            p0 * q3 + p3 * q0 + (p1 * q2 - p2 * q1),
+        )
+
+    return _by_components(product, np.concatenate([p, q], axis=-1), 4)
+
+
+def to_scipy_order(q: Any) -> Array:
+    """Return ``(q1, q2, q3, q0)``, the order of SciPy's ``Rotation``, shape (..., 4)."""
+    return np.roll(array_of(q, 4, what="a quaternion"), -1, axis=-1)
+
+
+def from_scipy_order(q: Any) -> Array:
+    """Return ``(q0, q1, q2, q3)`` of SciPy's ``(x, y, z, w)``, shape (..., 4)."""
+    return np.roll(array_of(q, 4, what="a quaternion"), 1, axis=-1)
+
+
+# Direction cosine matrix
+
+
+def _dcm(*q: Array) -> Components:
+    (q0, q1, q2, q3), squares = _in_range(*q)
+    scale = 2 / squares
+    x, y, z = scale * q1, scale * q2, scale * q3
+    xx, yy, zz = x * q1, y * q2, z * q3
+    xy, xz, yz = x * q2, x * q3, y * q3
+    x, y, z = x * q0, y * q0, z * q0
+    return 1 - (yy + zz), xy - z, xz + y, xy + z, 1 - (xx + zz), yz - x, xz - y, yz + x, 1 - (xx + yy)
+
+
+def quaternion_to_dcm(q: Any) -> Array:
+    """Return ``dcm_sb``, shape (..., 3, 3), of quaternions of any norm."""
+    q = array_of(q, 4, what="a quaternion")
+    return _by_components(_dcm, q, 9).reshape(*q.shape[:-1], 3, 3)
+
+
+def _quaternion_of_dcm(*r: Array) -> Components:
+    r11, r12, r13, r21, r22, r23, r31, r32, r33 = r
+    x, y, z = r32 - r23, r13 - r31, r21 - r12
+    xy, xz, yz = r12 + r21, r13 + r31, r23 + r32
+    ww, xx = 1 + (r11 + r22 + r33), 1 + (r11 - r22 - r33)
+    yy, zz = 1 + (r22 - r11 - r33), 1 + (r33 - r11 - r22)
+    pivot = np.argmax([ww, xx, yy, zz], axis=0)
+    squares = ((ww, x, y, z), (x, xx, xy, xz), (y, xy, yy, yz), (z, xz, yz, zz))  # 4 q q^T
+    determinant = r11 * (r22 * r33 - r23 * r32) + r12 * (r23 * r31 - r21 * r33) + r13 * (r21 * r32 - r22 * r31)
+    row = np.array([np.choose(pivot, column) for column in squares])
+    row[:, ~((determinant > 0) & (determinant < np.inf))] = np.nan
+    return _canonical(*_normalize(*row))
+
+
+def dcm_to_quaternion(dcm: Any) -> Array:
+    """Return unit quaternions with ``q0 >= 0``, shape (..., 4).
+
+    The largest of the four squares ``4 q_i^2`` is the pivot, so that the divisor is never small. A matrix that is no
+    rotation to rounding gets the quaternion that its pivot row shows; one with determinant <= 0, or not finite, NaN.
+    """
+    dcm = array_of(dcm, 3, 3, what="a dcm")
+    return _by_components(_quaternion_of_dcm, dcm.reshape(*dcm.shape[:-2], 9), 4)
+
+
+# Rotation vector, axis and angle
+
+
+def _exponential(*v: Array) -> Components:
+    angle = _length(*v)
+    half = angle / 2
+    ratio = np.sin(half)
+    ratio /= angle
+    ratio[angle == 0] = 0.5
+    return np.cos(half), *(ratio * component for component in v)
+
+
+def rotation_vector_to_quaternion(vector: Any) -> Array:
+    """Return unit quaternions, shape (..., 4), of rotation vectors in rad: the exponential map."""
+    return _by_components(_exponential, array_of(vector, 3, what="a rotation vector"), 4)
+
+
+def _logarithm(*q: Array) -> Components:
+    (q0, *vector), _ = _in_range(*_canonical(*q))
+    sine = _length(*vector)
+    ratio = 2 * np.arctan2(sine, q0) / sine
+    np.copyto(ratio, q0, where=sine == 0)  # anything finite: the vector is zero; NaN stays
+    return [ratio * component for component in vector]
+
+
+def quaternion_to_rotation_vector(q: Any) -> Array:
+    """Return rotation vectors in rad, shape (..., 3), of length at most pi: the logarithm.
+
+    A half turn (q0 = 0) has two; the one whose first nonzero entry is positive is returned.
+    """
+    return _by_components(_logarithm, array_of(q, 4, what="a quaternion"), 3)
+
+
+def _quaternion_of_axis_angle(n1: Array, n2: Array, n3: Array, angle: Array) -> Components:
+    axis, squares = _in_range(n1, n2, n3)
+    half = angle / 2
+    ratio = np.sin(half) / np.sqrt(squares)
+    vector = np.where(angle == 0, 0.0, [ratio * component for component in axis])
+    return np.where(np.isnan(vector[0]), np.nan, np.cos(half)), *vector
+
+
+def axis_angle_to_quaternion(axis: Any, angle: Any, degrees: bool = False) -> Array:
+    """Return unit quaternions, shape (..., 4), of axes of any length and angles, broadcast together.
+
+    NaN for a zero axis, unless its angle is zero.
+    """
+    axis, angle = array_of(axis, 3, what="an axis"), array_of(angle, what="an angle")
+    angle = np.radians(angle) if degrees else angle
+    shape = np.broadcast_shapes(axis.shape[:-1], angle.shape)
+    rows = np.concatenate([np.broadcast_to(axis, (*shape, 3)), np.broadcast_to(angle[..., None], (*shape, 1))], axis=-1)
+    return _by_components(_quaternion_of_axis_angle, rows, 4)
+
+
+def _axis_angle(*q: Array) -> Components:
+    (q0, *vector), squares = _in_range(*_canonical(*q))
+    angle = 2 * np.arctan2(_length(*vector), q0)
+    axis = np.array(_normalize(*vector))
+    axis[:, (_largest(vector) == 0) & ~np.isnan(squares)] = [[1.0], [0.0], [0.0]]
+    return *axis, angle
+
+
+def quaternion_to_axis_angle(q: Any, degrees: bool = False) -> tuple[Array, Array]:
+    """Return unit axes, shape (..., 3), and angles in [0, pi], shape (...).
+
+    At zero angle, where there is no axis, the axis is (1, 0, 0); a half turn as in
+    :func:`quaternion_to_rotation_vector`.
+    """
+    found = _by_components(_axis_angle, array_of(q, 4, what="a quaternion"), 4)
+    return found[..., :3], np.degrees(found[..., 3]) if degrees else found[..., 3]
+
+
+# Rodrigues parameters
+
+
+def _quaternion_of_rodrigues(*g: Array) -> Components:
+    size = np.maximum(_length(*g), 1.0)  # divide by it first: g may be as large as 1e308
+    return _normalize(1 / size, *(component / size for component in g))
+
+
+def rodrigues_to_quaternion(g: Any) -> Array:
+    """Return unit quaternions, shape (..., 4), of classical Rodrigues parameters, axis times tan(angle/2)."""
+    return _by_components(_quaternion_of_rodrigues, array_of(g, 3, what="a set of Rodrigues parameters"), 4)
+
+
+def _rodrigues(*q: Array) -> Components:
+    (q0, *vector), squares = _in_range(*q)
+    g = np.array([component / q0 for component in vector])
+    infinite = ~np.isfinite(g).all(axis=0)
+    g[:, infinite] = np.nan
+    return *g, (infinite & ~np.isnan(squares)).astype(np.float64)
+
+
+def quaternion_to_rodrigues(q: Any) -> tuple[Array, Mask]:
+    """Return classical Rodrigues parameters, shape (..., 3), and where there are none, shape (...).
+
+    There are none at a half turn, where they are infinite: the mask is True and the row is NaN.
+    """
+    found = _by_components(_rodrigues, array_of(q, 4, what="a quaternion"), 4)
+    return found[..., :3], found[..., 3] == 1
+
+
+def _quaternion_of_mrp(*s: Array) -> Components:
+    size = _length(*s)
+    large = np.maximum(size, 1.0)
+    small = np.minimum(size, 1 / large)  # |s|, or 1/|s| of a long one: the length of the shorter set
+    norm = 1 + small * small
+    ratio = 2 * np.where(size > 1, small, 1.0) / norm
+    scalar = (1 - small) * (1 + small) / norm
+    return np.where(size > 1, -scalar, scalar), *(component / large * ratio for component in s)
+
+
+def mrp_to_quaternion(s: Any) -> Array:
+    """Return unit quaternions, shape (..., 4), of modified Rodrigues parameters, axis times tan(angle/4)."""
+    return _by_components(_quaternion_of_mrp, array_of(s, 3, what="a set of modified Rodrigues parameters"), 4)
+
+
+def _mrp_short(*q: Array) -> Components:
+    (q0, *vector), squares = _in_range(*_canonical(*q))
+    ratio = 1 / (np.sqrt(squares) + q0)
+    return [ratio * component for component in vector]
+
+
+def _mrp_of_sign(*q: Array) -> Components:
+    (q0, *vector), squares = _in_range(*q)
+    norm, sine = np.sqrt(squares), _length(*vector)
+    # 1 / (1 + q0), or for negative q0, where that cancels, (1 - q0) / sine^2
+    return [np.where(q0 >= 0, component / (norm + q0), component / sine * ((norm - q0) / sine)) for component in vector]
+
+
+def quaternion_to_mrp(q: Any, shadow: bool = True) -> Array:
+    """Return modified Rodrigues parameters, shape (..., 3).
+
+    Parameters
+    ----------
+    q : array, shape (..., 4)
+    shadow : bool
+        True: of the two sets of an attitude (of q and -q) the shorter, length at most 1. False: the set of q as it is,
+        which grows without bound toward q = (-1, 0, 0, 0), and is NaN there.
+    """
+    return _by_components(_mrp_short if shadow else _mrp_of_sign, array_of(q, 4, what="a quaternion"), 3)
+
+
+def _shadow(*s: Array) -> Components:
+    size = _length(*s)
+    return [-(component / size) / size for component in s]
+
+
+def mrp_shadow(s: Any) -> Array:
+    """Return the shadow set ``-s / |s|^2`` of the same attitude, shape (..., 3); NaN for zero (no finite shadow)."""
+    return _by_components(_shadow, array_of(s, 3, what="a set of modified Rodrigues parameters"), 3)
+
+
+# Euler angles
+
+
+def places(sequence: str) -> tuple[tuple[int, int, int], tuple[int, int, int], int, int]:
+    """Return the axes and the places of the factors of ``dcm_sb`` from left to right, and ``e_1 x e_2 = sign e_m``."""
+    axes, intrinsic = parse_sequence(sequence)
+    (first, middle, last), order = (axes, (0, 1, 2)) if intrinsic else (axes[::-1], (2, 1, 0))
+    return (first, middle, last), order, 3 - first - middle, 1 if (middle - first) % 3 == 1 else -1
+
+
+def euler_to_quaternion(angles: Any, sequence: str, degrees: bool = False) -> Array:
+    """Return unit quaternions, shape (..., 4), of Euler angles in order of application, shape (..., 3).
+
+    Parameters
+    ----------
+    angles : array, shape (..., 3)
+        rad, or degrees with ``degrees=True``.
+    sequence : str
+        Upper case intrinsic, lower case extrinsic.
+    """
+    (first, middle, last), order, cross, sign = places(sequence)
+
+    def product(*angle: Array) -> Components:
+        half = [angle[place] / 2 for place in order]
+        (c1, c2, c3), (s1, s2, s3) = map(np.cos, half), map(np.sin, half)
+        a, b, c, d = c1 * c2, s1 * c2, c1 * s2, s1 * s2  # along 1, e_first, e_middle, e_first x e_middle
+        if first == last:
+            found = (a * c3 - b * s3, a * s3 + b * c3, c * c3 + d * s3, d * c3 - c * s3)
+        else:  # e_last = sign e_first x e_middle
+            s3 = sign * s3
+            found = (a * c3 - d * s3, b * c3 + c * s3, c * c3 - b * s3, a * s3 + d * c3)
+        by_axis = {first: found[1], middle: found[2], cross: sign * found[3]}
+        return found[0], by_axis[0], by_axis[1], by_axis[2]
+
+    angles = array_of(angles, 3, what=f"a set of {sequence} angles")
+    return _by_components(product, np.radians(angles) if degrees else angles, 4)
+
+
+def quaternion_to_euler(
+    q: Any, sequence: str, degrees: bool = False, lock: float = LOCK
+) -> tuple[Array, Mask]:
+    """Return Euler angles in order of application, shape (..., 3), and where they lock, shape (...).
+
+    Parameters
+    ----------
+    q : array, shape (..., 4)
+        Of any norm.
+    sequence : str
+        Upper case intrinsic, lower case extrinsic.
+    degrees : bool
+    lock : float
+        Distance of the middle angle from gimbal lock, rad, up to which a sample counts as locked.
+
+    Returns
+    -------
+    angles : array, shape (..., 3)
+        The middle angle in [0, pi] (proper) or [-pi/2, pi/2] (Tait-Bryan), the others in [-pi, pi].
+    locked : bool array, shape (...)
+        True where only the sum or the difference of first and third angle is determined. There the third angle (in
+        order of application) is set to zero, as SciPy does, and the middle angle to the locked value, which changes
+        the attitude by at most ``lock``.
+
+    Notes
+    -----
+    Half-angle sums and differences by ``arctan2``, as :func:`symrot.kinematics.euler.euler_of_quaternion` derives
+    them. The rotation rebuilt from the angles has rounding error at any distance from lock; the angles themselves
+    are determined to about 1e-16 over that distance. Source: Bernardes & Viollet, PLoS ONE 17 (2022) e0276302.
+    """
+    (first, middle, last), order, cross, sign = places(sequence)
+    proper, intrinsic = first == last, order[2] == 2
+
+    def angles_of(*q: Array) -> Components:
+        rows, _ = _in_range(*q)
+        q0, along, across, third = rows[0], rows[1 + first], rows[1 + middle], sign * rows[1 + cross]
+        # along 1, e_first, e_middle, e_first x e_middle; a Tait-Bryan sequence is a proper one a quarter turn before
+        a, b, c, d = (q0, along, across, third) if proper else (q0 - across, along - third, q0 + across, along + third)
+        low, high = np.sqrt(a * a + b * b), np.sqrt(c * c + d * d)
+        half_sum, half_difference = np.arctan2(b, a), np.arctan2(d, c)
+        tilt = 2 * np.arctan2(high, low) if proper else np.arctan2(2 * (q0 * across + along * third), low * high)
+        locked: Mask = np.minimum(low, high) <= lock / 2 * np.maximum(low, high)
+        if locked.any():
+            at_zero = high[locked] < low[locked]
+            known = np.where(at_zero, half_sum[locked], half_difference[locked])
+            # the third angle is the right one of an intrinsic sequence (half sum - half difference), else the left
+            half_sum[locked] = known if intrinsic else np.where(at_zero, known, -known)
+            half_difference[locked] = known if intrinsic else np.where(at_zero, -known, known)
+            tilt[locked] = np.where(at_zero, 0.0, np.pi) - (0.0 if proper else np.pi / 2)
+        left, right = half_sum + half_difference, half_sum - half_difference
+        turned = (_within_half_turn(left), tilt, _within_half_turn(right if proper or sign < 0 else -right))
+        return *(turned if intrinsic else turned[::-1]), locked.astype(np.float64)
+
+    found = _by_components(angles_of, array_of(q, 4, what="a quaternion"), 4)
+    angles = found[..., :3]
+    return np.degrees(angles) if degrees else angles, found[..., 3] == 1
+
+
+def _within_half_turn(angle: Array) -> Array:
+    """Return angles of (-2 pi, 2 pi) reduced to [-pi, pi], without the error of 2 pi as a double."""
+    turns = np.subtract(angle > np.pi, angle < -np.pi, dtype=np.float64)
+    angle -= turns * TWO_PI
+    angle += turns * TWO_PI_LOW
+    return angle
+
+
+def euler_to_dcm(angles: Any, sequence: str, degrees: bool = False) -> Array:
+    """Return ``dcm_sb``, shape (..., 3, 3), of Euler angles; see :func:`euler_to_quaternion`."""
+    return quaternion_to_dcm(euler_to_quaternion(angles, sequence, degrees))
+
+
+def dcm_to_euler(dcm: Any, sequence: str, degrees: bool = False, lock: float = LOCK) -> tuple[Array, Mask]:
+    """Return Euler angles and where they lock; see :func:`quaternion_to_euler`. NaN where there is no rotation."""
+    return quaternion_to_euler(dcm_to_quaternion(dcm), sequence, degrees, lock)
