@@ -3,8 +3,8 @@
     python -m symrot.bench.stepper [--tolerance 1e-9] [--stop 1000] [--rounds 15]
 
 Times are compared as ratios within one run, since other work on the machine moves all of them. The program by hand is
-compiled with the flags of symrot's kernels and with ``-O3`` in the place of ``-O2``; the faster one counts. The error is
-against the program by hand in long double at a tolerance of 1e-17.
+compiled with the flags of symrot's kernels and with ``-O3`` in the place of ``-O2``; the faster one counts. The error
+is against the program by hand in long double at a tolerance of 1e-17.
 """
 
 import argparse
@@ -119,8 +119,9 @@ def main(arguments: list[str] | None = None) -> None:
     first = results[0]
     fastest = min(first.seconds)
     best = min(min(result.seconds) / result.evaluations for result in results if result.name.startswith("by hand"))
-    print(f"free body, moments {MOMENTS}, t = {options.stop:g} s, tolerance {options.tolerance:g}, {options.rounds} rounds")
-    print(f"{'':14}{'evaluations':>12}{'median ms':>12}{'min ms':>12}{'ns/evaluation':>15}{'error':>11}{'min / ours':>12}")
+    print(f"free body, moments {MOMENTS}, t = {options.stop:g} s, tolerance {options.tolerance:g}")
+    titles = ("evaluations", "median ms", "min ms", "ns/evaluation", "error", "min / ours")
+    print(" " * 14 + "".join(title.rjust(width) for title, width in zip(titles, (12, 12, 12, 15, 11, 12), strict=True)))
     for name, evaluations, seconds, error in results:
         least = min(seconds)
         print(

@@ -1,5 +1,5 @@
 /*
- * DOP853 around the free body as one writes it by hand from the book: the yardstick of `python -m symrot.bench.stepper`.
+ * DOP853 around the free body, by hand from the book: the yardstick of `python -m symrot.bench.stepper`.
  * Step control as in dop853.f: mixed tolerance per component, root of the mean square. Follows free_body.c.
  */
 #include <math.h>

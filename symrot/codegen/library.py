@@ -13,16 +13,25 @@ platform's own place. This module imports neither SymPy nor NumPy nor SciPy.
 import os
 import re
 import sys
-from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
+from typing import NamedTuple
 
 from symrot.errors import CompilerError
 
 __all__ = ["FLAGS", "Cache", "Compiler", "build", "cache", "clear", "compiler", "fetch", "store"]
 
 NATIVE = "-march=native"
-FLAGS = ("-std=c99", "-O2", NATIVE, "-ffp-contract=fast", "-fno-math-errno", "-fPIC", "-shared")
+FLAGS = (
+    "-std=c99",
+    "-O2",
+    "-fno-tree-slp-vectorize",  # it slows long straight-line code
+    NATIVE,
+    "-ffp-contract=fast",
+    "-fno-math-errno",
+    "-fPIC",
+    "-shared",
+)
 COMPILERS = ("cc", "gcc", "clang")
 SECONDS_TO_COMPILE = 300  # a compiler that takes longer is taken to hang
 SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
@@ -30,16 +39,14 @@ ROOM = "kernels"  # the only directory inside the cache that is written, checked
 OWN_FILE = re.compile(r"(\w+-[0-9a-f]{32}\.(so|dll|dylib|index|text)|\.symrot-\w+)\Z")
 
 
-@dataclass(frozen=True)
-class Compiler:
+class Compiler(NamedTuple):
     """A C compiler: the words that start it, and what identifies the program found."""
 
     command: tuple[str, ...]
     identity: str
 
 
-@dataclass(frozen=True)
-class Cache:
+class Cache(NamedTuple):
     """Where compiled kernels are kept; ``reason`` says why it is not the user's cache, or is empty."""
 
     directory: Path
@@ -135,25 +142,25 @@ def _digest(text: str) -> str:
 def _which(program: str) -> str | None:
     """Return the full path of an executable file, searched as the shell does (shutil is slow to import)."""
     endings = ("", ".exe") if sys.platform == "win32" else ("",)
-    places = [""] if os.path.dirname(program) else os.environ.get("PATH", os.defpath).split(os.pathsep)
-    for place in places:
+    named = os.sep in program or (os.altsep is not None and os.altsep in program)
+    for place in [""] if named else os.environ.get("PATH", os.defpath).split(os.pathsep):
         for ending in endings:
-            path = os.path.join(place, program + ending)
-            if os.path.isfile(path) and os.access(path, os.X_OK):
-                return os.path.abspath(path)
+            path = Path(place, program + ending)
+            if path.is_file() and os.access(path, os.X_OK):
+                return str(path.absolute())
     return None
 
 
 def _identity(path: str, arguments: tuple[str, ...]) -> str:
-    real = os.path.realpath(path)
-    found = os.stat(real)
-    return "\0".join((real, str(found.st_size), str(found.st_mtime_ns), *arguments))
+    real = Path(path).resolve()
+    found = real.stat()
+    return "\0".join((str(real), str(found.st_size), str(found.st_mtime_ns), *arguments))
 
 
 def _processor() -> str:
     """Return what tells processors apart for ``-march=native``: the first one's family, model and features."""
     try:
-        with open("/proc/cpuinfo", encoding="ascii", errors="replace") as stream:
+        with Path("/proc/cpuinfo").open(encoding="ascii", errors="replace") as stream:
             first = stream.read(16384).split("\n\n")[0]
     except OSError:
         # No such file: the machine's own name stands for its processor.
@@ -198,8 +205,7 @@ def _cache_directory() -> Path:
         return Path(chosen) / "symrot"
     if sys.platform == "win32" and (chosen := os.environ.get("LOCALAPPDATA")):
         return Path(chosen) / "symrot"
-    home = os.path.expanduser("~")
-    return Path(home, "Library/Caches" if sys.platform == "darwin" else ".cache", "symrot")
+    return Path("~").expanduser() / ("Library/Caches" if sys.platform == "darwin" else ".cache") / "symrot"
 
 
 def _foreign(path: Path) -> str:
@@ -249,7 +255,7 @@ def _replace(path: Path, content: bytes) -> None:
     passing = path.with_name(f".symrot-{os.getpid()}_{os.urandom(4).hex()}")
     try:
         passing.write_bytes(content)
-        os.replace(passing, path)
+        passing.replace(path)
     finally:
         passing.unlink(missing_ok=True)
 
@@ -272,7 +278,7 @@ def _keep_here(path: Path, content: bytes) -> Path:
     try:
         _replace(path, content)
     except OSError as error:
-        raise CompilerError(f"compiled kernels need room on a disk: {path.parent}: {error.strerror or error}") from error
+        raise CompilerError(f"compiled kernels need room on a disk: {path.parent}: {error.strerror}") from error
     return path
 
 

@@ -10,11 +10,11 @@
  *                         a positive number against that number (an attitude of unit norm: 1)
  * and included dop853_tableau.h. C99 that is also valid C++; no malloc, no globals, no input or output, reentrant.
  *
- * States are padded to a multiple of 4 so that every sum over stages is a few full vectors. A stage's own sum is taken in
- * two parts: all earlier stages first, while the kernel is still busy, then the newest one, element by element, because a
- * vector load of what was just stored in single numbers would wait for the stores to retire.
+ * States are padded to a multiple of 4 so that every sum over stages is a few full vectors. A stage's own sum is taken
+ * in two parts: all earlier stages first, while the kernel is still busy, then the newest one, element by element,
+ * because a vector load of what was just stored in single numbers would wait for the stores to retire.
  *
- * Source: E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed., sections II.4 to II.6.
+ * Source: E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed., sections II.4 to 6.
  */
 #include <float.h>
 #include <math.h>
@@ -51,7 +51,7 @@ typedef struct {
     double t;            /* reached so far */
     double h;            /* next step, signed; 0 before the first one */
     double stop;         /* end of the span, on either side of t */
-    double first, last;  /* times at which the kernel is called for the two ends: just inside the span at a switching time */
+    double first, last;  /* times given to the kernel at the two ends: just inside the span where it switches there */
     double tolerance;    /* of one step of length `pace` or more; a shorter one is allowed its share of it */
     double pace;
     double max_step;     /* positive */
@@ -213,7 +213,7 @@ SYMROT_EXPORT void symrot_dop853_dense(const double *record, int64_t steps, cons
  * in    attempts   most steps to try in this call
  *
  * Returns SYMROT_DONE; SYMROT_PAUSED after `attempts` steps or SYMROT_FULL when the record has no room (call again to
- * continue from where it stands); SYMROT_NOT_FINITE or SYMROT_UNDERFLOW when the motion cannot be followed beyond run->t.
+ * continue from where it stands); SYMROT_NOT_FINITE or SYMROT_UNDERFLOW when the motion cannot be followed further.
  */
 SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *times, int64_t count, double *states,
     double *record, int64_t room, int64_t attempts)

@@ -1,7 +1,7 @@
 """Dormand-Prince 8(5,3) around an emitted kernel: the C of :file:`dop853.c` driven from Python, one call per span.
 
-A library holds one kernel and the stepper compiled together (:func:`translation_unit`); :func:`integrate` follows a motion
-through sample times, :func:`record` keeps every step so that the motion can be asked for at any time later.
+A library holds one kernel and the stepper compiled together (:func:`translation_unit`); :func:`integrate` follows a
+motion through sample times, :func:`record` keeps every step so that the motion can be asked for at any time later.
 
 Tolerance: the promise is about the trajectory, not about one step, see :func:`step_tolerance`.
 """
@@ -29,8 +29,10 @@ ROWS_PER_CALL = 256       # steps recorded per call
 Floats = NDArray[np.float64]
 
 _DONE, _PAUSED, _FULL, _NOT_FINITE, _UNDERFLOW = range(5)
-_REALS = ("t", "h", "stop", "first", "last", "tolerance", "pace", "max_step")      # the fields of symrot_run in dop853.c,
-_INTEGERS = ("next", "accepted", "rejected", "evaluations", "recorded")   # followed by y, carry, dy
+# The fields of symrot_run in dop853.c: numbers, integers, and vectors of one number per state.
+_REALS = ("t", "h", "stop", "first", "last", "tolerance", "pace", "max_step")
+_INTEGERS = ("next", "accepted", "rejected", "evaluations", "recorded")
+_VECTORS = ("y", "carry", "dy")
 
 
 class Stats(NamedTuple):
@@ -45,9 +47,9 @@ class Stats(NamedTuple):
 def step_tolerance(tolerance: float) -> tuple[float, float]:
     """Return the error allowed in one step, and the fraction of the span that earns a step all of it.
 
-    A shorter step is allowed its share. Steps are about ``tolerance^(1/8)`` times as long as the motion's natural time, so
-    the second number makes the allowance a matter of natural times in the span, not of steps: the error at the end then
-    hardly depends on tolerance or span, except where the motion itself amplifies errors.
+    A shorter step is allowed its share. Steps are about ``tolerance^(1/8)`` times as long as the motion's natural time,
+    so the second number makes the allowance a matter of natural times in the span, not of steps: the error at the end
+    then hardly depends on tolerance or span, except where the motion itself amplifies errors.
 
     Both constants are calibrated on free asymmetric bodies, through flips about the intermediate axis too, and on heavy
     tops, against 40-digit references (``tests/test_dop853.py``): errors stay below 5 times the tolerance.
@@ -123,8 +125,8 @@ def integrate(
     t0 : float
         Initial time, s.
     times : array, shape (n,)
-        Sample times, s, in any order, before or after ``t0``, repeated or not. The steps depend on the first and last of
-        them only.
+        Sample times, s, in any order, before or after ``t0``, repeated or not. The steps depend on the first and last
+        of them only.
     tolerance : float
         Aim for the error of the whole trajectory, see :func:`step_tolerance`.
     breaks : sequence of float
@@ -187,8 +189,8 @@ def record(
 ) -> "Recording":
     """Return the motion over ``span`` as a function of time; arguments as :func:`integrate`.
 
-    The same steps are taken as by :func:`integrate` to the ends of the span, so the two agree where they overlap. One step
-    takes 8 N + 2 numbers of memory.
+    The same steps are taken as by :func:`integrate` to the ends of the span, so the two agree where they overlap. One
+    step takes 8 N + 2 numbers of memory.
     """
     began = perf_counter()
     task = _Task(library, p, y0, t0, tolerance, breaks, max_step, max_steps)
@@ -202,8 +204,8 @@ def record(
 class Recording:
     """A motion that can be evaluated at any time of its span: ``recording(t)``.
 
-    ``recording(t)`` returns the states at a time or an array of times, shape (N,) or (n, N); a time outside ``span`` is an
-    InputError. ``stats`` says what the recording cost.
+    ``recording(t)`` returns the states at a time or an array of times, shape (N,) or (n, N); a time outside ``span`` is
+    an InputError. ``stats`` says what the recording cost.
     """
 
     def __init__(
@@ -219,7 +221,8 @@ class Recording:
         flat = times.reshape(-1)
         outside = ~((flat >= self.span[0]) & (flat <= self.span[1]))
         if outside.any():
-            raise InputError(f"the motion is known from {self.span[0]} to {self.span[1]} s, asked for {flat[outside][0]} s")
+            asked = float(flat[outside][0])
+            raise InputError(f"the motion is known from {self.span[0]} to {self.span[1]} s, asked for {asked} s")
         states = np.empty((len(flat), self._stepper.states))
         for rows, chosen in ((self._backward, flat < self._t0), (self._forward, flat > self._t0)):
             if chosen.any():
@@ -234,7 +237,8 @@ class _Stepper:
     def __init__(self, path: str) -> None:
         try:
             library = ctypes.CDLL(path)
-            self.run, self._dense, sizes = library.symrot_dop853, library.symrot_dop853_dense, library.symrot_dop853_sizes
+            self.run, self._dense = library.symrot_dop853, library.symrot_dop853_dense
+            sizes = library.symrot_dop853_sizes
         except (OSError, AttributeError) as error:
             raise CompilerError(f"the compiled kernel {path} cannot be loaded: {error}") from error
         pointer, integer = ctypes.c_void_p, ctypes.c_int64
@@ -248,8 +252,9 @@ class _Stepper:
         self.states, self.parameters = found[0], found[1]
         self.row = 2 + 8 * self.states
         vector = ctypes.c_double * self.states
-        fields = [(name, ctypes.c_double) for name in _REALS] + [(name, integer) for name in _INTEGERS]
-        self.new_run: Any = type("Run", (ctypes.Structure,), {"_fields_": [*fields, ("y", vector), ("carry", vector), ("dy", vector)]})
+        kinds = ((_REALS, ctypes.c_double), (_INTEGERS, integer), (_VECTORS, vector))
+        fields = [(name, kind) for names, kind in kinds for name in names]
+        self.new_run: Any = type("Run", (ctypes.Structure,), {"_fields_": fields})
         self.new_parameters: Any = ctypes.c_double * self.parameters
 
     def dense(self, rows: Floats, times: Floats) -> Floats:

@@ -1,12 +1,13 @@
-"""The SciPy fallback: any method of ``scipy.integrate.solve_ivp`` behind the signature of :mod:`symrot.propagate.dop853`.
+"""The SciPy fallback: any method of ``scipy.integrate.solve_ivp``, called as :mod:`symrot.propagate.dop853` is.
 
 For where there is no C compiler, and for those who want LSODA. The tolerance means the same as far as SciPy allows: the
-error of every block of states against the largest size the block has on the way, found by a first coarse pass, and shared
-out over the length of the motion. SciPy is imported when a motion is first followed.
+error of every block of states against the largest size the block has on the way, found by a first coarse pass, and
+shared out over the length of the motion. SciPy is imported when a motion is first followed.
 """
 
 import math
 from collections.abc import Callable, Sequence
+from itertools import pairwise
 from time import perf_counter
 from typing import Any
 
@@ -61,7 +62,9 @@ def integrate(
     max_step: float = math.inf,
     max_steps: int = MAX_EVALUATIONS,
 ) -> tuple[Floats, Stats]:
-    """Return the states at the sample times, shape (n, N), and what it cost; see :func:`symrot.propagate.dop853.integrate`.
+    """Return the states at the sample times, shape (n, N), and what it cost.
+
+    As :func:`symrot.propagate.dop853.integrate`, but for these:
 
     Parameters
     ----------
@@ -120,7 +123,8 @@ class FallbackRecording:
         flat = times.reshape(-1)
         outside = ~((flat >= self.span[0]) & (flat <= self.span[1]))
         if outside.any():
-            raise InputError(f"the motion is known from {self.span[0]} to {self.span[1]} s, asked for {flat[outside][0]} s")
+            asked = float(flat[outside][0])
+            raise InputError(f"the motion is known from {self.span[0]} to {self.span[1]} s, asked for {asked} s")
         states = np.empty((len(flat), len(self._y0)))
         for low, high, solution in self._pieces:
             chosen = (flat >= low) & (flat <= high)
@@ -151,8 +155,8 @@ class _Task:
         self.method = method_name(method)
         self.rhs, self.p = rhs, np.array(p, dtype=np.float64)
         self.y0, self.t0 = np.array(y0, dtype=np.float64), float(t0)
-        if self.y0.ndim != 1 or not (np.isfinite(self.y0).all() and np.isfinite(self.p).all() and math.isfinite(self.t0)):
-            raise InputError(f"initial time, state and parameters are finite numbers, got {t0}, {y0}, {p}")
+        if self.y0.ndim != 1 or not all(np.isfinite(given).all() for given in (self.t0, self.y0, self.p)):
+            raise InputError(f"initial time, state and parameters are finite numbers, got {t0!r}, {y0!r}, {p!r}")
         if not 0.0 < tolerance < 1.0:
             raise InputError(f"the tolerance lies between 0 and 1, got {tolerance}")
         if not max_step > 0.0:
@@ -161,12 +165,14 @@ class _Task:
         self.max_step, self.max_evaluations = max_step, max_steps
         self.blocks = [
             (slice(low, min(high, len(self.y0))), scale)
-            for low, high, scale in zip(blocks[:-1], blocks[1:], scales, strict=True)
+            for (low, high), scale in zip(pairwise(blocks), scales, strict=True)
             if low < len(self.y0)
         ]
         self.steps = self.evaluations = self.broken = 0
         if not np.isfinite(self._derivative(self.t0, self.y0)).all():
-            raise PropagationError(f"the motion cannot be followed beyond t = {self.t0!r} s: its rate of change is not finite")
+            raise PropagationError(
+                f"the motion cannot be followed beyond t = {self.t0!r} s: its rate of change is not finite there"
+            )
 
     def stats(self) -> Stats:
         return Stats(self.steps, 0, self.evaluations, perf_counter() - self.began)
@@ -197,20 +203,27 @@ class _Task:
         return self._stretches(end, SMALLEST_RTOL, allowed)
 
     def _stretches(self, end: float, rtol: float, atol: Floats) -> list[tuple[float, float, Any]]:
-        from scipy.integrate import solve_ivp
+        import scipy.integrate
 
+        solve: Any = scipy.integrate.solve_ivp
         low, high = min(self.t0, end), max(self.t0, end)
         inside = [time for time in self.breaks if low < time < high]
         edges = [self.t0, *(inside if end >= self.t0 else reversed(inside)), end]
         y, pieces = self.y0, []
-        for start, stop in zip(edges[:-1], edges[1:], strict=True):
+        for start, stop in pairwise(edges):
             first = math.nextafter(start, stop) if start in self.breaks else start
             last = math.nextafter(stop, start) if stop in self.breaks else stop
             earliest, latest = min(first, last), max(first, last)
             with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-                found = solve_ivp(
+                found = solve(
                     lambda t, y, earliest=earliest, latest=latest: self._derivative(min(max(t, earliest), latest), y),
-                    (start, stop), y, method=self.method, rtol=rtol, atol=atol, max_step=self.max_step, dense_output=True,
+                    (start, stop),
+                    y,
+                    method=self.method,
+                    rtol=rtol,
+                    atol=atol,
+                    max_step=self.max_step,
+                    dense_output=True,
                 )
             if found.status != 0 or not np.isfinite(found.y[:, -1]).all():
                 raise PropagationError(

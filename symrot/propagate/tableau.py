@@ -1,13 +1,13 @@
 """Coefficients of Dormand and Prince's 8(5,3) pair with its dense output of order 7, as exact decimals.
 
-Stages are numbered from 1, as in the source; a coefficient left out is zero. Stage 13 is the derivative at the end of the
-step, which is stage 1 of the next step ("first same as last"); stages 14 to 16 serve the dense output alone.
+Stages are numbered from 1, as in the source; a coefficient left out is zero. Stage 13 is the derivative at the end of
+the step, which is stage 1 of the next step ("first same as last"); stages 14 to 16 serve the dense output alone.
 
-:func:`c_header` prints them for :file:`dop853.c`; the printed file ``dop853_tableau.h`` is never edited, and a test compares
-the two byte for byte. The same tests check the order conditions, so that a wrong digit cannot hide.
+:func:`c_header` prints them for :file:`dop853.c`; the printed file ``dop853_tableau.h`` is never edited, and a test
+compares the two byte for byte. Tests check the order conditions too, so that a wrong digit cannot hide.
 
 Source: P. J. Prince, J. R. Dormand, J. Comput. Appl. Math. 7 (1981) 67; error estimates and dense output: E. Hairer,
-S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed., sections II.5 and II.6, and their ``dop853.f``.
+S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed., sections II.5, II.6, and ``dop853.f``.
 
 Run ``python -m symrot.propagate.tableau`` to print the header anew.
 """
@@ -15,7 +15,7 @@ Run ``python -m symrot.propagate.tableau`` to print the header anew.
 from collections.abc import Mapping
 from pathlib import Path
 
-__all__ = ["DENSE", "ERROR_5", "WEIGHTS_3", "HEADER", "NODES", "STAGE_WEIGHTS", "WEIGHTS", "c_header"]
+__all__ = ["DENSE", "ERROR_5", "HEADER", "NODES", "STAGE_WEIGHTS", "WEIGHTS", "WEIGHTS_3", "c_header"]
 
 HEADER = Path(__file__).with_name("dop853_tableau.h")
 
