@@ -33,6 +33,8 @@ __all__ = [
 LARGEST_DEGREE = 12
 """Highest total degree of a density in x, y, z."""
 
+_PI = {"pi": PI}
+
 
 class Domain(NamedTuple):
     """A mapped shape: position in the shape's axes (m), Jacobian, and the coordinates with their limits."""
@@ -78,11 +80,13 @@ def _jacobian(position: tuple[Polynomial, ...], coordinates: tuple[Coordinate, .
     return square_root(reduce_circular(_determinant(gram), angles))
 
 
-def domain(shape: Shape, dimensions: Mapping[str, Any] | None = None) -> Domain:
-    """Return the mapped shape with its dimensions as generators, or as the exact numbers given."""
-    names = scalar_names(shape)
-    found = scalars(shape, dimensions) if dimensions is not None else {}
-    values = {name: constant(found[name]) if name in found else generator(name) for name in names}
+def domain(shape: Shape, known: Mapping[str, Fraction] | None = None) -> Domain:
+    """Return the mapped shape with its dimensions as the numbers known, each other one as a generator.
+
+    The names are those of :func:`symrot.inertia.shapes.scalar_names`.
+    """
+    found = known or {}
+    values = {n: constant(found[n]) if n in found else generator(n) for n in scalar_names(shape)}
     values["pi"] = generator("pi")
     limits = tuple((c, _lifted(c.lower, values), _lifted(c.upper, values)) for c in shape.coordinates)
     values |= {c.name: generator(c.name) for c in shape.coordinates}
@@ -203,19 +207,19 @@ def exact_moments(
 
     ``dimensions`` are those of :func:`symrot.inertia.shapes.check_dimensions`; pi is taken to 2^-320.
     """
-    region = domain(shape, dimensions)
-    measure = integrate(region.jacobian, region.limits).value({"pi": PI})
+    numbers = scalars(shape, dimensions)
+    region = domain(shape, numbers)
+    measure = integrate(region.jacobian, region.limits).value(_PI)
     if not measure:
         prefix = f"{where}: " if where else ""
         raise InputError(f"{prefix}expected a {shape.name} that fills space, got corners in one plane")
     if measure < 0:  # corners in the other order
         region = region._replace(jacobian=-region.jacobian)
     values = dict(zip("xyz", region.position, strict=True))
-    values |= {name: constant(value) for name, value in scalars(shape, dimensions).items()}
+    values |= {name: constant(value) for name, value in numbers.items()}
     found = moments(region, density_polynomial(density, values | {"pi": constant(PI)}, shown, where))
-    numbers = {"pi": PI}
     return Moments(
-        found.zeroth.value(numbers),
-        tuple(entry.value(numbers) for entry in found.first),
-        tuple(tuple(entry.value(numbers) for entry in row) for row in found.second),
+        found.zeroth.value(_PI),
+        tuple(entry.value(_PI) for entry in found.first),
+        tuple(tuple(entry.value(_PI) for entry in row) for row in found.second),
     )

@@ -50,6 +50,9 @@ class Polynomial:
     def __sub__(self, other: Operand) -> "Polynomial":
         return self + -_lift(other)
 
+    def __rsub__(self, other: Operand) -> "Polynomial":
+        return -self + other
+
     def __mul__(self, other: Operand) -> "Polynomial":
         total: dict[Monomial, Fraction] = {}
         right = list(_lift(other).terms.items())
@@ -156,7 +159,7 @@ def reduce_circular(source: Polynomial, angles: Iterable[str]) -> Polynomial:
     for angle in angles:
         reduced = constant(0)
         for (power,), coefficient in source.collect([f"cos({angle})"]).items():
-            reduced = reduced + coefficient * cosine(angle) ** (power % 2) * (1 + -sine(angle) ** 2) ** (power // 2)
+            reduced = reduced + coefficient * cosine(angle) ** (power % 2) * (1 - sine(angle) ** 2) ** (power // 2)
         source = reduced
     return source
 

@@ -264,7 +264,8 @@ def _dimensions(shape: Shape, given: Mapping[str, Any]) -> dict[str, Expr]:
     for left, relation, right in shape.conditions:
         gap = found[right] - found[left]
         if gap.is_negative or (relation == "<" and gap.is_zero):
-            raise InputError(f"expected {left} {relation} {right} of the {shape.name}, got {found[left]}, {found[right]}")
+            expected = f"expected {left} {relation} {right} of the {shape.name}"
+            raise InputError(f"{expected}, got {found[left]}, {found[right]}")
     return found
 
 
@@ -362,7 +363,8 @@ _MASS = Dimension("mass", "kg", "m")
 
 def _weighted(shape: Shape, values: Mapping[str, Expr], profile: Poly, measure: Expr) -> Solid:
     """Return a body whose density varies: its coefficients stand in the integrand as generators of their own."""
-    region = _mapped(shape.name)
+    known = {name: Fraction(value.p, value.q) for name, value in values.items() if value.is_Rational}
+    region = domain(shape, known)
     density, coefficients = constant(0), {}
     for n, (powers, coefficient) in enumerate(profile.terms()):
         coefficients[f"density_{n}"] = coefficient
@@ -372,7 +374,7 @@ def _weighted(shape: Shape, values: Mapping[str, Expr], profile: Poly, measure: 
         density = density + term
     mass, center, specific = _properties(moments(region, density), {**values, **coefficients})
     if mass.is_nonpositive:
-        raise InputError(f"expected a density with a positive mass, got {profile.as_expr()} with a mass of {mass} kg")
+        raise InputError(f"expected a density with a positive mass, got {profile.as_expr()} with {mass} kg")
     inertia = _tidied(tensor.scale(mass, specific))
     return Solid(shape.name, values, measure, profile.as_expr(), _tidy(mass), center.applyfunc(_tidy), inertia)
 

@@ -20,9 +20,16 @@ Tensor = tuple[Vector, Vector, Vector]
 IDENTITY: Tensor = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
 
 
+def _items(source: Any) -> tuple[Any, ...]:
+    items = source.tolist() if hasattr(source, "tolist") else source
+    if not isinstance(items, Iterable):
+        raise ValueError(f"expected a list of 3, got {items!r}")
+    return tuple(items)
+
+
 def matrix(source: Any) -> Tensor:
     """Return a 3x3 tensor as nested tuples; ``ValueError`` when it is not 3x3."""
-    rows = tuple(vector(row) for row in (source.tolist() if hasattr(source, "tolist") else source))
+    rows = tuple(map(vector, _items(source)))
     if len(rows) != 3:
         raise ValueError(f"expected a 3x3 tensor, got {len(rows)} rows")
     return rows
@@ -30,11 +37,10 @@ def matrix(source: Any) -> Tensor:
 
 def vector(source: Any) -> Vector:
     """Return a vector, row or column of three as a tuple; ``ValueError`` when it has not three components."""
-    items: Iterable[Any] = source.tolist() if hasattr(source, "tolist") else source
-    found = tuple(items)
+    found = _items(source)
     if len(found) == 1:
-        found = tuple(found[0])
-    if found and all(isinstance(item, list) for item in found):
+        found = _items(found[0])
+    if len(found) == 3 and all(isinstance(item, list) and len(item) == 1 for item in found):
         found = tuple(item for (item,) in found)
     if len(found) != 3:
         raise ValueError(f"expected 3 components, got {len(found)}")
