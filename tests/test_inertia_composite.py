@@ -124,6 +124,12 @@ def test_equal_moments_survive_pi_and_irrational_rotations():
     assert principal_axes(ball.inertia).kind == "spherical"
 
 
+def test_a_very_small_body_is_a_body():
+    """Moments near the smallest double: the residue of an irrational rotation is below it, and is no error."""
+    grain = Part("cylinder", {"radius": "1e-100", "length": "3e-100"}, mass="1e-100", rotation=turn(1, 0))
+    assert principal_axes(mass_properties([grain]).inertia).kind == "symmetric"
+
+
 def test_a_cross_of_equal_rods_is_symmetric_about_its_normal():
     """Four parts with density and rotation: equal moments exactly equal."""
     bar = Part("cylinder", {"radius": "1/10", "length": 1}, density=7800)

@@ -384,7 +384,7 @@ REFUSED = [
     (("sphere",), {"mass": 1, "density": 1}, "a mass or a density"),
     (("sphere",), {"mass": -1}, "positive mass"),
     (("sphere",), {"density": -1}, "positive density"),
-    (("sphere",), {"density": "x"}, "positive mass|other than zero"),
+    (("sphere",), {"density": "x"}, "positive mass"),
     (("sphere",), {"density": "-1 - x**2"}, "positive mass"),
     (("sphere",), {"density": "1/x"}, "polynomial"),
     (("sphere",), {"density": "sin(x)"}, "polynomial"),

@@ -144,7 +144,8 @@ def mass_properties(parts: Sequence[Part], where: str = "") -> MassProperties:
     if total <= 0:
         raise InputError(f"{_prefix(where)}expected parts with a positive total mass, got {float(total):.15g} kg")
     whole = compose(added, subtracted)
-    for value in (whole.mass, *whole.center_of_mass, *(entry for row in whole.inertia for entry in row)):
+    body = principal_axes(whole.inertia, where)
+    for value in (whole.mass, *body.moments):
         read(value, where, "dimensions whose mass and moments of inertia are within the range of a double")
-    require_admissible(principal_axes(whole.inertia, where), where)
+    require_admissible(body, where)
     return whole

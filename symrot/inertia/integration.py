@@ -18,6 +18,7 @@ from symrot.inertia.polynomial import (
     Polynomial,
     constant,
     cosine,
+    exact_quotient,
     generator,
     reduce_circular,
     sine,
@@ -28,6 +29,7 @@ from symrot.number import PI, show
 
 __all__ = [
     "LARGEST_DEGREE", "Domain", "Moments", "density_polynomial", "domain", "exact_moments", "integrate", "moments",
+    "moments_per_measure",
 ]  # fmt: skip
 
 LARGEST_DEGREE = 12
@@ -198,6 +200,18 @@ def moments(region: Domain, density: Polynomial | None = None) -> Moments:
     for i, j in ((0, 0), (1, 1), (2, 2), *combinations(range(3), 2)):
         second[i][j] = second[j][i] = integrate(region.position[i] * region.position[j] * weight, region.limits)
     return Moments(integrate(weight, region.limits), first, tuple(map(tuple, second)))
+
+
+def moments_per_measure(region: Domain, density: Polynomial | None = None) -> tuple[Polynomial, Moments]:
+    """Return a factor and the moments over it: the measure where it divides the Jacobian, else one.
+
+    Taking the measure out beforehand is what keeps a tetrahedron with twelve symbols fast.
+    """
+    measure = integrate(region.jacobian, region.limits)
+    share = exact_quotient(region.jacobian, measure)
+    if share is None:
+        return constant(1), moments(region, density)
+    return measure, moments(region._replace(jacobian=share), density)
 
 
 def exact_moments(

@@ -55,7 +55,7 @@ def _read_tensor(inertia: Any, where: str) -> Tensor:
         rows = matrix(inertia)
     except (TypeError, ValueError):
         raise InputError(f"{_prefix(where)}expected 3x3 moments of inertia in kg m^2, got {show(inertia)}") from None
-    tensor = matrix([[read(entry, where) for entry in row] for row in rows])
+    tensor = matrix([[e if isinstance(e, Fraction) else read(e, where) for e in row] for row in rows])
     largest = max(abs(entry) for row in tensor for entry in row)
     for i, j in _PAIRS:
         if abs(tensor[i][j] - tensor[j][i]) > largest * _NEGLIGIBLE:

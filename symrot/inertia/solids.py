@@ -40,7 +40,7 @@ from symrot.errors import InputError
 from symrot.expression import evaluate, parse
 from symrot.inertia import tensor
 from symrot.inertia.bodies import compose
-from symrot.inertia.integration import LARGEST_DEGREE, Domain, Moments, domain, moments
+from symrot.inertia.integration import LARGEST_DEGREE, Domain, domain, moments_per_measure
 from symrot.inertia.polynomial import Polynomial, constant, exact_quotient, generator
 from symrot.inertia.shapes import SHAPES, Dimension, Shape, check_names, find_shape, scalar_names
 from symrot.number import read, show
@@ -189,11 +189,14 @@ def _default_dimensions(name: str) -> dict[str, Symbol]:
     return {n: _DIMENSION_SYMBOLS[plain.get(n, f"{n[0]}_{n[1:]}")] for n in scalar_names(shape)}
 
 
-def _properties(found: Moments, values: Mapping[str, Expr]) -> tuple[Expr, ImmutableMatrix, ImmutableMatrix]:
-    """Return mass, centre of mass, and inertia per mass about it, from moments that are polynomials."""
+def _properties(
+    region: Domain, values: Mapping[str, Expr], density: Polynomial | None = None
+) -> tuple[Expr, ImmutableMatrix, ImmutableMatrix]:
+    """Return mass, centre of mass, and inertia per mass about it; of unit density unless one is given."""
+    measure, found = moments_per_measure(region, density)
     if not found.zeroth:
-        raise InputError("expected a density with a mass other than zero")
-    mass = _expression(found.zeroth, values)
+        raise InputError("expected a density with a positive mass, got one with a mass of 0 kg")
+    mass = _expression(measure, values) * _expression(found.zeroth, values)
     center = [_ratio(entry, found.zeroth, values) for entry in found.first]
     second = [[_ratio(entry, found.zeroth, values) for entry in row] for row in found.second]
     specific = tensor.inertia_of_second_moments(second)
@@ -211,8 +214,7 @@ def _ratio(numerator: Polynomial, denominator: Polynomial, values: Mapping[str, 
 @cache
 def _uniform(name: str) -> tuple[Expr, ImmutableMatrix, ImmutableMatrix]:
     """Return measure, centre of mass and inertia per mass of a shape in its default symbols."""
-    found = moments(_mapped(name))
-    measure, center, specific = _properties(found, _default_dimensions(name))
+    measure, center, specific = _properties(_mapped(name), _default_dimensions(name))
     return _tidy_measure(measure), center, specific
 
 
@@ -372,7 +374,7 @@ def _weighted(shape: Shape, values: Mapping[str, Expr], profile: Poly, measure: 
         for component, power in zip(region.position, powers, strict=True):
             term = term * component**power
         density = density + term
-    mass, center, specific = _properties(moments(region, density), {**values, **coefficients})
+    mass, center, specific = _properties(region, {**values, **coefficients}, density)
     if mass.is_nonpositive:
         raise InputError(f"expected a density with a positive mass, got {profile.as_expr()} with {mass} kg")
     inertia = _tidied(tensor.scale(mass, specific))
