@@ -1,0 +1,300 @@
+"""The command line: parse, call, print. Texts come from :mod:`symrot.report`; stdout is data, stderr is progress.
+
+Exit codes: 0 good, 1 a check failed, 2 bad usage or input, 130 interrupted, 141 nobody reads the output any more.
+"""
+
+import os
+import sys
+from argparse import ArgumentParser, Namespace
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+from time import perf_counter
+from typing import Any, NoReturn
+
+import symrot
+from symrot.errors import InputError, SymrotError
+from symrot.report.layout import emphasis, one_line
+
+__all__ = ["main"]
+
+GOOD, FAILED, BAD, INTERRUPTED, UNREAD = 0, 1, 2, 130, 141
+TARGETS = ("c", "numpy")
+PAGES = ("markdown", "latex", "html")
+
+
+class _Parser(ArgumentParser):
+    """A parser whose complaints are errors of ours, one sentence each."""
+
+    def error(self, message: str) -> NoReturn:
+        raise InputError(f"{message} (see `{self.prog} --help`)")
+
+
+def _say(lines: Iterable[str]) -> None:
+    sys.stdout.write("".join(f"{line}\n" for line in lines))
+
+
+def _say_json(found: Any) -> None:
+    import json
+
+    sys.stdout.write(json.dumps(found, indent=2, ensure_ascii=False) + "\n")
+
+
+def _progress(text: str) -> None:
+    """Show what takes its time, on one line of a terminal; an empty text clears it."""
+    if sys.stderr.isatty():
+        sys.stderr.write(f"\r\x1b[K{text}")
+        sys.stderr.flush()
+
+
+# --- the commands -----------------------------------------------------------------------------------------------------
+
+
+def _run(options: Namespace) -> int:
+    from symrot.report.files import check_target
+    from symrot.report.summary import facts, summary
+
+    if options.out:
+        from symrot.report import output
+
+        check_target(options.out, tuple(output.FORMATS), "--out")
+    if options.plot:
+        from symrot.report import plot
+
+        check_target(options.plot, plot.SUFFIXES, "--plot")
+        plot.require_matplotlib()
+    scene = symrot.load_scene(options.scene)
+    _progress("preparing the kernel ..")
+    start = perf_counter()
+    propagator = symrot.propagator(scene, method=options.method, tolerance=options.tolerance)
+    preparation = perf_counter() - start
+    _progress("propagating ..")
+    trajectory = propagator()
+    found = facts(propagator, trajectory, preparation)
+    if options.out:
+        _progress("writing ..")
+        names = output.save(trajectory, options.out, propagator.tolerance)
+        found["written"]["out"] = {"file": str(options.out), "samples": len(trajectory), "arrays": names}
+    if options.plot:
+        _progress("drawing ..")
+        plot.save(propagator, trajectory, options.plot)
+        found["written"]["plot"] = {"file": str(options.plot)}
+    _progress("")
+    if options.json:
+        _say_json(found)
+        return GOOD
+    title, *rest = summary(found)
+    _say([emphasis(title, sys.stdout), *rest])
+    return GOOD
+
+
+def _explain(options: Namespace) -> int:
+    from symrot.report import explain
+
+    scene = symrot.load_scene(options.scene)
+    _progress("counting operations ..")
+    found = explain.facts(symrot.plan(scene))
+    _progress("")
+    if options.json:
+        _say_json(found)
+        return GOOD
+    title, *rest = explain.lines(found)
+    _say([emphasis(title, sys.stdout), *rest])
+    return GOOD
+
+
+def _emit(options: Namespace) -> int:
+    from symrot.report import kernels
+
+    if sum(map(bool, (options.scene, options.all, options.check))) != 1:
+        raise InputError("emit: expected exactly one of a SCENE, --all and --check (see `symrot emit --help`)")
+    targets = (options.target,) if options.target else TARGETS
+    if options.check:
+        different = kernels.stale(options.directory or Path("generated"), targets, _progress)
+        _progress("")
+        _say(different)
+        return FAILED if different else GOOD
+    if options.all:
+        written = kernels.write_all(options.directory or Path("generated"), targets, _progress)
+    else:
+        found = kernels.scene_files(options.scene, options.target or "c")
+        if options.directory is None:
+            sys.stdout.write("\n".join(found.values()))
+            return GOOD
+        written = kernels.write_files(options.directory, found)
+    _progress("")
+    _say(str(path) for path in written)
+    return GOOD
+
+
+def _derive(options: Namespace) -> int:
+    from symrot.report import derivations
+
+    if sum(map(bool, (options.name, options.all, options.check))) > 1:
+        raise InputError("derive: expected at most one of a NAME, --all and --check (see `symrot derive --help`)")
+    directory = options.directory or Path("derivations")
+    if options.check:
+        different = derivations.stale(directory)
+        _say(different)
+        return FAILED if different else GOOD
+    if options.all:
+        _say(str(path) for path in derivations.write_all(directory))
+    elif options.name:
+        sys.stdout.write(derivations.page(options.name, options.format))
+    else:
+        _say(derivations.listing())
+    return GOOD
+
+
+def _scenes(options: Namespace) -> int:
+    from symrot.report.layout import columns
+
+    found = symrot.shipped_scenes()
+    if options.json:
+        _say_json([{"name": name, "title": title, "source": source} for name, title, source in found])
+    else:
+        _say(columns([(name, one_line(title)) for name, title, _ in found]))
+    return GOOD
+
+
+def _doctor(options: Namespace) -> int:
+    from symrot.report import health
+
+    if options.clear_cache:
+        removed = health.clear_cache()
+        _say_json({"removed": removed}) if options.json else _say([f"removed {removed} files from the cache"])
+        return GOOD
+    found = health.facts()
+    if options.json:
+        _say_json(found)
+    else:
+        _say(health.lines(found))
+    return FAILED if found["problems"] else GOOD
+
+
+# --- what each takes --------------------------------------------------------------------------------------------------
+
+
+def _scene_argument(parser: ArgumentParser, **more: Any) -> None:
+    parser.add_argument("scene", metavar="SCENE", help="a shipped scene (see `symrot scenes`), or a file", **more)
+
+
+def _json_option(parser: ArgumentParser) -> None:
+    parser.add_argument("--json", action="store_true", help="print JSON")
+
+
+def _run_arguments(parser: ArgumentParser) -> None:
+    _scene_argument(parser)
+    parser.add_argument("--method", default="auto", metavar="NAME", help="auto (default), dop853, scipy or scipy:NAME")
+    parser.add_argument("--tolerance", metavar="X", help="error to aim for, 1e-15 to 1e-2 (default: the scene's own)")
+    parser.add_argument("--out", type=Path, metavar="FILE", help="write the quantities asked for: FILE.npz or FILE.csv")
+    parser.add_argument("--plot", type=Path, metavar="FILE", help="draw the motion on one page: FILE.png, .pdf or .svg")
+    _json_option(parser)
+
+
+def _explain_arguments(parser: ArgumentParser) -> None:
+    _scene_argument(parser)
+    _json_option(parser)
+
+
+def _emit_arguments(parser: ArgumentParser) -> None:
+    _scene_argument(parser, nargs="?")
+    parser.add_argument("--all", action="store_true", help="write the kernels of all shipped scenes")
+    parser.add_argument("--check", action="store_true", help="compare the written kernels; exit 1 with a diff if stale")
+    parser.add_argument("--target", choices=TARGETS, help="language (default: c for a scene, both for --all, --check)")
+    parser.add_argument("-o", type=Path, metavar="DIR", dest="directory",
+                        help="folder (default: standard output for a scene, ./generated otherwise)")  # fmt: skip
+
+
+def _derive_arguments(parser: ArgumentParser) -> None:
+    parser.add_argument("name", metavar="NAME", nargs="?", help="a derivation; without one they are listed")
+    parser.add_argument("--all", action="store_true", help="write the pages of all derivations")
+    parser.add_argument("--check", action="store_true", help="compare the written pages; exit 1 with a diff if stale")
+    parser.add_argument("--format", choices=PAGES, default="markdown", help="of a derivation (default: markdown)")
+    parser.add_argument("-o", type=Path, metavar="DIR", dest="directory",
+                        help="folder of --all and --check (default: ./derivations)")  # fmt: skip
+
+
+def _doctor_arguments(parser: ArgumentParser) -> None:
+    parser.add_argument("--clear-cache", action="store_true", help="remove the kernels kept in the cache")
+    _json_option(parser)
+
+
+COMMANDS: dict[str, tuple[str, Callable[[Namespace], int], Callable[[ArgumentParser], None]]] = {
+    "run": ("propagate a scene and summarise its motion", _run, _run_arguments),
+    "explain": ("show what is computed for a scene, what is skipped and why", _explain, _explain_arguments),
+    "derive": ("print derivations, proven step by step", _derive, _derive_arguments),
+    "emit": ("print the kernel of a scene as C or NumPy", _emit, _emit_arguments),
+    "scenes": ("list the scenes that come with symrot", _scenes, _json_option),
+    "doctor": ("check compiler, cache and installed versions", _doctor, _doctor_arguments),
+}
+"""Command -> what it does, the function that does it, the function that declares its arguments."""
+
+
+def _parser() -> _Parser:
+    parser = _Parser(
+        prog="symrot",
+        description="Rigid-body rotation: derived, specialised, compiled, propagated.",
+        epilog="Try: symrot run tumbling_prism --plot prism.png",
+        allow_abbrev=False,
+    )
+    parser.add_argument("--version", action="version", version=f"symrot {symrot.__version__}")
+    commands = parser.add_subparsers(metavar="COMMAND", dest="command", required=True)
+    for name, (about, function, declare) in COMMANDS.items():
+        spoken = f"{about[0].upper()}{about[1:]}."
+        command = commands.add_parser(name, help=about, description=spoken, allow_abbrev=False)
+        declare(command)
+        command.set_defaults(function=function)
+    return parser
+
+
+def _known(arguments: Sequence[str]) -> None:
+    """Refuse a command that is none, with the nearest that is one."""
+    if arguments and not arguments[0].startswith("-") and arguments[0] not in COMMANDS:
+        from symrot.scene_reader import nearest
+
+        hint = nearest(arguments[0], COMMANDS)
+        said = f"expected a command, one of {', '.join(COMMANDS)}, got {arguments[0][:60]!r}"
+        raise InputError(f"{said} ({hint})" if hint else said)
+
+
+def _silence(stream: Any) -> None:
+    """Point a stream whose reader is gone to nowhere, so that Python can close it without a word."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one command and return its exit code.
+
+    Parameters
+    ----------
+    argv : sequence of str, optional
+        The words after ``symrot``; default: those of this process.
+    """
+    arguments = sys.argv[1:] if argv is None else list(argv)
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="replace")  # a title in letters that the terminal has not is no reason to fail
+    try:
+        if not arguments:
+            _parser().print_help(sys.stderr)
+            return BAD
+        _known(arguments)
+        options = _parser().parse_args(arguments)
+        code: int = options.function(options)
+        sys.stdout.flush()
+        return code
+    except SymrotError as error:
+        _progress("")
+        sys.stderr.write(f"symrot: {one_line(str(error))}\n")
+        return BAD
+    except BrokenPipeError:
+        _silence(sys.stdout)
+        return UNREAD
+    except OSError as error:
+        _progress("")
+        place = f"{error.filename}: " if error.filename else ""
+        sys.stderr.write(f"symrot: {one_line(place)}{error.strerror or error}\n")
+        return BAD
+    except KeyboardInterrupt:
+        _progress("")
+        return INTERRUPTED

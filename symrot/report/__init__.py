@@ -1,0 +1,1 @@
+"""What people and other programs read of a motion: summaries, tables, files, plots, health."""

@@ -1,0 +1,60 @@
+"""Write a file whole or not at all: to a temporary one beside it, renamed when it is complete."""
+
+import os
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import BinaryIO
+
+from symrot.errors import InputError
+
+__all__ = ["check_target", "write"]
+
+
+def check_target(path: Path, suffixes: Sequence[str], option: str) -> None:
+    """Refuse a file that cannot be written, before anything is computed for it.
+
+    Raises
+    ------
+    InputError
+        One sentence: an unknown suffix, a folder that is not there, a folder where a file should go, no permission.
+    """
+    if path.suffix.lower() not in suffixes:
+        raise InputError(f"{option}: expected a file name that ends in {', '.join(suffixes)}, got {str(path)!r}")
+    try:
+        if path.is_dir():
+            raise InputError(f"{option}: expected the name of a file, got the folder {str(path)!r}")
+        if not path.parent.is_dir():
+            raise InputError(f"{option}: expected a folder that is there, got {str(path)!r}")
+        if not os.access(path if path.exists() else path.parent, os.W_OK):
+            raise InputError(f"{option}: expected a file that can be written, got {str(path)!r} (permission denied)")
+    except InputError:
+        raise
+    except (OSError, ValueError) as reason:  # a name too long, a NUL in it
+        raise _refusal(path, reason) from None
+
+
+def _refusal(path: Path, reason: Exception) -> InputError:
+    return InputError(f"{str(path)!r} cannot be written: {getattr(reason, 'strerror', None) or reason}")
+
+
+def write(path: Path, content: Callable[[BinaryIO], object]) -> None:
+    """Let ``content`` write to a file that takes the place of ``path`` once it is complete.
+
+    Raises
+    ------
+    InputError
+        If the disk refuses; what stood at ``path`` is untouched.
+    """
+    target = path.resolve()  # a link keeps pointing to its file
+    passing = target.with_name(f".{target.name[:100]}.{os.getpid()}.part")
+    try:
+        try:
+            with passing.open("xb") as stream:
+                content(stream)
+                stream.flush()
+                os.fsync(stream.fileno())
+            passing.replace(target)
+        finally:
+            passing.unlink(missing_ok=True)
+    except OSError as reason:
+        raise _refusal(path, reason) from None

@@ -1,0 +1,71 @@
+"""The quantities of a trajectory as labelled columns: what each number is, its unit, its frame."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symrot.scene import QUANTITIES, Output
+
+__all__ = ["LOCK", "Labelled", "labelled"]
+
+BODY, SPACE = ("1", "2", "3"), ("x", "y", "z")
+LOCK = "euler_lock"
+
+COMPONENTS: dict[str, tuple[str, ...]] = {
+    "omega": tuple(f"omega_{i}" for i in BODY),
+    "omega_space": tuple(f"omega_{i}" for i in SPACE),
+    "quaternion": ("q0", "q1", "q2", "q3"),
+    "dcm": tuple(f"dcm_{i}{j}" for i in BODY for j in BODY),
+    "energy": ("energy",),
+    "kinetic_energy": ("kinetic_energy",),
+    "angular_momentum_body": tuple(f"L_{i}" for i in BODY),
+    "angular_momentum_space": tuple(f"L_{i}" for i in SPACE),
+    "polhode": tuple(f"polhode_{i}" for i in BODY),
+    "herpolhode": tuple(f"herpolhode_{i}" for i in SPACE),
+    "axis": tuple(f"axis_{i}" for i in SPACE),
+}
+FRAMES = {
+    **dict.fromkeys(("omega", "angular_momentum_body", "polhode"), "body"),
+    **dict.fromkeys(("omega_space", "angular_momentum_space", "herpolhode", "axis"), "space"),
+    **dict.fromkeys(("quaternion", "euler", "dcm", LOCK), "body to space"),
+}
+
+
+class Labelled(NamedTuple):
+    """One quantity: its name, values of shape (n,) or (n, ...), and what they are."""
+
+    name: str
+    values: NDArray[Any]
+    components: tuple[str, ...]
+    unit: str
+    frame: str  # body | space | body to space | ""
+    meaning: str
+
+
+def _euler(output: Output) -> tuple[tuple[str, ...], str, str]:
+    sequence = output.sequence or ""
+    kind = "intrinsic" if sequence.isupper() else "extrinsic"
+    names = tuple(f"euler_{sequence}_{i}" for i in BODY)
+    return names, "deg" if output.degrees else "rad", f"Euler angles {sequence}, {kind}, in order of application"
+
+
+def labelled(trajectory: Any) -> list[Labelled]:
+    """Return time and the quantities that the scene of a trajectory asks for.
+
+    Euler angles are followed by :data:`LOCK`, true where the sequence is at gimbal lock, so that only a sum or a
+    difference of two of its angles means something.
+    """
+    output = trajectory.scene.output
+    found = [Labelled("t", trajectory.t, ("t",), "s", "", "time")]
+    for name in output.quantities:
+        unit, meaning = QUANTITIES[name]
+        components = COMPONENTS.get(name, ())
+        if name == "euler":
+            components, unit, meaning = _euler(output)
+        found.append(Labelled(name, trajectory.quantity(name), components, unit, FRAMES.get(name, ""), meaning))
+        if name == "euler":
+            locked = np.asarray(trajectory.gimbal_lock(output.sequence))
+            meaning = "1 where the Euler sequence is at gimbal lock, else 0"
+            found.append(Labelled(LOCK, locked, (LOCK,), "1", FRAMES[LOCK], meaning))
+    return found

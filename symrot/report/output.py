@@ -1,0 +1,111 @@
+"""A trajectory as a file, NPZ or CSV, with labels, units, conventions and source inside. Same motion, same bytes."""
+
+import json
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any, BinaryIO
+
+import numpy as np
+
+from symrot import __version__, conventions
+from symrot.report.files import write
+from symrot.report.labels import LOCK, Labelled, labelled
+from symrot.report.layout import columns, exact, one_line
+
+__all__ = ["FORMATS", "metadata", "save"]
+
+ROWS_AT_ONCE = 4096
+
+
+def metadata(trajectory: Any, arrays: list[Labelled], tolerance: float) -> dict[str, Any]:
+    """Return what a file says of its numbers: scene, method, what each array holds, conventions."""
+    scene, stats = trajectory.scene, trajectory.stats
+    return {
+        "symrot": __version__,
+        "scene": scene.name,
+        "title": scene.title,
+        "source": scene.source,
+        "method": trajectory.method,
+        "tolerance": tolerance,
+        "steps": stats.accepted,
+        "evaluations": stats.evaluations,
+        "moments_of_inertia": [exact(moment) for moment in scene.body.principal.moments],
+        "arrays": {
+            item.name: {
+                "components": list(item.components), "unit": item.unit, "frame": item.frame, "meaning": item.meaning,
+            }
+            for item in arrays
+        },
+        "invariants": [
+            {"name": item.name, "unit": item.unit, "drift": item.drift, "reason": item.reason}
+            for item in trajectory.invariants
+        ],
+        "conventions": _conventions(),
+    }  # fmt: skip
+
+
+def _conventions() -> str:
+    return (conventions.__doc__ or "").split("\n", 2)[-1].strip()
+
+
+def _npz(stream: BinaryIO, arrays: list[Labelled], about: dict[str, Any]) -> None:
+    content: dict[str, Any] = {item.name: item.values for item in arrays}
+    np.savez_compressed(stream, metadata=np.array(json.dumps(about, indent=1)), **content)
+
+
+def _head(arrays: list[Labelled], about: dict[str, Any]) -> Iterator[str]:
+    yield f"symrot {about['symrot']}: {one_line(about['title'])}"
+    for key in ("scene", "source", "method", "tolerance"):
+        yield f"{key}: {one_line(str(about[key]))}"
+    yield "columns:"
+    rows = [
+        (f"  {component}", item.unit, item.frame, item.meaning) for item in arrays for component in item.components
+    ]
+    yield from columns(rows, width=1000)
+    yield "invariants (largest change since the start, relative):"
+    yield from columns([(f"  {i['name']}", f"{i['drift']:.3g}", i["reason"]) for i in about["invariants"]], width=1000)
+    yield "conventions:"
+    yield from (f"  {line}" for line in about["conventions"].splitlines())
+
+
+def _csv(stream: BinaryIO, arrays: list[Labelled], about: dict[str, Any]) -> None:
+    lines = [f"# {line}".rstrip() for line in _head(arrays, about)]
+    lines.append(",".join(component for item in arrays for component in item.components))
+    stream.write(("\n".join(lines) + "\n").encode())
+    count = len(arrays[0].values)
+    for first in range(0, count, ROWS_AT_ONCE):
+        part = slice(first, first + ROWS_AT_ONCE)
+        table = [column for item in arrays for column in _printed(item, part)]
+        stream.write("".join(f"{','.join(row)}\n" for row in zip(*table, strict=True)).encode())
+
+
+def _printed(item: Labelled, part: slice) -> list[list[str]]:
+    """Return the columns of a quantity as text that reads back to the same doubles."""
+    values = item.values[part].reshape(-1, len(item.components)).T
+    return [[str(int(x)) if item.name == LOCK else repr(x) for x in column] for column in values.tolist()]
+
+
+FORMATS: dict[str, Callable[[BinaryIO, list[Labelled], dict[str, Any]], None]] = {".npz": _npz, ".csv": _csv}
+"""Suffix -> writer."""
+
+
+def save(trajectory: Any, path: Path, tolerance: float) -> list[str]:
+    """Write the quantities of a scene to a file and return their names.
+
+    NPZ: arrays by name and ``metadata``, a JSON text; loads with ``allow_pickle=False``. CSV: comment lines, a line of
+    column names, numbers with every digit (``pandas.read_csv(file, comment="#")``).
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The motion.
+    path : Path
+        Its suffix, one of :data:`FORMATS`, decides.
+    tolerance : float
+        That it was propagated with.
+    """
+    arrays = labelled(trajectory)
+    about = metadata(trajectory, arrays, tolerance)
+    writer = FORMATS[path.suffix.lower()]
+    write(path, lambda stream: writer(stream, arrays, about))
+    return [item.name for item in arrays]

@@ -1,0 +1,184 @@
+"""What a run was and how it went: facts as plain data, and the same facts on one screen."""
+
+from typing import Any
+
+from symrot import __version__
+from symrot.report.layout import columns, duration, exact, fields, one_line, shown
+
+__all__ = ["facts", "summary"]
+
+METHODS = {
+    "constant": "every state keeps its value",
+    "dop853": "Dormand-Prince 8(5,3), stepped in C around the emitted kernel",
+    "scipy": "SciPy around the emitted NumPy kernel",
+}
+ABOUT = {"center_of_mass": "its centre of mass", "fixed_point": "a fixed point"}
+
+
+def facts(propagator: Any, trajectory: Any, preparation: float) -> dict[str, Any]:
+    """Return what there is to say of a run, as data for JSON.
+
+    Parameters
+    ----------
+    propagator, trajectory : Propagator, Trajectory
+        What ran, and its motion at the scene's own times.
+    preparation : float
+        Seconds to derive and compile the kernel, or to load it.
+    """
+    scene, plan, stats = trajectory.scene, propagator.plan, trajectory.stats
+    body, final = scene.body, {"t": float(trajectory.t[-1]), "omega": trajectory.omega[-1].tolist()}
+    if trajectory.has_attitude:
+        final["quaternion"] = trajectory.quaternion[-1].tolist()
+    return {
+        "symrot": __version__,
+        "scene": {"name": scene.name, "title": scene.title, "source": scene.source, "path": scene.path},
+        "body": {
+            "description": body.description,
+            "class": body.principal.kind,
+            "principal_moments": [exact(moment) for moment in body.principal.moments],
+            "axes_are_principal": body.principal.given_axes,
+            "about": body.about,
+            "mass": None if body.mass is None else exact(body.mass),
+        },
+        "torques": [torque.kind for torque in scene.torques],
+        "initial": {
+            "omega": [exact(value) for value in scene.initial.omega_b],
+            "quaternion": [float(value) for value in scene.initial.quaternion],
+        },
+        "span": {"start": exact(scene.span.start), "stop": exact(scene.span.stop), "samples": scene.span.samples},
+        "method": {"name": propagator.method, "reason": propagator.reason, "tolerance": propagator.tolerance},
+        "states": list(plan.states),
+        "plan": [
+            {"item": row.item, "skipped": row.skipped, "why": row.why, "derivation": row.derivation}
+            for row in plan.rows
+        ],
+        "cost": {
+            "steps": stats.accepted,
+            "rejected": stats.rejected,
+            "evaluations": stats.evaluations,
+            "seconds": stats.seconds,
+            "preparation_seconds": preparation,
+        },
+        "invariants": [
+            {
+                "name": item.name, "unit": item.unit, "initial": float(item.values[0]), "scale": item.scale,
+                "drift": item.drift, "reason": item.reason,
+            }
+            for item in trajectory.invariants
+        ],
+        "not_conserved": [
+            {"name": item.name, "unit": item.unit, "reason": item.reason}
+            for item in propagator.kernel.conserved
+            if not item.kept
+        ],
+        "final": final,
+        "written": {},
+    }  # fmt: skip
+
+
+def _numbers(values: list[Any], digits: int = 6) -> str:
+    return ", ".join(shown(float(value), digits) for value in values)
+
+
+def _value(text: str) -> float:
+    """Return the number of an exact text, ``"51/80"`` or ``"5"`` or ``"1e-9"``."""
+    numerator, _, denominator = text.partition("/")
+    return float(numerator) / float(denominator or 1)
+
+
+def _body(body: dict[str, Any]) -> str:
+    moments = [_value(moment) for moment in body["principal_moments"]]
+    turned = "" if body["axes_are_principal"] else " (the axes of the scene are not principal)"
+    return (
+        f"{one_line(body['description'])}: {body['class']}, principal moments {_numbers(moments)} kg m^2 about "
+        f"{ABOUT[body['about']]}{turned}"
+    )
+
+
+def _states(names: list[str]) -> str:
+    return ", ".join(names).replace("omega_1, omega_2, omega_3", "omega_1..3").replace("q0, q1, q2, q3", "q0..q3")
+
+
+def _steps(cost: dict[str, Any]) -> str:
+    again = f" ({cost['rejected']} tried again)" if cost["rejected"] else ""
+    return (
+        f"{cost['steps']} steps{again}, {cost['evaluations']} evaluations in {duration(cost['seconds'])}; "
+        f"the kernel was ready in {duration(cost['preparation_seconds'])}"
+    )
+
+
+def _settings(found: dict[str, Any]) -> list[tuple[str, str]]:
+    span, method = found["span"], found["method"]
+    meaning = METHODS[method["name"].partition(":")[0]]
+    torques = ", ".join(kind.replace("_", " ") for kind in found["torques"]) or "none"
+    return [
+        ("body", _body(found["body"])),
+        ("torque", torques),
+        ("start", f"omega = ({_numbers([_value(x) for x in found['initial']['omega']])}) rad/s in the body"),
+        ("span", f"{shown(_value(span['start']))} to {shown(_value(span['stop']))} s, {span['samples']} samples"),
+        ("method", f"{method['name']} ({meaning}); {method['reason']}"),
+        ("tolerance", f"{method['tolerance']:g}"),
+        ("states", _states(found["states"]) or "none to integrate"),
+        ("cost", _steps(found["cost"])),
+    ]  # fmt: skip
+
+
+def _skipped(found: dict[str, Any]) -> list[tuple[str, str]]:
+    rows = [f"{row['item']}: {row['why']}" for row in found["plan"] if row["skipped"]]
+    return [("skipped" if number == 0 else "", row) for number, row in enumerate(rows)]
+
+
+def _kept(found: dict[str, Any]) -> list[str]:
+    rows = [("  kept", "at the start", "relative drift", "why")]
+    for item in found["invariants"]:
+        unit = "" if item["unit"] == "1" else f" {item['unit']}"
+        rows.append((f"  {item['name']}", f"{shown(item['initial'])}{unit}", f"{item['drift']:.1e}", item["reason"]))
+    lines = columns(rows, right=(2,))
+    return lines + [f"  {line}" for line in fields(_lost(found["not_conserved"]))]
+
+
+def _lost(candidates: list[dict[str, str]]) -> list[tuple[str, str]]:
+    """Return what is not conserved, those of one reason on one line."""
+    names: dict[str, list[str]] = {}
+    for item in candidates:
+        names.setdefault(item["reason"], []).append(item["name"])
+    rows = [f"{', '.join(found)}: {reason}" for reason, found in names.items()]
+    return [("not kept" if number == 0 else "", row) for number, row in enumerate(rows)]
+
+
+def _final(final: dict[str, Any]) -> list[str]:
+    rows = [("end", f"t = {shown(final['t'])} s"), ("  omega", f"({_numbers(final['omega'], 12)}) rad/s in the body")]
+    if "quaternion" in final:
+        rows.append(("  attitude", f"({_numbers(final['quaternion'], 12)}) as a quaternion"))
+    return [f"  {line}" for line in fields(rows)]
+
+
+def _written(written: dict[str, Any]) -> list[str]:
+    rows = [("written", "nothing; --out FILE.npz or FILE.csv keeps the motion, --plot FILE.png draws it")]
+    if written:
+        rows = [("", f"{item['file']}{_holding(item)}") for item in written.values()]
+        rows[0] = ("written", rows[0][1])
+    return [f"  {line}" for line in fields(rows)]
+
+
+def _holding(item: dict[str, Any]) -> str:
+    return f": {', '.join(item['arrays'])} at {item['samples']} times" if "arrays" in item else ""
+
+
+def summary(found: dict[str, Any]) -> list[str]:
+    """Return the lines for people that say what :func:`facts` says; the first is the title."""
+    scene = found["scene"]
+    source = [f"  {line}" for line in fields([("", one_line(scene["source"]))])] if scene["source"] else []
+    settings = [f"  {line}" for line in fields(_settings(found) + _skipped(found))]
+    return [
+        f"{one_line(scene['title'])} [{one_line(scene['name'])}]",
+        *(line.replace("    ", "  ", 1) for line in source),
+        "",
+        *settings,
+        "",
+        *_kept(found),
+        "",
+        *_final(found["final"]),
+        "",
+        *_written(found["written"]),
+    ]
