@@ -7,7 +7,7 @@ to know about B: inverse, determinant, where it is singular, how badly condition
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from itertools import pairwise
 from typing import Any, Self
 
@@ -87,6 +87,7 @@ def condition_of(gram: Matrix) -> Expr:
     return sqrt(cancel(Max(*values) / Min(*values)))
 
 
+@cache
 def zeros_of(equation: Expr, variable: Symbol, domain: Set = S.Reals) -> Set:
     """Return the zeros in ``domain`` of an expression in one variable, exactly.
 

@@ -52,7 +52,7 @@ Mask = NDArray[np.bool_]
 Components = Sequence[Array] | Array  # one array per component, all of one length
 
 LOCK = 2.0**-51  # rad from lock: below it a quaternion in double precision cannot tell the two angles apart
-TWO_PI, TWO_PI_LOW = 2 * np.pi, 2.4492935982947064e-16  # their sum is 2 pi to 107 bits
+PI_LOW = 1.2246467991473532e-16  # pi - np.pi
 BLOCK = 8192  # samples taken at once
 SAFE = 1e-250, 1e250  # squared lengths in between neither lose digits to underflow nor overflow
 
@@ -433,7 +433,7 @@ def quaternion_to_euler(
 
     Notes
     -----
-    Half-angle sums and differences by ``arctan2``, as :func:`symrot.kinematics.euler.euler_of_quaternion` derives
+    Half-angle sums and differences, as :func:`symrot.kinematics.euler.euler_of_quaternion` derives
     them. The rotation rebuilt from the angles has rounding error at any distance from lock; the angles themselves
     are determined to about 1e-16 over that distance. Source: Bernardes & Viollet, PLoS ONE 17 (2022) e0276302.
     """
@@ -446,8 +446,9 @@ def quaternion_to_euler(
         # along 1, e_first, e_middle, e_first x e_middle; a Tait-Bryan sequence is a proper one a quarter turn before
         a, b, c, d = (q0, along, across, third) if proper else (q0 - across, along - third, q0 + across, along + third)
         low, high = np.sqrt(a * a + b * b), np.sqrt(c * c + d * d)
-        half_sum, half_difference = np.arctan2(b, a), np.arctan2(d, c)
-        tilt = 2 * np.arctan2(high, low) if proper else np.arctan2(2 * (q0 * across + along * third), low * high)
+        # arctan in place of arctan2: half the time; half turns are counted in ``odd`` and added without error
+        half_sum, half_difference, odd = np.arctan(b / a), np.arctan(d / c), np.signbit(a) ^ np.signbit(c)
+        tilt = 2 * np.arctan(high / low) if proper else np.arctan(2 * (q0 * across + along * third) / (low * high))
         locked: Mask = np.minimum(low, high) <= lock / 2 * np.maximum(low, high)
         if locked.any():
             at_zero = high[locked] < low[locked]
@@ -455,9 +456,11 @@ def quaternion_to_euler(
             # the third angle is the right one of an intrinsic sequence (half sum - half difference), else the left
             half_sum[locked] = known if intrinsic else np.where(at_zero, known, -known)
             half_difference[locked] = known if intrinsic else np.where(at_zero, -known, known)
+            odd[locked] = False
             tilt[locked] = np.where(at_zero, 0.0, np.pi) - (0.0 if proper else np.pi / 2)
-        left, right = half_sum + half_difference, half_sum - half_difference
-        turned = (_within_half_turn(left), tilt, _within_half_turn(right if proper or sign < 0 else -right))
+        left = _sum(half_sum, half_difference, odd)
+        right = _sum(half_sum, -half_difference, odd)
+        turned = (left, tilt, right if proper or sign < 0 else -right)
         return *(turned if intrinsic else turned[::-1]), locked.astype(np.float64)
 
     found = _by_components(angles_of, array_of(q, 4, what="a quaternion"), 4)
@@ -465,12 +468,15 @@ def quaternion_to_euler(
     return np.degrees(angles) if degrees else angles, found[..., 3] == 1
 
 
-def _within_half_turn(angle: Array) -> Array:
-    """Return angles of (-2 pi, 2 pi) reduced to [-pi, pi], without the error of 2 pi as a double."""
-    turns = np.subtract(angle > np.pi, angle < -np.pi, dtype=np.float64)
-    angle -= turns * TWO_PI
-    angle += turns * TWO_PI_LOW
-    return angle
+def _sum(x: Array, y: Array, odd: Mask) -> Array:
+    """Return ``x + y``, plus or minus pi where ``odd``, in [-pi, pi], for x and y in [-pi/2, pi/2]; rounded once."""
+    total = x + y
+    back = total - x
+    error = (x - (total - back)) + (y - back)
+    half_turn = np.copysign(odd, total)
+    total -= half_turn * np.pi
+    error -= half_turn * PI_LOW
+    return total + error
 
 
 def euler_to_dcm(angles: Any, sequence: str, degrees: bool = False) -> Array:

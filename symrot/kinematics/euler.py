@@ -255,15 +255,16 @@ def sequences_at_lock(sequence: str) -> dict[str, Set]:
     """Return, for each other sequence, where on the singular set of ``sequence`` it is singular too.
 
     With the middle angle at lock the first and last turn are about one line, and the attitude depends on one
-    combination of them, here the angle phi of the left factor alone. The values are sets of that angle: the empty
-    set for a sequence that is regular at every locked attitude, the reals for one that locks with it everywhere.
+    combination of them, here the angle of the left factor with that of the right one zero. The values are sets of
+    that angle (phi if intrinsic, psi if extrinsic): the empty set for a sequence that is regular at every locked
+    attitude, the reals for one that locks with it everywhere.
     """
-    middle = rate_jacobian(sequence).singular_set
-    chi = symbols.phi
+    left, _, _ = factors(sequence)
+    chi = left.angle
     attitudes = []
-    for point in middle.points():
-        left, locked, _ = factors(sequence, (0, point, 0))
-        attitudes.append(elementary_rotation(left.axis, chi) * locked.rotation)
+    for point in rate_jacobian(sequence).singular_set.points():
+        _, locked, _ = factors(sequence, (0, point, 0))
+        attitudes.append(left.rotation * locked.rotation)
     found = {}
     for other in SEQUENCES:
         if other != sequence:

@@ -1,0 +1,193 @@
+"""The singularity dossier of an Euler sequence: where it locks, what happens there, and which sequence to take instead.
+
+Everything is derived from :func:`symrot.kinematics.euler.rate_jacobian`; nothing is listed by hand.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cache
+
+from sympy import Expr, ImmutableMatrix, Matrix, S, Set, factor_terms
+
+from symrot import symbols
+from symrot.conventions import SEQUENCES, parse_sequence
+from symrot.kinematics.chart import Limit, SingularSet
+from symrot.kinematics.euler import EulerRateMatrix, factors, rate_jacobian, sequences_at_lock
+
+__all__ = ["LockedPoint", "SingularityDossier", "singularity_dossier"]
+
+
+@dataclass(frozen=True)
+class LockedPoint:
+    """One value of the middle angle at which a sequence locks.
+
+    Attributes
+    ----------
+    middle : Expr
+        The angle, rad.
+    silent_rates : ImmutableMatrix, shape (3, 1)
+        Angle rates that turn nothing: the null vector of B. Only a combination of first and third angle counts.
+    lost_axis_b : ImmutableMatrix, shape (3, 1)
+        The unit direction (body components) about which no angle rates can turn the body: ``lost^T B = 0``.
+    """
+
+    middle: Expr
+    silent_rates: ImmutableMatrix
+    lost_axis_b: ImmutableMatrix
+
+    @property
+    def combination(self) -> Expr:
+        """The sum or difference of first and third angle on which alone the attitude depends."""
+        first, _, third = symbols.angles
+        return first - third * self.silent_rates[0] / self.silent_rates[2]
+
+
+@dataclass(frozen=True)
+class SingularityDossier:
+    """What there is to know about the singularity of an Euler sequence. ``print`` it, or read its parts.
+
+    Attributes
+    ----------
+    sequence : str
+    jacobian_b, jacobian_s : EulerRateMatrix
+        B of ``omega = B dq/dt`` in body and space components.
+    locked : tuple of LockedPoint
+        The singular points of one turn of the middle angle.
+    regular_sequences : tuple of str
+        Sequences regular at every attitude where this one locks.
+    partly_regular : dict of str to Set
+        Sequences that lock at some of those attitudes: at these values of the angle of the left factor (phi if
+        intrinsic, psi if extrinsic), with the other outer angle zero.
+    singular_sequences : tuple of str
+        Sequences that lock wherever this one does.
+    """
+
+    sequence: str
+    jacobian_b: EulerRateMatrix
+    jacobian_s: EulerRateMatrix
+    locked: tuple[LockedPoint, ...]
+    regular_sequences: tuple[str, ...]
+    partly_regular: dict[str, Set]
+    singular_sequences: tuple[str, ...]
+
+    @property
+    def determinant(self) -> Expr:
+        return self.jacobian_b.determinant
+
+    @property
+    def singular_set(self) -> SingularSet:
+        return self.jacobian_b.singular_set
+
+    @property
+    def condition_number(self) -> Expr:
+        return self.jacobian_b.condition_number
+
+    @property
+    def limits(self) -> tuple[Limit, ...]:
+        """Of the inverse of the body Jacobian."""
+        return self.jacobian_b.limits
+
+    def text(self) -> str:
+        """Return the dossier as text, the same bytes for the same sequence."""
+        kind = "intrinsic" if parse_sequence(self.sequence)[1] else "extrinsic"
+        return "\n".join(
+            [
+                f"Singularity dossier of the {kind} Euler sequence {self.sequence}, angles phi, theta, psi",
+                "",
+                f"det B             {self.determinant}",
+                f"singular          {self.singular_set}",
+                f"condition number  {self.condition_number}",
+                "",
+                "omega_b = B dq/dt, B =",
+                *_rows(self.jacobian_b),
+                "omega_s = B dq/dt, B =",
+                *_rows(self.jacobian_s),
+                "dq/dt = B^-1 omega_b, B^-1 =",
+                *_rows(self.jacobian_b.inverse),
+                *(line for point in self.locked for line in self._locked_text(point)),
+                "",
+                f"Regular wherever {self.sequence} locks: {_names(self.regular_sequences)}",
+                f"Locked wherever {self.sequence} locks:  {_names(self.singular_sequences)}",
+                "Locked at some of these attitudes only:",
+                *(f"  {values}: {_names(names)}" for values, names in self._partly_text()),
+            ]
+        )
+
+    __str__ = text
+
+    def _locked_text(self, point: LockedPoint) -> Iterable[str]:
+        middle = self.singular_set.variable
+        yield ""
+        yield f"At {middle} = {point.middle}"
+        yield f"  the attitude depends on {point.combination} alone; lost axis (body) {_row(point.lost_axis_b)}"
+        for limit in self.limits:
+            if limit.point == point.middle:
+                side = "above" if limit.side == "+" else "below"
+                yield f"  from {side}, B^-1 tends to"
+                yield from _rows(limit.limit, "    ")
+        residue = next(limit.residue for limit in self.limits if limit.point == point.middle)
+        yield f"  ({middle} - {point.middle}) B^-1 tends to"
+        yield from _rows(residue, "    ")
+
+    def _partly_text(self) -> list[tuple[str, list[str]]]:
+        left, _, right = factors(self.sequence)
+        groups: dict[str, list[str]] = {}
+        for name, values in self.partly_regular.items():
+            where = f"{SingularSet(S.Zero, left.angle, values)}, {right.angle} = 0"
+            groups.setdefault(where, []).append(name)
+        return sorted(groups.items())
+
+
+def _names(names: Iterable[str]) -> str:
+    return " ".join(names) or "none"
+
+
+def _row(matrix: Matrix) -> str:
+    return "(" + ", ".join(map(str, matrix)) + ")"
+
+
+def _rows(matrix: Matrix, indent: str = "  ") -> list[str]:
+    texts = [[str(entry) for entry in matrix.row(i)] for i in range(matrix.rows)]
+    widths = [max(len(row[j]) for row in texts) for j in range(matrix.cols)]
+    return [
+        indent + "[" + "  ".join(text.rjust(width) for text, width in zip(row, widths, strict=True)) + "]"
+        for row in texts
+    ]
+
+
+def _locked_point(sequence: str, middle: Expr) -> LockedPoint:
+    """Return what is lost at a singular value of the middle angle.
+
+    The first and last axis coincide up to sign there, ``b_first = s b_last``: the rates ``1, 0, -s`` turn nothing,
+    and the axis across both of them and the middle one is out of reach.
+    """
+    first, _, third = symbols.angles
+    jacobian = rate_jacobian(sequence, "body", (first, middle, third))
+    columns = [jacobian.col(i) for i in range(3)]
+    lost = columns[1].cross(columns[2]).applyfunc(factor_terms)
+    left, turn, right = factors(sequence, (first, middle, third))
+    sense = (left.direction.T * turn.rotation * right.direction)[0]
+    silent = ImmutableMatrix([1, 0, -sense])
+    return LockedPoint(middle, silent, ImmutableMatrix(lost))
+
+
+@cache
+def singularity_dossier(sequence: str) -> SingularityDossier:
+    """Return the dossier of an Euler sequence; ``print(singularity_dossier("ZXZ"))`` shows it.
+
+    Raises
+    ------
+    InputError
+        For an unknown sequence.
+    """
+    jacobian = rate_jacobian(sequence)
+    meetings = sequences_at_lock(sequence)
+    return SingularityDossier(
+        sequence=sequence,
+        jacobian_b=jacobian,
+        jacobian_s=rate_jacobian(sequence, "space"),
+        locked=tuple(_locked_point(sequence, point) for point in jacobian.singular_set.points()),
+        regular_sequences=jacobian.regular_sequences,
+        partly_regular={name: met for name, met in meetings.items() if met not in (S.EmptySet, S.Reals)},
+        singular_sequences=tuple(name for name in SEQUENCES if meetings.get(name) == S.Reals),
+    )

@@ -1,0 +1,98 @@
+"""Numeric rates: angular velocity to rates of quaternions and Euler angles, and back. NumPy alone.
+
+Arrays of any leading shape; conventions and bad rows as in :mod:`symrot.kinematics.conversions`. The formulas are
+those that :mod:`symrot.kinematics.euler` and :mod:`symrot.kinematics.quaternion` derive; the tests compare.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from symrot.errors import InputError
+from symrot.kinematics.conversions import Array, Mask, array_of, multiply, places
+
+__all__ = ["angular_velocity", "euler_angular_velocity", "euler_rates", "quaternion_rate"]
+
+
+def _is_body(frame: str) -> bool:
+    if frame not in ("body", "space"):
+        raise InputError(f"frame is 'body' or 'space', the frame whose components omega has; got {frame!r}")
+    return frame == "body"
+
+
+def quaternion_rate(q: Any, omega: Any, frame: str = "body") -> Array:
+    """Return ``dq/dt``, shape (..., 4), in 1/s: ``1/2 q (0, omega_b)`` or ``1/2 (0, omega_s) q``; omega in rad/s."""
+    q, omega = array_of(q, 4, what="a quaternion"), array_of(omega, 3, what="an angular velocity")
+    pure = np.concatenate([np.zeros_like(omega[..., :1]), omega], axis=-1)
+    return (multiply(q, pure) if _is_body(frame) else multiply(pure, q)) / 2
+
+
+def angular_velocity(q: Any, dq: Any, frame: str = "body") -> Array:
+    """Return omega, shape (..., 3), rad/s, of a unit quaternion and its rate: ``2 q* dq`` or ``2 dq q*``."""
+    q, dq = array_of(q, 4, what="a quaternion"), array_of(dq, 4, what="the rate of a quaternion")
+    inverse = q * np.array([1.0, -1.0, -1.0, -1.0])
+    return 2 * (multiply(inverse, dq) if _is_body(frame) else multiply(dq, inverse))[..., 1:]
+
+
+def _turn(vector: Array, axis: int, angle: Array) -> Array:
+    """Return vectors turned about a coordinate axis, right-handed."""
+    j, k = (axis + 1) % 3, (axis + 2) % 3
+    shape = np.broadcast_shapes(vector.shape[:-1], angle.shape)
+    turned: Array = np.broadcast_to(vector, (*shape, 3)).copy()
+    cosine, sine = np.cos(angle), np.sin(angle)
+    turned[..., j] = cosine * vector[..., j] - sine * vector[..., k]
+    turned[..., k] = sine * vector[..., j] + cosine * vector[..., k]
+    return turned
+
+
+@np.errstate(all="ignore")
+def euler_rates(angles: Any, omega: Any, sequence: str, frame: str = "body") -> tuple[Array, Mask]:
+    """Return the rates of Euler angles, shape (..., 3), rad/s, and where they are infinite, shape (...).
+
+    Parameters
+    ----------
+    angles : array, shape (..., 3)
+        rad, in order of application.
+    omega : array, shape (..., 3)
+        rad/s, components in ``frame``.
+    sequence : str
+    frame : str
+        ``"body"`` or ``"space"``.
+
+    Notes
+    -----
+    Seen from between the middle and the last turn, the middle axis m and the last axis e are fixed and the first axis
+    is in the plane of e and w = m x e: ``-sin(q2) w + cos(q2) e`` (proper) or ``sign (cos(q2) w + sin(q2) e)``
+    (Tait-Bryan). At lock, where its part along w vanishes exactly, the row is not finite and the mask is True.
+    """
+    (first, middle, last), order, cross, sign = places(sequence)
+    angles = array_of(angles, 3, what=f"a set of {sequence} angles")
+    omega = array_of(omega, 3, what="an angular velocity")
+    left, tilt, right = (angles[..., place] for place in order)
+    seen = _turn(omega, last, right) if _is_body(frame) else _turn(_turn(omega, first, -left), middle, -tilt)
+    cosine, sine = np.cos(tilt), np.sin(tilt)
+    if first == last:  # w = m x e = -(e_first x e_middle)
+        across, along, w = -sine, cosine, -sign * seen[..., cross]
+    else:  # w = m x e = sign e_first
+        across, along, w = sign * cosine, sign * sine, sign * seen[..., first]
+    rate = w / across
+    rates = np.empty(seen.shape)
+    rates[..., order[0]] = rate
+    rates[..., order[1]] = seen[..., middle]
+    rates[..., order[2]] = seen[..., last] - along * rate
+    return rates, np.broadcast_to(across == 0, rates.shape[:-1])
+
+
+def euler_angular_velocity(angles: Any, rates: Any, sequence: str, frame: str = "body") -> Array:
+    """Return omega, shape (..., 3), rad/s, components in ``frame``, of Euler angles (rad) and their rates (rad/s)."""
+    (first, middle, last), order, _, _ = places(sequence)
+    angles = array_of(angles, 3, what=f"a set of {sequence} angles")
+    rates = array_of(rates, 3, what="a set of angle rates")
+    left, tilt, right = (angles[..., place] for place in order)
+    axes = np.eye(3)[[first, middle, last]]
+    columns: list[Array] = [rates[..., place, None] * axis for place, axis in zip(order, axes, strict=True)]
+    if _is_body(frame):
+        omega: Array = _turn(_turn(columns[0], middle, -tilt) + columns[1], last, -right) + columns[2]
+    else:
+        omega = _turn(_turn(columns[2], middle, tilt) + columns[1], first, left) + columns[0]
+    return omega
