@@ -1,0 +1,281 @@
+"""Kernels say what the equations say: exactly, in every language, with no needless operation, the same bytes anywhere."""
+
+import ctypes
+import hashlib
+import json
+import os
+import random
+import shutil
+import subprocess
+import sys
+from fractions import Fraction
+
+import mpmath
+import numpy as np
+import pytest
+import sympy
+
+import symrot
+from symrot import symbols
+from symrot.codegen.banner import Description
+from symrot.codegen.c_source import c_header, c_source
+from symrot.codegen.lower import lower, to_node
+from symrot.codegen.numpy_kernel import load_numpy_kernel
+from symrot.codegen.scene_kernels import derive_scene_kernel, rates_program
+from symrot.dynamics.equations import equations_of_motion
+from symrot.errors import InputError
+from symrot.expression import children, evaluate, names, text
+from symrot.kernel import Argument, Program, Signature
+from symrot.planner import make_plan
+from symrot.scene import load_scene, shipped_scenes
+from symrot.scene_kernel import SceneKernel, bind
+
+SCENES = [name for name, *_ in shipped_scenes()]
+MP = {name: getattr(mpmath, name) for name in ("sqrt", "sin", "cos", "exp")} | {"abs": abs}
+
+
+@pytest.fixture(scope="module", params=SCENES)
+def scene_rates(request):
+    """The plan, the equations and the lowered rates of a shipped scene."""
+    plan = make_plan(load_scene(request.param))
+    equations = equations_of_motion(plan.structure)
+    return plan, equations, rates_program(equations, "rates")
+
+
+def random_values(program, seed):
+    draw = random.Random(seed)
+    used = [name for a in program.signature.arguments if a.role == "in" for name, *_ in a.components]
+    return {name: Fraction(draw.randint(-40, 40), 8) for name in used}
+
+
+def test_programs_equal_their_equations_to_50_digits(scene_rates):
+    plan, equations, lowered = scene_rates
+    with mpmath.workdps(60):
+        values = {k: mpmath.mpf(v.numerator) / v.denominator for k, v in random_values(lowered.program, 1).items()}
+        constants = {k: mpmath.mpf(v.numerator) / v.denominator for k, v in plan.constants.items()}
+        number = lambda v: mpmath.mpf(v.numerator) / v.denominator  # noqa: E731
+        values |= {name: evaluate(node, constants, MP, number) for name, node in lowered.parameters}
+        found = lowered.program.evaluate(values, MP, number)
+        known = {sympy.Symbol(k, real=True): v for k, v in values.items()}
+        for state, rate in zip(equations.states, equations.explicit_rates, strict=True):
+            free = sorted(rate.free_symbols, key=str)
+            exact = sympy.lambdify(free, rate, "mpmath")(
+                *(constants.get(str(s), known.get(s, values.get(str(s)))) for s in free)
+            )
+            assert abs(found[f"d{state}"] - exact) <= mpmath.mpf(10) ** -50 * (1 + abs(exact))
+
+
+def test_no_operation_is_constant_trivial_or_unused(scene_rates):
+    _, _, lowered = scene_rates
+    program = lowered.program
+    used = set().union(*(names(node) for _, node in program.temporaries + program.outputs))
+    assert {name for name, _ in program.temporaries} <= used
+    assert {name for name, _ in lowered.parameters} <= used
+    trivial = {
+        ("*", Fraction(1)),
+        ("*", Fraction(0)),
+        ("*", Fraction(-1)),
+        ("+", Fraction(0)),
+        ("-", Fraction(0)),
+        ("/", Fraction(1)),
+    }
+
+    def visit(node):
+        operands = children(node)
+        if operands:
+            assert any(operand[0] != "number" for operand in operands), text(node)
+            assert not any((node[0], o[1]) in trivial for o in operands if o[0] == "number"), text(node)
+        for operand in operands:
+            visit(operand)
+
+    for _, node in program.temporaries + program.outputs:
+        visit(node)
+    written = [node for _, node in program.temporaries + program.outputs if children(node)]
+    assert len(written) == len(set(written))
+
+
+def counts(name):
+    plan = make_plan(load_scene(name))
+    return rates_program(equations_of_motion(plan.structure), "rates").program.operations()
+
+
+def test_a_free_body_costs_at_most_6_multiplications_and_with_attitude_24():
+    structure = {
+        "inertia": {"form": "principal", "moments": "ABC"}, "torques": [], "attitude": False, "planar": None,
+        "initial_quaternion": None, "constant": [],
+    }  # fmt: skip
+    rates = rates_program(equations_of_motion(structure), "rates").program.operations()
+    assert rates["mul"] <= 6 and rates["div"] == 0
+    full = rates_program(equations_of_motion(structure | {"attitude": True}), "rates").program.operations()
+    assert full["mul"] <= 24 and full["div"] == 0
+
+
+def test_no_shipped_kernel_divides():
+    assert all(counts(name)["div"] == 0 for name in SCENES)
+
+
+@pytest.mark.parametrize("name", ["free", "tensor", "gradient"])
+def test_constants_are_bound_exactly_and_rounded_once(name):
+    plan = make_plan(
+        load_scene({"free": "tumbling_prism", "tensor": "gyrostat", "gradient": "gravity_gradient_satellite"}[name])
+    )
+    kernel = derive_scene_kernel(plan.structure)
+    for (_, node), bound in zip(kernel.rate_parameters, bind(kernel.rate_parameters, plan.constants), strict=True):
+        exact = evaluate(node, plan.constants)
+        assert bound == exact.numerator / exact.denominator
+
+
+def euler_rates():
+    """The example of the style guide: inverse rates of ZXZ."""
+    psi, theta = symbols.psi, symbols.theta
+    w1, w2, w3 = symbols.omega_b
+    q = Argument("q", "in", tuple((str(a), "rad", "") for a in symbols.angles))
+    omega = Argument("omega", "in", tuple((str(w), "rad/s", "") for w in symbols.omega_b))
+    dq = Argument("dq", "out", tuple((f"d{a}", "rad/s", "") for a in symbols.angles))
+    turn = (w1 * sympy.sin(psi) + w2 * sympy.cos(psi)) / sympy.sin(theta)
+    outputs = [turn, w1 * sympy.cos(psi) - w2 * sympy.sin(psi), w3 - sympy.cos(theta) * turn]
+    names_of = [f"d{a}" for a in symbols.angles]
+    return lower(Signature("euler_zxz_rates", (q, omega, dq)), list(zip(names_of, outputs, strict=True)))
+
+
+def test_common_quotients_are_shared():
+    assert euler_rates().program.operations() == {"mul": 5, "add": 3, "div": 1, "sin": 2, "cos": 2}
+
+
+def test_a_divisor_alone_is_inverted_once():
+    a, b, c = (sympy.Symbol(s, real=True) for s in "abc")
+    given = Argument("v", "in", tuple((s, "1", "") for s in "abc"))
+    out = Argument("out", "out", (("x", "1", ""), ("y", "1", "")))
+    lowered = lower(Signature("f", (given, out)), [("x", a / c), ("y", b / c)])
+    assert lowered.program.operations() == {"mul": 2, "div": 1}
+
+
+def test_equal_formulas_are_computed_once_whatever_their_sign_and_factor():
+    a, b = (sympy.Symbol(s, real=True) for s in "ab")
+    k = sympy.Symbol("k", real=True)
+    given = Argument("v", "in", (("a", "1", ""), ("b", "1", "")))
+    out = Argument("out", "out", tuple((s, "1", "") for s in "xyz"))
+    lowered = lower(Signature("f", (given, out)), [("x", a - b), ("y", 3 * (b - a)), ("z", k * a - k * b)])
+    assert lowered.program.operations() == {"add": 1, "mul": 2}
+
+
+@pytest.mark.parametrize(
+    "wrong", [sympy.Float(0.5) * symbols.theta, symbols.theta ** sympy.Rational(1, 3), sympy.gamma(symbols.theta), symbols.theta**symbols.psi]
+)  # fmt: skip
+def test_what_a_kernel_cannot_hold_is_refused(wrong):
+    given = Argument("q", "in", (("theta", "rad", ""), ("psi", "rad", "")))
+    with pytest.raises(InputError):
+        lower(Signature("f", (given, Argument("x", "out", (("x", "1", ""),)))), [("x", wrong)])
+
+
+def test_a_program_that_uses_what_is_not_there_is_refused():
+    signature = Signature("f", (Argument("x", "out", (("x", "1", ""),)),))
+    with pytest.raises(ValueError, match="uses"):
+        Program(signature, (), (("x", ("symbol", "nowhere")),))
+
+
+def test_saved_kernels_come_back_equal(scene_rates):
+    plan, _, _ = scene_rates
+    kernel = derive_scene_kernel(plan.structure)
+    again = SceneKernel(json.loads(json.dumps(kernel.data)))
+    assert again.rates == kernel.rates and again.quantities == kernel.quantities
+    assert again.rate_parameters == kernel.rate_parameters and again.conserved == kernel.conserved
+
+
+def test_formula_trees_keep_the_value():
+    a, b, c = symbols.principal
+    expr = (a - b) ** 2 / (c * sympy.sqrt(a)) - 3 * b**-2 + sympy.Abs(c - a)
+    values = {"A": mpmath.mpf(3), "B": mpmath.mpf(2), "C": mpmath.mpf(7)}
+    found = evaluate(to_node(expr), values, MP, lambda v: mpmath.mpf(v.numerator) / v.denominator)
+    assert mpmath.almosteq(found, mpmath.mpf(str(sympy.N(expr.subs({a: 3, b: 2, c: 7}), 30))))
+
+
+# --- the emitted text -------------------------------------------------------------------------------------------------
+
+STRICT = ["-O2", "-Wall", "-Wextra", "-Wconversion", "-Wpedantic", "-Werror", "-ffp-contract=off", "-fPIC", "-shared"]
+needs_cc = pytest.mark.skipif(shutil.which("gcc") is None or shutil.which("g++") is None, reason="needs gcc and g++")
+
+
+def build(directory, emitted, language):
+    (directory / f"{emitted.name}.h").write_text(emitted.header)
+    source = directory / f"{emitted.name}.c"
+    source.write_text(emitted.source)
+    compiler = ["gcc", "-std=c99"] if language == "c" else ["g++", "-std=c++17", "-x", "c++"]
+    library = directory / f"{emitted.name}-{language}.so"
+    subprocess.run(
+        [*compiler, *STRICT, str(source), "-o", str(library), "-lm"], check=True, capture_output=True, text=True
+    )
+    return ctypes.CDLL(str(library))
+
+
+def array(values):
+    return np.ascontiguousarray(values, dtype=float)
+
+
+def pointer(values):
+    return values.ctypes.data_as(ctypes.c_void_p)
+
+
+@needs_cc
+@pytest.mark.parametrize("language", ["c", "c++"])
+@pytest.mark.parametrize("name", SCENES)
+def test_c_cpp_numpy_and_program_agree_to_the_last_bit(tmp_path, name, language):
+    emitted = symrot.emit(name)
+    library = build(tmp_path, emitted, language)
+    plan = symrot.plan(name)
+    lowered = rates_program(equations_of_motion(plan.structure), "rates")
+    n, size = 5, len(plan.states)
+    draw = np.random.default_rng(7)
+    y, t = draw.normal(size=(size, n)), draw.normal(size=n)
+    p = array(bind(lowered.parameters, plan.constants))
+    by_numpy = load_numpy_kernel(lowered.program)
+    one, batch = getattr(library, emitted.name), getattr(library, f"{emitted.name}_batch")
+    many = np.empty((size, n))
+    arguments = [pointer(t), pointer(array(y)), *([pointer(p)] if len(p) else []), pointer(many)]
+    batch(ctypes.c_size_t(n), *arguments)
+    for k in range(n):
+        single, sample = np.empty(size), array(y[:, k])
+        one(ctypes.c_double(t[k]), pointer(sample), *([pointer(p)] if len(p) else []), pointer(single))
+        values = {"t": t[k], **dict(zip(plan.states, sample, strict=True)), **{f"p{i}": v for i, v in enumerate(p)}}
+        functions = {"sin": np.sin, "cos": np.cos, "abs": abs, "sqrt": np.sqrt}
+        expected = list(lowered.program.evaluate(values, functions).values())
+        from_numpy = by_numpy(t[k], sample, p) if len(p) else by_numpy(t[k], sample)
+        assert np.array_equal(single, expected) and np.array_equal(single, many[:, k])
+        assert np.array_equal(single, from_numpy)
+
+
+def test_no_emitted_line_is_long_and_nothing_of_the_machine_is_in_it():
+    for name in SCENES:
+        for target in symrot.interface.TARGETS:
+            emitted = symrot.emit(name, target)
+            for line in (emitted.header + emitted.source).splitlines():
+                assert len(line) <= 120
+            assert os.getcwd() not in emitted.source and "/tmp" not in emitted.source
+
+
+def test_emitted_text_is_the_same_under_any_hash_seed():
+    code = (
+        "import symrot, hashlib; from symrot.scene import shipped_scenes;"
+        "print(hashlib.sha256(''.join(''.join(symrot.emit(n, t)) for n, *_ in shipped_scenes() for t in ('c', 'numpy'))"
+        ".encode()).hexdigest())"
+    )
+    found = {
+        subprocess.run([sys.executable, "-c", code], env=os.environ | {"PYTHONHASHSEED": seed}, capture_output=True,
+                       text=True, check=True).stdout
+        for seed in ("0", "1", "4242")
+    }  # fmt: skip
+    assert len(found) == 1 and len(hashlib.sha256(b"").hexdigest()) + 1 == len(found.pop())
+
+
+def test_arguments_that_are_not_used_do_not_warn_and_literals_are_doubles():
+    given = Argument("q", "in", (("theta", "rad", ""),))
+    lowered = lower(Signature("f", (given, Argument("x", "out", (("x", "1", ""),)))), [("x", sympy.Rational(1, 3))])
+    emitted = c_source(lowered.program, Description("constant", "all", "none", "none"))
+    assert "(void)q;" in emitted and "x[0] = 0.3333333333333333;" in emitted
+    assert "#ifndef SYMROT_F_H" in c_header(lowered.program, Description("constant", "all", "none", "none"))
+
+
+@pytest.mark.parametrize(("scene", "target"), [("chen_cylinder", "fortran"), ("no_such_scene", "c")])
+def test_what_cannot_be_emitted_is_refused(scene, target):
+    with pytest.raises(InputError):
+        symrot.emit(scene, target)

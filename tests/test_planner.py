@@ -1,0 +1,119 @@
+"""What a plan keeps and skips, scene by scene, and why."""
+
+import pytest
+
+from symrot.planner import RULES, make_plan
+from symrot.scene import Scene, load_scene, shipped_scenes
+
+FREE = {"principal": [1, 2, 3]}
+TOP = {"principal": [2, 2, 1], "about": "fixed_point"}
+
+
+def plan_of(body, omega, *torques, attitude=None, quantities=("omega", "quaternion")):
+    initial = {"omega": omega} | ({"attitude": attitude} if attitude else {})
+    return make_plan(Scene.from_dict({
+        "schema": 1, "title": "test", "body": body, "initial": initial, "span": {"t": [0, 1]}, "torque": list(torques),
+        "output": {"quantities": list(quantities)},
+    }))  # fmt: skip
+
+
+def weight(*arm):
+    return {"kind": "gravity", "weight": 2, "center_of_mass": list(arm)}
+
+
+ATTITUDE = ("q0", "q1", "q2", "q3")
+CASES = {
+    "free": (plan_of(FREE, [1, 1, 1]), ("omega_1", "omega_2", "omega_3", *ATTITUDE)),
+    "no attitude asked": (plan_of(FREE, [1, 1, 1], quantities=["omega", "energy"]), ("omega_1", "omega_2", "omega_3")),
+    "attitude needed by a torque": (
+        plan_of(FREE, [1, 1, 1], {"kind": "constant_space", "torque": [1, 0, 0]}, quantities=["omega"]),
+        ("omega_1", "omega_2", "omega_3", *ATTITUDE),
+    ),
+    "symmetric": (plan_of({"principal": [2, 2, 1]}, [1, 0, 1]), ("omega_1", "omega_2", *ATTITUDE)),
+    "symmetric about 1": (plan_of({"principal": [1, 2, 2]}, [1, 0, 1]), ("omega_2", "omega_3", *ATTITUDE)),
+    "spherical": (plan_of({"principal": [2, 2, 2]}, [1, 0, 1]), ATTITUDE),
+    "heavy symmetric top": (plan_of(TOP, [1, 0, 9], weight(0, 0, 1)), ("omega_1", "omega_2", *ATTITUDE)),
+    "weight off the axis": (plan_of(TOP, [1, 0, 9], weight(1, 0, 1)), ("omega_1", "omega_2", "omega_3", *ATTITUDE)),
+    "steady spin": (plan_of(FREE, [0, 0, 1]), ("theta",)),
+    "steady spin, rates only": (plan_of(FREE, [0, 0, 1], quantities=["omega"]), ()),
+    "at rest": (plan_of(FREE, [0, 0, 0]), ("theta",)),
+    "damped spin": (plan_of(FREE, [0, 2, 0], {"kind": "damping", "linear": 1}), ("omega_2", "theta")),
+    "axial motor": (plan_of(FREE, [0, 0, 0], {"kind": "constant_body", "torque": [0, 0, 1]}), ("omega_3", "theta")),
+    "motor about space axis that is a body axis": (
+        plan_of(FREE, [0, 0, 1], {"kind": "constant_space", "torque": [0, 0, 1]}), ("omega_3", "theta"),
+    ),
+    "motor about another space axis": (
+        plan_of(FREE, [0, 0, 1], {"kind": "constant_space", "torque": [0, 1, 1]}), ("omega_1", "omega_2", "omega_3", *ATTITUDE),
+    ),
+    "pendulum": (
+        plan_of({"principal": [1, 2, 3], "about": "fixed_point"}, [0, 0, 0], weight(0, 0, 1), attitude={"axis": [1, 0, 0], "angle": 1}),
+        ("omega_1", "theta"),
+    ),
+    "pendulum with a turned axis": (
+        plan_of({"principal": [1, 2, 3], "about": "fixed_point"}, [0, 0, 0], weight(0, 0, 1), attitude={"axis": [1, 1, 0], "angle": 1}),
+        ("omega_1", "omega_2", "omega_3", *ATTITUDE),
+    ),
+    "pendulum with the weight on its axis": (
+        plan_of({"principal": [1, 2, 3], "about": "fixed_point"}, [1, 0, 0], weight(1, 0, 1), attitude={"axis": [1, 0, 0], "angle": 1}),
+        ("omega_1", "omega_2", "omega_3", *ATTITUDE),
+    ),
+    "products of inertia": (
+        plan_of({"inertia": {"xx": 1, "yy": 1, "zz": 1, "xy": "1/10"}}, [0, 0, 1]), ("omega_1", "omega_2", "omega_3", *ATTITUDE),
+    ),
+    "gyrostat along its only spin": (plan_of(FREE, [0, 0, 1], {"kind": "rotor", "angular_momentum": [0, 0, 1]}), ("theta",)),
+    "gyrostat across": (
+        plan_of(FREE, [0, 0, 1], {"kind": "rotor", "angular_momentum": [0, 1, 0]}), ("omega_1", "omega_2", "omega_3", *ATTITUDE),
+    ),
+    "motor in the body of a symmetric body": (
+        plan_of({"principal": [2, 2, 1]}, [1, 0, 1], {"kind": "constant_body", "torque": [0, 0, 1]}),
+        ("omega_1", "omega_2", "omega_3", *ATTITUDE),
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_the_states_that_are_left(name):
+    plan, states = CASES[name]
+    assert plan.states == states
+    assert len(plan.initial_state) == len(states)
+
+
+def test_moments_that_differ_in_the_last_digit_are_different():
+    nearly = plan_of({"principal": [2, "2.0000000000000000000000001", 1]}, [1, 0, 1])
+    assert "omega_3" in nearly.states
+
+
+def test_a_body_that_is_symmetric_by_irrational_numbers_is_symmetric():
+    """Three rods at 60 degrees to each other: equal moments by sqrt(3), not by rational numbers."""
+    parts = [
+        {
+            "shape": "rod",
+            "length": 1,
+            "mass": 1,
+            "rotate": {"sequence": "ZYX", "angles": [angle, 90, 0], "degrees": True},
+        }
+        for angle in (0, 60, 120)
+    ]
+    plan = plan_of({"part": parts}, [1, 0, 1])
+    assert plan.structure["inertia"]["form"] == "principal"
+    assert len(set(plan.structure["inertia"]["moments"])) == 2
+
+
+@pytest.mark.parametrize("name", [name for name, *_ in shipped_scenes()])
+def test_every_rule_says_what_it_did(name):
+    plan = make_plan(load_scene(name))
+    assert [row.item for row in plan.rows] == [item for item, _ in RULES]
+    assert all(row.why for row in plan.rows)
+    assert plan.rows[-1].structure == plan.structure
+
+
+def test_numbers_are_not_part_of_the_structure():
+    assert plan_of(FREE, [1, 1, 1]).structure == plan_of({"principal": [4, 5, 6]}, [3, 2, 1]).structure
+    assert plan_of(FREE, [1, 1, 1]).constants == {"A": 1, "B": 2, "C": 3}
+
+
+def test_repeated_torques_and_parameters_with_taken_names_keep_apart():
+    push = {"kind": "constant_body", "torque": [1, 0, 0]}
+    named = {"kind": "expression", "torque": ["A*omega_1", "0", "t"], "parameters": {"A": 7}}
+    plan = plan_of(FREE, [1, 1, 1], push, push, named)
+    assert plan.constants == {"A": 1, "B": 2, "C": 3, "torque_1": 1, "torque2_torque_1": 1, "torque3_A": 7}
