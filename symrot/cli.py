@@ -19,7 +19,10 @@ __all__ = ["main"]
 
 GOOD, FAILED, BAD, INTERRUPTED, UNREAD = 0, 1, 2, 130, 141
 TARGETS = ("c", "numpy")
-PAGES = ("markdown", "latex", "html")
+PAGES: dict[str, Callable[[Any], str]] = {
+    "markdown": lambda found: found.markdown(),
+    "latex": lambda found: found.latex(),
+}
 
 
 class _Parser(ArgumentParser):
@@ -127,21 +130,24 @@ def _emit(options: Namespace) -> int:
 
 
 def _derive(options: Namespace) -> int:
-    from symrot.report import derivations
+    from symrot import catalogue
 
     if sum(map(bool, (options.name, options.all, options.check))) > 1:
         raise InputError("derive: expected at most one of a NAME, --all and --check (see `symrot derive --help`)")
     directory = options.directory or Path("derivations")
     if options.check:
-        different = derivations.stale(directory)
-        _say(different)
+        if not directory.is_dir():
+            raise InputError(f"{str(directory)!r}: expected the folder that `symrot derive --all` writes, got none")
+        different = catalogue.check(directory)
+        sys.stdout.write("".join(diff for _, diff in different))
         return FAILED if different else GOOD
     if options.all:
-        _say(str(path) for path in derivations.write_all(directory))
+        _say(str(path) for path in catalogue.derive_all(directory))
     elif options.name:
-        sys.stdout.write(derivations.page(options.name, options.format))
+        found = catalogue.derivation(options.name)
+        sys.stdout.write(PAGES[options.format](found))
     else:
-        _say(derivations.listing())
+        _say(catalogue.names())
     return GOOD
 
 

@@ -1,0 +1,109 @@
+"""A plan as a table: what is kept, what is skipped, the rule, the derivation behind it, and the operations it saves."""
+
+from collections import Counter
+from typing import Any
+
+from symrot.planner import Plan
+from symrot.report.layout import columns, one_line
+from symrot.scene import QUANTITIES
+
+__all__ = ["explanation", "facts", "lines"]
+
+HEAD = ("item", "", "rule", "derivation", "operations", "saved")
+FREE = frozenset({"neg"})  # a sign is part of the addition or multiplication it stands in
+
+
+def _operations(structure: Any) -> Counter[str]:
+    """Count the operations of one evaluation of the rates of a structure."""
+    from symrot.codegen.scene_kernels import rates_program
+    from symrot.dynamics.equations import equations_of_motion
+
+    counts = rates_program(equations_of_motion(structure), "rates").program.operations()
+    return Counter({name: count for name, count in counts.items() if name not in FREE})
+
+
+def _row(
+    item: str, skipped: bool, why: str, derivation: str = "", operations: Counter[str] | None = None
+) -> dict[str, Any]:
+    counts = None if operations is None else dict(sorted(operations.items()))
+    return {"item": item, "skipped": skipped, "why": why, "derivation": derivation, "operations": counts, "saved": None}
+
+
+def _ladder(plan: Plan) -> list[dict[str, Any]]:
+    """Return the rows of the rules, from the general structure down, with what each leaves and saves."""
+    from symrot.planner import _general as general_structure
+
+    general = _operations(general_structure(plan.scene))
+    rows = [_row("general motion", False, "any tensor, any direction of every torque, full attitude", "", general)]
+    before = general
+    for rule in plan.rows:
+        after = _operations(rule.structure)
+        rows.append(_row(rule.item, rule.skipped, rule.why, rule.derivation, after))
+        rows[-1]["saved"] = before.total() - after.total()
+        before = after
+    return rows
+
+
+def _others(plan: Plan) -> list[dict[str, Any]]:
+    """Return the rows that no rule of the plan decides: states, motion, outputs, derivation."""
+    from symrot.codegen import library
+    from symrot.propagate.kernels import _key
+    from symrot.propagate.propagator import choose_method
+
+    choice, asked = choose_method(plan), plan.scene.output.quantities
+    missing = [name for name in QUANTITIES if name not in asked]
+    stepped = f"{choice.method}: {choice.reason}"
+    known = library.fetch(_key(plan)) is not None
+    kernel = "this structure is in the cache" if known else "the first run derives and compiles, later ones load"
+    return [
+        _row("states", not plan.states, f"{', '.join(plan.states) or 'none changes'}"),
+        _row("stepping", not plan.states, stepped),
+        _row("outputs asked for", False, ", ".join(asked)),
+        *([_row("other outputs", True, f"not asked for: {', '.join(missing)}")] if missing else []),
+        _row("deriving the kernel", known, kernel),
+    ]
+
+
+def facts(plan: Plan) -> dict[str, Any]:
+    """Return the table as data for JSON: ``operations`` are those left after a row, by kind, ``saved`` their change."""
+    scene = plan.scene
+    ladder = _ladder(plan)
+    rows = [*ladder, *_others(plan)]
+    return {
+        "scene": {"name": scene.name, "title": scene.title, "source": scene.source},
+        "rows": rows,
+        "operations": {
+            "general": sum(ladder[0]["operations"].values()),
+            "specialised": sum(ladder[-1]["operations"].values()),
+        },
+    }
+
+
+def _spoken(counts: dict[str, int] | None) -> str:
+    order = ("mul", "add", "div")
+    if counts is None:
+        return ""
+    names = [*order, *sorted(set(counts) - set(order))]
+    return ", ".join(f"{counts[name]} {name}" for name in names if counts.get(name)) or "none"
+
+
+def lines(found: dict[str, Any]) -> list[str]:
+    """Return the lines for people that say what :func:`facts` says; the first is the title."""
+    rows = [HEAD]
+    for row in found["rows"]:
+        changed = row["saved"] != 0
+        saved = str(row["saved"]) if changed and row["saved"] else ""
+        verdict = "skipped" if row["skipped"] else "kept"
+        left = _spoken(row["operations"]) if changed else ""
+        rows.append((row["item"], verdict, one_line(row["why"]), row["derivation"], left, saved))
+    table = columns(rows, width=118, wrap=2, right=(5,))
+    counts = found["operations"]
+    rule = "-" * max(map(len, table))
+    last = f"One evaluation of the rates costs {counts['specialised']} operations instead of {counts['general']}."
+    title = f"{one_line(found['scene']['title'])} [{one_line(found['scene']['name'])}]"
+    return [title, "", table[0], rule, *table[1:], rule, last]
+
+
+def explanation(plan: Plan) -> str:
+    """Return the plan as a table for people."""
+    return "\n".join(lines(facts(plan)))
