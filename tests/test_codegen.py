@@ -9,6 +9,7 @@ import shutil
 import subprocess
 import sys
 from fractions import Fraction
+from pathlib import Path
 
 import mpmath
 import numpy as np
@@ -250,7 +251,7 @@ def test_no_emitted_line_is_long_and_nothing_of_the_machine_is_in_it():
             emitted = symrot.emit(name, target)
             for line in (emitted.header + emitted.source).splitlines():
                 assert len(line) <= 120
-            assert os.getcwd() not in emitted.source and "/tmp" not in emitted.source
+            assert str(Path.cwd()) not in emitted.source and "/tmp" not in emitted.source
 
 
 def test_emitted_text_is_the_same_under_any_hash_seed():

@@ -195,7 +195,7 @@ def test_a_motion_without_states_is_not_stepped():
     assert trajectory.method == "constant" and trajectory.stats.evaluations == 0
     assert np.array_equal(trajectory.omega, np.tile([1.0, 2.0, 3.0], (1001, 1)))
     with pytest.raises(InputError, match=r"attitude was not computed.*output\.quantities"):
-        trajectory.dcm
+        _ = trajectory.dcm
 
 
 @pytest.mark.parametrize(
@@ -217,7 +217,7 @@ def test_a_call_that_cannot_be_answered_is_refused(arguments, words):
 
 @pytest.mark.parametrize("method", ["rk4", "scipy:Nope", "dop853:x", "", "constant", "exact"])
 def test_unknown_methods_are_refused(method):
-    with pytest.raises(InputError, match="expected one of|methods are"):
+    with pytest.raises(InputError, match=r"expected one of|methods are"):
         propagate("chen_cylinder", method=method)
 
 
