@@ -50,6 +50,7 @@ enum { SYMROT_DONE = 0, SYMROT_PAUSED = 1, SYMROT_FULL = 2, SYMROT_NOT_FINITE = 
 typedef struct {
     double t;            /* reached so far */
     double h;            /* next step, signed; 0 before the first one */
+    double growth;       /* most that the step after the next one may grow: 1 after a rejected one */
     double stop;         /* end of the span, on either side of t */
     double first, last;  /* times given to the kernel at the two ends: just inside the span where it switches there */
     double tolerance;    /* of one step of length `pace` or more; a shorter one is allowed its share of it */
@@ -82,25 +83,29 @@ typedef struct {
 #define ONE_BY_ONE(X) for (int i_ = 0; i_ < SYMROT_STATES; ++i_) { X(i_) }
 #endif
 
+/* The kernel under a name that no variable here hides. */
+static inline void symrot_rate(double t, const double *y, const double *p, double *dy) { SYMROT_RHS(t, y, p, dy); }
+
 static const int symrot_edges[] = SYMROT_BLOCKS;
 static const double symrot_scales[] = SYMROT_SCALES;
 enum { SYMROT_COUNT = (int)(sizeof(symrot_scales)/sizeof(symrot_scales[0])) };
 
-static const double SAFETY = 0.9, SHRINK = 1.0/3.0, COLLAPSE = 0.1, GROWTH = 6.0;  /* of the step; dop853.f's values */
-static const double ROUND_OFF = 2.0*DBL_EPSILON;  /* no step can be asked to be better than that */
-static const double RATE_FLOOR = 1e-3;  /* a rate below RATE_FLOOR/h turns the body by less than that in one step */
+static const double SYMROT_SAFETY = 0.9, SYMROT_GROWTH = 6.0;           /* factors on the step when it is accepted, */
+static const double SYMROT_SHRINK = 1.0/3.0, SYMROT_COLLAPSE = 0.1;      /* rejected, not finite; after dop853.f */
+static const double SYMROT_ROUND_OFF = 2.0*DBL_EPSILON;  /* no step can be asked to be better than that */
+static const double SYMROT_RATE_FLOOR = 1e-3;  /* a rate below this over h turns the body by less than this in a step */
 
-/* Return x^(-1/16) to 0.5 %, which is enough for a step size: the exponent field is nearly a logarithm. */
-static inline double inverse_root_16(double x)
+/* Return x^(-1/16) to 4 %, which is enough for a step size: the bits of a number are nearly its logarithm. */
+static inline double symrot_inverse_root_16(double x)
 {
     uint64_t bits;
     memcpy(&bits, &x, sizeof bits);
-    bits = UINT64_C(0x43EFA00000000000) - bits/16;
+    bits = UINT64_C(0x43EE600000000000) - bits/16;
     memcpy(&x, &bits, sizeof x);
     return x;
 }
 
-static inline double square_sum(const double *v, int block)
+static inline double symrot_square_sum(const double *v, int block)
 {
     double sum = 0.0;
     for (int i = symrot_edges[block]; i < symrot_edges[block + 1]; ++i) sum += v[i]*v[i];
@@ -108,33 +113,33 @@ static inline double square_sum(const double *v, int block)
 }
 
 /* Return the square of the size that the error of a block is compared with. */
-static inline double scale_squared(const double *y, const double *y1, double h, int block)
+static inline double symrot_scale_squared(const double *y, const double *y1, double h, int block)
 {
     const double fixed = symrot_scales[block];
     if (fixed > 0.0) return fixed*fixed;
-    const double before = square_sum(y, block), after = square_sum(y1, block), floor = (RATE_FLOOR/h)*(RATE_FLOOR/h);
-    const double larger = before > after ? before : after;
-    return larger > floor ? larger : floor;
+    const double before = symrot_square_sum(y, block), after = symrot_square_sum(y1, block);
+    const double larger = before > after ? before : after, least = SYMROT_RATE_FLOOR/h*(SYMROT_RATE_FLOOR/h);
+    return larger > least ? larger : least;
 }
 
 /* Choose a first step from the rates |y'|/|y| and sqrt(|y''|/|y|) of the fastest block. */
-static SYMROT_APART double first_step(const symrot_run *run, const double *p)
+static SYMROT_APART double symrot_first_step(const symrot_run *run, const double *p)
 {
     double y1[SYMROT_STATES], dy1[SYMROT_STATES], rate = 0.0, bend = 0.0;
     const double span = fabs(run->stop - run->t), side = run->stop < run->t ? -1.0 : 1.0;
 
     for (int b = 0; b < SYMROT_COUNT; ++b) {
-        const double size = symrot_scales[b] > 0.0 ? symrot_scales[b] : sqrt(square_sum(run->y, b));
-        const double block = sqrt(square_sum(run->dy, b))/size;
+        const double size = symrot_scales[b] > 0.0 ? symrot_scales[b] : sqrt(symrot_square_sum(run->y, b));
+        const double block = sqrt(symrot_square_sum(run->dy, b))/size;
         if (size > 0.0 && block > rate) rate = block;
     }
     const double probe = side*fmin(fmin(0.01/rate, 1e-3*span), run->max_step);
     EACH_STATE(i) y1[i] = run->y[i] + probe*run->dy[i];
-    SYMROT_RHS(run->first + probe, y1, p, dy1);
+    symrot_rate(run->first + probe, y1, p, dy1);
     EACH_STATE(i) dy1[i] = (dy1[i] - run->dy[i])/probe;
     for (int b = 0; b < SYMROT_COUNT; ++b) {
-        const double size = symrot_scales[b] > 0.0 ? symrot_scales[b] : sqrt(square_sum(run->y, b));
-        const double block = sqrt(sqrt(square_sum(dy1, b))/size);
+        const double size = symrot_scales[b] > 0.0 ? symrot_scales[b] : sqrt(symrot_square_sum(run->y, b));
+        const double block = sqrt(sqrt(symrot_square_sum(dy1, b))/size);
         if (size > 0.0 && block > bend) bend = block;
     }
     const double fastest = rate > bend ? rate : bend;
@@ -143,17 +148,17 @@ static SYMROT_APART double first_step(const symrot_run *run, const double *p)
 }
 
 /* Fill the coefficients of the dense output of the step from y to y1; k has stages 1 to 13 and receives 14 to 16. */
-static SYMROT_APART void dense_coefficients(double t, double h, const double *y, const double *step, const double *p,
-    double (*k)[SYMROT_WIDTH], double (*term)[SYMROT_WIDTH])
+static SYMROT_APART void symrot_dense_coefficients(double t, double h, const double *y, const double *step,
+    const double *p, double (*k)[SYMROT_WIDTH], double (*term)[SYMROT_WIDTH])
 {
     double z[SYMROT_WIDTH] SYMROT_ALIGNED;
 #define K(s) k[s][i]
     EACH(i) z[i] = y[i] + h*DOP853_SUM_14(K);
-    SYMROT_RHS(t + DOP853_NODE_14*h, z, p, k[14]);
+    symrot_rate(t + DOP853_NODE_14*h, z, p, k[14]);
     EACH(i) z[i] = y[i] + h*DOP853_SUM_15(K);
-    SYMROT_RHS(t + DOP853_NODE_15*h, z, p, k[15]);
+    symrot_rate(t + DOP853_NODE_15*h, z, p, k[15]);
     EACH(i) z[i] = y[i] + h*DOP853_SUM_16(K);
-    SYMROT_RHS(t + DOP853_NODE_16*h, z, p, k[16]);
+    symrot_rate(t + DOP853_NODE_16*h, z, p, k[16]);
     EACH(i) {
         const double rise = step[i], bend = h*k[1][i] - rise;
         term[0][i] = y[i];
@@ -169,7 +174,7 @@ static SYMROT_APART void dense_coefficients(double t, double h, const double *y,
 }
 
 /* Evaluate the dense output at the fraction s of its step; term has the given stride between coefficients. */
-static inline void dense_value(const double *term, int stride, double s, double *out)
+static inline void symrot_dense_value(const double *term, int stride, double s, double *out)
 {
     const double r = 1.0 - s;
     EACH_STATE(i) {
@@ -199,7 +204,7 @@ SYMROT_EXPORT void symrot_dop853_dense(const double *record, int64_t steps, cons
             else high = middle;
         }
         const double *row = record + low*SYMROT_ROW;
-        dense_value(row + 2, SYMROT_STATES, (times[n] - row[0])/row[1], states + n*SYMROT_STATES);
+        symrot_dense_value(row + 2, SYMROT_STATES, (times[n] - row[0])/row[1], states + n*SYMROT_STATES);
     }
 }
 
@@ -224,7 +229,7 @@ SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *
     double error5[SYMROT_WIDTH] SYMROT_ALIGNED, error3[SYMROT_WIDTH] SYMROT_ALIGNED;
     const double stop = run->stop, side = stop < run->t ? -1.0 : 1.0;
     const double pace = run->pace, tiny = 1e-30*fabs(stop - run->t);
-    double t = run->t, h = run->h, growth = GROWTH;
+    double t = run->t, h = run->h, growth = run->growth;
     int64_t next = run->next, accepted = 0, rejected = 0, dense = 0, recorded = 0;
     int status = SYMROT_PAUSED, broken = 0;
 
@@ -233,8 +238,9 @@ SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *
     memset(z, 0, sizeof z);
     memset(carry, 0, sizeof carry);
     if (h == 0.0) {
-        SYMROT_RHS(run->first, run->y, p, run->dy);
-        h = run->h = stop == t ? 0.0 : first_step(run, p);
+        symrot_rate(run->first, run->y, p, run->dy);
+        h = run->h = stop == t ? 0.0 : symrot_first_step(run, p);
+        growth = SYMROT_GROWTH;
         run->evaluations += 2;
         for (; next < count && times[next] == t; ++next) EACH_STATE(i) states[next*SYMROT_STATES + i] = run->y[i];
     }
@@ -261,7 +267,7 @@ SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *
             const double newest = h*DOP853_NEW_##s, *const latest = k[previous]; \
             ONE_BY_ONE(ADD_NEWEST) \
         } \
-        SYMROT_RHS(time, z, p, k[s]);
+        symrot_rate(time, z, p, k[s]);
 
         STAGE(2, 1, t + DOP853_NODE_2*h)
         STAGE(3, 2, t + DOP853_NODE_3*h)
@@ -283,28 +289,28 @@ SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *
             error5[i] = h*DOP853_ERROR_5(K);
         }
         const double share = run->tolerance*(fabs(h) < pace ? fabs(h)/pace : 1.0);
-        const double allowed = share > ROUND_OFF ? share : ROUND_OFF, weight = 1.0/(allowed*allowed);
+        const double allowed = share > SYMROT_ROUND_OFF ? share : SYMROT_ROUND_OFF, weight = 1.0/(allowed*allowed);
         double worst = 0.0;
         for (int b = 0; b < SYMROT_COUNT; ++b) {
-            const double e5 = square_sum(error5, b), e3 = square_sum(error3, b);
-            const double error = e5*e5/((e5 + 0.01*e3)*scale_squared(y, y1, h, b) + DBL_MIN)*weight;
+            const double e5 = symrot_square_sum(error5, b), e3 = symrot_square_sum(error3, b);
+            const double error = e5*e5/((e5 + 0.01*e3)*symrot_scale_squared(y, y1, h, b) + DBL_MIN)*weight;
             worst = worst > error ? worst : error;  /* keeps a NaN once error is one */
         }
-        const double factor = SAFETY*inverse_root_16(worst);
+        const double factor = SYMROT_SAFETY*symrot_inverse_root_16(worst);
 
         if (!(worst <= 1.0)) {
             ++rejected;
             broken = !(worst < INFINITY);
-            h *= broken ? COLLAPSE : factor > SHRINK ? factor : SHRINK;
+            h *= broken ? SYMROT_COLLAPSE : factor > SYMROT_SHRINK ? factor : SYMROT_SHRINK;
             growth = 1.0;
             continue;
         }
         ++accepted;
-        SYMROT_RHS(last, y1, p, k[13]);
+        symrot_rate(last, y1, p, k[13]);
 
         const int sampled = next < count && (times[next] - t1)*side <= 0.0;
         if (room > 0 || (sampled && times[next] != t1)) {
-            dense_coefficients(t, h, y, step, p, k, term);
+            symrot_dense_coefficients(t, h, y, step, p, k, term);
             ++dense;
         }
         if (room > 0) {
@@ -318,7 +324,7 @@ SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *
             for (; next < count && (times[next] - t1)*side <= 0.0; ++next) {
                 double *out = states + next*SYMROT_STATES;
                 if (times[next] == t1) EACH_STATE(i) out[i] = y1[i];
-                else dense_value(term[0], SYMROT_WIDTH, (times[next] - t)/h, out);
+                else symrot_dense_value(term[0], SYMROT_WIDTH, (times[next] - t)/h, out);
             }
 
         EACH(i) {
@@ -329,13 +335,14 @@ SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *
         }
         t = t1;
         if (t == stop) status = SYMROT_DONE;
-        h *= factor < growth ? (factor > SHRINK ? factor : SHRINK) : growth;
+        h *= factor < growth ? (factor > SYMROT_SHRINK ? factor : SYMROT_SHRINK) : growth;
         if (fabs(h) > run->max_step) h = side*run->max_step;
-        growth = GROWTH;
+        growth = SYMROT_GROWTH;
     }
 
     run->t = t;
     run->h = h;
+    run->growth = growth;
     run->next = next;
     run->accepted += accepted;
     run->rejected += rejected;

@@ -23,14 +23,14 @@ __all__ = ["MAX_STEPS", "Recording", "Stats", "integrate", "record", "step_toler
 
 MAX_STEPS = 1_000_000_000
 STEPS_PER_CALL = 100_000  # some 20 ms in C, after which Python can see an interrupt
-STEP_SHARE, NATURAL_TIMES = 0.1, 0.16  # of the tolerance; of the span, see step_tolerance
+STEP_SHARE, NATURAL_TIMES = 0.14, 0.16  # of the tolerance; of the span, see step_tolerance
 ROWS_PER_CALL = 256       # steps recorded per call
 
 Floats = NDArray[np.float64]
 
 _DONE, _PAUSED, _FULL, _NOT_FINITE, _UNDERFLOW = range(5)
 # The fields of symrot_run in dop853.c: numbers, integers, and vectors of one number per state.
-_REALS = ("t", "h", "stop", "first", "last", "tolerance", "pace", "max_step")
+_REALS = ("t", "h", "growth", "stop", "first", "last", "tolerance", "pace", "max_step")
 _INTEGERS = ("next", "accepted", "rejected", "evaluations", "recorded")
 _VECTORS = ("y", "carry", "dy")
 
@@ -150,7 +150,7 @@ def integrate(
     """
     began = perf_counter()
     task = _Task(library, p, y0, t0, tolerance, breaks, max_step, max_steps)
-    times = np.ascontiguousarray(times, dtype=np.float64)
+    times = np.asarray(times, dtype=np.float64, order="C")
     if times.ndim != 1:
         raise InputError(f"sample times are a sequence of numbers, got an array of shape {times.shape}")
     count = len(times)
@@ -217,8 +217,8 @@ class Recording:
         self.span = (ends[0], ends[1])
 
     def __call__(self, t: ArrayLike) -> Floats:
-        times = np.ascontiguousarray(t, dtype=np.float64)
-        flat = times.reshape(-1)
+        times = np.asarray(t, dtype=np.float64)
+        flat = np.ascontiguousarray(times).reshape(-1)
         outside = ~((flat >= self.span[0]) & (flat <= self.span[1]))
         if outside.any():
             asked = float(flat[outside][0])
