@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from sympy import Expr, ImmutableMatrix, Matrix, MatrixBase, MatrixExpr, S, factor, sympify
+from sympy import Expr, ImmutableMatrix, Matrix, MatrixBase, MatrixExpr, Ne, S, factor, sympify
 
 from symrot.errors import SymrotError
 from symrot.exact.decide import decide, normal_form
@@ -94,6 +94,7 @@ class Derivation:
     source: str = ""
     about: str = ""
     items: list[Section | Passage | Step] = field(default_factory=list)
+    assumed: list[Expr] = field(default_factory=list)
 
     @property
     def steps(self) -> tuple[Step, ...]:
@@ -107,6 +108,11 @@ class Derivation:
     def given(self, text: str, *equations: tuple[Any, Any]) -> None:
         """State what is assumed, in words and perhaps in equations ``(left, right)``; text in a pair is LaTeX."""
         self.items.append(Passage(text, tuple(equations)))
+
+    def nonzero(self, text: str, expression: Expr, named: str) -> None:
+        """State once that an expression (LaTeX ``named``) is not zero; the steps after it do not repeat that."""
+        self.items.append(Passage(f"{text} ${named} \\neq 0$."))
+        self.assumed.append(expression.expand())
 
     def define(self, text: str, left: Any, right: Any) -> Any:
         """Give something a name, ``left`` (a symbol, or LaTeX), and return what it stands for."""
@@ -156,9 +162,10 @@ class Derivation:
                 f"{_short(verdict.residual)}{shown}"
             )
         hypotheses = tuple(zero for zero in map(as_zero, relations) if zero != 0)
+        conditions = tuple(condition for condition in verdict.conditions if not self._is_assumed(condition))
         right = Matrix.zeros(*left.shape) if right == 0 and isinstance(left, MatrixBase) else right
         left, right = _frozen(left), _frozen(right)
-        return self._add(Step(claim, left, right, because, "=", hypotheses, verdict.conditions, named, shown, source))
+        return self._add(Step(claim, left, right, because, "=", hypotheses, conditions, named, shown, source))
 
     def positive(self, claim: str, expression: Any, *, because: str, named: str = "") -> Step:
         """Add ``expression > 0``, which must follow from the signs of the symbols in it; return the step.
@@ -171,7 +178,13 @@ class Derivation:
         reduced = factor(normal_form(expression))
         if reduced.is_positive is not True:
             raise ProofError(f"{self.name}, {claim!r}: the signs of the symbols do not make {reduced} positive")
-        return self._add(Step(claim, _frozen(expression), S.Zero, because, ">", named=named))
+        return self._add(Step(claim, _frozen(expression), S.Zero, because, ">", named=named, shown=reduced))
+
+    def _is_assumed(self, condition: Any) -> bool:
+        if not isinstance(condition, Ne):
+            return False
+        value = condition.lhs.expand()
+        return any(value in (known, -known) for known in self.assumed)
 
     def _add(self, step: Step) -> Step:
         self.items.append(step)

@@ -13,7 +13,7 @@ from random import Random
 from typing import Any
 
 from mpmath import iv
-from sympy import Abs, Expr, Rational, cos, cot, csc, exp, log, pi, sec, sin, tan
+from sympy import Abs, Expr, Rational, Symbol, cos, cot, csc, exp, log, pi, preorder_traversal, sec, sin, tan
 from sympy.core.function import AppliedUndef
 from sympy.polys.rings import PolyElement
 
@@ -102,7 +102,8 @@ def rational_witness(
     values = point(choices)
     assert values is not None
     lhs, rhs = (_rational(_ratio_value(ring, side, values)) for side in sides)
-    return Counterexample(tuple(_named(ring, coordinates, values)), entry, lhs, rhs)
+    used = set().union(*(preorder_traversal(formula) for formula in (left, right, *ring.hypotheses)))
+    return Counterexample(tuple(_named(ring, coordinates, values, used)), entry, lhs, rhs)
 
 
 def closed_form_witness(
@@ -256,15 +257,16 @@ def _ratio_value(ring: FormulaRing, ratio: Ratio, values: dict[int, Fraction]) -
 
 
 def _named(
-    ring: FormulaRing, coordinates: list[Coordinate], values: dict[int, Fraction]
+    ring: FormulaRing, coordinates: list[Coordinate], values: dict[int, Fraction], used: set[Expr]
 ) -> Iterator[tuple[Expr, Expr]]:
-    """Yield every symbol and angle with its value; quarter turns as angles, others as cosine and sine."""
+    """Yield every symbol and angle in use with its value; quarter turns as angles, others as cosine and sine."""
     zero, one = Fraction(0), Fraction(1)
     quarter_turns = {(zero, one): 0, (one, zero): 1, (zero, -one): 2, (-one, zero): 3}
     for leaf, number in ring.symbols.items():
-        yield leaf, _rational(values[number])
+        if leaf in used:
+            yield leaf, _rational(values[number])
     for coordinate in coordinates:
-        if coordinate.atom is None:
+        if coordinate.atom is None or not coordinate.atom.atoms(Symbol, AppliedUndef) & used:
             continue
         sine, cosine = (values[number] for number in coordinate.generators)
         base = base_angle(coordinate.atom, ring.bases[coordinate.atom])

@@ -1,0 +1,126 @@
+"""The catalogue of derivations, in reading order: one file each, printed to ``derivations/``.
+
+Importing this package derives nothing and imports no SymPy; :func:`derivation` does both for the one asked for.
+"""
+
+from difflib import unified_diff
+from functools import cache
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from symrot.errors import InputError
+
+if TYPE_CHECKING:
+    from symrot.proof import Derivation
+
+__all__ = ["READING_ORDER", "check", "derivation", "derive_all", "names", "pages"]
+
+READING_ORDER: dict[str, tuple[str, ...]] = {
+    "Attitude and its rate": (
+        "euler_body_rates",
+        "quaternion_rates",
+        "rotation_vector",
+        "rodrigues",
+    ),
+    "Inertia": (
+        "parallel_axis",
+        "tensor_rotation",
+    ),
+    "Equations of motion": (
+        "euler_equations",
+        "attitude_not_needed",
+        "planar_motion",
+    ),
+    "Free bodies": (
+        "free_body_invariants",
+        "spherical_body",
+        "symmetric_spin",
+        "symmetric_top",
+        "intermediate_axis",
+    ),
+    "Bodies under torques": (
+        "heavy_top_invariants",
+        "gyrostat_invariants",
+        "gravity_gradient",
+    ),
+}
+"""Part -> names of its derivations; a name is that of the module which derives it."""
+
+
+def names() -> tuple[str, ...]:
+    """Return the names of all derivations, in reading order."""
+    return tuple(name for part in READING_ORDER.values() for name in part)
+
+
+@cache
+def derivation(name: str) -> "Derivation":
+    """Derive one entry of the catalogue, once per process.
+
+    Raises
+    ------
+    InputError
+        If there is no derivation of that name.
+    """
+    if name not in names():
+        raise InputError(f"no derivation is called {name!r}; there are {', '.join(names())}")
+    found: Derivation = import_module(f"{__name__}.{name}").derive()
+    return found
+
+
+def pages() -> dict[str, str]:
+    """Return file name -> text of every printed page, the table of contents (``README.md``) first."""
+    derived = {name: derivation(name) for name in names()}
+    lines = [
+        "# Derivations",
+        "",
+        "Every formula that symrot computes with, from first principles, in reading order. Each step was proven when",
+        "its page was printed: the exact normal form of left minus right is zero.",
+    ]
+    for part, members in READING_ORDER.items():
+        lines += ["", f"## {part}", ""]
+        lines += [f"- [{derived[name].title}]({name}.md), {len(derived[name].steps)} steps" for name in members]
+    lines += ["", "Printed by `symrot derive --all`; do not edit.", ""]
+    return {"README.md": "\n".join(lines)} | {f"{name}.md": found.markdown() for name, found in derived.items()}
+
+
+def derive_all(directory: Path | str) -> list[Path]:
+    """Print every page into a directory and return the files that changed.
+
+    A page that an earlier catalogue printed, of a derivation that is no more, is removed; other files are left alone.
+    """
+    directory = Path(directory)
+    directory.mkdir(parents=True, exist_ok=True)
+    changed = []
+    printed = pages()
+    for name, text in printed.items():
+        path = directory / name
+        if not path.is_file() or path.read_bytes() != text.encode():
+            path.write_bytes(text.encode())
+            changed.append(path)
+    for path in _left_over(directory, printed):
+        path.unlink()
+        changed.append(path)
+    return changed
+
+
+def check(directory: Path | str) -> list[tuple[Path, str]]:
+    """Return the pages that are not what would be printed now, each with a unified diff; none when all are current."""
+    directory = Path(directory)
+    printed = pages()
+    stale = []
+    for path in [*(directory / name for name in printed), *_left_over(directory, printed)]:
+        old = path.read_bytes().decode(errors="replace") if path.is_file() else ""
+        new = printed.get(path.name, "")
+        if old != new:
+            lines = unified_diff(
+                old.splitlines(keepends=True), new.splitlines(keepends=True), f"{path} (on disk)", f"{path} (derived)"
+            )
+            stale.append((path, "".join(lines)))
+    return stale
+
+
+def _left_over(directory: Path, printed: dict[str, str]) -> list[Path]:
+    """Return the pages that symrot once printed into a directory and now would not."""
+    others = (path for path in sorted(directory.glob("*.md")) if path.name not in printed)
+    return [path for path in others if f"printed by `symrot derive {path.stem}`; do not edit." in path.read_text()]

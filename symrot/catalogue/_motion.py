@@ -1,0 +1,43 @@
+"""Rates along a motion: the chain rule, and the motions that derivations share."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from sympy import Expr, Matrix, Symbol
+
+from symrot import symbols
+from symrot.kinematics.quaternion import quaternion_rates
+
+__all__ = ["OMEGA", "TENSOR", "attitude_rates", "pairs", "rate", "squared"]
+
+OMEGA = Matrix(symbols.omega_b)
+TENSOR = Matrix(
+    [
+        [symbols.I_xx, symbols.I_xy, symbols.I_xz],
+        [symbols.I_xy, symbols.I_yy, symbols.I_yz],
+        [symbols.I_xz, symbols.I_yz, symbols.I_zz],
+    ]
+)
+"""The general inertia tensor about the point of motion, body axes."""
+
+
+def pairs(variables: Sequence[Symbol], rates: Any) -> dict[Symbol, Expr]:
+    """Return variable -> its rate."""
+    return dict(zip(variables, list(rates), strict=True))
+
+
+def attitude_rates() -> dict[Symbol, Expr]:
+    """Return the rate of the quaternion for the angular velocity ``OMEGA`` in the body."""
+    return pairs(symbols.quaternion, quaternion_rates("body") * OMEGA)
+
+
+def rate(quantity: Any, rates: Mapping[Symbol, Expr]) -> Any:
+    """Return d/dt of an expression or matrix whose variables have these rates (the chain rule)."""
+    terms = (quantity.diff(variable) * speed for variable, speed in rates.items())
+    first = next(terms)
+    return sum(terms, first)
+
+
+def squared(vector: Matrix) -> Expr:
+    """Return the square of the length of a vector."""
+    return vector.dot(vector)

@@ -1,0 +1,100 @@
+"""A derivation cannot hold a step that does not hold, and prints the same page every time."""
+
+import pytest
+from sympy import Eq, MatMul, Matrix, cos, eye, sin, sqrt
+
+from symrot.errors import InputError
+from symrot.proof import Derivation, Passage, ProofError, Section, Step
+from symrot.symbols import A, B, C, delta_1, dphi, omega_1, omega_b, phi, q0, q1, q2, q3, theta, x
+
+UNIT = q0**2 + q1**2 + q2**2 + q3**2 - 1
+
+
+@pytest.fixture
+def page():
+    return Derivation("page", title="A page", source="Nobody, *Nothing*, p. 1", about="About $x$.")
+
+
+def test_a_true_step_is_kept_with_all_that_belongs_to_it(page):
+    step = page.step("One.", sin(x) / sin(x) * cos(theta) / sin(theta), cos(theta) / sin(theta), because="both are one",
+                     relations=[Eq(q0**2, 1)], source="p. 2")  # fmt: skip
+    assert page.steps == (step,)
+    assert isinstance(step, Step) and step.reason == "both are one" and step.source == "p. 2"
+    assert [str(c) for c in step.conditions] == ["Ne(sin(theta), 0)"]
+    assert step.hypotheses == (q0**2 - 1,)
+
+
+@pytest.mark.parametrize(
+    "left, right, relations",
+    [
+        (sin(2 * x), 2 * sin(x), ()),
+        (Matrix([omega_1, 0]), Matrix([omega_1, sin(x)]), ()),
+        (q0**2 + q1**2 + q2**2, 1, (UNIT,)),
+        (eye(3), 0, ()),
+        (sqrt(x**2), x, ()),
+    ],
+)
+def test_a_false_step_cannot_be_built(page, left, right, relations):
+    with pytest.raises(ProofError, match=r"page, step 1, 'Wrong.' does not hold: left - right = .* \(at|does not hold"):
+        page.step("Wrong.", left, right, because="it is not so", relations=relations)
+    assert page.steps == ()
+
+
+def test_a_false_step_says_where_it_fails(page):
+    with pytest.raises(ProofError, match=r"entry \(2, 1\).*at x = pi/2, entry \(2, 1\): 0 against 1"):
+        page.step("Wrong.", Matrix([omega_1, 0]), Matrix([omega_1, sin(x)]), because="it is not so")
+
+
+def test_floats_and_shapes_are_refused(page):
+    with pytest.raises(InputError, match="float"):
+        page.step("Wrong.", 0.5 * x, x, because="it is not so")
+    with pytest.raises(InputError, match="shape"):
+        page.step("Wrong.", eye(3), eye(2), because="it is not so")
+
+
+def test_positive_follows_from_signs_alone(page):
+    page.positive("Yes.", (A - C).subs(A, C + delta_1) * B, because="both are")
+    for doubtful in (A - B, omega_1**2, -A, A * 0):
+        with pytest.raises(ProofError, match="positive"):
+            page.positive("No.", doubtful, because="it is not so")
+
+
+def test_what_is_assumed_once_is_not_repeated(page):
+    page.nonzero("There is an inverse,", (x - 1) * (x + 1), "D")
+    step = page.step("One.", (x**2 - 1) / (1 - x**2), -1, because="it cancels")
+    other = page.step("Two.", 1 / (x - 2), 1 / (x - 2), because="it is the same")
+    assert step.conditions == () and len(other.conditions) == 1
+
+
+def filled(page):
+    page.section("Part, one")
+    page.given("Let", (omega_1, dphi), (r"R", eye(3)))
+    assert page.define("With 50% of", A, x + 1) == x + 1
+    page.step("It is.", sin(phi) ** 2 + cos(phi) ** 2, 1, because="of $[a]_\\times$ & `b_c`", named="s")
+    page.step("So.", Matrix([q0**2]), Matrix([1 - q1**2 - q2**2 - q3**2]), because="norm", relations=[UNIT],
+              shown=MatMul(eye(2), Matrix(omega_b[:2])))  # fmt: skip
+    page.positive("And.", A * B, because="both are", named="p")
+    return page
+
+
+def test_the_markdown_page(page):
+    text = filled(page).markdown()
+    assert text.startswith("# A page\n\nAbout $x$.\n\n*Source:* Nobody, *Nothing*, p. 1.\n\n## Part, one\n\nLet\n\n$$\n")
+    assert "$$\n\\omega_{1} = \\dot{\\phi}\n$$" in text
+    assert "**1.** It is.\n\n$$\ns = 1\n$$\n\n*Why:* of $`[a]_\\times`$ & `b_c`." in text
+    assert "*Given:* $q_{0}^{2} + q_{1}^{2} + q_{2}^{2} + q_{3}^{2} = 1$." in text
+    assert "$$\np = A B > 0\n$$" in text
+    assert "in kg m^2" in text and "3 steps, each proven" in text
+    assert text.count("$$") % 2 == 0 and all(line == line.rstrip() for line in text.splitlines())
+
+
+def test_the_latex_document(page):
+    text = filled(page).latex()
+    assert text.startswith(r"\documentclass") and text.endswith("\\end{document}\n")
+    assert r"With 50\% of" in text and r"\texttt{b\_c}" in text and r"\emph{Nothing}" in text and r"\&" in text
+    assert text.count(r"\[") == text.count(r"\]") == 6 - 0
+    assert text.count(r"\left[") == text.count(r"\right]")
+
+
+def test_items_are_what_was_written(page):
+    assert [type(item) for item in filled(page).items] == [Section, Passage, Passage, Step, Step, Step]
