@@ -71,10 +71,14 @@ def compiler() -> Compiler:
     raise CompilerError(f"a C compiler is needed: {wanted}; set CC to one, or use method 'scipy'")
 
 
-def cache() -> Cache:
-    """Return the directory in use and, when it is a temporary one, the reason."""
-    directory, reason = _room()
-    return Cache(directory, reason)
+def cache(probe: bool = False) -> Cache:
+    """Return the directory in use and why it is a temporary one, if it is; a probe notices a full disk too."""
+    if probe:
+        _keep(_text_name("probe"), b"")
+    if _temporary.path is not None:
+        return Cache(_temporary.path, _temporary.reason)
+    directory, reason = _own_room()
+    return Cache(_temporary.use(reason) if reason else directory, reason)
 
 
 def build(source: str, name: str, flags: tuple[str, ...] = FLAGS) -> Path:
@@ -97,17 +101,19 @@ def build(source: str, name: str, flags: tuple[str, ...] = FLAGS) -> Path:
     tool = compiler()
     processor = _processor() if NATIVE in flags else ""
     key = _digest("\0".join((source, tool.identity, *flags, processor, sys.platform)))
-    directory, _ = _room()
     entry = f"{name}-{key}.index"
-    found = _sound_library(directory, entry, name)
-    if found is None and directory != _temporary.path and _temporary.path is not None:
-        found = _sound_library(_temporary.path, entry, name)
-    return found if found is not None else _compile(tool, source, name, entry, flags)
+    for directory in _rooms():
+        if (found := _sound_library(directory, entry, name)) is not None:
+            return found
+    return _compile(tool, source, name, entry, flags)
 
 
 def store(key: str, text: str) -> None:
     """Keep a small text under a key (any string). A cache that cannot be written keeps it for this process only."""
-    _keep(_text_name(key), f"{_digest(text)}\n{text}".encode())
+    try:
+        _keep(_text_name(key), f"{_digest(text)}\n{text}".encode())
+    except CompilerError:
+        _temporary.texts[key] = text
 
 
 def fetch(key: str) -> str | None:
@@ -118,7 +124,7 @@ def fetch(key: str) -> str | None:
             checksum, _, text = kept.decode("utf-8", "replace").partition("\n")
             if checksum == _digest(text):
                 return text
-    return None
+    return _temporary.texts.get(key)
 
 
 def clear() -> tuple[Path, ...]:
@@ -175,8 +181,10 @@ def _processor() -> str:
 class _Temporary:
     """The private directory of this process, made when first needed and removed at exit."""
 
-    path: Path | None = None
-    reason = ""
+    def __init__(self) -> None:
+        self.path: Path | None = None
+        self.reason = ""
+        self.texts: dict[str, str] = {}  # kept here when no disk takes them
 
     def use(self, reason: str) -> Path:
         if self.path is None:
@@ -218,8 +226,8 @@ def _foreign(path: Path) -> str:
     return ""
 
 
-def _room() -> tuple[Path, str]:
-    """Return the directory for new entries and why it is a temporary one, or an empty text."""
+def _own_room() -> tuple[Path, str]:
+    """Return the user's cache directory and why it cannot be used, or an empty text."""
     room = _cache_directory() / ROOM
     try:
         room.mkdir(mode=0o700, parents=True, exist_ok=True)
@@ -230,13 +238,13 @@ def _room() -> tuple[Path, str]:
             reason = f"{room} cannot be written"
     except OSError as error:
         reason = f"{room} cannot be used: {error.strerror or error}"
-    return (_temporary.use(reason), reason) if reason else (room, "")
+    return room, reason
 
 
 def _rooms() -> list[Path]:
-    """Return every directory that may hold entries of ours: the one in use, and the temporary one if there is one."""
-    directory, _ = _room()
-    return list(dict.fromkeys(path for path in (directory, _temporary.path) if path is not None))
+    """Return the directories that may hold entries: the user's cache if it can be used, and the temporary one."""
+    directory, reason = _own_room()
+    return [*([] if reason else [directory]), *([] if _temporary.path is None else [_temporary.path])]
 
 
 # ------------------------------------------------------------------------------------------------ files
@@ -262,19 +270,16 @@ def _replace(path: Path, content: bytes) -> None:
 
 def _keep(name: str, content: bytes) -> Path:
     """Write a file into the cache, or into the temporary directory where the cache is full or read-only."""
-    directory, _ = _room()
-    try:
-        _replace(directory / name, content)
-    except OSError as error:
-        reason = f"{directory} cannot be written: {error.strerror or error}"
-        if directory == _temporary.path:
-            raise CompilerError(f"compiled kernels need room on a disk: {reason}") from error
-        directory = _temporary.use(reason)
-        return _keep_here(directory / name, content)
-    return directory / name
-
-
-def _keep_here(path: Path, content: bytes) -> Path:
+    if _temporary.path is None:
+        directory, reason = _own_room()
+        if not reason:
+            try:
+                _replace(directory / name, content)
+                return directory / name
+            except OSError as error:
+                reason = f"{directory} cannot be written: {error.strerror or error}"
+        _temporary.use(reason)
+    path = _temporary.use("") / name
     try:
         _replace(path, content)
     except OSError as error:
@@ -321,8 +326,9 @@ def _compile(tool: Compiler, source: str, name: str, entry: str, flags: tuple[st
     except OSError as error:
         raise CompilerError(f"compiling {name} needs a temporary directory: {error}") from error
     library = _keep(_library_name(name, content), content)
-    _keep_here(library.with_name(entry), library.name.encode())
-    return library
+    if _keep(entry, library.name.encode()).parent == library.parent:
+        return library
+    return _keep(library.name, content)  # the disk filled up in between
 
 
 def _run(tool: Compiler, source: str, flags: tuple[str, ...], output: Path) -> str:
