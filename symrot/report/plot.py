@@ -1,0 +1,221 @@
+"""One page that shows a motion: angular velocity, attitude, what is conserved, and the paths on the sphere.
+
+Drawn with matplotlib's objects and the Agg canvas: no window, no global figure. Same motion, same bytes.
+"""
+
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any, BinaryIO
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symrot import __version__
+from symrot.errors import InputError
+from symrot.report.files import write
+from symrot.report.layout import one_line
+from symrot.report.sphere import draw_directions, prefixed
+
+__all__ = ["SUFFIXES", "figure", "require_matplotlib", "save"]
+
+Floats = NDArray[np.float64]
+
+SUFFIXES = (".png", ".pdf", ".svg")
+FEWEST, MOST, PER_STEP = 1500, 20_000, 6  # samples that are drawn; a scene with others is propagated for the plot
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")  # Okabe & Ito, 2008
+WIDTHS = (2.0, 1.6, 1.2, 0.9)  # the later ones are drawn on top: equal curves all show
+GREY = "#606060"
+TIMES = ((4 * 86400.0, 86400.0, "days"), (4 * 3600.0, 3600.0, "h"), (0.0, 1.0, "s"))  # span from which on, size, unit
+QUIET = 0.01  # a component whose change is below this part of its size may be told instead of drawn
+STYLE = {
+    "font.size": 9.0, "axes.titlesize": 10.0, "axes.titleweight": "bold", "axes.titlelocation": "left",
+    "axes.spines.top": False, "axes.spines.right": False, "axes.edgecolor": GREY, "axes.linewidth": 0.8,
+    "grid.color": "#e4e4e4", "grid.linewidth": 0.6, "lines.linewidth": 1.2, "legend.frameon": False,
+    "legend.fontsize": 8.5, "svg.hashsalt": "symrot", "axes.formatter.useoffset": False,
+}  # fmt: skip
+UNDATED: dict[str, dict[str, Any]] = {
+    ".png": {"Software": f"symrot {__version__}"},
+    ".pdf": {"Creator": f"symrot {__version__}", "CreationDate": None},
+    ".svg": {"Creator": f"symrot {__version__}", "Date": None},
+}
+
+
+def require_matplotlib() -> None:
+    """Refuse a plot where matplotlib is missing."""
+    if find_spec("matplotlib") is None:
+        raise InputError("--plot: expected matplotlib, which is not installed: pip install 'symrot[plot]'")
+
+
+def _times(trajectory: Any) -> tuple[Floats, str]:
+    span = float(np.ptp(trajectory.t))
+    _, size, unit = next(row for row in TIMES if span >= row[0])
+    return trajectory.t / size, unit
+
+
+def _lines(axes: Any, t: Floats, columns: Floats, names: list[str], unit: str) -> None:
+    """Draw components over time; a steady one that would flatten the others is told in the legend instead."""
+    low, high = columns.min(axis=0), columns.max(axis=0)
+    largest = np.maximum(np.abs(low), np.abs(high))
+    steady = high - low <= QUIET * largest
+    others = np.max(largest[~steady], initial=0.0)
+    for number, name in enumerate(names):
+        label, colour = name, COLOURS[number]
+        if steady[number] and largest[number] > 3 * others > 0:
+            ends = dict.fromkeys(f"{end:.6g}" for end in (low[number], high[number]))
+            axes.plot([], [], " ", label=f"{name} = {' to '.join(ends)} {unit}")
+        else:
+            axes.plot(t, columns[:, number], color=colour, label=label, linewidth=WIDTHS[number])
+    axes.legend(loc="lower right", bbox_to_anchor=(1.0, 0.98), ncols=len(names), handlelength=1.4, columnspacing=1.2)
+    axes.grid(True)
+
+
+def _unwrapped(angles: Floats, turn: float) -> Floats:
+    """Return angles with a gap where they jump by a turn, so that no line is drawn there."""
+    gaps = np.zeros_like(angles, dtype=bool)
+    gaps[1:] = np.abs(np.diff(angles)) > 0.5 * turn
+    return np.where(gaps, np.nan, angles)
+
+
+def _rates(axes: Any, t: Floats, trajectory: Any) -> None:
+    changing = np.ptp(trajectory.omega, axis=0)
+    size, unit = prefixed(float(np.max(changing) or np.max(np.abs(trajectory.omega))), "rad/s")
+    _lines(axes, t, trajectory.omega / size, [rf"$\omega_{i}$" for i in (1, 2, 3)], unit)
+    axes.set_title("Angular velocity in the body")
+    axes.set_ylabel(unit)
+
+
+def _attitude(axes: Any, t: Floats, trajectory: Any) -> None:
+    sequence = trajectory.scene.output.sequence
+    if sequence is None:
+        _lines(axes, t, trajectory.quaternion, [f"$q_{i}$" for i in range(4)], "")
+        axes.set_title("Attitude, quaternion body to space")
+        axes.set_ylabel("quaternion (1)")
+        return
+    angles = trajectory.euler(sequence, degrees=True)
+    kind = "intrinsic" if sequence.isupper() else "extrinsic"
+    names = [rf"{axis} ({place})" for axis, place in zip(sequence, ("first", "second", "third"), strict=True)]
+    for number, name in enumerate(names):
+        angle = _unwrapped(angles[:, number], 360.0)
+        axes.plot(t, angle, color=COLOURS[number], label=name, linewidth=WIDTHS[number])
+    axes.legend(loc="lower right", bbox_to_anchor=(1.0, 0.98), ncols=3, handlelength=1.4, columnspacing=1.2)
+    axes.grid(True)
+    axes.set_title(f"Euler angles {sequence}, {kind}")
+    axes.set_ylabel("deg")
+
+
+def _drift(axes: Any, t: Floats, trajectory: Any, tolerance: float) -> None:
+    axes.set_title("Drift of what is conserved")
+    axes.set_ylabel("relative to its size")
+    axes.set_yscale("log")
+    changes = []
+    for number, item in enumerate(trajectory.invariants):
+        change = np.abs(item.values - item.values[0]) / (item.scale or 1.0)
+        changes.append(change)
+        shown = np.where(change > 0, change, np.nan)
+        colour = COLOURS[number % len(COLOURS)]
+        axes.plot(t, shown, color=colour, linewidth=0.8, label=item.name)
+    axes.axhline(tolerance, color=GREY, linewidth=1.0, linestyle=(0, (5, 3)))
+    axes.annotate(f"tolerance {tolerance:g}", (0.0, tolerance), xycoords=("axes fraction", "data"), xytext=(4, 3),
+                  textcoords="offset points", color=GREY, fontsize=8)  # fmt: skip
+    positive = np.concatenate([change[change > 0] for change in changes] or [np.array([tolerance])])
+    low, high = np.quantile(positive, [0.02, 1.0]) if len(positive) else (tolerance, tolerance)
+    axes.set_ylim(0.3 * min(low, tolerance), 20 * max(high, tolerance))
+    axes.legend(loc="upper left", bbox_to_anchor=(-0.04, -0.22), ncols=5, handlelength=1.0, columnspacing=1.0)
+    axes.grid(True)
+
+
+def _body_sphere(axes: Any, trajectory: Any) -> None:
+    """Draw the angular momentum of a free body among the curves it may follow, or the axis of rotation of another."""
+    torques = trajectory.scene.torques
+    if any(torque.kind != "rotor" for torque in torques):
+        draw_directions(axes, trajectory.omega, ("1", "2", "3"))
+        axes.set_title("Axis of rotation in the body")
+        return
+    inertia = np.array(trajectory.scene.body.inertia, dtype=float)
+    rotor = np.zeros(3)
+    for torque in torques:
+        rotor += np.array(torque.values["angular_momentum"], dtype=float)
+    momentum = trajectory.angular_momentum_body
+    size = float(np.linalg.norm(momentum[0]))
+
+    def energy(directions: Floats) -> Floats:
+        spin = size * directions - rotor
+        found: Floats = np.einsum("...i,...i->...", spin, spin @ np.linalg.inv(inertia)) / 2
+        return found
+
+    axes.set_title("Angular momentum in the body")
+    if draw_directions(axes, momentum, ("1", "2", "3"), energy):
+        note = "thin: other paths, each of one energy"
+        axes.text(0.5, -0.02, note, transform=axes.transAxes, ha="center", color=GREY)
+
+
+def _space_sphere(axes: Any, trajectory: Any) -> None:
+    symmetric = trajectory.scene.body.principal.symmetry_axis is not None
+    name = "Symmetry axis" if symmetric else f"Body axis {trajectory.axis_number + 1}"
+    draw_directions(axes, trajectory.axis, ("x", "y", "z"))
+    axes.set_title(f"{name} in space")
+
+
+def figure(trajectory: Any, tolerance: float) -> Any:
+    """Return a matplotlib Figure of a motion."""
+    from matplotlib.figure import Figure
+
+    page = Figure(figsize=(12.0, 8.0))
+    attitude = trajectory.has_attitude
+    left = page.add_gridspec(3 if attitude else 2, 1, left=0.065, right=0.6, top=0.865, bottom=0.125, hspace=0.48)
+    right = page.add_gridspec(2 if attitude else 1, 1, left=0.7, right=0.985, top=0.865, bottom=0.095, hspace=0.3)
+    t, unit = _times(trajectory)
+    panels = [page.add_subplot(left[row]) for row in range(3 if attitude else 2)]
+    _rates(panels[0], t, trajectory)
+    if attitude:
+        _attitude(panels[1], t, trajectory)
+        _space_sphere(page.add_subplot(right[0]), trajectory)
+    _body_sphere(page.add_subplot(right[-1]), trajectory)
+    _drift(panels[-1], t, trajectory, tolerance)
+    for panel in panels:
+        panel.set_xlim(t[0], t[-1])
+        panel.set_xlabel(f"t ({unit})", labelpad=1)
+    _words(page, trajectory, tolerance)
+    return page
+
+
+def _literal(text: str) -> str:
+    """Return text as matplotlib shows it unchanged: a dollar would begin a formula."""
+    return one_line(text).replace("\\", "/").replace("$", r"\$")
+
+
+def _words(page: Any, trajectory: Any, tolerance: float) -> None:
+    scene, stats = trajectory.scene, trajectory.stats
+    page.text(0.02, 0.972, _literal(scene.title)[:100], fontsize=15, fontweight="bold", va="top")
+    page.text(0.02, 0.928, _literal(scene.source)[:170], fontsize=8.5, color=GREY, va="top")
+    caption = (
+        f"{_literal(scene.name)}   |   {trajectory.method}, tolerance {tolerance:g}, {stats.accepted} steps   |   "
+        f"paths run from the dot (dark) to the square (light)   |   symrot {__version__}"
+    )
+    page.text(0.98, 0.018, caption, fontsize=8, color=GREY, ha="right")
+
+
+def save(propagator: Any, trajectory: Any, path: Path) -> None:
+    """Draw a motion into a file; a scene with too few or too many samples is propagated again for it.
+
+    Parameters
+    ----------
+    propagator, trajectory : Propagator, Trajectory
+        What ran, and its motion at the scene's own times.
+    path : Path
+        Its suffix, one of :data:`SUFFIXES`, decides the format.
+    """
+    import matplotlib
+
+    count = min(max(FEWEST, len(trajectory), PER_STEP * trajectory.stats.accepted), MOST)
+    if count != len(trajectory):
+        span = trajectory.scene.span
+        trajectory = propagator(np.linspace(float(span.start), float(span.stop), count))
+    suffix = path.suffix.lower()
+    with matplotlib.rc_context({**matplotlib.rcParamsDefault, **STYLE}):
+        page = figure(trajectory, propagator.tolerance)
+
+        def draw(stream: BinaryIO) -> None:
+            page.savefig(stream, format=suffix[1:], dpi=150, metadata=UNDATED[suffix])
+
+        write(path, draw)
