@@ -181,9 +181,11 @@ class EulerRateMatrix(RateMatrix):
     def regular_at(self, angles: Sequence[Any] | None = None) -> tuple[str, ...]:
         """Return the sequences, of all 24, that are regular at the attitude of given angles of this sequence.
 
-        With symbols among the angles: those that are not singular for all values of the symbols.
+        With symbols among the angles: those that are not singular for all values of the symbols. A float stands for
+        the rational number it is.
         """
-        attitude = dcm(self.sequence, self.parameters if angles is None else angles)
+        given = expressions(self.parameters if angles is None else angles, 3, f"the Euler sequence {self.sequence}")
+        attitude = dcm(self.sequence, [Rational(angle) if angle.is_Float else angle for angle in given])
         return tuple(other for other in SEQUENCES if not _is_one(lock_indicator(other, attitude) ** 2))
 
 

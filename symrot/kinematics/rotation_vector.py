@@ -173,7 +173,8 @@ def axis_angle_jacobian(frame: str = "body") -> RateMatrix:
     """Return B, shape (3, 4), with ``omega = B * d(n1, n2, n3, alpha)/dt`` for a unit axis.
 
     ``omega_b = n dalpha + sin(alpha) dn - (1 - cos(alpha)) n x dn``; plus for space. The determinant is that with
-    the gradient of ``|n|^2 / 2`` as a first row. Singular at ``alpha = 2 pi k``: there is no axis.
+    the gradient of ``|n|^2 / 2`` as a first row, the condition number that on the rates that keep n unit. Singular at
+    ``alpha = 2 pi k``: there is no axis.
 
     Notes
     -----
