@@ -64,7 +64,8 @@ class Plan:
         moving = [i for i in range(3) if i not in self.structure["constant"] and axis in (None, i)]
         names = [f"omega_{i + 1}" for i in moving]
         if self.structure["attitude"]:
-            names += ["q0", "q1", "q2", "q3"] if axis is None else ["theta"]
+            turning = [] if self.structure["constant"].get(axis) == "0" else ["theta"]
+            names += ["q0", "q1", "q2", "q3"] if axis is None else turning
         return tuple(names)
 
     @cached_property
@@ -113,7 +114,7 @@ def _general(scene: Scene) -> Structure:
         "attitude": True,
         "planar": None,
         "initial_quaternion": None,
-        "constant": [],
+        "constant": {},
     }
 
 
@@ -161,8 +162,8 @@ def _constants(scene: Scene, structure: Structure) -> dict[str, Fraction]:
             first = 0 if len(pattern) == 4 else 1
             for index, (entry, mark) in enumerate(zip(value, pattern, strict=True), start=first):
                 found |= {f"{prefix}{name}_{index}": entry} if mark == "*" else {}
-    for number in structure["constant"]:
-        if structure["planar"] in (None, number):
+    for number, mark in structure["constant"].items():
+        if mark == "*":
             found[f"omega_{number + 1}"] = scene.initial.omega_b[number]
     for number, mark in enumerate(structure["initial_quaternion"] or ()):
         found |= {f"initial_q{number}": scene.initial.quaternion[number]} if mark == "*" else {}
@@ -288,7 +289,7 @@ def _one_axis(scene: Scene, structure: Structure) -> Outcome:
     start = [_pattern(q, unit=True) for q in scene.initial.quaternion] if structure["attitude"] else None
     planar = structure | {"planar": axis, "initial_quaternion": start}
     if not structure["torques"] or (all(torque["kind"] == "rotor" for torque in structure["torques"])):
-        planar = planar | {"constant": [axis]}
+        planar = planar | {"constant": _kept(scene, axis)}
     why = f"omega and torque stay along principal axis {axis + 1}: the attitude is one angle"
     return planar, True, why, "planar_motion"
 
@@ -301,13 +302,21 @@ def _constant_spin(scene: Scene, structure: Structure) -> Outcome:
     letters = structure["inertia"]["moments"]
     if letters == "AAA" and not structure["torques"]:
         why = "a spherical body without torque keeps its angular velocity"
-        return structure | {"constant": [0, 1, 2]}, True, why, "spherical_body"
+        return structure | {"constant": _kept(scene, 0, 1, 2)}, True, why, "spherical_body"
     for axis in range(3):
         others = [letters[i] for i in range(3) if i != axis]
         if others[0] == others[1] and all(_no_moment_about(torque, axis) for torque in structure["torques"]):
             why = f"equal moments about the other axes and no torque about axis {axis + 1}"
-            return structure | {"constant": [axis]}, True, why, "symmetric_spin"
+            if scene.initial.omega_b[axis] == 0 and not structure["torques"]:
+                why += ", and no spin: the body turns steadily about an axis across"
+                return structure | {"constant": _kept(scene, 0, 1, 2)}, True, why, "symmetric_spin"
+            return structure | {"constant": _kept(scene, axis)}, True, why, "symmetric_spin"
     return structure, False, "no axis of symmetry without torque about it", ""
+
+
+def _kept(scene: Scene, *axes: int) -> dict[int, str]:
+    """Return the components of omega_b that keep their value, with the pattern of each: zero, or a constant."""
+    return {axis: _pattern(scene.initial.omega_b[axis], unit=False) for axis in axes}
 
 
 def _no_moment_about(torque: Structure, axis: int) -> bool:

@@ -103,7 +103,7 @@ def counts(name):
 def test_a_free_body_costs_at_most_6_multiplications_and_with_attitude_24():
     structure = {
         "inertia": {"form": "principal", "moments": "ABC"}, "torques": [], "attitude": False, "planar": None,
-        "initial_quaternion": None, "constant": [],
+        "initial_quaternion": None, "constant": {},
     }  # fmt: skip
     rates = rates_program(equations_of_motion(structure), "rates").program.operations()
     assert rates["mul"] <= 6 and rates["div"] == 0

@@ -130,7 +130,7 @@ ALL_L = {f"angular momentum {axis}" for axis in "xyz"}
 def structure_of(inertia, *torques, **others):
     return {
         "inertia": inertia, "torques": list(torques), "attitude": True, "planar": None, "initial_quaternion": None,
-        "constant": [],
+        "constant": {},
     } | others  # fmt: skip
 
 

@@ -198,6 +198,17 @@ def test_a_motion_without_states_is_not_stepped():
         _ = trajectory.dcm
 
 
+def test_a_body_at_rest_stays_where_it_is():
+    scene = Scene.from_dict({
+        "schema": 1, "title": "rest", "body": {"principal": [1, 2, 3]}, "span": {"t": [0, 9]},
+        "initial": {"omega": [0, 0, 0], "attitude": {"axis": [1, 2, 2], "angle": "pi/3"}},
+    })  # fmt: skip
+    trajectory = propagate(scene)
+    assert trajectory.method == "constant" and not trajectory.omega.any()
+    third = 1 / 3 * np.array([1, 2, 2]) * math.sin(math.pi / 6)
+    assert np.abs(trajectory.quaternion - [math.cos(math.pi / 6), *third]).max() < 2e-16
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [

@@ -139,21 +139,24 @@ def _motion(structure: Mapping[str, Any]) -> tuple[Motion, tuple[Symbol, ...], l
     """Return the motion, the attitude states and the relations of a plan."""
     inertia = inertia_matrix(structure["inertia"])
     axis = structure["planar"]
+    turning = [w if structure["constant"].get(i) != "0" else S.Zero for i, w in enumerate(symbols.omega_b)]
     if axis is None:
-        omega_b = Matrix(symbols.omega_b)
+        omega_b = Matrix(turning)
         if not structure["attitude"]:
             return Motion(omega_b, None, inertia), (), []
         return Motion(omega_b, symbols.quaternion, inertia), symbols.quaternion, [unit_relation(symbols.quaternion)]
-    omega_b = Matrix([w if i == axis else 0 for i, w in enumerate(symbols.omega_b)])
+    omega_b = Matrix([w if i == axis else 0 for i, w in enumerate(turning)])
     if not structure["attitude"]:
         return Motion(omega_b, None, inertia), (), []
     start = [
         constant(f"initial_q{i}") if pattern == "*" else Integer(pattern)
         for i, pattern in enumerate(structure["initial_quaternion"])
     ]
+    relations = [unit_relation(start)] if any(q.is_Symbol for q in start) else []
+    if omega_b[axis] == 0:
+        return Motion(omega_b, tuple(start), inertia), (), relations
     turn = [cos(PLANAR_ANGLE / 2), *(sin(PLANAR_ANGLE / 2) * eye(3).col(axis))]
-    free = [q for q in start if q.is_Symbol]
-    return Motion(omega_b, tuple(qmul(start, turn)), inertia), (PLANAR_ANGLE,), [unit_relation(start)] if free else []
+    return Motion(omega_b, tuple(qmul(start, turn)), inertia), (PLANAR_ANGLE,), relations
 
 
 def equations_of_motion(structure: Mapping[str, Any]) -> Equations:
@@ -164,8 +167,8 @@ def equations_of_motion(structure: Mapping[str, Any]) -> Equations:
     structure : mapping
         ``inertia`` (``form`` and the pattern of equal moments or zero entries), ``torques`` (see
         :func:`symrot.dynamics.torques.torque_law`), ``attitude`` (whether it is computed), ``planar`` (the axis
-        number of a motion about one body axis, else None, with ``initial_quaternion``), ``constant`` (numbers of the
-        components of omega_b that keep their value).
+        number of a motion about one body axis, else None, with ``initial_quaternion``), ``constant`` (for the numbers
+        of the components of omega_b that keep their value, ``"*"`` or, where that is zero, ``"0"``).
     """
     motion, attitude, relations = _motion(structure)
     laws = tuple(torque_law(torque, motion) for torque in structure["torques"])
@@ -186,5 +189,5 @@ def equations_of_motion(structure: Mapping[str, Any]) -> Equations:
     if structure["planar"] is None:
         rates += list(quaternion_rates("body") * motion.omega_b) if attitude else []
     elif attitude:
-        rates.append(symbols.omega_b[structure["planar"]])
+        rates.append(motion.omega_b[structure["planar"]])
     return Equations((*states, *attitude), tuple(rates), definitions, motion, laws, momentum_b, tuple(relations))

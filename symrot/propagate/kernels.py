@@ -18,7 +18,7 @@ from symrot.planner import Plan
 from symrot.propagate.dop853 import translation_unit
 from symrot.scene_kernel import SceneKernel
 
-__all__ = ["compiled", "error_blocks", "missing_compiler", "scene_kernel"]
+__all__ = ["compiled", "error_blocks", "library_source", "missing_compiler", "scene_kernel"]
 
 PACKAGE = Path(__file__).parents[1]
 ATTITUDE_SCALE = 1.0  # a quaternion has unit norm; an error of an angle counts in rad
@@ -79,7 +79,7 @@ def compiled(plan: Plan) -> tuple[SceneKernel, Path]:
 
     def build(source: str, parameters: int) -> None:
         try:
-            outcome["path"] = library.build(_library_source(plan, source, parameters), "motion")
+            outcome["path"] = library.build(library_source(plan, source, parameters), "motion")
         except Exception as error:  # carried over to the thread that asked
             outcome["error"] = error
 
@@ -107,5 +107,6 @@ def error_blocks(plan: Plan) -> tuple[list[int], list[float]]:
     return edges, [RATE_SCALE] * (rates > 0) + [ATTITUDE_SCALE] * (count > rates)
 
 
-def _library_source(plan: Plan, source: str, parameters: int) -> str:
+def library_source(plan: Plan, source: str, parameters: int) -> str:
+    """Return the C text of a library: kernel and stepper."""
     return translation_unit(source, "symrot_rates", len(plan.states), parameters, *error_blocks(plan))
