@@ -534,3 +534,19 @@ def test_the_fallback_restarts_at_a_switching_time():
 def test_the_fallback_says_what_is_wrong(rate, options, kind, sentence):
     with pytest.raises(kind, match=sentence):
         fallback.integrate(rate, [], [1.0], 0.0, [1.0], 1e-6, blocks=(0, 1), scales=(1.0,), **options)
+
+
+# ------------------------------------------------------------------------------------------------ the benchmark
+
+
+def test_the_benchmark_compares_like_with_like(capsys):
+    """All contestants solve the same problem; only the times are left to the machine."""
+    from symrot.bench import stepper
+
+    stepper.main(["--tolerance", "1e-8", "--stop", "20", "--rounds", "1"])
+    rows = {row[:14].strip(): row[14:].split() for row in capsys.readouterr().out.splitlines()[2:6]}
+    assert list(rows) == ["symrot", "by hand, -O2", "by hand, -O3", "solve_ivp"]
+    for evaluations, *_, error, _ in rows.values():
+        assert int(evaluations) > 100
+        assert float(error) < 1e-6
+    assert float(rows["symrot"][-2]) < 5e-8
