@@ -320,6 +320,17 @@ def test_modified_parameters_and_their_shadow(attitudes):
     assert np.abs(cv.mrp_to_quaternion(signed) - np.vstack([attitudes, -attitudes])).max() < 4e-16  # sign kept
 
 
+def test_shadow_switch(attitudes):
+    """Sets of length at most 1 stay, longer ones go over; the attitude stays."""
+    both = np.concatenate([cv.quaternion_to_mrp(attitudes), cv.mrp_shadow(cv.quaternion_to_mrp(attitudes))])
+    short, switched = cv.mrp_switch(both)
+    assert not switched[:400].any() and switched[400:].all()
+    np.testing.assert_allclose(short[400:], both[:400], rtol=1e-15)
+    single, flag = cv.mrp_switch([0.0, 0.0, 4.0])
+    assert flag and single.tolist() == [0, 0, -0.25]
+    np.testing.assert_array_equal(cv.mrp_switch([0.0, 0.0, 0.0])[0], [0, 0, 0])
+
+
 def test_modified_parameters_near_a_full_turn_do_not_cancel():
     for angle in (1e-3, 1e-8, 1e-12):
         half = mpf(angle) / 2

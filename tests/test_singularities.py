@@ -51,6 +51,8 @@ def test_zeros_of_known_equations():
     n = Symbol("n", integer=True)
     assert half == ImageSet(Lambda(n, 2 * pi * n), Integers)
     assert zeros_of(sin(x / 2), x, Interval.open(0, oo)).base_set is S.Naturals
+    slow = zeros_of(sin(x / 3), x)
+    assert 3 * pi in slow and 2 * pi not in slow and 6 * pi in slow
     uneven = zeros_of((sin(x) - 1) * sin(x), x)
     assert pi / 2 in uneven and pi in uneven and -pi / 2 not in uneven
 

@@ -29,11 +29,14 @@ from sympy import (
     Symbol,
     Tuple,
     cancel,
+    fraction,
     limit,
     oo,
+    periodicity,
     pi,
     solveset,
     sqrt,
+    together,
 )
 
 from symrot.errors import InputError
@@ -91,8 +94,8 @@ def condition_of(gram: Matrix) -> Expr:
 def zeros_of(equation: Expr, variable: Symbol, domain: Set = S.Reals) -> Set:
     """Return the zeros in ``domain`` of an expression in one variable, exactly.
 
-    For algebraic expressions, and for those that are periodic in ``variable`` with 4 pi (angles and half angles) up
-    to a factor without zeros. Zeros evenly spaced over the period are returned as one family ``first + n * spacing``.
+    Where the numerator has period 4 pi (angles and half angles) and the zeros are evenly spaced over it, they are
+    returned as one family ``first + n * spacing``; else as SymPy's ``solveset`` gives them.
 
     Parameters
     ----------
@@ -104,10 +107,12 @@ def zeros_of(equation: Expr, variable: Symbol, domain: Set = S.Reals) -> Set:
     if not equation.free_symbols:
         return domain if equation == 0 else S.EmptySet
     solution = solveset(equation, variable, domain)
-    period = solution.intersect(Interval.Ropen(4 * pi, 8 * pi))
-    if isinstance(solution, FiniteSet) or not isinstance(period, FiniteSet) or not period:
+    if isinstance(solution, FiniteSet) or solution is S.EmptySet:
         return solution
-    found = sorted(period, key=float)
+    period = periodicity(fraction(together(equation))[0], variable)
+    if period is None or not (4 * pi / period).is_integer:
+        return solution
+    found = sorted(solution.intersect(Interval.Ropen(4 * pi, 8 * pi)), key=float)
     spacing, first = 4 * pi / len(found), found[0] - 4 * pi
     if any(after - before != spacing for before, after in pairwise(found)):
         return solution

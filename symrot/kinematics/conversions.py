@@ -33,6 +33,7 @@ __all__ = [
     "euler_to_quaternion",
     "from_scipy_order",
     "mrp_shadow",
+    "mrp_switch",
     "mrp_to_quaternion",
     "multiply",
     "normalize",
@@ -367,6 +368,17 @@ def _shadow(*s: Array) -> Components:
 def mrp_shadow(s: Any) -> Array:
     """Return the shadow set ``-s / |s|^2`` of the same attitude, shape (..., 3); NaN for zero (no finite shadow)."""
     return _by_components(_shadow, array_of(s, 3, what="a set of modified Rodrigues parameters"), 3)
+
+
+@np.errstate(all="ignore")
+def mrp_switch(s: Any) -> tuple[Array, Mask]:
+    """Return the shorter of each set and its shadow, shape (..., 3), and where it was the shadow, shape (...).
+
+    For a motion in modified parameters: switch whenever ``|s| > 1``, and |s| stays at most 1.
+    """
+    s = array_of(s, 3, what="a set of modified Rodrigues parameters")
+    switched = np.asarray(_length(*np.moveaxis(np.atleast_2d(s), -1, 0)) > 1).reshape(s.shape[:-1])
+    return np.where(switched[..., None], mrp_shadow(s), s), switched
 
 
 # Euler angles
