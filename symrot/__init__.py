@@ -13,8 +13,9 @@ __version__ = "0.1.0"
 _HOMES = {
     "conventions": ("SEQUENCES",),
     "errors": ("CompilerError", "InputError", "PropagationError", "SymrotError"),
-    "kinematics.euler": ("dcm", "rate_jacobian", "singularity_dossier"),
-    "kinematics.quaternion": ("quaternion_rates",),
+    "kinematics.euler": ("dcm", "rate_jacobian"),
+    "kinematics.quaternion": ("dcm_of", "qmul", "quaternion_rates"),
+    "kinematics.dossier": ("singularity_dossier",),
     "dynamics.equations": ("euler_equations",),
     "inertia.solids": ("solid",),
     "catalogue": ("derivation",),
@@ -22,8 +23,8 @@ _HOMES = {
     "scene": ("Scene", "load_scene", "shipped_scenes"),
     "planner": ("Plan",),
     "interface": ("emit", "plan"),
-    "propagate.propagator": ("Propagator", "propagate", "propagator"),
-    "propagate.trajectory": ("Trajectory",),
+    "propagation.propagator": ("Propagator", "propagate", "propagator"),
+    "propagation.trajectory": ("Trajectory",),
 }
 _HOME = {name: module for module, names in _HOMES.items() for name in names}
 

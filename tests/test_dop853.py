@@ -18,7 +18,7 @@ import pytest
 
 from symrot.codegen import library
 from symrot.errors import CompilerError, InputError, PropagationError
-from symrot.propagate import dop853, fallback
+from symrot.propagation import dop853, fallback
 
 RIGID_BODY = """
 /* p = A, B, C, weight times centre of mass (3, body axes); gravity along -z of space */

@@ -13,7 +13,7 @@ import pytest
 from symrot.errors import InputError
 from symrot.kinematics import conversions
 from symrot.planner import Plan, make_plan
-from symrot.propagate.propagator import Choice, Motion, propagate, propagator
+from symrot.propagation.propagator import Choice, Motion, propagate, propagator
 from symrot.scene import Scene, load_scene, shipped_scenes
 from tests.reference import taylor
 
@@ -241,7 +241,7 @@ def test_tolerances_out_of_range_are_refused(tolerance):
 def test_a_cached_scene_propagates_without_sympy_or_scipy():
     propagate("tumbling_prism")
     code = (
-        "import sys; from symrot import load_scene; from symrot.propagate.propagator import propagate;"
+        "import sys; from symrot import load_scene; from symrot.propagation.propagator import propagate;"
         "t = propagate('tumbling_prism'); t.euler('ZYX'); t.invariants;"
         "print([m for m in ('sympy', 'scipy', 'matplotlib') if m in sys.modules])"
     )

@@ -14,7 +14,7 @@ from time import perf_counter
 
 from symrot.codegen import library
 from symrot.interface import plan
-from symrot.propagate.kernels import library_source, scene_kernel
+from symrot.propagation.kernels import library_source, scene_kernel
 
 __all__ = ["main"]
 

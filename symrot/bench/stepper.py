@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symrot.codegen import library
-from symrot.propagate import dop853
+from symrot.propagation import dop853
 
 __all__ = ["Measurement", "main", "measure"]
 

@@ -47,13 +47,13 @@ def _ladder(plan: Plan) -> list[dict[str, Any]]:
 def _others(plan: Plan) -> list[dict[str, Any]]:
     """Return the rows that no rule of the plan decides: states, motion, outputs, derivation."""
     from symrot.codegen import library
-    from symrot.propagate.kernels import _key
-    from symrot.propagate.propagator import choose_method
+    from symrot.propagation.kernels import kernel_key
+    from symrot.propagation.propagator import choose_method
 
     choice, asked = choose_method(plan), plan.scene.output.quantities
     missing = [name for name in QUANTITIES if name not in asked]
     stepped = f"{choice.method}: {choice.reason}"
-    known = library.fetch(_key(plan)) is not None
+    known = library.fetch(kernel_key(plan)) is not None
     kernel = "this structure is in the cache" if known else "the first run derives and compiles, later ones load"
     return [
         _row("states", not plan.states, f"{', '.join(plan.states) or 'none changes'}"),

@@ -1,4 +1,4 @@
-"""The SciPy fallback: any method of ``scipy.integrate.solve_ivp``, called as :mod:`symrot.propagate.dop853` is.
+"""The SciPy fallback: any method of ``scipy.integrate.solve_ivp``, called as :mod:`symrot.propagation.dop853` is.
 
 For where there is no C compiler, and for those who want LSODA. The tolerance means the same as far as SciPy allows: the
 error of every block of states against the largest size the block has on the way, found by a first coarse pass, and
@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from symrot.errors import InputError, PropagationError
-from symrot.propagate.dop853 import Stats
+from symrot.propagation.dop853 import Stats
 
 __all__ = ["METHODS", "FallbackRecording", "integrate", "method_name", "record"]
 
@@ -64,7 +64,7 @@ def integrate(
 ) -> tuple[Floats, Stats]:
     """Return the states at the sample times, shape (n, N), and what it cost.
 
-    As :func:`symrot.propagate.dop853.integrate`, but for these:
+    As :func:`symrot.propagation.dop853.integrate`, but for these:
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ def integrate(
     method : str
         As :func:`method_name` takes it.
     blocks, scales
-        As :func:`symrot.propagate.dop853.translation_unit` takes them; the last edge may lie beyond N.
+        As :func:`symrot.propagation.dop853.translation_unit` takes them; the last edge may lie beyond N.
     max_steps : int
         Most evaluations of ``rhs`` (SciPy tells nothing about steps while it takes them).
     """
@@ -105,13 +105,13 @@ def record(
     max_step: float = math.inf,
     max_steps: int = MAX_EVALUATIONS,
 ) -> "FallbackRecording":
-    """Return the motion over ``span`` as a function of time; see :func:`symrot.propagate.dop853.record`."""
+    """Return the motion over ``span`` as a function of time; see :func:`symrot.propagation.dop853.record`."""
     task = _Task(rhs, p, y0, t0, tolerance, method, blocks, scales, breaks, max_step, max_steps)
     return FallbackRecording(task, min(*span, task.t0), max(*span, task.t0))
 
 
 class FallbackRecording:
-    """A motion that can be evaluated at any time of its ``span``; see :class:`symrot.propagate.dop853.Recording`."""
+    """A motion that can be evaluated at any time of its ``span``; see :class:`symrot.propagation.dop853.Recording`."""
 
     def __init__(self, task: "_Task", low: float, high: float) -> None:
         self._t0, self._y0, self.span = task.t0, task.y0, (low, high)

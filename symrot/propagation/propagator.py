@@ -11,10 +11,10 @@ from numpy.typing import ArrayLike, NDArray
 from symrot import number
 from symrot.errors import InputError
 from symrot.planner import Plan, make_plan
-from symrot.propagate import dop853
-from symrot.propagate.dop853 import Stats
-from symrot.propagate.kernels import compiled, error_blocks, missing_compiler, scene_kernel
-from symrot.propagate.trajectory import ARRAY_FUNCTIONS, Trajectory
+from symrot.propagation import dop853
+from symrot.propagation.dop853 import Stats
+from symrot.propagation.kernels import compiled, error_blocks, missing_compiler, scene_kernel
+from symrot.propagation.trajectory import ARRAY_FUNCTIONS, Trajectory
 from symrot.scene import Initial, Scene, load_scene
 from symrot.scene_kernel import SceneKernel, bind
 
@@ -146,7 +146,7 @@ class Motion:
         start = (self.rate_parameters, self.plan.initial_state, self.start)
         if self.library is not None:
             return dop853.record(self.library, *start, span, self.tolerance)
-        from symrot.propagate import fallback
+        from symrot.propagation import fallback
 
         return fallback.record(self.rates, *start, span, self.tolerance, **self.scipy_options)
 
@@ -170,7 +170,7 @@ def _dop853(motion: Motion, times: Floats) -> tuple[Floats, Stats]:
 
 
 def _scipy(motion: Motion, times: Floats) -> tuple[Floats, Stats]:
-    from symrot.propagate import fallback
+    from symrot.propagation import fallback
 
     start = (motion.rate_parameters, motion.plan.initial_state, motion.start)
     return fallback.integrate(motion.rates, *start, times, motion.tolerance, **motion.scipy_options)

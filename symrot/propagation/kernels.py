@@ -15,10 +15,10 @@ from typing import Any
 from symrot.codegen import library
 from symrot.errors import CompilerError
 from symrot.planner import Plan
-from symrot.propagate.dop853 import translation_unit
+from symrot.propagation.dop853 import translation_unit
 from symrot.scene_kernel import SceneKernel
 
-__all__ = ["compiled", "error_blocks", "library_source", "missing_compiler", "scene_kernel"]
+__all__ = ["compiled", "error_blocks", "kernel_key", "library_source", "missing_compiler", "scene_kernel"]
 
 PACKAGE = Path(__file__).parents[1]
 ATTITUDE_SCALE = 1.0  # a quaternion has unit norm; an error of an angle counts in rad
@@ -37,7 +37,8 @@ def _version() -> str:
     return "\n".join(sorted(found))
 
 
-def _key(plan: Plan) -> str:
+def kernel_key(plan: Plan) -> str:
+    """Return the key of a plan's kernel in the cache."""
     return f"scene kernel\n{json.dumps(plan.structure, sort_keys=True)}\n{_version()}"
 
 
@@ -46,7 +47,7 @@ def scene_kernel(plan: Plan, on_source: Callable[[str, int], object] = lambda so
 
     ``on_source`` gets the C text of the rates and the number of their parameters as soon as they are known.
     """
-    saved = library.fetch(_key(plan))
+    saved = library.fetch(kernel_key(plan))
     if saved is not None:
         kernel = SceneKernel(json.loads(saved))
         on_source(kernel.source, len(kernel.rate_parameters))
@@ -54,7 +55,7 @@ def scene_kernel(plan: Plan, on_source: Callable[[str, int], object] = lambda so
     from symrot.codegen.scene_kernels import derive_scene_kernel
 
     kernel = derive_scene_kernel(plan.structure, on_source)
-    library.store(_key(plan), json.dumps(kernel.data))
+    library.store(kernel_key(plan), json.dumps(kernel.data))
     return kernel
 
 

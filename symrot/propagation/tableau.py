@@ -9,7 +9,7 @@ compares the two byte for byte. Tests check the order conditions too, so that a 
 Source: P. J. Prince, J. R. Dormand, J. Comput. Appl. Math. 7 (1981) 67; error estimates and dense output: E. Hairer,
 S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed., sections II.5, II.6, and ``dop853.f``.
 
-Run ``python -m symrot.propagate.tableau`` to print the header anew.
+Run ``python -m symrot.propagation.tableau`` to print the header anew.
 """
 
 from collections.abc import Mapping
@@ -167,7 +167,7 @@ def c_header() -> str:
     lines = [
         "/*",
         " * Coefficients of Dormand and Prince's 8(5,3) pair and its dense output, as sums over k(stage).",
-        " * Printed by `python -m symrot.propagate.tableau` from tableau.py, which names the sources; do not edit.",
+        " * Printed by `python -m symrot.propagation.tableau` from tableau.py, which names the sources; do not edit.",
         " */",
     ]
     for stage, row in STAGE_WEIGHTS.items():

@@ -9,10 +9,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from symrot.errors import InputError
 from symrot.kinematics import conversions
-from symrot.propagate.dop853 import Stats
+from symrot.propagation.dop853 import Stats
 
 if TYPE_CHECKING:
-    from symrot.propagate.propagator import Motion
+    from symrot.propagation.propagator import Motion
 
 __all__ = ["Invariant", "Trajectory"]
 
