@@ -77,7 +77,7 @@ def columns(rows: Sequence[Sequence[str]], width: int = WIDTH, wrap: int = -1, r
     wrap %= count
     widths = [max(len(row[i]) for row in rows) for i in range(count)]
     room = width - 2 * (count - 1) - sum(size for i, size in enumerate(widths) if i != wrap)
-    widths[wrap] = min(widths[wrap], max(room, 20))
+    widths[wrap] = max(1, min(widths[wrap], max(room, 20)))
     lines = []
     for row in rows:
         pieces = _wrapped(row[wrap], widths[wrap])

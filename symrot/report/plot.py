@@ -14,7 +14,7 @@ from symrot import __version__
 from symrot.errors import InputError
 from symrot.report.files import write
 from symrot.report.layout import one_line
-from symrot.report.sphere import draw_directions, prefixed
+from symrot.report.sphere import FAINT, draw_directions, prefixed
 
 __all__ = ["SUFFIXES", "figure", "require_matplotlib", "save"]
 
@@ -107,19 +107,25 @@ def _drift(axes: Any, t: Floats, trajectory: Any, tolerance: float) -> None:
     axes.set_title("Drift of what is conserved")
     axes.set_ylabel("relative to its size")
     axes.set_yscale("log")
+    axes.set_autoscaley_on(False)  # the limits are set below; one flat line has none of its own
     changes = []
     for number, item in enumerate(trajectory.invariants):
         change = np.abs(item.values - item.values[0]) / (item.scale or 1.0)
         changes.append(change)
         shown = np.where(change > 0, change, np.nan)
-        colour = COLOURS[number % len(COLOURS)]
-        axes.plot(t, shown, color=colour, linewidth=0.8, label=item.name)
+        norm = item.name == "quaternion norm"  # says least, hence behind the others
+        colour = FAINT if norm else COLOURS[number % len(COLOURS)]
+        axes.plot(t, shown, color=colour, linewidth=0.8, label=item.name, zorder=1.5 if norm else 2)
     axes.axhline(tolerance, color=GREY, linewidth=1.0, linestyle=(0, (5, 3)))
     axes.annotate(f"tolerance {tolerance:g}", (0.0, tolerance), xycoords=("axes fraction", "data"), xytext=(4, 3),
                   textcoords="offset points", color=GREY, fontsize=8)  # fmt: skip
     positive = np.concatenate([change[change > 0] for change in changes] or [np.array([tolerance])])
     low, high = np.quantile(positive, [0.02, 1.0]) if len(positive) else (tolerance, tolerance)
     axes.set_ylim(0.3 * min(low, tolerance), 20 * max(high, tolerance))
+    if not changes:
+        axes.text(0.5, 0.3, "no conserved quantity is made of the integrated states", transform=axes.transAxes,
+                  ha="center", color=GREY)  # fmt: skip
+        return
     axes.legend(loc="upper left", bbox_to_anchor=(-0.04, -0.22), ncols=5, handlelength=1.0, columnspacing=1.0)
     axes.grid(True)
 

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["draw_directions", "prefixed"]
+__all__ = ["FAINT", "draw_directions", "prefixed"]
 
 Floats = NDArray[np.float64]
 

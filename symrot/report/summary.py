@@ -134,6 +134,8 @@ def _kept(found: dict[str, Any]) -> list[str]:
         unit = "" if item["unit"] == "1" else f" {item['unit']}"
         rows.append((f"  {item['name']}", f"{shown(item['initial'])}{unit}", f"{item['drift']:.1e}", item["reason"]))
     lines = columns(rows, right=(2,))
+    if not found["invariants"]:
+        lines = ["  kept  no conserved quantity is made of the states that are integrated"]
     return lines + [f"  {line}" for line in fields(_lost(found["not_conserved"]))]
 
 

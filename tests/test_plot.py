@@ -1,0 +1,93 @@
+"""The page of a motion: it shows what the motion has, in every format, the same bytes twice."""
+
+import importlib.util
+import sys
+
+import numpy as np
+import pytest
+
+import symrot
+from symrot import cli
+
+pytest.importorskip("matplotlib")
+
+from symrot.report import plot, sphere
+
+STARTS = {".png": b"\x89PNG", ".pdf": b"%PDF", ".svg": b"<?xml"}
+
+SCENE = """
+schema = 1
+title = "Costs $5 \\\\ or less"
+[body]
+{body}
+[initial]
+omega = {omega}
+[span]
+t = [0, 2]
+samples = 3
+[output]
+quantities = {quantities}
+"""
+
+
+@pytest.mark.parametrize("suffix", plot.SUFFIXES)
+def test_pages_are_the_same_twice_and_name_no_date(tmp_path, capsys, suffix):
+    pages = []
+    for name in ("one", "two"):
+        path = tmp_path / f"{name}{suffix}"
+        assert cli.main(["run", "tumbling_prism", "--plot", str(path)]) == 0
+        pages.append(path.read_bytes())
+    assert pages[0] == pages[1] and pages[0].startswith(STARTS[suffix]) and len(pages[0]) > 20_000
+    assert b"CreationDate" not in pages[0] and b"<dc:date>" not in pages[0]
+
+
+@pytest.mark.parametrize(("scene", "titles"), [
+    ("tumbling_prism", ["Angular velocity", "Attitude, quaternion", "Drift", "Body axis 3", "Angular momentum"]),
+    ("heavy_top_loops", ["Angular velocity", "Euler angles ZXZ, intrinsic", "Drift", "Symmetry axis", "Axis of rot"]),
+])  # fmt: skip
+def test_panels_and_their_units(scene, titles):
+    motion = symrot.propagator(scene)()
+    page = plot.figure(motion, 1e-12)
+    found = [panel.get_title(loc="left") or panel.get_title() for panel in page.axes]
+    assert all(any(one.startswith(title) for one in found) for title in titles)
+    over_time = [panel for panel in page.axes if panel.get_xlabel() == "t (s)"]
+    assert len(over_time) == 3 and all(panel.get_ylabel() for panel in over_time)
+    drawn = [line for line in over_time[0].lines if len(line.get_xdata()) == len(motion)]
+    for line in drawn:
+        assert any(np.array_equal(line.get_ydata(), motion.omega[:, number]) for number in range(3))
+
+
+@pytest.mark.parametrize(("body", "omega", "quantities"), [
+    ("principal = [1, 2, 2.5]", "[0.1, 1, 0.1]", '["omega"]'),
+    ("principal = [1, 1, 1]", "[0.1, 1, 0.1]", '["quaternion"]'),
+    ("principal = [1, 2, 2.5]", "[0, 0, 0]", '["quaternion"]'),
+    ("principal = [1, 2, 2.5]", "[0, 0, 1]", '["quaternion"]'),
+    ("inertia = {xx = 2, yy = 3, zz = 4, xy = 0.3}", "[0.1, 1, 0.1]", '["energy"]'),
+    ("principal = [1, 1, 2]", "[1e-6, 0, 1]", '["axis"]'),
+], ids=["no attitude", "spherical", "at rest", "one axis", "products", "small cone"])  # fmt: skip
+def test_plain_motions_can_be_drawn(tmp_path, capsys, recwarn, body, omega, quantities):
+    scene, path = tmp_path / "scene.toml", tmp_path / "page.png"
+    scene.write_text(SCENE.format(body=body, omega=omega, quantities=quantities))
+    assert cli.main(["run", str(scene), "--plot", str(path)]) == 0, capsys.readouterr().err
+    assert path.read_bytes().startswith(STARTS[".png"])
+    assert not [str(warning.message) for warning in recwarn]
+
+
+def test_no_window_and_no_global_figure(tmp_path, capsys):
+    assert cli.main(["run", "tumbling_prism", "--plot", str(tmp_path / "page.png")]) == 0
+    assert "matplotlib.pyplot" not in sys.modules or not sys.modules["matplotlib.pyplot"].get_fignums()
+
+
+def test_missing_matplotlib_is_one_sentence(capsys, monkeypatch, tmp_path):
+    monkeypatch.setattr(plot, "find_spec", lambda name: None)
+    assert importlib.util.find_spec("matplotlib") is not None
+    assert cli.main(["run", "tumbling_prism", "--plot", str(tmp_path / "page.png")]) == 2
+    assert "symrot[plot]" in capsys.readouterr().err and not any(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(("size", "expected"), [
+    (20.0, (1.0, "rad/s")), (0.15, (1.0, "rad/s")), (2e-3, (1e-3, "mrad/s")), (7e-11, (1e-12, "prad/s")),
+    (0.0, (1.0, "rad/s")), (1e-30, (1e-12, "prad/s")),
+])  # fmt: skip
+def test_units_suit_small_numbers(size, expected):
+    assert sphere.prefixed(size, "rad/s") == expected
