@@ -123,7 +123,7 @@ def _drift(axes: Any, t: Floats, trajectory: Any, tolerance: float) -> None:
     low, high = np.quantile(positive, [0.02, 1.0]) if len(positive) else (tolerance, tolerance)
     axes.set_ylim(0.3 * min(low, tolerance), 20 * max(high, tolerance))
     if not changes:
-        axes.text(0.5, 0.3, "no conserved quantity is made of the integrated states", transform=axes.transAxes,
+        axes.text(0.5, 0.65, "no conserved quantity is made of the integrated states", transform=axes.transAxes,
                   ha="center", color=GREY)  # fmt: skip
         return
     axes.legend(loc="upper left", bbox_to_anchor=(-0.04, -0.22), ncols=5, handlelength=1.0, columnspacing=1.0)
