@@ -15,7 +15,7 @@ from symrot import expression
 from symrot.number import equal
 from symrot.scene import Initial, Scene
 
-__all__ = ["ATTITUDE_QUANTITIES", "RULES", "Plan", "Row", "make_plan"]
+__all__ = ["ATTITUDE_QUANTITIES", "RULES", "Plan", "Row", "general_structure", "make_plan"]
 
 Structure = dict[str, Any]
 
@@ -95,7 +95,7 @@ def make_plan(scene: Scene, initial: Initial | None = None) -> Plan:
     """
     if initial is not None:
         scene = replace(scene, initial=initial)
-    structure = _general(scene)
+    structure = general_structure(scene)
     rows = []
     for item, rule in RULES:
         structure, skipped, why, derivation = rule(scene, structure)
@@ -106,7 +106,8 @@ def make_plan(scene: Scene, initial: Initial | None = None) -> Plan:
 # --- the general structure --------------------------------------------------------------------------------------------
 
 
-def _general(scene: Scene) -> Structure:
+def general_structure(scene: Scene) -> Structure:
+    """Return the structure before any rule: full tensor, every constant of every torque free, full attitude."""
     taken: set[str] = set(RESERVED)
     return {
         "inertia": {"form": "tensor", "entries": sorted([*MOMENTS, *PRODUCTS])},
@@ -180,7 +181,8 @@ def _products_of_inertia(scene: Scene, structure: Structure) -> Outcome:
     kept = [name for name, (i, j) in PRODUCTS.items() if inertia[i][j] != 0]
     if kept:
         entries = sorted([*MOMENTS, *kept])
-        why = f"{', '.join(kept)} {'is' if len(kept) == 1 else 'are'} not zero"
+        zero = [name for name in PRODUCTS if name not in kept]
+        why = f"only {', '.join(zero)} {'is' if len(zero) == 1 else 'are'} zero" if zero else "none of them is zero"
         return structure | {"inertia": {"form": "tensor", "entries": entries}}, len(kept) < 3, why, "euler_equations"
     why = "the axes of the body are principal axes"
     return structure | {"inertia": {"form": "principal", "moments": "ABC"}}, True, why, "euler_equations"

@@ -10,7 +10,7 @@ from operator import getitem
 from pathlib import Path
 
 import pytest
-from bad_scenes import GOOD, PARTS, SHAPE, TOP, bad_scenes, base_scene
+from tests.bad_scenes import GOOD, PARTS, SHAPE, TOP, bad_scenes, base_scene
 
 from symrot.errors import InputError
 from symrot.scene import Scene, load_scene

@@ -28,7 +28,7 @@ from symrot.errors import InputError
 from symrot.expression import children, evaluate, names, text
 from symrot.kernel import Argument, Program, Signature
 from symrot.planner import make_plan
-from symrot.scene import load_scene, shipped_scenes
+from symrot.scene import Scene, load_scene, shipped_scenes
 from symrot.scene_kernel import SceneKernel, bind
 
 SCENES = [name for name, *_ in shipped_scenes()]
@@ -252,6 +252,18 @@ def test_no_emitted_line_is_long_and_nothing_of_the_machine_is_in_it():
             for line in (emitted.header + emitted.source).splitlines():
                 assert len(line) <= 120
             assert str(Path.cwd()) not in emitted.source and "/tmp" not in emitted.source
+
+
+@needs_cc
+def test_a_title_cannot_break_out_of_its_comment(tmp_path):
+    hostile = "quick */ int x; /* \"\"\" \\ ??/ #error \U0001f600"
+    scene = Scene.from_dict({
+        "schema": 1, "title": hostile, "body": {"principal": [1, 2, 3]}, "initial": {"omega": [1, 1, 1]}, "span": {"t": [0, 9]},
+    })  # fmt: skip
+    emitted = symrot.emit(scene)
+    build(tmp_path, emitted, "c")
+    assert emitted.source.count("*/") == emitted.source.count("/*") == 1
+    compile(symrot.emit(scene, "numpy").source, "kernel", "exec")
 
 
 def test_emitted_text_is_the_same_under_any_hash_seed():

@@ -22,6 +22,13 @@ class Description:
     convention: str = "body axes; quaternion scalar first, Hamilton, body to space (symrot conventions)"
 
 
+def _harmless(title: str) -> str:
+    """Return a title that cannot end the comment or the docstring it stands in, nor mean anything to a compiler."""
+    for mark, instead in (("*/", "* /"), ("/*", "/ *"), ('"""', "'''"), ("??/", "?? /"), ("\\", "/")):
+        title = title.replace(mark, instead)
+    return " ".join(title.split())
+
+
 def cost(program: Program) -> str:
     """Return the operation counts in words, e.g. ``5 mul, 3 add, 1 div, 2 sin, 2 cos``."""
     counts = program.operations()
@@ -54,7 +61,7 @@ def banner(program: Program, description: Description, start: str, each: str, en
     start, each, end : str
         Comment marks of the language: first line, before each line, last line.
     """
-    lines = [*wrap(f"{program.signature.name}: {description.title}", WIDTH), ""]
+    lines = [*wrap(_harmless(f"{program.signature.name}: {description.title}"), WIDTH), ""]
     for argument in program.signature.arguments:
         if argument.size:
             lines += _argument(argument)

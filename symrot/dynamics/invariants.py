@@ -51,10 +51,12 @@ def _candidates(equations: Equations, structure: Mapping[str, Any]) -> Iterable[
             yield f"angular momentum {axis}", "kg m^2/s", component, component
         for torque in structure["torques"]:
             yield from _of_torque(torque, momentum_s, energy)
-    for number, omega in enumerate(symbols.omega_b):
+    for number in range(3):
         others = [equations.motion.inertia[i, i] for i in range(3) if i != number]
-        if omega in equations.states and others[0] == others[1]:
-            yield f"spin omega_{number + 1}", "rad/s", omega, omega
+        symmetric = others[0] == others[1] and structure["inertia"]["form"] == "principal"
+        if symmetric and structure["planar"] in (None, number):
+            spin = equations.motion.omega_b[number]
+            yield f"spin omega_{number + 1}", "rad/s", spin, spin
 
 
 def _of_torque(
@@ -92,13 +94,11 @@ def _reason(name: str, kept: bool, equations: Equations, kinds: Sequence[str]) -
 def find_invariants(equations: Equations, structure: Mapping[str, Any]) -> tuple[Invariant, ...]:
     """Return the invariants of a motion, then the candidates it does not keep.
 
-    Quantities that hold no state (a component of omega_b that the plan already took as constant) are left out.
+    What the plan took as constant is among them.
     """
     kinds = [torque["kind"] for torque in structure["torques"]]
     found = []
     for name, unit, value, tested in _candidates(equations, structure):
-        if not tested.free_symbols & {symbols.t, *equations.states}:
-            continue
         kept = is_zero(rate_along(tested, equations), equations.relations)
         found.append(Invariant(name, unit, value, kept, _reason(name, kept, equations, kinds)))
     return tuple(sorted(found, key=lambda item: not item.kept))

@@ -24,10 +24,11 @@ Floats = NDArray[np.float64]
 
 METHODS = {
     "auto": "the first of the table that fits",
-    "constant": "nothing to integrate: every state keeps its value",
-    "dop853": "Dormand-Prince 8(5,3) in C around the emitted kernel",
-    "scipy": "SciPy's DOP853 around the emitted NumPy kernel; scipy:NAME for another of its methods",
+    "constant": "every state keeps its value",
+    "dop853": "Dormand-Prince 8(5,3), stepped in C around the emitted kernel",
+    "scipy": "SciPy around the emitted NumPy kernel",
 }
+"""Every method by name, with what it is; ``scipy`` stands for its DOP853, ``scipy:NAME`` for another of SciPy's."""
 
 
 class Choice(NamedTuple):

@@ -7,11 +7,6 @@ from symrot.report.layout import columns, duration, exact, fields, one_line, sho
 
 __all__ = ["facts", "summary"]
 
-METHODS = {
-    "constant": "every state keeps its value",
-    "dop853": "Dormand-Prince 8(5,3), stepped in C around the emitted kernel",
-    "scipy": "SciPy around the emitted NumPy kernel",
-}
 ABOUT = {"center_of_mass": "its centre of mass", "fixed_point": "a fixed point"}
 
 
@@ -109,6 +104,8 @@ def _steps(cost: dict[str, Any]) -> str:
 
 def _settings(found: dict[str, Any]) -> list[tuple[str, str]]:
     span, method = found["span"], found["method"]
+    from symrot.propagation.propagator import METHODS  # here, since an error found earlier needs no NumPy
+
     meaning = METHODS[method["name"].partition(":")[0]]
     torques = ", ".join(kind.replace("_", " ") for kind in found["torques"]) or "none"
     return [
