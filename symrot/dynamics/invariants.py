@@ -75,6 +75,8 @@ def _of_torque(
 
 
 def _reason(name: str, kept: bool, equations: Equations, kinds: Sequence[str]) -> str:
+    if kept and name.startswith("spin"):
+        return "equal moments, and no torque about that axis"
     if not kinds:
         return "no torque acts"
     acting = " and ".join(kind.replace("_", " ") for kind in kinds)
@@ -84,8 +86,6 @@ def _reason(name: str, kept: bool, equations: Equations, kinds: Sequence[str]) -
         return "; ".join(dict.fromkeys(law.keeps for law in equations.laws if law.keeps)) or f"{acting} does no work"
     if name == "Jacobi integral":
         return "in axes that turn with the orbit the tide is at rest"
-    if name.startswith("spin"):
-        return "equal moments, and no torque about that axis"
     if name == "angular momentum":
         return f"{acting} changes only its direction in the body"
     return f"{acting} has no moment about that axis of space"
