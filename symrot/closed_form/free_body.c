@@ -1,0 +1,694 @@
+/*
+ * The free rigid body at any time, without stepping: theta functions of a phase that grows evenly with time.
+ *
+ * symrot_free_body_prepare finds the constants of a motion in double-double arithmetic, once; symrot_free_body_at gives
+ * angular velocity and attitude at any number of times, in any order, each for itself. No allocation, no globals, no
+ * input or output; a constants record may be used by several threads at once.
+ *
+ * Frames. The body's principal axes are renamed and turned so that e3 is the axis L circles about (that of the largest
+ * or of the smallest moment), L3 >= 0, L1 >= 0, e2 = e3 x e1. With s = sign(I3 - I2):
+ *     L = (A1 cn u, s A2 sn u, A3 dn u),  u = lambda t + u0,  modulus m,
+ *     q = q_L * X * q_C,  X = exp(k psi/2) P,  P = (1 + m3, m2, -m1, 0)/sqrt(2 (1 + m3)),  (m1, m2, m3) = L/|L|,
+ *     exp(i psi/2) = exp(i kappa t) N/|N|,  N = theta4(pi u/2K - i s zeta, nome q^2).
+ * P is the least turn that takes L to the third axis, q_C the renaming, q_L what the initial attitude leaves.
+ * Jacobi's imaginary transformation takes the place of the series where m >= 0.7; it holds to m = 1.
+ *
+ * Sources: Whittaker, Analytical Dynamics, 4th ed., section 69; van Zon & Schofield, J. Comput. Phys. 225 (2007) 145;
+ * Carlson, Numer. Algorithms 10 (1995) 13 for R_F. Compile with -ffp-contract=off.
+ */
+#include <stddef.h>
+
+#include "circular.h"
+#include "expansion.h"
+
+enum { STEADY, CIRCULAR, HYPERBOLIC, SEPARATRIX };
+enum { SERIES = 5 };
+
+/* Everything is a double, so that other languages see one array. */
+typedef struct {
+    double regime;
+    double time_scale;        /* a power of two; times are multiplied by it */
+    double axial[4];          /* the phase of u: turns of 4K; on the separatrix of v itself */
+    double turning[4];        /* the phase of psi/2 */
+    double slope;             /* turns of psi/2 per 2K of u in the imaginary transformation, the even part left out */
+    double stretch;           /* v per 2K of u */
+    double series[6][SERIES]; /* numerators of cn, sn, dn; their denominator; N: real, imaginary part */
+    double momentum[3];       /* A/|L| */
+    double omega[3][3];       /* from cn, sn, dn to omega in the given axes, rad/s */
+    double attitude[4][4];    /* from X to q */
+} free_body;
+
+static phase phase_of(const double v[4])
+{
+    const phase p = {{v[0], v[1]}, {v[2], v[3]}};
+    return p;
+}
+
+/* ------------------------------------------------------------------------------------------------ one motion, once */
+
+/* The body in its own renamed axes, everything to 31 digits. */
+typedef struct {
+    int axis[3];        /* which given axis e1, e2, e3 is */
+    double direction[3]; /* along it (1) or against it (-1) */
+    double s;
+    dd moments[3], momenta[3], amplitudes[3], total, twice_energy; /* I, L, A, |L|, 2T */
+    dd modulus, complement, rate, u;                              /* m, 1 - m, lambda, u0 */
+} canonical_motion;
+
+static void quaternion_product(const dd a[4], const dd b[4], dd c[4])
+{
+    static const int other[4][4] = {{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 3, 0, 1}, {3, 2, 1, 0}};
+    static const double sign[4][4] = {{1, -1, -1, -1}, {1, 1, -1, 1}, {1, 1, 1, -1}, {1, -1, 1, 1}};
+    for (int i = 0; i < 4; ++i) {
+        c[i] = dd_of(0.0);
+        for (int j = 0; j < 4; ++j)
+            c[i] = dd_add(c[i], dd_scale(dd_mul(a[other[i][j]], b[j]), sign[i][j]));
+    }
+}
+
+/* Divide by the norm; a norm of 1 to the last bit is left alone. */
+static void normalise(dd q[4])
+{
+    dd square = dd_of(0.0);
+    for (int i = 0; i < 4; ++i)
+        square = dd_add(square, dd_square(q[i]));
+    const dd norm = dd_sqrt(square);
+    for (int i = 0; i < 4; ++i)
+        q[i] = dd_div(q[i], norm);
+}
+
+/* The quaternion of the change of axes from the given ones to e1, e2, e3 (Shepperd's choice of the largest). */
+static void renaming(const canonical_motion *c, dd q[4])
+{
+    double r[3][3] = {{0.0}};
+    for (int k = 0; k < 3; ++k)
+        r[k][c->axis[k]] = c->direction[k];
+    const double squares[4] = {
+        1.0 + r[0][0] + r[1][1] + r[2][2], 1.0 + r[0][0] - r[1][1] - r[2][2],
+        1.0 - r[0][0] + r[1][1] - r[2][2], 1.0 - r[0][0] - r[1][1] + r[2][2],
+    };
+    const double row[4][4] = {
+        {squares[0], r[2][1] - r[1][2], r[0][2] - r[2][0], r[1][0] - r[0][1]},
+        {r[2][1] - r[1][2], squares[1], r[0][1] + r[1][0], r[2][0] + r[0][2]},
+        {r[0][2] - r[2][0], r[0][1] + r[1][0], squares[2], r[1][2] + r[2][1]},
+        {r[1][0] - r[0][1], r[2][0] + r[0][2], r[1][2] + r[2][1], squares[3]},
+    };
+    int best = 0;
+    for (int i = 1; i < 4; ++i)
+        if (squares[i] > squares[best])
+            best = i;
+    for (int i = 0; i < 4; ++i)
+        q[i] = dd_of(row[best][i]);
+    normalise(q);
+}
+
+static void store(dd x, double to[2])
+{
+    to[0] = x.hi;
+    to[1] = x.lo;
+}
+
+/* A phase from its rate and start, both in turns; the start is taken between -1/2 and 1/2. */
+static void store_phase(dd rate, dd start, double to[4])
+{
+    start = dd_sub(start, dd_of(rint(start.hi)));
+    store(rate, to);
+    store(start, to + 2);
+}
+
+/* sum of c[n] T_n(x) as a polynomial in x, for n < SERIES (T: Chebyshev's, cos n z = T_n(cos z)). */
+static void even_series(const dd c[SERIES], double to[SERIES])
+{
+    to[0] = dd_add(dd_sub(c[0], c[2]), c[4]).hi;
+    to[1] = dd_sub(c[1], dd_add(dd_scale(c[3], 2.0), c[3])).hi;
+    to[2] = dd_sub(dd_scale(c[2], 2.0), dd_scale(c[4], 8.0)).hi;
+    to[3] = 4.0*c[3].hi;
+    to[4] = 8.0*c[4].hi;
+}
+
+/*
+ * sum of c[n] cos((2n+1)z)/cos z as a polynomial in x = cos 2z, n < SERIES; with sin for cos where sign is -1:
+ * cos((2n+1)z)/cos z = 2 cos 2nz - cos((2n-1)z)/cos z, sin((2n+1)z)/sin z = 2 cos 2nz + sin((2n-1)z)/sin z.
+ */
+static void odd_series(const dd c[SERIES], double sign, double to[SERIES])
+{
+    dd even[SERIES];
+    for (int n = 0; n < SERIES; ++n) {
+        even[n] = dd_of(0.0);
+        double flip = n ? 2.0 : 1.0;
+        for (int k = n; k < SERIES; ++k, flip *= -sign)
+            even[n] = dd_add(even[n], dd_scale(c[k], flip));
+    }
+    even_series(even, to);
+}
+
+/* Steady rotation: q = (cos, n sin) of half the angle, on the left of nothing but q0. */
+static void prepare_steady(const dd omega[3], const dd q0[4], const double *omega_given, free_body *f)
+{
+    static const dd pi = DD_PI;
+    const dd speed = dd_sqrt(dd_add(dd_add(dd_square(omega[0]), dd_square(omega[1])), dd_square(omega[2])));
+    dd unit[4] = {{0.0, 0.0}}, turned[4];
+    for (int i = 0; i < 3; ++i) {
+        unit[i + 1] = speed.hi > 0.0 ? dd_div(omega[i], speed) : dd_of(0.0);
+        f->omega[i][0] = omega_given[2*i];
+    }
+    quaternion_product(q0, unit, turned);
+    for (int i = 0; i < 4; ++i) {
+        f->attitude[i][0] = q0[i].hi;
+        f->attitude[i][1] = turned[i].hi;
+    }
+    f->regime = STEADY;
+    store_phase(dd_scale(dd_div(speed, pi), 0.25), dd_of(0.0), f->turning);
+}
+
+/*
+ * The body in the axes that suit its motion. `differences[i]` is I_j - I_k for (i, j, k) cyclic; `defect` is
+ * |L|^2 - 2 T I_mid.
+ */
+static void canonical(const dd inertia[3], const dd omega[3], const dd differences[3], dd defect, canonical_motion *c)
+{
+    int outer[2] = {0, 0}, middle; /* the axes of the largest and the smallest moment, and the third */
+    const int above[3] = {differences[2].hi >= 0.0, differences[0].hi >= 0.0, differences[1].hi >= 0.0};
+    /* above[i]: I_i >= I_(i+1) */
+    if (above[0] && !above[2])
+        outer[0] = 0;
+    else
+        outer[0] = above[1] ? 1 : 2;
+    const int a = (outer[0] + 1)%3, b = (outer[0] + 2)%3;
+    outer[1] = above[a] ? b : a; /* b = a + 1 */
+    middle = 3 - outer[0] - outer[1];
+    const int third = defect.hi >= 0.0 ? 0 : 1;
+    c->axis[0] = outer[1 - third];
+    c->axis[1] = middle;
+    c->axis[2] = outer[third];
+    for (int k = 0; k < 3; ++k)
+        c->direction[k] = omega[c->axis[k]].hi < 0.0 ? -1.0 : 1.0;
+    const double cyclic = (c->axis[1] + 1)%3 == c->axis[2] ? 1.0 : -1.0; /* e2 = e3 x e1 */
+    c->direction[1] = c->direction[0]*c->direction[2]*cyclic;
+
+    dd w[3];
+    for (int k = 0; k < 3; ++k) {
+        c->moments[k] = inertia[c->axis[k]];
+        w[k] = dd_scale(omega[c->axis[k]], c->direction[k]);
+        c->momenta[k] = dd_mul(c->moments[k], w[k]);
+    }
+    const dd *I = c->moments, *L = c->momenta;
+    const dd i32 = dd_abs(differences[c->axis[0]]), i31 = dd_abs(differences[c->axis[1]]);
+    const dd i21 = dd_abs(differences[c->axis[2]]);
+    c->s = third == 0 ? 1.0 : -1.0;
+
+    const dd square1 = dd_square(L[0]), square2 = dd_square(L[1]), square3 = dd_square(L[2]);
+    const dd a1 = dd_add(square1, dd_div(dd_mul(dd_mul(square2, I[0]), i32), dd_mul(I[1], i31)));
+    const dd a2 = dd_add(square2, dd_div(dd_mul(dd_mul(square1, I[1]), i31), dd_mul(I[0], i32)));
+    const dd a3 = dd_add(square3, dd_div(dd_mul(dd_mul(square2, I[2]), i21), dd_mul(I[1], i31)));
+    const dd g = dd_add(dd_add(square1, square2), square3);
+    c->amplitudes[0] = dd_sqrt(a1);
+    c->amplitudes[1] = dd_sqrt(a2);
+    c->amplitudes[2] = dd_sqrt(a3);
+    c->total = dd_sqrt(g);
+    c->twice_energy = dd_add(dd_add(dd_mul(L[0], w[0]), dd_mul(L[1], w[1])), dd_mul(L[2], w[2]));
+    const dd share = dd_div(I[2], dd_mul(i32, a3));
+    c->modulus = dd_div(dd_mul(dd_mul(i21, a1), share), I[0]);
+    c->complement = dd_mul(dd_abs(defect), share);
+    c->rate = dd_mul(dd_div(c->amplitudes[2], I[2]), dd_sqrt(dd_div(dd_mul(i32, i31), dd_mul(I[0], I[1]))));
+    const dd cosine = dd_div(L[0], c->amplitudes[0]), sine = dd_scale(dd_div(L[1], c->amplitudes[1]), c->s);
+    const dd delta = dd_div(L[2], c->amplitudes[2]);
+    c->u = dd_mul(sine, dd_rf(dd_square(cosine), dd_square(delta), dd_of(1.0)));
+}
+
+/* d psi/dt / 2 at u = 0, where L = (A1, 0, A3). */
+static dd half_turning(const canonical_motion *c)
+{
+    const dd spin = dd_div(c->amplitudes[2], c->moments[2]);
+    const dd above = dd_add(c->twice_energy, dd_mul(c->total, spin));
+    return dd_scale(dd_div(above, dd_add(c->total, c->amplitudes[2])), 0.5);
+}
+
+enum { TERMS = 8 };
+
+/* base^(n(n+1)) and base^(n^2) with the signs of theta 1 and theta 4, and what normalises cn, sn, dn. */
+typedef struct {
+    dd odd[TERMS], odd_signed[TERMS], even[TERMS], even_signed[TERMS], cn, sn, dn;
+} theta_terms;
+
+static void theta_terms_of(dd nome, theta_terms *t)
+{
+    dd product = dd_of(1.0), step = nome, square = dd_square(nome), odd_sum = dd_of(0.0);
+    /* product: nome^(n^2), step: nome^(2n+1) */
+    dd power = dd_of(1.0); /* nome^n */
+    for (int n = 0; n < TERMS; ++n) {
+        const double sign = n%2 ? -1.0 : 1.0;
+        t->even[n] = dd_scale(product, n ? 2.0 : 1.0);
+        t->even_signed[n] = dd_scale(t->even[n], sign);
+        t->odd[n] = dd_mul(product, power);
+        t->odd_signed[n] = dd_scale(t->odd[n], sign);
+        odd_sum = dd_add(odd_sum, t->odd[n]);
+        product = dd_mul(product, step);
+        step = dd_mul(step, square);
+        power = dd_mul(power, nome);
+    }
+    dd even = dd_of(0.0), alternating = dd_of(0.0);
+    for (int n = TERMS - 1; n >= 0; --n) {
+        even = dd_add(even, t->even[n]);
+        alternating = dd_add(alternating, t->even_signed[n]);
+    }
+    t->cn = odd_sum;       /* theta2(0) or theta2(0), over 2 nome^(1/4) */
+    t->dn = even;          /* theta3(0) */
+    t->sn = alternating;   /* theta4(0) */
+}
+
+static void scaled(const dd from[TERMS], dd factor, dd to[SERIES])
+{
+    for (int n = 0; n < SERIES; ++n)
+        to[n] = dd_mul(from[n], factor);
+}
+
+/*
+ * m < 0.7. In z = pi u/2K: cn ~ theta2/theta4, sn ~ theta1/theta4, dn ~ theta3/theta4; N real and imaginary from
+ * c_n, s_n = q^(2n^2-n) e^(-n pi eta/K) +- q^(2n^2+n) e^(n pi eta/K). Returns kappa; N at the start in `real`, `imag`.
+ */
+static dd prepare_circular(const canonical_motion *c, dd k, dd k_prime, dd eta, free_body *f, dd *real, dd *imag)
+{
+    static const dd pi = DD_PI;
+    const int round = !(c->modulus.hi > 0.0);
+    const dd per = dd_div(pi, k);
+    const dd nome = round ? dd_of(0.0) : dd_exp(dd_negative(dd_mul(per, k_prime)));
+    theta_terms t;
+    theta_terms_of(nome, &t);
+    dd c4[SERIES], work[SERIES];
+    /* theta4 scaled so that it is about 1, the numerators so that cn(0) = sn(K) = dn(0) = 1 */
+    dd at_k = dd_of(0.0); /* theta1(pi/2) = sum q^(n(n+1)) */
+    at_k = t.cn;
+    scaled(t.even_signed, dd_of(1.0), c4);
+    even_series(c4, f->series[3]);
+    scaled(t.odd, dd_div(t.sn, t.cn), work);
+    odd_series(work, 1.0, f->series[0]);
+    scaled(t.odd_signed, dd_div(t.dn, at_k), work); /* theta4(pi/2) = theta3(0) */
+    odd_series(work, -1.0, f->series[1]);
+    scaled(t.even, dd_div(t.sn, t.dn), work);
+    even_series(work, f->series[2]);
+
+    dd cosines[TERMS], sines[TERMS];
+    cosines[0] = dd_of(1.0);
+    sines[0] = dd_of(0.0);
+    dd growing = dd_of(1.0), shrinking = dd_of(1.0); /* q^(2n^2+n) e^(n pi eta/K), q^(2n^2-n) e^(-n pi eta/K) */
+    dd bare = nome;                                  /* nome^(4n+1) below */
+    const dd shift = dd_exp(dd_negative(dd_mul(per, eta)));
+    /* q e^(eta pi/K) = exp(-(K' - eta) pi/K), without a product of something huge and something tiny */
+    const dd close = round ? dd_of(0.0) : dd_exp(dd_negative(dd_mul(per, dd_sub(k_prime, eta))));
+    const dd square = dd_square(nome), fourth = dd_square(square);
+    for (int n = 1; n < TERMS; ++n) {
+        /* from n-1 to n: 2n^2-n grows by 4n-3, 2n^2+n by 4n-1 */
+        shrinking = dd_mul(shrinking, dd_mul(bare, shift));
+        growing = dd_mul(growing, dd_mul(dd_mul(bare, nome), close));
+        bare = dd_mul(bare, fourth);
+        const double sign = n%2 ? -1.0 : 1.0;
+        cosines[n] = dd_scale(dd_add(shrinking, growing), sign);
+        sines[n] = dd_scale(dd_sub(shrinking, growing), sign*c->s);
+    }
+    even_series(cosines, f->series[4]);
+    /* sin 2nz = sin 2z U_(n-1)(cos 2z): U0 = 1, U1 = 2x, U2 = 4x^2 - 1, U3 = 8x^3 - 4x */
+    f->series[5][0] = dd_sub(sines[1], sines[3]).hi;
+    f->series[5][1] = dd_sub(dd_scale(sines[2], 2.0), dd_scale(sines[4], 4.0)).hi;
+    f->series[5][2] = 4.0*sines[3].hi;
+    f->series[5][3] = 8.0*sines[4].hi;
+    f->series[5][4] = 0.0;
+
+    const dd start = dd_scale(dd_div(c->u, k), 0.25);
+    dd drift = dd_of(0.0), level = dd_of(0.0);
+    *real = dd_of(1.0);
+    *imag = dd_of(0.0);
+    dd s1, c1, sn = dd_of(0.0), cn = dd_of(1.0);
+    dd_sincos_turns(dd_scale(start, 2.0), &s1, &c1); /* of 2z */
+    for (int n = 1; n < TERMS; ++n) {
+        const dd next = dd_sub(dd_mul(cn, c1), dd_mul(sn, s1));
+        sn = dd_add(dd_mul(sn, c1), dd_mul(cn, s1));
+        cn = next;
+        *real = dd_add(*real, dd_mul(cosines[n], cn));
+        *imag = dd_add(*imag, dd_mul(sines[n], sn));
+        drift = dd_add(drift, dd_mul(sines[n], dd_of(2.0*n)));
+        level = dd_add(level, cosines[n]);
+    }
+    level = dd_add(level, dd_of(1.0));
+    store_phase(dd_scale(dd_div(c->rate, k), 0.25), start, f->axial);
+    f->regime = CIRCULAR;
+    return dd_sub(half_turning(c), dd_div(dd_mul(dd_scale(dd_mul(c->rate, per), 0.5), drift), level));
+}
+
+/*
+ * m >= 0.7, nome q' = exp(-pi K/K'), v = pi u/2K' with u taken between -K and K:
+ * N = sum q'^(n(n+1)/2) [cos((2n+1)x) cosh((2n+1)v/2) - i sin((2n+1)x) sinh((2n+1)v/2)], x = s pi (K' - eta)/4K',
+ * and an even part of psi per u that goes into kappa. On the separatrix K is infinite and q' = 0.
+ */
+static dd prepare_hyperbolic(const canonical_motion *c, dd k, dd k_prime, dd eta, free_body *f, dd *real, dd *imag)
+{
+    static const dd pi = DD_PI;
+    const int endless = !(c->complement.hi > 0.0);
+    const dd per = dd_div(pi, k_prime);
+    const dd nome = endless ? dd_of(0.0) : dd_exp(dd_negative(dd_mul(per, k)));
+    theta_terms t;
+    theta_terms_of(nome, &t);
+    dd work[SERIES];
+    scaled(t.odd, dd_of(1.0), work);
+    odd_series(work, 1.0, f->series[3]);
+    scaled(t.even_signed, dd_div(t.cn, t.sn), work);
+    even_series(work, f->series[0]);
+    scaled(t.odd_signed, dd_div(t.dn, t.sn), work);
+    odd_series(work, -1.0, f->series[1]);
+    scaled(t.even, dd_div(t.cn, t.dn), work);
+    even_series(work, f->series[2]);
+
+    const dd turns = dd_scale(dd_div(dd_sub(k_prime, eta), k_prime), 0.125*c->s); /* x/(2 pi) */
+    const dd v = dd_scale(dd_mul(per, c->u), 0.5);
+    const dd up = dd_exp(dd_scale(v, 0.5)), down = dd_exp(dd_scale(v, -0.5));
+    dd plus = up, minus = down, sine, cosine, product = dd_of(1.0), step = nome;
+    const dd up2 = dd_square(up), down2 = dd_square(down);
+    dd real_terms[TERMS], imag_terms[TERMS], drift = dd_of(0.0), level = dd_of(0.0);
+    *real = *imag = dd_of(0.0);
+    const double decay = 0.5*dd_mul(per, k).hi; /* term n is at most exp(-decay n^2) of the first */
+    for (int n = 0; n < TERMS; ++n) {
+        real_terms[n] = imag_terms[n] = dd_of(0.0);
+        if (n > 0 && (endless || decay*n*n > 80.0))
+            continue;
+        dd_sincos_turns(dd_mul(turns, dd_of(2.0*n + 1.0)), &sine, &cosine);
+        real_terms[n] = dd_mul(product, cosine);
+        imag_terms[n] = dd_negative(dd_mul(product, sine));
+        *real = dd_add(*real, dd_scale(dd_mul(real_terms[n], dd_add(plus, minus)), 0.5));
+        *imag = dd_add(*imag, dd_scale(dd_mul(imag_terms[n], dd_sub(plus, minus)), 0.5));
+        drift = dd_add(drift, dd_mul(imag_terms[n], dd_of(n + 0.5)));
+        level = dd_add(level, real_terms[n]);
+        product = dd_mul(product, step);
+        step = dd_mul(step, nome);
+        plus = dd_mul(plus, up2);
+        minus = dd_mul(minus, down2);
+    }
+    odd_series(real_terms, 1.0, f->series[4]);
+    odd_series(imag_terms, -1.0, f->series[5]);
+    const dd v_rate = dd_scale(dd_mul(per, c->rate), 0.5);
+    dd kappa = dd_sub(half_turning(c), dd_div(dd_mul(v_rate, drift), level));
+    if (endless) {
+        f->regime = SEPARATRIX;
+        store(v_rate, f->axial);
+        store(v, f->axial + 2);
+        return kappa;
+    }
+    const dd slope = dd_scale(turns, 2.0); /* s (K' - eta)/4K' turns per 2K */
+    f->regime = HYPERBOLIC;
+    f->slope = slope.hi;
+    f->stretch = dd_mul(per, k).hi;
+    store_phase(dd_scale(dd_div(c->rate, k), 0.25), dd_scale(dd_div(c->u, k), 0.25), f->axial);
+    const dd even = dd_mul(dd_div(dd_mul(slope, pi), k), c->rate); /* slope * 2 pi * lambda/2K, rad */
+    /* at the start the whole phase is that of u between -K and K, as u0 is */
+    return dd_sub(kappa, even);
+}
+
+static void prepare_attitude(const canonical_motion *c, dd real, dd imag, dd lead, const dd q0[4], free_body *f)
+{
+    dd x[4], spun[4], back[4], left[4], turn[4], column[4], unit[4], rotated[4];
+    dd sine, cosine;
+    dd_sincos_turns(lead, &sine, &cosine);
+    const dd re = dd_sub(dd_mul(real, cosine), dd_mul(imag, sine));
+    const dd im = dd_add(dd_mul(real, sine), dd_mul(imag, cosine));
+    const dd p[3] = {dd_add(c->total, c->momenta[2]), c->momenta[1], dd_negative(c->momenta[0])};
+    x[0] = dd_mul(re, p[0]);
+    x[1] = dd_sub(dd_mul(re, p[1]), dd_mul(im, p[2]));
+    x[2] = dd_add(dd_mul(re, p[2]), dd_mul(im, p[1]));
+    x[3] = dd_mul(im, p[0]);
+    normalise(x);
+    renaming(c, turn);
+    quaternion_product(x, turn, spun);
+    for (int i = 0; i < 4; ++i)
+        back[i] = i ? dd_negative(spun[i]) : spun[i];
+    quaternion_product(q0, back, left);
+    for (int j = 0; j < 4; ++j) {
+        for (int i = 0; i < 4; ++i)
+            unit[i] = dd_of(i == j ? 1.0 : 0.0);
+        quaternion_product(left, unit, rotated);
+        quaternion_product(rotated, turn, column);
+        for (int i = 0; i < 4; ++i)
+            f->attitude[i][j] = column[i].hi;
+    }
+}
+
+/* A power of two near the largest of some pairs hi, lo; 1 where they are zero. */
+static double near_power(const double *values, int count)
+{
+    int exponent = 0;
+    double largest = 0.0;
+    for (int i = 0; i < count; ++i)
+        largest = fmax(largest, fabs(values[2*i]));
+    if (!(largest > 0.0))
+        return 1.0;
+    (void)frexp(largest, &exponent);
+    exponent = exponent > 1000 ? 1000 : exponent < -1000 ? -1000 : exponent;
+    return ldexp(1.0, exponent);
+}
+
+/*
+ * Find the constants of a motion.
+ *
+ * in   inertia[6]     kg m^2  principal moments, each as hi, lo
+ * in   omega[6]       rad/s   angular velocity along the principal axes at time 0, each as hi, lo
+ * in   quaternion[8]  1       attitude at time 0, body to space, scalar first, each as hi, lo; any norm but zero
+ * in   exact[8]               for numbers that two doubles do not hold exactly, each as hi, lo: I2 - I3, I3 - I1, I1 - I2
+ *                             and |L|^2 - 2 T I_mid over the square of the largest moment times the largest |omega_i|;
+ *                             else NULL
+ * out  f                      the constants
+ *
+ * Domain: moments positive and finite, |omega| finite. Components of omega below 1e-150 of the largest count as zero.
+ * Returns 0, or 1 where the numbers are not of this domain, or 2 where the compiler has broken error-free arithmetic.
+ */
+int symrot_free_body_prepare(
+    const double inertia[6], const double omega[6], const double quaternion[8], const double *exact, free_body *f)
+{
+    static const dd pi = DD_PI;
+    static const free_body blank;
+    *f = blank;
+    if (!dd_sound())
+        return 2;
+    for (int i = 0; i < 6; ++i)
+        if (!(fabs(inertia[i]) <= 1e308 && fabs(omega[i]) <= 1e308))
+            return 1;
+    const double moment_scale = near_power(inertia, 3), omega_scale = near_power(omega, 3);
+    dd moments[3], w[3], q0[4], differences[3], defect;
+    for (int i = 0; i < 3; ++i) {
+        moments[i] = dd_pair(inertia[2*i]/moment_scale, inertia[2*i + 1]/moment_scale);
+        w[i] = dd_pair(omega[2*i]/omega_scale, omega[2*i + 1]/omega_scale);
+        if (fabs(w[i].hi) < 1e-150)
+            w[i] = dd_of(0.0);
+        if (!(moments[i].hi > 0.0))
+            return 1;
+    }
+    const double quaternion_scale = near_power(quaternion, 4);
+    for (int i = 0; i < 4; ++i)
+        q0[i] = dd_pair(quaternion[2*i]/quaternion_scale, quaternion[2*i + 1]/quaternion_scale);
+    normalise(q0);
+    if (!(fabs(q0[0].hi) <= 2.0))
+        return 1;
+    f->time_scale = omega_scale;
+    if (exact != NULL) {
+        for (int i = 0; i < 3; ++i)
+            differences[i] = dd_pair(exact[2*i]/moment_scale, exact[2*i + 1]/moment_scale);
+        dd largest[2] = {{0.0, 0.0}, {0.0, 0.0}};
+        for (int i = 0; i < 3; ++i) {
+            largest[0] = dd_less(largest[0], moments[i]) ? moments[i] : largest[0];
+            largest[1] = dd_less(largest[1], dd_abs(w[i])) ? dd_abs(w[i]) : largest[1];
+        }
+        defect = dd_mul(dd_pair(exact[6], exact[7]), dd_square(dd_mul(largest[0], largest[1])));
+    } else {
+        for (int i = 0; i < 3; ++i)
+            differences[i] = dd_sub(moments[(i + 1)%3], moments[(i + 2)%3]);
+        defect = exact_defect(moments, w);
+    }
+    int steady = 1;
+    for (int i = 0; i < 3; ++i)
+        steady = steady && !(differences[i].hi != 0.0 && w[(i + 1)%3].hi != 0.0 && w[(i + 2)%3].hi != 0.0);
+    if (steady) {
+        prepare_steady(w, q0, omega, f);
+        return 0;
+    }
+    canonical_motion c;
+    canonical(moments, w, differences, defect, &c);
+    const dd endless = dd_of(0.0);
+    const dd half_pi = dd_scale(pi, 0.5);
+    const dd k = c.complement.hi > 0.0 ? dd_div(half_pi, dd_agm(dd_sqrt(c.complement))) : endless;
+    const dd k_prime = c.modulus.hi > 0.0 ? dd_div(half_pi, dd_agm(dd_sqrt(c.modulus))) : endless;
+    const dd squares[2] = {dd_square(c.amplitudes[0]), dd_square(c.amplitudes[2])};
+    const dd g = dd_square(c.total);
+    const dd eta = dd_mul(
+        dd_div(c.amplitudes[2], c.total),
+        dd_rf(dd_div(squares[0], g), dd_div(dd_add(squares[0], dd_mul(c.modulus, squares[1])), g), dd_of(1.0)));
+    dd real, imag, kappa, lead = dd_of(0.0);
+    if (c.modulus.hi < 0.7)
+        kappa = prepare_circular(&c, k, k_prime, eta, f, &real, &imag);
+    else
+        kappa = prepare_hyperbolic(&c, k, k_prime, eta, f, &real, &imag);
+    if (f->regime == HYPERBOLIC)
+        lead = dd_scale(dd_mul(dd_div(c.u, k), dd_of(f->slope)), 0.5); /* the sawtooth of psi/2 at the start */
+    store_phase(dd_scale(dd_div(kappa, pi), 0.5), dd_of(0.0), f->turning);
+    prepare_attitude(&c, real, imag, lead, q0, f);
+    const double signs[3] = {1.0, c.s, 1.0};
+    for (int n = 0; n < 3; ++n) {
+        const dd amplitude = dd_div(c.amplitudes[n], c.moments[n]);
+        f->momentum[n] = signs[n]*dd_div(c.amplitudes[n], c.total).hi;
+        f->omega[c.axis[n]][n] = signs[n]*c.direction[n]*amplitude.hi*omega_scale;
+    }
+    return 0;
+}
+
+/* ------------------------------------------------------------------------------------------------ at any time */
+
+static inline double polynomial(const double c[SERIES], double x)
+{
+    return MUL_ADD(MUL_ADD(MUL_ADD(MUL_ADD(c[4], x, c[3]), x, c[2]), x, c[1]), x, c[0]);
+}
+
+static inline double cubic(const double c[SERIES], double x)
+{
+    return MUL_ADD(MUL_ADD(MUL_ADD(c[3], x, c[2]), x, c[1]), x, c[0]);
+}
+
+static inline double clamped(double x, double limit)
+{
+    x = x > limit ? limit : x;
+    return x < -limit ? -limit : x;
+}
+
+/* omega = map*(cn, sn, dn). */
+static inline void put_omega(const double map[3][3], double cn, double sn, double dn, double *restrict omega)
+{
+    for (int i = 0; i < 3; ++i)
+        omega[i] = MUL_ADD(map[i][0], cn, MUL_ADD(map[i][1], sn, map[i][2]*dn));
+}
+
+/* q = map*X, X = exp(k psi/2) P, from (re, im) ~ N and the sine and cosine of the even part of psi/2. */
+static inline void put_quaternion(
+    const free_body *f, double cn, double sn, double dn, double re, double im, double sine, double cosine,
+    double *restrict q)
+{
+    const double p0 = 1.0 + f->momentum[2]*dn, p1 = f->momentum[1]*sn, p2 = -f->momentum[0]*cn;
+    const double size = 1.0/sqrt(2.0*p0*MUL_ADD(re, re, im*im));
+    const double c = MUL_ADD(re, cosine, -im*sine)*size, s = MUL_ADD(re, sine, im*cosine)*size;
+    const double x0 = c*p0, x1 = MUL_ADD(c, p1, -s*p2), x2 = MUL_ADD(c, p2, s*p1), x3 = s*p0;
+    for (int i = 0; i < 4; ++i)
+        q[i] = MUL_ADD(f->attitude[i][0], x0, MUL_ADD(f->attitude[i][1], x1,
+               MUL_ADD(f->attitude[i][2], x2, f->attitude[i][3]*x3)));
+}
+
+static inline void at_circular(
+    const free_body *restrict f, ptrdiff_t count, const double *restrict times, double *restrict omega,
+    double *restrict q, int want_omega, int want_q)
+{
+    const free_body g = *f;
+    const phase axial = phase_of(g.axial), turning = phase_of(g.turning);
+    for (ptrdiff_t i = 0; i < count; ++i) {
+        const double t = times[i]*g.time_scale;
+        double taken, sz, cz;
+        const double rest = phase_rest(&axial, t, 4.0, 0.0, &taken);
+        sincos_quarters(rest, taken, &sz, &cz);
+        const double x = (cz - sz)*(cz + sz), y = 2.0*sz*cz; /* of 2z */
+        const double scale = 1.0/cubic(g.series[3], x);
+        const double cn = cz*cubic(g.series[0], x)*scale, sn = sz*cubic(g.series[1], x)*scale;
+        const double dn = cubic(g.series[2], x)*scale;
+        if (want_omega)
+            put_omega(g.omega, cn, sn, dn, omega + 3*i);
+        if (want_q) {
+            double sine, cosine;
+            const double turn = phase_rest(&turning, t, 4.0, 0.0, &taken);
+            sincos_quarters(turn, taken, &sine, &cosine);
+            const double re = cubic(g.series[4], x), im = y*MUL_ADD(MUL_ADD(g.series[5][2], x, g.series[5][1]), x, g.series[5][0]);
+            put_quaternion(&g, cn, sn, dn, re, im, sine, cosine, q + 4*i);
+        }
+    }
+}
+
+static inline void at_hyperbolic(
+    const free_body *restrict f, ptrdiff_t count, const double *restrict times, double *restrict omega,
+    double *restrict q, int want_omega, int want_q, int endless)
+{
+    const free_body g = *f;
+    const phase axial = phase_of(g.axial), turning = phase_of(g.turning);
+    for (ptrdiff_t i = 0; i < count; ++i) {
+        const double t = times[i]*g.time_scale;
+        double taken, v, flip = 1.0, lead = 0.0;
+        if (endless) {
+            v = phase_whole(&axial, t);
+        } else {
+            const double whole = 2.0*phase_rest(&axial, t, 2.0, 0.0, &taken); /* of 2K, -1/2 to 1/2 */
+            const double odd = taken - 2.0*rint(0.5*taken);
+            flip = 1.0 - 2.0*odd*odd; /* cn and sn change sign with every 2K */
+            v = g.stretch*whole;
+            lead = g.slope*whole;
+        }
+        v = clamped(v, 80.0);
+        const double up = exp_moderate(0.5*v), down = 1.0/up;
+        const double c1 = 0.5*(up + down), s1 = 0.5*(up - down); /* of v/2 */
+        const double x = MUL_ADD(s1, 2.0*s1, 1.0), s2 = 2.0*s1*c1; /* of v */
+        const double y = MUL_ADD(s2, 2.0*s2, 1.0);                 /* cosh 2v */
+        const double scale = 1.0/(x*cubic(g.series[3], y));
+        const double cn = flip*cubic(g.series[0], y)*scale, sn = flip*s2*cubic(g.series[1], y)*scale;
+        const double dn = cubic(g.series[2], y)*scale;
+        if (want_omega)
+            put_omega(g.omega, cn, sn, dn, omega + 3*i);
+        if (want_q) {
+            double sine, cosine;
+            const double turn = phase_rest(&turning, t, 4.0, lead, &taken);
+            sincos_quarters(turn, taken, &sine, &cosine);
+            const double re = c1*polynomial(g.series[4], x), im = s1*polynomial(g.series[5], x);
+            put_quaternion(&g, cn, sn, dn, re, im, sine, cosine, q + 4*i);
+        }
+    }
+}
+
+static inline void at_steady(
+    const free_body *restrict f, ptrdiff_t count, const double *restrict times, double *restrict omega,
+    double *restrict q, int want_omega, int want_q)
+{
+    const free_body g = *f;
+    const phase turning = phase_of(g.turning);
+    for (ptrdiff_t i = 0; i < count; ++i) {
+        if (want_omega)
+            for (int k = 0; k < 3; ++k)
+                omega[3*i + k] = g.omega[k][0];
+        if (want_q) {
+            double taken, sine, cosine;
+            const double turn = phase_rest(&turning, times[i]*g.time_scale, 4.0, 0.0, &taken);
+            sincos_quarters(turn, taken, &sine, &cosine);
+            for (int k = 0; k < 4; ++k)
+                q[4*i + k] = MUL_ADD(g.attitude[k][0], cosine, g.attitude[k][1]*sine);
+        }
+    }
+}
+
+/* One copy of each loop for each thing asked for, so that nothing is decided inside. */
+#define BY_REQUEST(loop, ...) \
+    if (omega != NULL && quaternion != NULL) \
+        loop(f, count, times, omega, quaternion, 1, 1 __VA_ARGS__); \
+    else if (quaternion != NULL) \
+        loop(f, count, times, omega, quaternion, 0, 1 __VA_ARGS__); \
+    else if (omega != NULL) \
+        loop(f, count, times, omega, quaternion, 1, 0 __VA_ARGS__)
+
+/*
+ * The motion at times counted from that of the initial state, s, in any order, before it too.
+ *
+ * in   times[count]        s
+ * out  omega[3 count]      rad/s, along the principal axes; NULL where it is not wanted
+ * out  quaternion[4 count] body to space, scalar first, of unit norm and continuous in time; NULL where not wanted
+ */
+void symrot_free_body_at(
+    const free_body *f, ptrdiff_t count, const double *times, double *omega, double *quaternion)
+{
+    switch ((int)f->regime) {
+    case CIRCULAR: BY_REQUEST(at_circular, ); break;
+    case HYPERBOLIC: BY_REQUEST(at_hyperbolic, , 0); break;
+    case SEPARATRIX: BY_REQUEST(at_hyperbolic, , 1); break;
+    default: BY_REQUEST(at_steady, ); break;
+    }
+}
+
+/* The length of the constants in doubles, for callers that lay them out themselves. */
+ptrdiff_t symrot_free_body_length(void)
+{
+    return (ptrdiff_t)(sizeof(free_body)/sizeof(double));
+}
