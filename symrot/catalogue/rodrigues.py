@@ -111,8 +111,14 @@ def _projection(d: Derivation, which: Projection, form: Form) -> None:
         named=r"\dot R",
         shown=rf"R\,[B_b\,\dot {form.letter}]_\times",
     )
-    d.step("The same matrix, collected.", body.as_immutable(), form.omega[0], because="its entries are quadratic at most", named="B_b",
-           shown=form.omega[1])  # fmt: skip
+    d.step(
+        "The same matrix, collected.",
+        body.as_immutable(),
+        form.omega[0],
+        because="its entries are quadratic at most",
+        named="B_b",
+        shown=form.omega[1],
+    )
     d.step(
         "The angular velocity in space.",
         dcm_rate,
@@ -131,5 +137,11 @@ def _projection(d: Derivation, which: Projection, form: Form) -> None:
     )
     d.step("The rates are polynomials in the parameters.", body.inverse * body, ONE,
            because="the two matrices are inverse to each other", named=r"B_b^{-1} B_b")  # fmt: skip
-    d.step("They are the angular velocity times a matrix.", body.inverse, form.inverse[0], because="the inverse is collected",
-           named=rf"\dot {form.letter} = B_b^{{-1}} \omega_b, \quad B_b^{{-1}}", shown=form.inverse[1])  # fmt: skip
+    d.step(
+        "They are the angular velocity times a matrix.",
+        body.inverse,
+        form.inverse[0],
+        because="the inverse is collected",
+        named=rf"\dot {form.letter} = B_b^{{-1}} \omega_b, \quad B_b^{{-1}}",
+        shown=form.inverse[1],
+    )

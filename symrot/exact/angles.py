@@ -11,19 +11,19 @@ from dataclasses import dataclass
 from fractions import Fraction
 from math import gcd, lcm
 
-from sympy import Expr, Rational, cos, pi, sin
+from sympy import Expr, Rational, cos, pi, sin, sqrt
 
 from symrot.errors import InputError
 
-TWELFTHS = 12
-"""Multiples of pi/12 have sines and cosines in Q(sqrt 2, sqrt 3); the constant of an angle is reduced to them."""
+PARTS = 24
+"""Multiples of pi/24, the halves of those of pi/12, have sines and cosines in Q(sqrt 2, sqrt 3, cos(pi/8))."""
 
 
 @dataclass(frozen=True)
 class LinearForm:
     """An angle ``sum(coefficient * atom) + half_turns * pi``.
 
-    ``half_turns`` is a multiple of 1/12; a constant of another denominator stays as a multiple of the atom ``pi``.
+    ``half_turns`` is a multiple of 1/24; a constant of another denominator stays as a multiple of the atom ``pi``.
     """
 
     terms: tuple[tuple[Expr, Fraction], ...]
@@ -45,7 +45,7 @@ def linear_form(argument: Expr) -> LinearForm:
         if not number.is_Rational:
             raise InputError(f"an exact angle needs rational coefficients, got {number} in {argument}")
         coefficient = Fraction(int(number.p), int(number.q))
-        if atom == pi and TWELFTHS % coefficient.denominator == 0:
+        if atom == pi and PARTS % coefficient.denominator == 0:
             half_turns += coefficient
         elif coefficient:
             coefficients[atom] = coefficients.get(atom, Fraction(0)) + coefficient
@@ -68,9 +68,20 @@ def base_coefficients(forms: Iterable[LinearForm]) -> dict[Expr, Fraction]:
 
 
 def constant_cosine_sine(half_turns: Fraction) -> tuple[Expr, Expr]:
-    """Return the exact cosine and sine of ``half_turns * pi`` in square roots (a multiple of 1/12)."""
-    angle = Rational(half_turns.numerator, half_turns.denominator) * pi
-    return cos(angle), sin(angle)
+    """Return the exact cosine and sine of ``half_turns * pi`` (a multiple of 1/24) in square roots.
+
+    Odd multiples are those of pi/12 turned by pi/8, where ``sin(pi/8) = (sqrt(2) - 1) cos(pi/8)``: one root, not two
+    that depend on each other.
+    """
+    odd = half_turns * PARTS % 2 == 1
+    rest = half_turns - Fraction(1, 8) if odd else half_turns
+    angle = Rational(rest.numerator, rest.denominator) * pi
+    cosine, sine = cos(angle), sin(angle)
+    if not odd:
+        return cosine, sine
+    c8 = cos(pi / 8)
+    s8 = (sqrt(2) - 1) * c8
+    return cosine * c8 - sine * s8, sine * c8 + cosine * s8
 
 
 def base_angle(atom: Expr, coefficient: Fraction) -> Expr:

@@ -1,7 +1,7 @@
 """Decide whether two formulas are equal: the normal form of their difference, and a verdict with its evidence.
 
 Scope, with its theorem (research: VERIFICATION.md, section 1). For rational functions of sines and cosines of
-Q-linear combinations of angles (rational multiples of pi/12 included), of parameters, of rates, and of unit-norm
+Q-linear combinations of angles (rational multiples of pi/24 included), of parameters, of rates, and of unit-norm
 groups, the normal form is zero if and only if the identity holds at all real points where both sides are defined:
 circles and spheres are rational, irreducible over the complex numbers, and their real points are dense. The same
 holds when an angle also occurs outside sines (Ax-Schanuel). With square roots, other functions or other hypotheses a
