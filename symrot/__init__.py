@@ -20,6 +20,7 @@ _HOMES = {
     "inertia.solids": ("solid",),
     "catalogue": ("derivation",),
     "exact": ("normal_form",),
+    "checker": ("check", "check_file"),
     "scene": ("Scene", "load_scene", "shipped_scenes"),
     "planner": ("Plan",),
     "interface": ("emit", "plan"),

@@ -21,6 +21,7 @@ ROOMS = (  # from left to right: a module imports at its top only from its own r
     {"kinematics", "inertia"},
     {"dynamics"},
     {"catalogue", "textbook", "scene_reader", "scene_file", "scene_attitude", "scene_body", "scene_torque", "scene"},
+    {"checker"},
     {"planner", "scene_kernel"},
     {"codegen"},
     {"certify"},

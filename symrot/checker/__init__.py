@@ -1,0 +1,12 @@
+"""Verdicts on formulas: ``check`` and ``check_file`` are loaded on first use."""
+
+from importlib import import_module
+from typing import Any
+
+_HOME = {"check": "interface", "check_file": "interface", "Verdict": "verdict"}
+
+
+def __getattr__(name: str) -> Any:
+    if name in _HOME:
+        return getattr(import_module(f"{__name__}.{_HOME[name]}"), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -1,0 +1,266 @@
+"""Claims as they are written, in a text or in a TOML file, and read: trees first, then their meaning.
+
+A claim keeps its trees, since its diagnosis edits them. Nothing about verdicts is in a file of claims.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from sympy import Symbol
+
+from symrot.checker.decision import Problem
+from symrot.checker.meaning import BUILT_IN, CONSTANTS, Meaning, time
+from symrot.checker.reader import Relation, read_expression, read_relation
+from symrot.checker.tree import Node, text
+from symrot.errors import InputError
+
+__all__ = ["Claim", "claim_of_text", "read_claims"]
+
+
+@dataclass(frozen=True)
+class Claim:
+    """One claim with everything it needs.
+
+    ``relation`` is None for a worked number, which has ``value`` and ``printed`` instead. ``alternatives`` are other
+    readings of a document that lost characters.
+    """
+
+    id: str = ""
+    where: str = ""
+    symbols: tuple[str, ...] = ()
+    functions: tuple[str, ...] = ()
+    define: tuple[tuple[str, Node], ...] = ()
+    given: tuple[Relation, ...] = ()
+    relation: Relation | None = None
+    value: Node | None = None
+    printed: str = ""
+    alternatives: tuple[Relation, ...] = ()
+    implied: bool = False
+    sources: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def text(self) -> str:
+        """The claim as text."""
+        if self.relation is None:
+            return f"{self.sources['value']} == {self.printed}"
+        return self.sources.get("claim") or shown_relation(self.relation)
+
+    def label(self, key: str) -> str:
+        """Return the place of a text for complaints."""
+        return f"{self.id}: {key}" if self.id else ""
+
+    def meaning(self) -> Meaning:
+        """Return the names of the claim: symbols, those that hypotheses make positive, then definitions."""
+        meaning = Meaning(implied=self.implied, functions=set(self.functions))
+        positive = _assumed(self.given, ">")
+        nonnegative = _assumed(self.given, ">=")
+        names = [*self.symbols, *(positive | nonnegative if self.implied else ())]
+        for name in names:
+            if name in positive:
+                meaning.values[name] = Symbol(name, positive=True)
+            elif name in nonnegative:
+                meaning.values[name] = Symbol(name, nonnegative=True)
+            else:
+                meaning.values[name] = time if name == "t" else Symbol(name, real=True)
+        for number, (name, node) in enumerate(self.define):
+            source, place = self.sources.get(f"define.{number}", ""), self.label(f"define {name}")
+            meaning.values[name] = meaning.read(node, source, place)
+        return meaning
+
+    def problem(self) -> Problem:
+        """Return the equation that is to be decided.
+
+        Raises
+        ------
+        InputError
+            For a piece that has no meaning, with its place.
+        """
+        assert self.relation is not None
+        meaning = self.meaning()
+        hypotheses, nonzero = [], []
+        for number, relation in enumerate(self.given):
+            sign, left, right = relation
+            source = self.sources.get(f"given.{number}", "")
+            lhs, rhs = (meaning.read(side, source, self.label("given")) for side in (left, right))
+            if sign == "==":
+                hypotheses.extend(_entries(lhs, rhs, self.label("given")))
+            elif sign == "!=":
+                nonzero.extend(_entries(lhs, rhs, self.label("given")))
+        source = self.sources.get("claim", "")
+        lhs, rhs = (meaning.read(side, source, self.label("claim")) for side in self.relation[1:])
+        divisors = tuple(dict.fromkeys(divisor.value for divisor in meaning.divisors))
+        radicands = tuple(dict.fromkeys(meaning.radicands))
+        return Problem(lhs, rhs, tuple(hypotheses), divisors, tuple(nonzero), radicands)
+
+
+def shown_relation(relation: Relation) -> str:
+    """Return a relation as text."""
+    sign, left, right = relation
+    return f"{text(left)} {sign} {text(right)}"
+
+
+def _entries(left: Any, right: Any, where: str) -> list[Any]:
+    """Return the scalar equations of a hypothesis, each as an expression that is zero."""
+    from symrot.exact.decide import flatten
+
+    (lefts, shape), (rights, other) = flatten(left), flatten(right)
+    if shape is not None and other is None and rights == [0]:
+        rights, other = [rights[0]] * len(lefts), shape
+    if shape != other:
+        raise InputError(f"{where}: expected a hypothesis with two sides of one shape")
+    return [a - b for a, b in zip(lefts, rights, strict=True)]
+
+
+def _assumed(given: Sequence[Relation], sign: str) -> set[str]:
+    """Return the names x of hypotheses ``x > 0`` (or ``0 < x``)."""
+    mirrored = {">": "<", ">=": "<="}[sign]
+    zero = ("number", 0)
+    found = set()
+    for mark, left, right in given:
+        if mark == mirrored:
+            left, right = right, left
+        if mark in (sign, mirrored) and left.kind == "name" and (right.kind, right.value) == zero:
+            found.add(left.value)
+    return found
+
+
+def _hypothesis(source: str, where: str) -> Relation:
+    relation = read_relation(source, where)
+    if relation[0] in ("==", "!=") or _assumed([relation], ">") or _assumed([relation], ">="):
+        return relation
+    raise InputError(f"{where}: expected a hypothesis like a == b, a != b, or x > 0 for a symbol x, got {source!r}")
+
+
+def claim_of_text(source: str, given: Sequence[str] = ()) -> Claim:
+    """Return the claim of a text ``left == right``; its names are real symbols, or functions of time as in ``f(t)``."""
+    relation = read_relation(source)
+    if relation[0] != "==":
+        raise InputError(f"expected a claim with '==', got '{relation[0]}' in {source[:60]!r}")
+    hypotheses = tuple(_hypothesis(text, "given") for text in given)
+    sources = {"claim": source.strip(), **{f"given.{n}": text for n, text in enumerate(given)}}
+    return Claim(relation=relation, given=hypotheses, implied=True, sources=sources)
+
+
+# -- TOML -------------------------------------------------------------------------------------------------------------
+
+TEXTS = ("id", "where", "source", "note", "printed", "kind", "claim", "latex", "value", "printed_value", "against")
+LISTS = ("symbols", "functions", "given", "alternatives", "lost")
+OTHERS = ("define", "units")
+"""Keys of a claim by the shape of their value."""
+
+
+def read_claims(path: str | Path) -> list[Claim]:
+    """Return the claims of a TOML file.
+
+    Raises
+    ------
+    InputError
+        Naming the file, the claim, the key, and what is expected there.
+    """
+    from symrot.scene_file import read_toml
+
+    label = str(path)
+    table = read_toml(Path(path), label)
+    if table.get("schema") != 1:
+        raise InputError(f"{label}: expected schema = 1, got {table.get('schema')!r}")
+    found = table.get("claim")
+    if not isinstance(found, list) or not found or not all(isinstance(entry, dict) for entry in found):
+        raise InputError(f"{label}: expected [[claim]] tables, got {'none' if not found else 'something else'}")
+    claims = [_claim(entry, number, label) for number, entry in enumerate(found, start=1)]
+    names = [claim.id for claim in claims]
+    twice = next((name for name in names if names.count(name) > 1), None)
+    if twice is not None:
+        raise InputError(f"{label}: expected every id once, got {twice!r} twice")
+    return claims
+
+
+def _claim(entry: dict[str, Any], number: int, label: str) -> Claim:
+    name = entry.get("id", f"claim-{number}")
+    if not isinstance(name, str):
+        raise InputError(f"{label}: claim {number}: expected text as id, got {name!r}")
+    place = f"{label}: {name}"
+    for key, value in entry.items():
+        _check_key(key, value, place)
+    symbols, functions = _names(entry, "symbols", place), _names(entry, "functions", place)
+    define, sources = [], {}
+    known = {*symbols, *functions}
+    if len(known) < len(symbols) + len(functions):
+        raise InputError(f"{place}: expected every symbol and function to be declared once")
+    for place_of, (defined, formula) in enumerate(entry.get("define", ())):
+        _check_name(defined, "define", place)
+        if defined in known:
+            raise InputError(f"{place}: define: expected a new name, got {defined!r}, which is taken")
+        known.add(defined)
+        define.append((defined, read_expression(formula, f"{place}: define {defined}")))
+        sources[f"define.{place_of}"] = formula
+    given = tuple(_hypothesis(text, f"{place}: given") for text in entry.get("given", ()))
+    sources |= {f"given.{n}": text for n, text in enumerate(entry.get("given", ()))}
+    made = {
+        "id": name, "where": entry.get("where", ""), "symbols": symbols, "functions": functions,
+        "define": tuple(define), "given": given,
+    }  # fmt: skip
+    kinds = [key for key in ("claim", "latex", "value") if key in entry]
+    if len(kinds) != 1:
+        raise InputError(f"{place}: expected exactly one of claim, latex and value, got {', '.join(kinds) or 'none'}")
+    if kinds == ["value"]:
+        if "printed_value" not in entry:
+            raise InputError(f"{place}: expected printed_value beside value, the key is missing")
+        sources["value"] = entry["value"]
+        value = read_expression(entry["value"], f"{place}: value")
+        return Claim(**made, value=value, printed=entry["printed_value"], sources=sources)
+    if kinds == ["latex"]:
+        from symrot.checker.latex import read_latex
+
+        reading = read_latex(entry["latex"], f"{place}: latex", {*symbols}, {*functions}, known)
+        sources["claim"] = shown_relation(reading.relation)
+        made["symbols"] = tuple(dict.fromkeys([*symbols, *reading.symbols]))
+        made["functions"] = tuple(dict.fromkeys([*functions, *reading.functions]))
+        return Claim(**made, relation=reading.relation, sources=sources)
+    sources["claim"] = entry["claim"]
+    relation = _equation(entry["claim"], f"{place}: claim")
+    alternatives = tuple(_equation(text, f"{place}: alternatives") for text in entry.get("alternatives", ()))
+    return Claim(**made, relation=relation, alternatives=alternatives, sources=sources)
+
+
+def _equation(source: str, where: str) -> Relation:
+    relation = read_relation(source, where)
+    if relation[0] != "==":
+        raise InputError(f"{where}: expected '==', got '{relation[0]}' in {source[:60]!r}")
+    return relation
+
+
+def _check_key(key: str, value: Any, place: str) -> None:
+    if key in TEXTS:
+        expected, fits = "text", isinstance(value, str)
+    elif key in LISTS:
+        expected, fits = "a list of texts", isinstance(value, list) and all(isinstance(v, str) for v in value)
+    elif key == "define":
+        expected = 'a list of pairs ["name", "formula"]'
+        fits = isinstance(value, list) and all(
+            isinstance(pair, list) and len(pair) == 2 and all(isinstance(v, str) for v in pair) for pair in value
+        )
+    elif key == "units":
+        expected = "a table of units by symbol"
+        fits = isinstance(value, dict) and all(isinstance(v, str) for v in value.values())
+    else:
+        raise InputError(f"{place}: expected one of the keys {', '.join((*TEXTS, *LISTS, *OTHERS))}, got {key!r}")
+    if not fits:
+        raise InputError(f"{place}: {key}: expected {expected}, got {str(value)[:60]!r}")
+
+
+def _names(entry: dict[str, Any], key: str, place: str) -> tuple[str, ...]:
+    names = entry.get(key, [])
+    for name in names:
+        _check_name(name, key, place)
+    if len(set(names)) < len(names):
+        raise InputError(f"{place}: {key}: expected every name once, got {', '.join(names)}")
+    return tuple(names)
+
+
+def _check_name(name: str, key: str, place: str) -> None:
+    if not (name.isascii() and name.isidentifier() and name[0].isalpha()):
+        raise InputError(f"{place}: {key}: expected a name of letters, digits and underscores, got {name[:40]!r}")
+    if name in BUILT_IN or name in CONSTANTS:
+        raise InputError(f"{place}: {key}: expected a name of your own, got {name!r}, which is built in")

@@ -1,0 +1,201 @@
+"""Two sides and hypotheses in, a verdict with its evidence out. The mathematics is that of :mod:`symrot.exact`."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from sympy import Derivative, Expr, Mul, Pow, zeros
+from sympy.printing.str import StrPrinter
+
+from symrot.checker.conditions import Requirement, branch_requirements, requirements, surely_nonnegative
+from symrot.checker.verdict import Counterexample
+from symrot.errors import InputError
+from symrot.exact.counterexample import Counterexample as Witness
+from symrot.exact.counterexample import closed_form_witness, rational_witness
+from symrot.exact.decide import flatten
+from symrot.exact.ring import FormulaRing, as_zero
+
+__all__ = ["Decision", "Problem", "decide_problem", "shown"]
+
+LARGEST_DEGREE = 240
+"""Of a side in its symbols, sines and cosines; a larger one is refused before anything is expanded."""
+
+
+@dataclass(frozen=True)
+class Problem:
+    """An equation with its hypotheses, what its text divides by, what hypotheses make nonzero, and its radicands."""
+
+    left: Any
+    right: Any
+    hypotheses: tuple[Any, ...] = ()
+    divisors: tuple[Expr, ...] = ()
+    nonzero: tuple[Expr, ...] = ()
+    radicands: tuple[Expr, ...] = ()
+
+
+@dataclass(frozen=True)
+class Decision:
+    """The outcome: ``verdict``, and what goes with it."""
+
+    verdict: str
+    conditions: tuple[str, ...] = ()
+    requires: tuple[Requirement, ...] = ()
+    counterexample: Counterexample | None = None
+    reason: str = ""
+
+
+class _Printer(StrPrinter):  # type: ignore[misc]
+    """Text that our reader reads back: ``diff(phi(t), t)`` for a derivative."""
+
+    def _print_Derivative(self, node: Derivative) -> str:
+        variables = ", ".join(self._print(v) for v, times in node.variable_count for _ in range(int(times)))
+        return f"diff({self._print(node.expr)}, {variables})"
+
+    def _print_Abs(self, node: Expr) -> str:
+        return f"abs({self._print(node.args[0])})"
+
+
+def shown(value: Any) -> str:
+    """Return a SymPy value as text in the language of claims."""
+    return str(_Printer().doprint(value))
+
+
+def decide_problem(problem: Problem) -> Decision:
+    """Return what is known about an equation.
+
+    Raises
+    ------
+    InputError
+        If the shapes differ, a side is no finite exact formula, it divides by what is zero everywhere, the hypotheses
+        contradict each other, or the degree is beyond the budget.
+    """
+    lefts, rights, shape = _sides(problem)
+    relations = [as_zero(relation) for relation in problem.hypotheses]
+    for formula in [*lefts, *rights, *relations, *problem.divisors]:
+        _affordable(formula)
+    ring = FormulaRing([*lefts, *rights, *problem.divisors, *problem.nonzero], relations)
+    granted = _granted(ring, problem.nonzero)
+    residuals = [ring.difference(a, b) for a, b in zip(lefts, rights, strict=True)]
+    wrong = [place for place, residual in enumerate(residuals) if ring.reduce(residual.numerator)]
+    for divisor in problem.divisors:
+        ring.ratios.invert(ring.ratio(divisor), divisor)
+    conditions = _conditions(ring, granted, problem.radicands)
+    if not wrong:
+        return Decision("true", conditions)
+    numerators = [ring.reduce(residuals[place].numerator) for place in wrong]
+    witness = _witness(ring, lefts, rights, wrong, shape)
+    needed = requirements(ring, numerators, [(lefts[n], rights[n]) for n in wrong], len(lefts))
+    if not needed and ring.roots:
+        branches = branch_requirements(ring, numerators)
+        if branches == []:
+            return Decision("true", conditions)
+        needed = branches or []
+    counterexample = _as_text(witness) if witness else None
+    if needed:
+        texts = tuple(requirement.text for requirement in needed)
+        return Decision("conditional", (*texts, *conditions), tuple(needed), counterexample)
+    if witness:
+        return Decision("false", conditions, (), counterexample)
+    return Decision("undecided", conditions, (), None, _stopped_by(ring))
+
+
+def _sides(problem: Problem) -> tuple[list[Expr], list[Expr], tuple[int, int] | None]:
+    (lefts, shape), (rights, other) = flatten(problem.left), flatten(problem.right)
+    if shape is not None and other is None and rights == [0]:
+        rights, other = list(zeros(*shape)), shape
+    if other is not None and shape is None and lefts == [0]:
+        lefts, shape = list(zeros(*other)), other
+    if shape != other:
+        names = ["a scalar" if s is None else f"a {s[0]} x {s[1]} matrix" for s in (shape, other)]
+        raise InputError(f"expected two sides of one shape, got {names[0]} == {names[1]}")
+    return lefts, rights, shape
+
+
+def _affordable(formula: Expr) -> None:
+    size = _degree(formula, {})
+    if size > LARGEST_DEGREE:
+        raise InputError(f"expected a formula of degree up to {LARGEST_DEGREE} in symbols and sines, got about {size}")
+
+
+def _degree(node: Expr, known: dict[Expr, int]) -> int:
+    """Return a bound on the degree of numerator and denominator together."""
+    if node not in known:
+        below = [_degree(part, known) for part in node.args]
+        if isinstance(node, Mul):
+            known[node] = sum(below)
+        elif isinstance(node, Pow) and node.exp.is_Rational:
+            known[node] = below[0] * max(1, abs(int(node.exp.p)))
+        elif node.is_Function and len(node.args) == 1 and not node.args[0].is_Symbol:
+            known[node] = max(_multiple(node.args[0]), 1)
+        elif node.is_number:
+            known[node] = 0
+        else:
+            known[node] = max([*below, 1]) if not node.is_Add else max(below)
+    return known[node]
+
+
+def _multiple(argument: Expr) -> int:
+    """Return how many base angles an argument of a sine is made of, at least roughly."""
+    total = 0
+    for term in argument.as_ordered_terms() if argument.is_Add else [argument]:
+        number, _ = term.as_coeff_Mul()
+        total += abs(int(number.p)) * int(number.q) if number.is_Rational else 1
+    return total
+
+
+def _granted(ring: FormulaRing, nonzero: Sequence[Expr]) -> set[int]:
+    """Return the numbers of the factors that hypotheses grant to be nonzero."""
+    for formula in nonzero:
+        ring.ratios.invert(ring.ratio(formula), formula)
+    return set(range(len(ring.ratios.factors)))
+
+
+def _conditions(ring: FormulaRing, granted: set[int], radicands: Sequence[Expr]) -> tuple[str, ...]:
+    """Return where both sides are defined, less what assumptions grant."""
+    found: dict[str, None] = {}
+    for number, (source, factor) in enumerate(zip(ring.ratios.sources, ring.ratios.factors, strict=True)):
+        if number in granted or source.is_nonzero or source.is_positive or source.is_number:
+            continue
+        formula = factor.as_expr(*ring.generators)
+        small = source if len(str(source)) <= len(str(formula)) else formula
+        if not (formula.is_nonzero or formula.is_number):
+            found[f"{shown(small)} != 0"] = None
+    rooted = [radical.base for radical in ring.radicals.values() if radical.power % 2 and not _is_square(radical.base)]
+    for base in dict.fromkeys([*radicands, *rooted]):
+        if not base.is_number and not surely_nonnegative(base):
+            found[f"{shown(base)} >= 0"] = None
+    return tuple(sorted(found))
+
+
+def _is_square(base: Expr) -> bool:
+    """Return whether a radicand comes from an absolute value, which the ring keeps as the root of a square."""
+    return bool(isinstance(base, Pow) and base.exp.is_Integer and base.exp % 2 == 0)
+
+
+def _witness(
+    ring: FormulaRing, lefts: list[Expr], rights: list[Expr], wrong: list[int], shape: tuple[int, int] | None
+) -> Witness | None:
+    for search in (rational_witness, closed_form_witness):
+        for place in wrong[:4]:
+            entry = None if shape is None else (place // shape[1] + 1, place % shape[1] + 1)
+            found = search(ring, lefts[place], rights[place], entry)
+            if found is not None:
+                return found
+    return None
+
+
+def _as_text(witness: Witness) -> Counterexample:
+    values = {shown(name): shown(value) for name, value in witness.values}
+    return Counterexample(values, shown(witness.lhs), shown(witness.rhs), witness.entry)
+
+
+def _stopped_by(ring: FormulaRing) -> str:
+    if ring.outside_scope:
+        terms = ", ".join(shown(term) for term in ring.outside_scope[:3])
+        return f"too little is known here about {terms}, and no point was found where the sides provably differ"
+    if ring.roots:
+        roots = ", ".join(shown(root.expression) for root in list(ring.roots)[:3])
+        return f"the sides agree or differ with the sign of {roots}, and no point was found where they provably differ"
+    if ring.hypotheses:
+        return "no rational point was found that obeys the hypotheses and at which the sides differ"
+    return "no rational point was found at which the sides differ, since an angle is tied to other symbols"

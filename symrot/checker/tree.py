@@ -1,0 +1,144 @@
+"""The tree of a claim's text: what was written, with its place, before any mathematics touches it. No SymPy.
+
+Sums and products are flat and keep their order, since edits of a formula (a sign, a factor, the order of a product) are
+edits of their members. ``a - b`` is a sum whose second term is ``neg``; ``a/b`` is a product whose second factor is
+``inv``.
+
+=========  =======================  ==================================
+kind       value                    args
+=========  =======================  ==================================
+number     Fraction
+name       str
+call       name of the function     arguments
+sum                                 terms
+product                             factors, in order
+neg, inv                            one
+power                               base, exponent
+transpose                           one
+index                               matrix, then one or two indices
+list                                members, of ``[..]`` or ``(a, b)``
+=========  =======================  ==================================
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from typing import Any
+
+__all__ = ["Node", "negated", "number", "product", "replaced", "sum_of", "text", "walk"]
+
+Path = tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """One piece of a formula; ``span`` is its place in the source text, which does not count in comparisons."""
+
+    kind: str
+    value: Any = None
+    args: tuple["Node", ...] = ()
+    span: tuple[int, int] = field(default=(0, 0), compare=False)
+
+
+def number(value: int | Fraction) -> Node:
+    """Return a number; a negative one is ``neg`` of a positive one, as it is when it is read."""
+    value = Fraction(value)
+    return Node("neg", None, (Node("number", -value),)) if value < 0 else Node("number", value)
+
+
+def sum_of(terms: list[Node], span: tuple[int, int] = (0, 0)) -> Node:
+    """Return the sum of terms, flat; 0 of none."""
+    flat: list[Node] = []
+    for term in terms:
+        flat.extend(term.args if term.kind == "sum" else (term,))
+    if len(flat) == 1:
+        return flat[0]
+    return Node("sum", None, tuple(flat), span) if flat else number(0)
+
+
+def product(factors: list[Node], span: tuple[int, int] = (0, 0)) -> Node:
+    """Return the product of factors, flat, the sign in front; 1 of none."""
+    flat: list[Node] = []
+    negative = False
+    for factor in factors:
+        while factor.kind == "neg":
+            negative, factor = not negative, factor.args[0]
+        flat.extend(factor.args if factor.kind == "product" else (factor,))
+    made = flat[0] if len(flat) == 1 else Node("product", None, tuple(flat), span) if flat else number(1)
+    return Node("neg", None, (made,), span) if negative else made
+
+
+def negated(node: Node) -> Node:
+    """Return -node without a double sign."""
+    return node.args[0] if node.kind == "neg" else Node("neg", None, (node,), node.span)
+
+
+def walk(node: Node, path: Path = ()) -> Iterator[tuple[Path, Node]]:
+    """Yield every piece with the path to it, outer before inner, left to right."""
+    yield path, node
+    for place, child in enumerate(node.args):
+        yield from walk(child, (*path, place))
+
+
+def replaced(node: Node, path: Path, edit: Callable[[Node], Node]) -> Node:
+    """Return the tree with the piece at a path edited."""
+    if not path:
+        return edit(node)
+    place, *rest = path
+    args = list(node.args)
+    args[place] = replaced(args[place], tuple(rest), edit)
+    return replace(node, args=tuple(args))
+
+
+SUM, PRODUCT, SIGN, POWER, ATOM = 10, 20, 30, 40, 50
+_BINDING = {"sum": SUM, "neg": SUM, "product": PRODUCT, "inv": PRODUCT, "power": POWER}
+
+
+def text(node: Node, binding: int = 0) -> str:
+    """Return a tree as text with the fewest brackets that keep its meaning; the reader reads it back to itself."""
+    own = _BINDING.get(node.kind, ATOM)
+    if node.kind == "number" and node.value.denominator != 1:
+        own = PRODUCT
+    shown = _SHOW[node.kind](node)
+    return f"({shown})" if own < binding else shown
+
+
+def _sum(node: Node) -> str:
+    shown = text(node.args[0], SUM)
+    for term in node.args[1:]:
+        negative = term.kind == "neg"
+        shown += (" - " if negative else " + ") + text(term.args[0] if negative else term, SUM + 1)
+    return shown
+
+
+def _product(node: Node) -> str:
+    first, *rest = node.args
+    shown = _inverse(first) if first.kind == "inv" else text(first, PRODUCT)
+    for factor in rest:
+        inverse = factor.kind == "inv"
+        shown += ("/" if inverse else "*") + text(factor.args[0] if inverse else factor, PRODUCT + 1)
+    return shown
+
+
+def _inverse(node: Node) -> str:
+    return "1/" + text(node.args[0], PRODUCT + 1)
+
+
+def _list(node: Node) -> str:
+    opening, closing = node.value
+    return f"{opening}{', '.join(map(text, node.args))}{closing}"
+
+
+_SHOW: dict[str, Callable[[Node], str]] = {
+    "number": lambda node: str(node.value),
+    "name": lambda node: str(node.value),
+    "call": lambda node: f"{node.value}({', '.join(map(text, node.args))})",
+    "sum": _sum,
+    "product": _product,
+    "neg": lambda node: "-" + text(node.args[0], PRODUCT),
+    "inv": _inverse,
+    "power": lambda node: f"{text(node.args[0], POWER + 1)}**{text(node.args[1], POWER)}",
+    "transpose": lambda node: text(node.args[0], ATOM) + ".T",
+    "index": lambda node: text(node.args[0], ATOM) + f"[{', '.join(map(text, node.args[1:]))}]",
+    "list": _list,
+}

@@ -1,0 +1,121 @@
+"""The answer to a claim: what is known, under which conditions, the evidence, and what would be true instead."""
+
+from dataclasses import dataclass
+from typing import Any
+
+__all__ = ["Counterexample", "Diagnosis", "Repair", "Verdict"]
+
+
+@dataclass(frozen=True)
+class Counterexample:
+    """A point, with exact values as text, where the two sides differ; ``entry`` is (row, column) from 1, or None."""
+
+    values: dict[str, str]
+    lhs: str
+    rhs: str
+    entry: tuple[int, int] | None = None
+
+    def __str__(self) -> str:
+        point = ", ".join(f"{name} = {value}" for name, value in self.values.items())
+        place = f"entry {self.entry}: " if self.entry else ""
+        return f"{place}{self.lhs} against {self.rhs}" + (f" at {point}" if point else "")
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """What probably went wrong: a code of the table in :mod:`symrot.checker.codes`, and a sentence."""
+
+    code: str
+    text: str
+
+
+@dataclass(frozen=True)
+class Repair:
+    """A formula near the claim that is true; ``proven`` by the exact engine; the smaller the cost the nearer."""
+
+    text: str
+    code: str
+    cost: float
+    proven: bool = True
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What is known about a claim.
+
+    Attributes
+    ----------
+    verdict : str
+        ``"true"``, ``"false"``, ``"conditional"`` (true under ``requires``) or ``"undecided"``.
+    conditions : tuple of str
+        Where both sides are defined, ``"sin(theta) != 0"``; for a conditional claim first what it requires.
+    requires : tuple of str
+        What a conditional claim needs beyond being defined; any one of them suffices.
+    counterexample : Counterexample or None
+    diagnosis : Diagnosis
+    repairs : tuple of Repair
+        At most three, nearest first.
+    reason : str
+        Why a claim is undecided; otherwise empty.
+    id, where, text : str
+        The claim.
+    seconds : float
+    """
+
+    verdict: str
+    conditions: tuple[str, ...] = ()
+    requires: tuple[str, ...] = ()
+    counterexample: Counterexample | None = None
+    diagnosis: Diagnosis = Diagnosis("none", "")
+    repairs: tuple[Repair, ...] = ()
+    reason: str = ""
+    id: str = ""
+    where: str = ""
+    text: str = ""
+    seconds: float = 0.0
+
+    @property
+    def entry(self) -> tuple[int, int] | None:
+        """The place in a matrix where the sides differ, (row, column) from 1."""
+        return self.counterexample.entry if self.counterexample else None
+
+    def __bool__(self) -> bool:
+        return self.verdict == "true"
+
+    def __str__(self) -> str:
+        return "\n".join(self.lines())
+
+    def lines(self) -> list[str]:
+        """Return the verdict as lines for a person."""
+        found = [f"{self.verdict}: {self.text}"]
+        found += [f"  requires: {' or '.join(self.requires)}"] if self.requires else []
+        rest = [condition for condition in self.conditions if condition not in self.requires]
+        found += [f"  where {', '.join(rest)}"] if rest else []
+        found += [f"  counterexample: {self.counterexample}"] if self.counterexample else []
+        found += [f"  because {self.reason}"] if self.reason else []
+        found += [f"  diagnosis: {self.diagnosis.code}: {self.diagnosis.text}"] if self.diagnosis.code != "none" else []
+        found += [f"  true instead: {repair.text}  [{repair.code}]" for repair in self.repairs]
+        return found
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the verdict as JSON data."""
+        shown = self.counterexample
+        return {
+            "id": self.id,
+            "where": self.where,
+            "claim": self.text,
+            "verdict": self.verdict,
+            "entry": list(self.entry) if self.entry else None,
+            "conditions": list(self.conditions),
+            "requires": list(self.requires),
+            "counterexample": shown and {
+                "values": shown.values, "lhs": shown.lhs, "rhs": shown.rhs,
+                "entry": list(shown.entry) if shown.entry else None,
+            },
+            "diagnosis": {"code": self.diagnosis.code, "text": self.diagnosis.text},
+            "repairs": [
+                {"text": r.text, "code": r.code, "cost": r.cost, "proven": r.proven} for r in self.repairs
+            ],
+            "reason": self.reason,
+            "seconds": round(self.seconds, 4),
+        }  # fmt: skip
