@@ -109,22 +109,44 @@ def rational_witness(
 def closed_form_witness(
     ring: FormulaRing, left: Expr, right: Expr, entry: tuple[int, int] | None
 ) -> Counterexample | None:
-    """Return a point with rational symbols where 50-digit intervals of left and right are disjoint, or None."""
-    if ring.hypotheses:
+    """Return a point with rational symbols where 50-digit intervals of left and right are disjoint, or None.
+
+    Hypotheses are met by rational points of spheres and by solving linear ones, as for :func:`rational_witness`.
+    """
+    places = {number: leaf for leaf, number in ring.symbols.items()}
+    if any(number not in places for hypothesis in ring.hypothesis_numerators for number in _occurring(hypothesis)):
         return None
-    leaves = _variables(left - right)
+    coordinates, solved = _coordinates(ring)
+    bound = {number for hypothesis in ring.hypothesis_numerators for number in _occurring(hypothesis)}
+    tied = [c for c in coordinates if bound & set(c.generators)]
+    variables = _variables(left - right)
     source = Random(2)
     simple = [Rational(1), Rational(2), Rational(-1), Rational(1, 2), Rational(3), Rational(-1, 3)]
     for attempt in range(ATTEMPTS):
         pool = simple if attempt < ATTEMPTS // 2 else [Rational(n, 7) for n in range(-40, 41) if n]
-        values = {leaf: source.choice([v for v in pool if _assumed(leaf, v)] or [Rational(1)]) for leaf in leaves}
+        numbers = {number: value for c in tied for number, value in zip(c.generators, c.random(source), strict=True)}
+        if not all(_solve(hypothesis, generator, numbers) for generator, hypothesis in solved):
+            continue
+        if any(_value(hypothesis, numbers) for hypothesis in ring.hypothesis_numerators):
+            continue
+        values = {places[number]: _rational(value) for number, value in numbers.items()}
+        if not all(_assumed(leaf, value) for leaf, value in values.items()):
+            continue
+        for leaf in variables:
+            if leaf not in values:
+                values[leaf] = source.choice([v for v in pool if _assumed(leaf, v)] or [Rational(1)])
         if not all(_nonnegative(found.base.xreplace(values)) for found in ring.radicals.values() if found.base != -1):
             continue
         sides = left.xreplace(values), right.xreplace(values)
         enclosures = [enclosure(side) for side in sides]
         if None not in enclosures and 0 not in enclosures[0] - enclosures[1]:
-            return Counterexample(tuple(values.items()), entry, *sides)
+            return Counterexample(tuple(sorted(values.items(), key=str)), entry, *sides)
     return None
+
+
+def _occurring(poly: PolyElement) -> set[int]:
+    """Return the numbers of the generators that occur in a polynomial."""
+    return {number for mono in poly for number, power in enumerate(mono) if power}
 
 
 # -- rational points ------------------------------------------------------------------------------------------------
@@ -284,9 +306,10 @@ def _rational(value: Fraction) -> Rational:
 def _angles_are_free(ring: FormulaRing) -> bool:
     """Return whether the angles can be given any values, whatever the symbols are.
 
-    So it is when each has a symbol, or a function of time, of its own, to which it is proportional.
+    So it is when each has a symbol, or a function of time, of its own, to which it is proportional. Derivatives in
+    time at one instant can be given any values whatever the function's own value is.
     """
-    holders = [*ring.bases, *ring.symbols]
+    holders = [*ring.bases, *(leaf for leaf in ring.symbols if not leaf.is_Derivative)]
     for atom in ring.bases:
         factors = atom.args if atom.is_Mul else (atom,)
         if not all(f.is_Symbol or isinstance(f, AppliedUndef) for f in factors):

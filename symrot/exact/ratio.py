@@ -8,7 +8,7 @@ remembered with the expression by which somebody divided: the condition under wh
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from math import lcm
+from math import comb, lcm, prod
 from typing import Any
 
 from sympy import Expr
@@ -17,7 +17,14 @@ from sympy.polys.rings import PolyElement, PolyRing
 
 from symrot.errors import InputError
 
-__all__ = ["Ratio", "Ratios"]
+__all__ = ["Ratio", "Ratios", "TooLarge"]
+
+MOST_PRODUCTS = 5_000_000
+"""Products of two terms that one problem may need: some seconds of work, counted, so that all machines agree."""
+
+
+class TooLarge(InputError):
+    """A formula that cannot be expanded within the budget."""
 
 
 @dataclass(frozen=True)
@@ -50,6 +57,7 @@ class Ratios:
         self.reduce = reduce
         self.factors: list[PolyElement] = []  # primitive, not constant, leading coefficient positive
         self.sources: list[Expr] = []  # what stood in the denominator where the factor was met first
+        self.products = 0  # spent so far
 
     def number(self, numerator: int, denominator: int = 1) -> Ratio:
         """Return a rational number."""
@@ -75,6 +83,7 @@ class Ratios:
             for number, power in sorted(common.items()):
                 missing = power - own.get(number, 0)
                 if missing:
+                    self._spend(len(numerator) * _most_terms(self.factors[number], missing))
                     numerator = numerator * self.factors[number] ** missing
             total = total + numerator.mul_ground(self.ring.domain(common_constant // constant))
         return Ratio(total, common_constant, tuple(sorted(common.items())))
@@ -84,6 +93,7 @@ class Ratios:
         numerator, constant = self.ring.one, 1
         below: dict[int, int] = {}
         for factor in sorted(factors, key=lambda f: len(f.numerator)):
+            self._spend(len(numerator) * len(factor.numerator))
             numerator = numerator * factor.numerator
             constant *= factor.constant
             for number, power in factor.factors:
@@ -94,6 +104,7 @@ class Ratios:
         """Return a fraction to a power >= 0."""
         if exponent == 0:
             return Ratio(self.ring.one)
+        self._spend(_most_terms(base.numerator, exponent) * len(base.numerator))
         below = tuple((number, power * exponent) for number, power in base.factors)
         return Ratio(base.numerator**exponent, base.constant**exponent, below)
 
@@ -118,6 +129,11 @@ class Ratios:
         for number, power in value.factors:
             below = below * self.factors[number] ** power
         return below
+
+    def _spend(self, products: int) -> None:
+        self.products += products
+        if self.products > MOST_PRODUCTS:
+            raise TooLarge(f"expanding the formula takes more than {MOST_PRODUCTS} products of terms")
 
     def _split(self, poly: PolyElement, source: Expr) -> tuple[Fraction, tuple[tuple[int, int], ...]]:
         """Return a polynomial as a rational constant times known factors, learning the ones that are new."""
@@ -148,6 +164,13 @@ class Ratios:
         self.factors.append(poly)
         self.sources.append(source)
         return len(self.factors) - 1
+
+
+def _most_terms(poly: PolyElement, exponent: int) -> int:
+    """Return a bound on the number of terms of a power: by choosing terms, and by the degrees."""
+    if len(poly) < 2 or exponent == 1:
+        return len(poly)
+    return min(comb(len(poly) + exponent - 1, exponent), prod(degree * exponent + 1 for degree in poly.degrees()))
 
 
 def _primitive(poly: PolyElement) -> tuple[Fraction, PolyElement]:
