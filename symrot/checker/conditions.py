@@ -24,6 +24,10 @@ PRODUCT_OF_INERTIA = re.compile(r"[IJP]_?(xy|yx|xz|zx|yz|zy|12|21|13|31|23|32)",
 """Names of moments of inertia, and of products of inertia."""
 
 
+MOST_TERMS = 400
+"""Terms of a residual that is still factored."""
+
+
 @dataclass(frozen=True)
 class Requirement:
     """A condition as text, its code, and the expressions that are zero under it (none for an inequality)."""
@@ -48,17 +52,36 @@ def requirements(
     entries : int
         How many entries the claim has.
     """
-    shared = reduce(lambda a, b: a.gcd(b), numerators)
     found = []
-    for factor, _ in shared.factor_list()[1]:
+    for factor in _shared_factors(ring, numerators):
         requirement = _classified(ring, factor)
         if requirement is None:
             continue
         itself = entries == 1 and _associated(factor, numerators[0])
         if itself and (requirement.code != "requires_unit_norm" or any(side.is_number for side in sides[0])):
             continue
-        found.append(requirement)
-    return found or _no_products(ring, numerators)
+        if requirement.code == "requires_unit_norm" or _left_out(requirement, sides):
+            found.append(requirement)
+    return found or _no_products(ring, numerators, sides)
+
+
+def _shared_factors(ring: FormulaRing, numerators: Sequence[PolyElement]) -> list[PolyElement]:
+    """Return the irreducible factors common to all residuals; none where looking for them is costly."""
+    smallest = min(numerators, key=len)
+    if not ring.generators or len(smallest) > MOST_TERMS:
+        return []
+    shared = reduce(lambda a, b: a if a.is_ground else a.gcd(b), sorted(numerators, key=len))
+    return [] if shared.is_ground else [factor for factor, _ in shared.factor_list()[1]]
+
+
+def _left_out(requirement: Requirement, sides: Sequence[tuple[Expr, Expr]]) -> bool:
+    """Return whether some side of each wrong entry knows nothing of one of the symbols.
+
+    Whoever takes ``A = B`` for granted leaves one of them out. A text that has both, ``(A - B) w`` against
+    ``(B - A) w``, is wrong in another way.
+    """
+    (formula,) = requirement.zeros
+    return all(any(not side.has(symbol) for side in pair for symbol in formula.free_symbols) for pair in sides)
 
 
 def _associated(first: PolyElement, second: PolyElement) -> bool:
@@ -106,12 +129,16 @@ def _is_unit_norm(factor: PolyElement, variables: int) -> bool:
     )
 
 
-def _no_products(ring: FormulaRing, numerators: Sequence[PolyElement]) -> list[Requirement]:
+def _no_products(
+    ring: FormulaRing, numerators: Sequence[PolyElement], sides: Sequence[tuple[Expr, Expr]]
+) -> list[Requirement]:
     """Return the condition that all products of inertia vanish, when it suffices."""
     products = [(leaf, n) for leaf, n in ring.symbols.items() if _matches(PRODUCT_OF_INERTIA, leaf)]
     if not products or not all(any(mono[n] for _, n in products) for poly in numerators for mono in poly):
         return []
     used = [leaf for leaf, n in products if any(mono[n] for poly in numerators for mono in poly)]
+    if not all(any(not side.has(*used) for side in pair) for pair in sides):
+        return []
     return [Requirement("requires_condition", " and ".join(f"{leaf} == 0" for leaf in used), tuple(used))]
 
 

@@ -1,6 +1,6 @@
 """Two sides and hypotheses in, a verdict with its evidence out. The mathematics is that of :mod:`symrot.exact`."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,9 +13,12 @@ from symrot.errors import InputError
 from symrot.exact.counterexample import Counterexample as Witness
 from symrot.exact.counterexample import closed_form_witness, rational_witness
 from symrot.exact.decide import flatten
+from symrot.exact.ratio import TooLarge
 from symrot.exact.ring import FormulaRing, as_zero
 
 __all__ = ["Decision", "Problem", "decide_problem", "shown"]
+
+Search = Callable[[FormulaRing, Expr, Expr, tuple[int, int] | None], Witness | None]
 
 LARGEST_DEGREE = 240
 """Of a side in its symbols, sines and cosines; a larger one is refused before anything is expanded."""
@@ -74,6 +77,18 @@ def decide_problem(problem: Problem) -> Decision:
     for formula in [*lefts, *rights, *relations, *problem.divisors]:
         _affordable(formula)
     ring = FormulaRing([*lefts, *rights, *problem.divisors, *problem.nonzero], relations)
+    try:
+        return _decided(ring, problem, lefts, rights, shape)
+    except TooLarge as reason:
+        witness = _witness([closed_form_witness], ring, lefts, rights, range(len(lefts)), shape)
+        if witness:
+            return Decision("false", counterexample=_as_text(witness))
+        return Decision("undecided", reason=str(reason))
+
+
+def _decided(
+    ring: FormulaRing, problem: Problem, lefts: list[Expr], rights: list[Expr], shape: tuple[int, int] | None
+) -> Decision:
     granted = _granted(ring, problem.nonzero)
     residuals = [ring.difference(a, b) for a, b in zip(lefts, rights, strict=True)]
     wrong = [place for place, residual in enumerate(residuals) if ring.reduce(residual.numerator)]
@@ -83,7 +98,7 @@ def decide_problem(problem: Problem) -> Decision:
     if not wrong:
         return Decision("true", conditions)
     numerators = [ring.reduce(residuals[place].numerator) for place in wrong]
-    witness = _witness(ring, lefts, rights, wrong, shape)
+    witness = _witness([rational_witness, closed_form_witness], ring, lefts, rights, wrong[:4], shape)
     needed = requirements(ring, numerators, [(lefts[n], rights[n]) for n in wrong], len(lefts))
     if not needed and ring.roots:
         branches = branch_requirements(ring, numerators)
@@ -173,10 +188,11 @@ def _is_square(base: Expr) -> bool:
 
 
 def _witness(
-    ring: FormulaRing, lefts: list[Expr], rights: list[Expr], wrong: list[int], shape: tuple[int, int] | None
-) -> Witness | None:
-    for search in (rational_witness, closed_form_witness):
-        for place in wrong[:4]:
+    searches: Sequence[Search], ring: FormulaRing, lefts: list[Expr], rights: list[Expr],
+    places: Sequence[int], shape: tuple[int, int] | None,
+) -> Witness | None:  # fmt: skip
+    for search in searches:
+        for place in places:
             entry = None if shape is None else (place // shape[1] + 1, place % shape[1] + 1)
             found = search(ring, lefts[place], rights[place], entry)
             if found is not None:
