@@ -215,6 +215,12 @@ def test_false_with_roots_is_shown_inside_the_domain():
     assert decide(sqrt(x - 1) * sqrt(x + 1), sqrt(x**2 - 1)).verdict != "false"  # true wherever it is real
 
 
+def test_false_with_a_root_and_a_hypothesis_is_shown_where_the_hypothesis_holds():
+    verdict = decide(sqrt(2) * q0 * sin(x), q1, [UNIT_QUATERNION])
+    values = dict(verdict.counterexample.values)
+    assert verdict.verdict == "false" and UNIT_QUATERNION.subs(values) == 0
+
+
 def test_a_mixture_of_angle_and_sine_is_refuted():
     assert decide(sin(x), x).verdict == "false"
 
