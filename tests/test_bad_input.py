@@ -10,11 +10,11 @@ from operator import getitem
 from pathlib import Path
 
 import pytest
-from tests.bad_scenes import GOOD, PARTS, SHAPE, TOP, bad_scenes, base_scene
 
 from symrot.errors import InputError
 from symrot.scene import Scene, load_scene
 from symrot.scene_file import SHIPPED
+from tests.bad_scenes import GOOD, PARTS, SHAPE, TOP, bad_scenes, base_scene
 
 BAD = bad_scenes()
 
