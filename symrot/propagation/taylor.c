@@ -1,0 +1,345 @@
+/*
+ * Taylor series of high order with dense output: the whole loop of steps around one emitted jet.
+ *
+ * Included after taylor.h and an emitted system, in one translation unit. The system defines
+ *     SYMROT_STATES, SYMROT_PARAMETERS   numbers of states N and parameters
+ *     SYMROT_ORDER                       order of the series, even
+ *     SYMROT_ROWS                        rows of four lanes that hold the states,
+ *     SYMROT_ROW_STARTS, SYMROT_ROW_SIZES, SYMROT_ROW_BLOCKS   the first state, the states and the block of each
+ *     SYMROT_SCALES                      per block: 0 judges its error against the block's own size (a rate),
+ *                                        a positive number against that number (an attitude of unit norm: 1)
+ *     SYMROT_CONSTANTS, symrot_constants, symrot_jet           constants from parameters; coefficients of the states
+ * C99 that is also valid C++; no malloc, no globals, no input or output, reentrant.
+ *
+ * Coefficients are those of the series in (time)/(unit), where the unit is a power of two near the last step: nothing
+ * over- or underflows whatever the unit of time of the problem is, and no bit depends on it.
+ *
+ * The step is the longest at which the last two terms of the series are below the accepted tail of each block. A step
+ * is never tried again. Source: A. Jorba, M. Zou, Experimental Mathematics 14 (2005) 99-117, with the order fixed.
+ */
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#if defined(_WIN32)
+#define SYMROT_EXPORT __declspec(dllexport)
+#else
+#define SYMROT_EXPORT
+#endif
+
+enum { SYMROT_ROW = 4 + (SYMROT_ORDER + 1)*SYMROT_STATES };  /* one recorded step: t, h, low part of t, unit, terms */
+enum { SYMROT_DONE = 0, SYMROT_PAUSED = 1, SYMROT_FULL = 2, SYMROT_NOT_FINITE = 3, SYMROT_UNDERFLOW = 4 };
+
+typedef struct {
+    double t, t_low;     /* reached so far: the time is their sum */
+    double unit;         /* of time, a power of two near the next step; 0 before the first one */
+    double stop;         /* end of the span, on either side of t */
+    double tail;         /* of one step of length `pace` or more, relative; a shorter one is allowed its share of it */
+    double pace;
+    double max_step;     /* positive */
+    int64_t next;        /* first sample not yet written */
+    int64_t accepted, jets, recorded;
+    double y[SYMROT_STATES], carry[SYMROT_STATES];
+} symrot_run;
+
+static const int symrot_starts[] = SYMROT_ROW_STARTS, symrot_sizes[] = SYMROT_ROW_SIZES;
+static const int symrot_blocks[] = SYMROT_ROW_BLOCKS;
+static const double symrot_scales[] = SYMROT_SCALES;
+enum { SYMROT_BLOCK_COUNT = (int)(sizeof(symrot_scales)/sizeof(symrot_scales[0])) };
+
+#define EACH_ROW(r) for (int r = 0; r < SYMROT_ROWS; ++r)
+
+static const double SYMROT_LEAST_TAIL = 1e-18;   /* below round-off nothing is gained */
+static const double SYMROT_RATE_FLOOR = 1e-3;    /* a rate turns the body by less than this in a step: no need to see it */
+static const double SYMROT_EXPONENT = 1023.0;    /* of 1.0 in the bits of a double */
+
+/* Return log2(x) + 1023 to 0.09, for x >= 0: the bits of a number are nearly its logarithm. */
+static inline double symrot_log2(double x)
+{
+    int64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return (double)bits*0x1p-52;
+}
+
+/* Return 2^x to 1e-4, for |x| < 1000. */
+static inline double symrot_exp2(double x)
+{
+    const double shifted = x + 0x1.8p52, fraction = x - (shifted - 0x1.8p52);  /* |fraction| <= 1/2 */
+    int64_t bits;
+    memcpy(&bits, &shifted, sizeof bits);
+    bits = (int64_t)((uint64_t)(bits + 1023) << 52);
+    double power;
+    memcpy(&power, &bits, sizeof power);
+    return power*(1.0 + fraction*(0.693147 + fraction*(0.240227 + fraction*(0.0555 + fraction*0.0096))));
+}
+
+static inline double symrot_larger(double a, double b) { return a < b ? b : a; }
+
+/* Return the largest lane of a block's coefficient n, in size. */
+static inline double symrot_size(symrot_v4 (*x)[SYMROT_ORDER + 1], int n, int block)
+{
+    double size = 0.0;
+    EACH_ROW(r) if (symrot_blocks[r] == block)
+        for (int i = 0; i < symrot_sizes[r]; ++i) {
+            const double value = fabs(V_LANE(x[r][n], i));
+            size = size < value ? value : size;
+        }
+    return size;
+}
+
+/* Return what the error of a block is compared with: a rate with its largest size about now, if it turns the body. */
+static inline double symrot_reference(symrot_v4 (*x)[SYMROT_ORDER + 1], double unit, int block)
+{
+    const double fixed = symrot_scales[block];
+    if (fixed > 0.0) return fixed;
+    const double now = symrot_larger(symrot_size(x, 0, block), symrot_size(x, 1, block));
+    return symrot_larger(now, SYMROT_RATE_FLOOR/unit);
+}
+
+/* Return the logarithm of the step in units: the shortest at which a last term reaches the accepted tail of its block. */
+static inline double symrot_step_log(symrot_v4 (*x)[SYMROT_ORDER + 1], double tail, double unit)
+{
+    double shortest = 60.0;  /* the series of a motion that is a polynomial in time ends early */
+    for (int b = 0; b < SYMROT_BLOCK_COUNT; ++b) {
+        const double allowed = symrot_log2(tail*symrot_reference(x, unit, b));
+        const double last = (allowed - symrot_log2(symrot_size(x, SYMROT_ORDER, b)))*(1.0/SYMROT_ORDER);
+        const double before = (allowed - symrot_log2(symrot_size(x, SYMROT_ORDER - 1, b)))*(1.0/(SYMROT_ORDER - 1));
+        shortest = last < shortest ? last : shortest;
+        shortest = before < shortest ? before : shortest;
+    }
+    return shortest > -60.0 ? shortest : -60.0;
+}
+
+static inline void symrot_set_unit(double unit, double *step)
+{
+    step[0] = 0.0;
+    for (int n = 1; n <= SYMROT_ORDER; ++n) step[n] = unit*symrot_inverse[n];
+}
+
+/* Return whether the last two coefficients are all finite: nothing times zero is zero but a finite number. */
+static inline int symrot_finite(symrot_v4 (*x)[SYMROT_ORDER + 1], int order)
+{
+    symrot_v4 sum = V_ALL(0.0);
+    EACH_ROW(r) sum = V_ADD(sum, V_MUL(V_ADD(x[r][order], x[r][order - 1]), V_ALL(0.0)));
+    return V_LANE(sum, 0) + V_LANE(sum, 1) + V_LANE(sum, 2) + V_LANE(sum, 3) == 0.0;
+}
+
+/* Return a first unit of time from the size of coefficients 1 and 2, or 0 if they are not finite in any unit. */
+static SYMROT_APART double symrot_first_unit(const symrot_v4 *c, double t, double span,
+    symrot_v4 (*x)[SYMROT_ORDER + 1])
+{
+    double step[SYMROT_ORDER + 1], unit = 1.0, fastest = 0.0;
+    int tries = 0, exponent;
+    for (; tries < 64; ++tries, unit *= 0x1p-16) {
+        symrot_set_unit(unit, step);
+        symrot_jet(c, t, step, 2, x);
+        if (symrot_finite(x, 2)) break;
+    }
+    if (tries == 64) return 0.0;
+    for (int b = 0; b < SYMROT_BLOCK_COUNT; ++b) {
+        const double fixed = symrot_scales[b], size = fixed > 0.0 ? fixed : symrot_size(x, 0, b);
+        if (size > 0.0) {
+            fastest = symrot_larger(fastest, symrot_size(x, 1, b)/size/unit);
+            fastest = symrot_larger(fastest, sqrt(symrot_size(x, 2, b)/size)/unit);
+        } else {
+            fastest = symrot_larger(fastest, sqrt(symrot_size(x, 1, b)/unit));
+        }
+    }
+    const double first = fastest*span > 1.0 ? 1.0/fastest : span;
+    frexp(first, &exponent);
+    return ldexp(1.0, exponent);
+}
+
+/* Return coefficients from 1 on, summed at s units, and divided by s: even and odd powers apart. */
+static inline symrot_v4 symrot_sum(const symrot_v4 *x, double s)
+{
+    const symrot_v4 square = V_ALL(s*s);
+    symrot_v4 odd = x[SYMROT_ORDER - 1], even = x[SYMROT_ORDER];
+    for (int n = SYMROT_ORDER - 3; n > 0; n -= 2) {
+        odd = V_FMA(odd, square, x[n]);
+        even = V_FMA(even, square, x[n + 1]);
+    }
+    return V_FMA(even, V_ALL(s), odd);
+}
+
+/* Write the lanes of all rows as one vector of states. */
+static inline void symrot_write(const symrot_v4 *rows, double *out)
+{
+    EACH_ROW(r) memcpy(out + symrot_starts[r], &rows[r], (size_t)symrot_sizes[r]*sizeof(double));
+}
+
+/* Tell the caller the numbers of states and parameters and the order that this library was built for. */
+SYMROT_EXPORT void symrot_taylor_sizes(int64_t sizes[3])
+{
+    sizes[0] = SYMROT_STATES;
+    sizes[1] = SYMROT_PARAMETERS;
+    sizes[2] = SYMROT_ORDER;
+}
+
+/* Return what rounding takes from a + b as the steps of this library keep it: b for a big a, unless it was compiled away. */
+SYMROT_EXPORT double symrot_taylor_carry(double a, double b)
+{
+    const symrot_v4 y = V_ALL(a), d = V_ALL(b), y1 = V_ADD(y, d), rise = V_SUB(y1, y);
+    return V_LANE(V_ADD(V_SUB(y, V_SUB(y1, rise)), V_SUB(d, rise)), 0);
+}
+
+/* Write the coefficients 0 to `order` (even) of the states at t, in units of time: row n holds coefficient n. */
+SYMROT_EXPORT void symrot_taylor_jet(double t, const double *y, const double *p, double unit, int64_t order, double *out)
+{
+    symrot_v4 c[SYMROT_CONSTANTS], x[SYMROT_ROWS][SYMROT_ORDER + 1];
+    double step[SYMROT_ORDER + 1];
+    symrot_constants(p, c);
+    symrot_set_unit(unit, step);
+    EACH_ROW(r) {
+        x[r][0] = V_ALL(0.0);
+        memcpy(&x[r][0], y + symrot_starts[r], (size_t)symrot_sizes[r]*sizeof(double));
+    }
+    symrot_jet(c, t, step, (int)order, x);
+    for (int n = 0; n <= (int)order; ++n)
+        EACH_ROW(r) memcpy(out + n*SYMROT_STATES + symrot_starts[r], &x[r][n], (size_t)symrot_sizes[r]*sizeof(double));
+}
+
+/* Evaluate a record of `steps` rows, all in one direction, at `count` times in any order; the ends extrapolate. */
+SYMROT_EXPORT void symrot_taylor_dense(const double *record, int64_t steps, const double *times, int64_t count,
+    double *states)
+{
+    const double side = record[1] < 0.0 ? -1.0 : 1.0;
+    for (int64_t k = 0; k < count; ++k) {
+        int64_t low = 0, high = steps;  /* the last row that starts before the time */
+        while (high - low > 1) {
+            const int64_t middle = (low + high)/2;
+            if ((record[middle*SYMROT_ROW] - times[k])*side < 0.0) low = middle;
+            else high = middle;
+        }
+        const double *row = record + low*SYMROT_ROW, *x = row + 4;
+        const double s = ((times[k] - row[0]) - row[2])/row[3];
+        for (int i = 0; i < SYMROT_STATES; ++i) {
+            double value = x[SYMROT_ORDER*SYMROT_STATES + i];
+            for (int n = SYMROT_ORDER - 1; n >= 0; --n) value = value*s + x[n*SYMROT_STATES + i];
+            states[k*SYMROT_STATES + i] = value;
+        }
+    }
+}
+
+static SYMROT_APART void symrot_record(double *row, double t, double h, double t_low, double unit,
+    symrot_v4 (*x)[SYMROT_ORDER + 1])
+{
+    row[0] = t;
+    row[1] = h;
+    row[2] = t_low;
+    row[3] = unit;
+    for (int n = 0; n <= SYMROT_ORDER; ++n)
+        EACH_ROW(r) memcpy(row + 4 + n*SYMROT_STATES + symrot_starts[r], &x[r][n],
+            (size_t)symrot_sizes[r]*sizeof(double));
+}
+
+/*
+ * Step from run->t towards run->stop.
+ *
+ * in    p          parameters of the system
+ * in    times      count sample times, sorted from run->t towards run->stop
+ * out   states     count rows of N states
+ * out   record     room rows of SYMROT_ROW numbers, one per step, or room = 0
+ * in    attempts   most steps to take in this call
+ *
+ * Returns SYMROT_DONE; SYMROT_PAUSED after `attempts` steps or SYMROT_FULL when the record has no room (call again to
+ * continue from where it stands); SYMROT_NOT_FINITE or SYMROT_UNDERFLOW when the motion cannot be followed further.
+ */
+SYMROT_EXPORT int symrot_taylor(symrot_run *run, const double *p, const double *times, int64_t count, double *states,
+    double *record, int64_t room, int64_t attempts)
+{
+    symrot_v4 c[SYMROT_CONSTANTS], x[SYMROT_ROWS][SYMROT_ORDER + 1], carry[SYMROT_ROWS], y1[SYMROT_ROWS];
+    double step[SYMROT_ORDER + 1];
+    const double stop = run->stop, side = stop < run->t ? -1.0 : 1.0, tiny = 1e-300 + 1e-30*fabs(stop - run->t);
+    double t = run->t, t_low = run->t_low, unit = run->unit;
+    int64_t next = run->next, accepted = 0, jets = 0, recorded = 0;
+    int status = SYMROT_PAUSED, halvings = 0;
+
+    symrot_constants(p, c);
+    EACH_ROW(r) {
+        x[r][0] = carry[r] = V_ALL(0.0);
+        memcpy(&x[r][0], run->y + symrot_starts[r], (size_t)symrot_sizes[r]*sizeof(double));
+        memcpy(&carry[r], run->carry + symrot_starts[r], (size_t)symrot_sizes[r]*sizeof(double));
+    }
+    for (; next < count && times[next] == t; ++next) memcpy(states + next*SYMROT_STATES, run->y, sizeof run->y);
+    if (t == stop) status = SYMROT_DONE;
+    else if (unit == 0.0) {
+        unit = side*symrot_first_unit(c, t, fabs(stop - t), x);
+        if (unit == 0.0) status = SYMROT_NOT_FINITE;
+    }
+    symrot_set_unit(unit, step);
+
+    while (status == SYMROT_PAUSED && accepted < attempts) {
+        if (room > 0 && recorded == room) { status = SYMROT_FULL; break; }
+        symrot_jet(c, t, step, SYMROT_ORDER, x);
+        ++jets;
+        if (!symrot_finite(x, SYMROT_ORDER)) {
+            if (++halvings > 60) { status = SYMROT_NOT_FINITE; break; }
+            unit *= 0x1p-8;
+            symrot_set_unit(unit, step);
+            continue;
+        }
+        const double share = fabs(unit) < run->pace ? run->tail*fabs(unit)/run->pace : run->tail;
+        const double allowed = share > SYMROT_LEAST_TAIL ? share : SYMROT_LEAST_TAIL;
+        const double logarithm = symrot_step_log(x, allowed, fabs(unit));
+        double s = symrot_exp2(logarithm), h = s*unit;
+        if (fabs(h) > run->max_step) {
+            h = side*run->max_step;
+            s = h/unit;
+        }
+        const double left = (stop - t) - t_low;
+        const int at_stop = (1.01*h - left)*side >= 0.0;
+        if (at_stop) {
+            h = left;
+            s = h/unit;
+        } else if (fabs(h) <= tiny + 4.0*DBL_EPSILON*fabs(t)) {
+            status = SYMROT_UNDERFLOW;
+            break;
+        }
+        double t1 = t + h, low1 = (h - (t1 - t)) + t_low;  /* a fast sum, for |t| > |h|, else exact enough: see below */
+        if (fabs(h) > fabs(t)) low1 = (t - (t1 - h)) + t_low;
+        const double sum = t1 + low1;
+        low1 = at_stop ? 0.0 : (t1 - sum) + low1;
+        t1 = at_stop ? stop : sum;
+
+        if (room > 0) symrot_record(record + recorded++*SYMROT_ROW, t, h, t_low, unit, x);
+        for (; next < count && (times[next] - t1)*side < 0.0; ++next) {
+            const double at = ((times[next] - t) - t_low)/unit;
+            EACH_ROW(r) y1[r] = V_ADD(x[r][0], V_FMA(symrot_sum(x[r], at), V_ALL(at), carry[r]));
+            symrot_write(y1, states + next*SYMROT_STATES);
+        }
+        EACH_ROW(r) {
+            const symrot_v4 d = V_FMA(symrot_sum(x[r], s), V_ALL(s), carry[r]), y = x[r][0];
+            const symrot_v4 new_y = V_ADD(y, d), rise = V_SUB(new_y, y);
+            carry[r] = V_ADD(V_SUB(y, V_SUB(new_y, rise)), V_SUB(d, rise));  /* Knuth's sum: goes into the next step */
+            x[r][0] = y1[r] = new_y;
+        }
+        for (; next < count && times[next] == t1; ++next) symrot_write(y1, states + next*SYMROT_STATES);
+        ++accepted;
+        halvings = 0;
+        t = t1;
+        t_low = low1;
+        if (at_stop) status = SYMROT_DONE;
+        if (logarithm > 0.6 || logarithm < -0.6) {
+            unit *= symrot_exp2((double)(int)(logarithm + (logarithm > 0.0 ? 0.5 : -0.5)));
+            symrot_set_unit(unit, step);
+        }
+    }
+
+    run->t = t;
+    run->t_low = t_low;
+    run->unit = unit;
+    run->next = next;
+    run->accepted += accepted;
+    run->jets += jets;
+    run->recorded = recorded;
+    EACH_ROW(r) {
+        memcpy(run->y + symrot_starts[r], &x[r][0], (size_t)symrot_sizes[r]*sizeof(double));
+        memcpy(run->carry + symrot_starts[r], &carry[r], (size_t)symrot_sizes[r]*sizeof(double));
+    }
+    return status;
+}
+
+#ifdef __cplusplus
+}
+#endif

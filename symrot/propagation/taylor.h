@@ -1,0 +1,88 @@
+/*
+ * Four numbers at once: GNU vectors where the compiler has them, else plain C of the same meaning.
+ *
+ * Included before an emitted jet and taylor.c. Define SYMROT_PLAIN to take the plain form in any case.
+ */
+#include <float.h>
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+#if defined(__FAST_MATH__)
+#error "compensated sums do not survive -ffast-math: compile the Taylor stepper without it"
+#endif
+
+#if defined(__cplusplus)
+#define SYMROT_RESTRICT __restrict
+#else
+#define SYMROT_RESTRICT restrict
+#endif
+#if defined(__GNUC__)
+#define SYMROT_APART __attribute__((noinline))  /* code of its own: registers are given out for its loops alone */
+#define SYMROT_ALIGNED __attribute__((aligned(32)))
+#else
+#define SYMROT_APART
+#define SYMROT_ALIGNED
+#endif
+
+#if defined(__has_builtin) && !defined(SYMROT_PLAIN)
+#if __has_builtin(__builtin_shufflevector)
+#define SYMROT_VECTORS
+#endif
+#endif
+
+#if defined(SYMROT_VECTORS)
+typedef double symrot_v4 __attribute__((vector_size(32)));
+typedef long long symrot_signs __attribute__((vector_size(32)));
+#define V_SET(a, b, c, d) ((symrot_v4){a, b, c, d})
+#define V_LANE(v, i) ((v)[i])
+#define V_ADD(a, b) ((a) + (b))
+#define V_SUB(a, b) ((a) - (b))
+#define V_MUL(a, b) ((a)*(b))
+#define V_DIV(a, b) ((a)/(b))
+#define V_FMA(a, b, c) ((a)*(b) + (c))
+#define V_PICK(v, u, i, j, k, l) __builtin_shufflevector(v, u, i, j, k, l)  /* lanes 0-3 of v, 4-7 of u */
+#define V_MASK(s) ((s) < 0 ? (long long)(-9223372036854775807LL - 1) : 0LL)
+#define V_FLIP(v, i, j, k, l) \
+    ((symrot_v4)((symrot_signs)(v) ^ (symrot_signs){V_MASK(i), V_MASK(j), V_MASK(k), V_MASK(l)}))
+#define V_KEEP(v, i, j, k, l) ((symrot_v4)((symrot_signs)(v) & (symrot_signs){-(i), -(j), -(k), -(l)}))
+#define V_ALL(s) symrot_all(s)
+static inline symrot_v4 symrot_all(double s) { return V_SET(s, s, s, s); }
+#else
+typedef struct { double lane[4]; } symrot_v4;
+#define V_LANE(v, i) ((v).lane[i])
+#define V_SET(a, b, c, d) symrot_set(a, b, c, d)
+#define V_ADD(a, b) symrot_add(a, b)
+#define V_SUB(a, b) symrot_subtract(a, b)
+#define V_MUL(a, b) symrot_multiply(a, b)
+#define V_DIV(a, b) symrot_divide(a, b)
+#define V_FMA(a, b, c) symrot_add(symrot_multiply(a, b), c)
+#define V_PICK(v, u, i, j, k, l) symrot_pick(v, u, i, j, k, l)
+#define V_KEEP(v, i, j, k, l) symrot_multiply(v, symrot_set(i, j, k, l))
+#define V_FLIP(v, i, j, k, l) symrot_multiply(v, symrot_set(i, j, k, l))
+#define V_ALL(s) symrot_set(s, s, s, s)
+static inline symrot_v4 symrot_set(double a, double b, double c, double d)
+{
+    symrot_v4 v;
+    v.lane[0] = a;
+    v.lane[1] = b;
+    v.lane[2] = c;
+    v.lane[3] = d;
+    return v;
+}
+#define SYMROT_LANES(name, operator) \
+    static inline symrot_v4 name(symrot_v4 a, symrot_v4 b) \
+    { \
+        for (int i = 0; i < 4; ++i) a.lane[i] = a.lane[i] operator b.lane[i]; \
+        return a; \
+    }
+SYMROT_LANES(symrot_add, +)
+SYMROT_LANES(symrot_subtract, -)
+SYMROT_LANES(symrot_multiply, *)
+SYMROT_LANES(symrot_divide, /)
+static inline symrot_v4 symrot_pick(symrot_v4 v, symrot_v4 u, int i, int j, int k, int l)
+{
+    return symrot_set(i < 4 ? v.lane[i & 3] : u.lane[i & 3], j < 4 ? v.lane[j & 3] : u.lane[j & 3],
+        k < 4 ? v.lane[k & 3] : u.lane[k & 3], l < 4 ? v.lane[l & 3] : u.lane[l & 3]);
+}
+#endif
