@@ -119,7 +119,7 @@ def closed_form_witness(
     coordinates, solved = _coordinates(ring)
     bound = {number for hypothesis in ring.hypothesis_numerators for number in _occurring(hypothesis)}
     tied = [c for c in coordinates if bound & set(c.generators)]
-    variables = _variables(left - right)
+    variables = sorted({*_variables(left), *_variables(right)}, key=str)
     source = Random(2)
     simple = [Rational(1), Rational(2), Rational(-1), Rational(1, 2), Rational(3), Rational(-1, 3)]
     for attempt in range(ATTEMPTS):
