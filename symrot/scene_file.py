@@ -48,8 +48,8 @@ def find_scene(source: str | Path) -> Path:
     raise InputError(f"{label}: expected a scene or a scene file, there is none ({said})")
 
 
-def read_toml(path: Path, label: str) -> dict[str, Any]:
-    """Return the table of a TOML file; numbers with a point come as Decimal, as they are written.
+def read_toml(path: Path, label: str, what: str = "scene") -> dict[str, Any]:
+    """Return the table of a TOML file, of a scene or whatever it holds; numbers with a point come as Decimal, as they are written.
 
     Parameters
     ----------
@@ -57,6 +57,8 @@ def read_toml(path: Path, label: str) -> dict[str, Any]:
         The file.
     label : str
         The file as an error names it.
+    what : str
+        What the file should hold, for errors.
 
     Raises
     ------
@@ -67,16 +69,16 @@ def read_toml(path: Path, label: str) -> dict[str, Any]:
         with path.open("rb") as file:
             content = file.read(LARGEST_FILE + 1)
     except OSError as reason:
-        raise InputError(f"{label}: expected a readable scene file, got {reason.strerror or reason}") from None
+        raise InputError(f"{label}: expected a readable {what} file, got {reason.strerror or reason}") from None
     if len(content) > LARGEST_FILE:
-        raise InputError(f"{label}: expected a scene file of at most {LARGEST_FILE // 1_000_000} MB, got a larger one")
+        raise InputError(f"{label}: expected a {what} file of at most {LARGEST_FILE // 1_000_000} MB, got a larger one")
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as reason:
         raise InputError(f"{label}: expected UTF-8 text, got byte 0x{content[reason.start]:02x} at position "
                          f"{reason.start}") from None  # fmt: skip
     if not text.strip():
-        raise InputError(f"{label}: expected a scene, got an empty file")
+        raise InputError(f"{label}: expected a {what}, got an empty file")
     return _parse(text, label)
 
 

@@ -162,7 +162,7 @@ def read_claims(path: str | Path) -> list[Claim]:
     from symrot.scene_file import read_toml
 
     label = str(path)
-    table = read_toml(Path(path), label)
+    table = read_toml(Path(path), label, "claim")
     if table.get("schema") != 1:
         raise InputError(f"{label}: expected schema = 1, got {table.get('schema')!r}")
     found = table.get("claim")

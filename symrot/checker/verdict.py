@@ -83,19 +83,22 @@ class Verdict:
         return self.verdict == "true"
 
     def __str__(self) -> str:
-        return "\n".join(self.lines())
+        return "\n".join([self.verdict, *(f"  {name}: {text}" for name, text in self.facts())])
 
-    def lines(self) -> list[str]:
-        """Return the verdict as lines for a person."""
-        found = [f"{self.verdict}: {self.text}"]
-        found += [f"  requires: {' or '.join(self.requires)}"] if self.requires else []
-        rest = [condition for condition in self.conditions if condition not in self.requires]
-        found += [f"  where {', '.join(rest)}"] if rest else []
-        found += [f"  counterexample: {self.counterexample}"] if self.counterexample else []
-        found += [f"  because {self.reason}"] if self.reason else []
-        found += [f"  diagnosis: {self.diagnosis.code}: {self.diagnosis.text}"] if self.diagnosis.code != "none" else []
-        found += [f"  true instead: {repair.text}  [{repair.code}]" for repair in self.repairs]
-        return found
+    def facts(self) -> list[tuple[str, str]]:
+        """Return what goes with the verdict, as pairs of a name and a text for a person."""
+        defined = [condition for condition in self.conditions if condition not in self.requires]
+        wrong = self.diagnosis.code != "none"
+        rows = [
+            ("claim", self.text),
+            ("true if", " or ".join(self.requires)),
+            ("where", ", ".join(defined)),
+            ("counterexample", str(self.counterexample or "")),
+            ("because", self.reason),
+            ("diagnosis", f"{self.diagnosis.text} [{self.diagnosis.code}]" if wrong else ""),
+            *(("true instead", f"{repair.text}  [{repair.code}]") for repair in self.repairs),
+        ]
+        return [(name, text) for name, text in rows if text]
 
     def to_json(self) -> dict[str, Any]:
         """Return the verdict as JSON data."""
