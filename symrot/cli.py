@@ -151,6 +151,18 @@ def _derive(options: Namespace) -> int:
     return GOOD
 
 
+def _check(options: Namespace) -> int:
+    from symrot.report import verdicts
+
+    found = verdicts.check(options.claim, options.given, not options.no_repair, _progress)
+    _progress("")
+    if options.json:
+        _say_json([verdict.to_json() for verdict in found])
+    else:
+        _say(verdicts.lines(found, options.claim))
+    return GOOD if all(found) else FAILED
+
+
 def _scenes(options: Namespace) -> int:
     from symrot.report.layout import columns
 
@@ -220,6 +232,14 @@ def _derive_arguments(parser: ArgumentParser) -> None:
                         help="folder of --all and --check (default: ./derivations)")  # fmt: skip
 
 
+def _check_arguments(parser: ArgumentParser) -> None:
+    parser.add_argument("claim", metavar="CLAIM", help="'left == right', LaTeX with a backslash, or a FILE.toml")
+    parser.add_argument("--given", metavar="HYPOTHESIS", action="append", default=[],
+                        help="'a == b', 'x > 0' or 'x != 0', with a claim as text; may be repeated")  # fmt: skip
+    parser.add_argument("--no-repair", action="store_true", help="do not look for true formulas near a false one")
+    _json_option(parser)
+
+
 def _doctor_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--clear-cache", action="store_true", help="remove the kernels kept in the cache")
     _json_option(parser)
@@ -229,6 +249,7 @@ COMMANDS: dict[str, tuple[str, Callable[[Namespace], int], Callable[[ArgumentPar
     "run": ("propagate a scene and summarise its motion", _run, _run_arguments),
     "explain": ("show what is computed for a scene, what is skipped and why", _explain, _explain_arguments),
     "derive": ("print derivations, proven step by step", _derive, _derive_arguments),
+    "check": ("decide whether formulas hold, and what would", _check, _check_arguments),
     "emit": ("print the kernel of a scene as C or NumPy", _emit, _emit_arguments),
     "scenes": ("list the scenes that come with symrot", _scenes, _json_option),
     "doctor": ("check compiler, cache and installed versions", _doctor, _doctor_arguments),

@@ -1,0 +1,69 @@
+"""Verdicts as text: one claim in full, a file of claims as a list with what failed in full and a count."""
+
+from collections import Counter
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from textwrap import wrap
+
+from symrot.checker.verdict import Verdict
+from symrot.errors import InputError
+from symrot.report.layout import WIDTH, duration, one_line
+
+__all__ = ["check", "lines"]
+
+
+def check(
+    source: str, given: Sequence[str], repair: bool, progress: Callable[[str], None] = lambda text: None
+) -> list[Verdict]:
+    """Return the verdicts on a claim as text or LaTeX, or on the claims of a file.
+
+    Raises
+    ------
+    InputError
+        For what :func:`symrot.check` and :func:`symrot.check_file` refuse, and hypotheses beside a file.
+    """
+    from symrot.checker.claims import read_claims
+    from symrot.checker.interface import check as check_text
+    from symrot.checker.interface import check_claim
+
+    if not _is_file(source):
+        return [check_text(source, assume=given, repair=repair)]
+    if not source.endswith(".toml") and not Path(source).is_file():
+        raise InputError(f"expected a claim 'left == right' or the path of a file of claims, got {source[:60]!r}")
+    if given:
+        raise InputError("--given: expected a claim as text beside it; a file states its own hypotheses")
+    found = []
+    for claim in read_claims(source):
+        progress(f"checking {claim.id} ..")
+        found.append(check_claim(claim, repair))
+    return found
+
+
+def _is_file(source: str) -> bool:
+    """Return whether the words of a user mean a file: no formula without ``=`` is a claim."""
+    return "=" not in source or (source.endswith(".toml") and "==" not in source and Path(source).is_file())
+
+
+def lines(found: Sequence[Verdict], source: str) -> list[str]:
+    """Return verdicts as lines: a single text in full; of a file what is not true in full, then the count."""
+    if len(found) == 1 and not _is_file(source):
+        return _full(found[0], found[0].verdict)
+    shown: list[str] = []
+    for verdict in found:
+        place = f" ({one_line(verdict.where)})" if verdict.where else ""
+        name = f"{verdict.verdict:<11} {one_line(verdict.id)}{place}"
+        shown += [name] if verdict else _full(verdict, name)
+    counts = Counter(verdict.verdict for verdict in found)
+    total = ", ".join(
+        f"{counts[name]} {name}" for name in ("true", "false", "conditional", "undecided") if counts[name]
+    )
+    seconds = duration(sum(verdict.seconds for verdict in found))
+    return [*shown, "", f"{len(found)} claim{'s' if len(found) != 1 else ''}: {total}, in {seconds}"]
+
+
+def _full(verdict: Verdict, head: str) -> list[str]:
+    rows = [head]
+    for name, text in verdict.facts():
+        rows += wrap(one_line(text), WIDTH, initial_indent=f"  {name + ':':<16}", subsequent_indent=" " * 18,
+                     break_long_words=False, break_on_hyphens=False)  # fmt: skip
+    return rows

@@ -1,0 +1,156 @@
+"""Files of claims: what they may hold, what is refused, and the command that reads them."""
+
+import json
+
+import pytest
+
+import symrot
+from symrot.cli import main
+from symrot.errors import InputError
+
+GOOD = """
+schema = 1
+
+[[claim]]
+id = "body-rates-zxz"
+where = "p. 17"
+functions = ["phi", "theta", "psi"]
+symbols = ["t"]
+define = [
+    ["R", "Rz(phi(t))*Rx(theta(t))*Rz(psi(t))"],
+    ["w1", "diff(phi(t), t)*sin(theta(t))*sin(psi(t)) + diff(theta(t), t)*cos(psi(t))"],
+    ["w2", "diff(phi(t), t)*sin(theta(t))*cos(psi(t)) - diff(theta(t), t)*sin(psi(t))"],
+    ["w3", "diff(phi(t), t)*cos(theta(t)) + diff(psi(t), t)"],
+    ["W", "skew(w1, w2, w3)"],
+]
+claim = "diff(R, t) == R*W"
+
+[[claim]]
+id = "unit"
+symbols = ["q0", "q1", "q2", "q3"]
+define = [["R", "dcm_of(Matrix([q0, q1, q2, q3]))"]]
+given = ["q0**2 + q1**2 + q2**2 + q3**2 == 1"]
+claim = "R*R.T == eye(3)"
+
+[[claim]]
+id = "lagrange"
+symbols = ["t", "m", "g", "l"]
+functions = ["theta"]
+define = [["L", "m*l**2*diff(theta(t), t)**2/2 + m*g*l*cos(theta(t))"]]
+claim = "diff(diff(L, diff(theta(t), t)), t) - diff(L, theta(t)) == m*l**2*diff(theta(t), t, t) + m*g*l*sin(theta(t))"
+
+[[claim]]
+id = "worked"
+value = "2*pi*sqrt(2)/3"
+printed_value = "2.96"
+"""
+
+
+def write(tmp_path, text):
+    path = tmp_path / "claims.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_a_file_of_true_claims_is_true_throughout(tmp_path):
+    verdicts = symrot.check_file(write(tmp_path, GOOD))
+    assert [(v.id, v.verdict) for v in verdicts] == [(name, "true") for name in ("body-rates-zxz", "unit", "lagrange", "worked")]
+    assert verdicts[0].where == "p. 17"
+    assert all(verdict.seconds < 0.5 for verdict in verdicts)
+
+
+@pytest.mark.parametrize(("printed", "verdict"), [
+    ("2.96", "true"), ("2.962", "true"), ("2.9619", "true"), ("2.9620", "false"), ("3", "true"), ("3.0", "true"),
+    ("2.97", "false"), ("-2.96", "false"), ("296e-2", "true"), ("0.296e1", "true"),
+])  # fmt: skip
+def test_a_printed_number_is_right_when_the_value_rounds_to_it(tmp_path, printed, verdict):
+    """2 pi sqrt(2)/3 = 2.96192..."""
+    (last,) = symrot.check_file(write(tmp_path, GOOD.replace('"2.96"', f'"{printed}"')))[3:]
+    assert last.verdict == verdict
+    assert (last.counterexample is None) == (verdict == "true")
+
+
+def test_halves_round_either_way(tmp_path):
+    path = write(tmp_path, 'schema = 1\n[[claim]]\nid = "a"\nvalue = "1/8"\nprinted_value = "0.12"\n')
+    assert symrot.check_file(path)[0].verdict == "true"
+
+
+FAULTS = (
+    ("schema = 1", "schema = 2", "schema = 1"),
+    ("schema = 1", "", "schema = 1"),
+    ('where = "p. 17"', "where = 17", "where: expected text"),
+    ('where = "p. 17"', 'verdict = "true"', "got 'verdict'"),
+    ('symbols = ["t"]', 'symbols = "t"', "a list of texts"),
+    ('symbols = ["t"]', 'symbols = ["t", "t"]', "every name once"),
+    ('symbols = ["t"]', 'symbols = ["phi"]', "declared once"),
+    ('symbols = ["t"]', 'symbols = ["sin"]', "built in"),
+    ('symbols = ["t"]', 'symbols = ["__import__"]', "letters, digits"),
+    ('symbols = ["t"]', "", "body-rates-zxz: .*declared"),
+    ('claim = "diff(R, t) == R*W"', 'claim = "diff(R, t) == R*V"', "'V'"),
+    ('claim = "diff(R, t) == R*W"', 'claim = "diff(R, t) == R*"', "position 17"),
+    ('claim = "diff(R, t) == R*W"', 'claim = "diff(R, t) > R*W"', "'=='"),
+    ('claim = "diff(R, t) == R*W"', "", "exactly one of claim"),
+    ('claim = "diff(R, t) == R*W"', 'claim = "diff(R, t) == R*W"\nvalue = "1"', "exactly one of claim"),
+    ('["W", "skew(w1, w2, w3)"]', '["W", "skew(w1, w2)"]', "define W: .*3 components"),
+    ('["W", "skew(w1, w2, w3)"]', '["w1", "skew(w1, w2, w3)"]', "is taken"),
+    ('["W", "skew(w1, w2, w3)"]', '["W"]', "list of pairs"),
+    ('id = "unit"', 'id = "worked"', "'worked' twice"),
+    ("q3**2 == 1", "q3**2 < 1", "hypothesis like"),
+    ('printed_value = "2.96"', 'printed_value = "about 3"', "decimal"),
+    ('printed_value = "2.96"', "", "printed_value"),
+    ('value = "2*pi', 'symbols = ["x"]\nvalue = "2*x*pi', "expected a number"),
+    ("[[claim]]", "[[clam]]", "claim"),
+    ("schema = 1", "schema = ", "TOML"),
+)
+
+
+@pytest.mark.parametrize(("old", "new", "words"), FAULTS, ids=[new[:40] or old[:40] for old, new, _ in FAULTS])
+def test_a_fault_in_a_file_is_named_with_its_claim(tmp_path, old, new, words):
+    assert old in GOOD
+    with pytest.raises(InputError, match=words) as refusal:
+        symrot.check_file(write(tmp_path, GOOD.replace(old, new)))
+    assert "\n" not in str(refusal.value)
+    assert "claims.toml" in str(refusal.value) or any(name in str(refusal.value) for name in ("body-", "unit", "worked"))
+
+
+def test_contradicting_hypotheses_prove_nothing(tmp_path):
+    with pytest.raises(InputError, match="contradict"):
+        symrot.check("x == y", assume=["x == 1", "x == 2"])
+
+
+# -- the command ------------------------------------------------------------------------------------------------------
+
+
+def test_the_command_says_true_and_exits_0(capsys):
+    assert main(["check", "cos(2*x) == 1 - 2*sin(x)**2"]) == 0
+    assert capsys.readouterr().out.splitlines() == ["true", "  claim:          cos(2*x) == 1 - 2*sin(x)**2"]
+
+
+def test_the_command_exits_1_when_a_claim_fails(tmp_path, capsys):
+    path = write(tmp_path, GOOD.replace("R*W", "W*R"))
+    assert main(["check", str(path), "--no-repair"]) == 1
+    out = capsys.readouterr().out
+    assert "4 claims: 3 true, 1 false" in out
+    assert "counterexample" in out
+    assert max(map(len, out.splitlines())) <= 110
+
+
+def test_the_command_prints_json(tmp_path, capsys):
+    assert main(["check", str(write(tmp_path, GOOD.replace("R*W", "W*R"))), "--json", "--no-repair"]) == 1
+    found = json.loads(capsys.readouterr().out)
+    assert [entry["verdict"] for entry in found] == ["false", "true", "true", "true"]
+    assert set(found[0]) >= {"id", "verdict", "entry", "conditions", "counterexample", "diagnosis", "repairs", "seconds"}
+    assert found[0]["entry"] == found[0]["counterexample"]["entry"]
+
+
+def test_hypotheses_on_the_command_line(capsys):
+    assert main(["check", "sqrt(x**2) == x", "--given", "x > 0"]) == 0
+    assert main(["check", "sqrt(x**2) == x", "--json"]) == 1
+
+
+@pytest.mark.parametrize("words", [
+    ["check", "x + == 1"], ["check", "x"], ["check", "no_such.toml"], ["check"], ["check", "1 == 1", "--given", "x"],
+])  # fmt: skip
+def test_bad_input_exits_2_with_one_line(words, capsys):
+    assert main(words) == 2
+    assert len(capsys.readouterr().err.splitlines()) == 1
