@@ -29,7 +29,7 @@ LARGEST = Fraction(2) ** 1024
 
 SMALLEST = 1 / Fraction(2) ** 1022
 
-EXPECTATION = "a number, such as 2, 0.5, \"1/3\", \"sqrt(2)\" or \"pi/6\""
+EXPECTATION = 'a number, such as 2, 0.5, "1/3", "sqrt(2)" or "pi/6"'
 
 
 def show(value: object, limit: int = 60) -> str:
@@ -365,4 +365,3 @@ def read_angle(value: object, degrees: bool = False, where: str = "", expect: st
     if not angle.half_turns:
         return Angle(Fraction(0), angle.rational / 180)
     return _exactly(_round(angle.radians * PI / 180))
-

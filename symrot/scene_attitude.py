@@ -18,7 +18,7 @@ __all__ = ["ORTHOGONAL", "Attitude", "read_attitude", "read_sequence", "to_body"
 ORTHOGONAL = Fraction(1, 10**9)
 """Largest difference from the identity of R R^T for a typed matrix R; what is nearer is made a rotation exactly."""
 
-FORMS = "{quaternion = [..]}, {sequence = \"ZXZ\", angles = [..]}, {axis = [..], angle = ..} or {dcm = [[..], ..]}"
+FORMS = '{quaternion = [..]}, {sequence = "ZXZ", angles = [..]}, {axis = [..], angle = ..} or {dcm = [[..], ..]}'
 
 Quaternion = tuple[Fraction, Fraction, Fraction, Fraction]
 Vector = tuple[Fraction, Fraction, Fraction]

@@ -7,9 +7,9 @@
 __all__ = ["CHANGES", "CONTENTS", "bad_scenes", "base_scene"]
 
 BODY = "[body]\nprincipal = [1, 2, 2.5]\n"
-SHAPE = "[body]\nshape = \"box\"\na = 1\nb = 2\nc = 3\nmass = 6\n"
-TOP = SHAPE + "about = \"fixed_point\"\nfixed_point = [0, 0, -1]\n"
-PARTS = "[[body.part]]\nshape = \"sphere\"\nradius = 1\nmass = 1\n"
+SHAPE = '[body]\nshape = "box"\na = 1\nb = 2\nc = 3\nmass = 6\n'
+TOP = SHAPE + 'about = "fixed_point"\nfixed_point = [0, 0, -1]\n'
+PARTS = '[[body.part]]\nshape = "sphere"\nradius = 1\nmass = 1\n'
 INITIAL = "[initial]\nomega = [0, 0.1, 1]\n"
 SPAN = "[span]\nt = [0, 10]\nsamples = 11\n"
 

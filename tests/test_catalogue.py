@@ -115,7 +115,9 @@ def test_a_page_does_not_depend_on_hashing(printed):
         ).stdout.decode()
         for seed in ("1", "20")
     }
-    assert pages == {"".join(printed[f"{name}.md"] for name in ("symmetric_top", "quaternion_rates", "gravity_gradient"))}
+    assert pages == {
+        "".join(printed[f"{name}.md"] for name in ("symmetric_top", "quaternion_rates", "gravity_gradient"))
+    }
 
 
 def test_the_catalogue_is_named_without_sympy():

@@ -247,7 +247,9 @@ def test_a_reader_that_leaves_early_is_no_error():
     reader, writer = os.pipe()
     os.close(reader)
     try:
-        done = subprocess.run([sys.executable, "-m", "symrot", "scenes"], stdout=writer, stderr=subprocess.PIPE, cwd=ROOT)
+        done = subprocess.run(
+            [sys.executable, "-m", "symrot", "scenes"], stdout=writer, stderr=subprocess.PIPE, cwd=ROOT
+        )
     finally:
         os.close(writer)
     assert (done.returncode, done.stderr) == (141, b"")

@@ -256,7 +256,7 @@ def test_no_emitted_line_is_long_and_nothing_of_the_machine_is_in_it():
 
 @needs_cc
 def test_a_title_cannot_break_out_of_its_comment(tmp_path):
-    hostile = "quick */ int x; /* \"\"\" \\ ??/ #error \U0001f600"
+    hostile = 'quick */ int x; /* """ \\ ??/ #error \U0001f600'
     scene = Scene.from_dict({
         "schema": 1, "title": hostile, "body": {"principal": [1, 2, 3]}, "initial": {"omega": [1, 1, 1]}, "span": {"t": [0, 9]},
     })  # fmt: skip

@@ -432,7 +432,9 @@ def test_input_that_cannot_be_used_is_named(change, sentence):
         dop853.integrate(**{**arguments, **change})
 
 
-@pytest.mark.parametrize("blocks, scales", [((0, 3), (0.0,)), ((0, 3, 3, 7), (0, 0, 0)), ((0, 7), (0.0, 1.0)), ((), ())])
+@pytest.mark.parametrize(
+    "blocks, scales", [((0, 3), (0.0,)), ((0, 3, 3, 7), (0, 0, 0)), ((0, 7), (0.0, 1.0)), ((), ())]
+)
 def test_blocks_cover_the_states_once(blocks, scales):
     with pytest.raises(InputError, match="blocks of 7 states"):
         dop853.translation_unit(RIGID_BODY, "rigid_body", 7, 6, blocks, scales)
@@ -457,7 +459,9 @@ def test_any_number_of_states_can_be_stepped(states):
 
 
 @pytest.mark.skipif(shutil.which("gcc") is None or shutil.which("g++") is None, reason="no GNU compilers")
-@pytest.mark.parametrize("command", [["gcc", "-std=c99", "-x", "c"], ["g++", "-std=c++11", "-x", "c++"]], ids=["c", "c++"])
+@pytest.mark.parametrize(
+    "command", [["gcc", "-std=c99", "-x", "c"], ["g++", "-std=c++11", "-x", "c++"]], ids=["c", "c++"]
+)
 def test_the_source_is_clean_c99_and_valid_cpp(command):
     source = dop853.translation_unit(RIGID_BODY, "rigid_body", 7, 6)
     options = ["-Wall", "-Wextra", "-pedantic", "-Wshadow", "-Werror", "-fsyntax-only", "-"]
@@ -483,7 +487,15 @@ def test_unknown_scipy_methods_are_refused_with_the_list(text):
 
 @pytest.mark.parametrize(
     "method, tolerance",
-    [("DOP853", 1e-4), ("DOP853", 1e-9), ("RK45", 1e-5), ("RK23", 1e-3), ("Radau", 1e-4), ("BDF", 1e-4), ("LSODA", 1e-7)],
+    [
+        ("DOP853", 1e-4),
+        ("DOP853", 1e-9),
+        ("RK45", 1e-5),
+        ("RK23", 1e-3),
+        ("Radau", 1e-4),
+        ("BDF", 1e-4),
+        ("LSODA", 1e-7),
+    ],
 )
 @pytest.mark.parametrize("name", ["flips about the middle axis", "asymmetric top"])
 def test_the_fallback_means_the_same_by_a_tolerance(name, method, tolerance):
@@ -513,9 +525,7 @@ def test_the_fallback_restarts_at_a_switching_time():
     def rate(t, y, p):
         return [2 * y[0] if t >= 1.0 else -y[0]]
 
-    found, _ = fallback.integrate(
-        rate, [], [1.0], 0.0, [1.0, 3.0], 1e-11, blocks=(0, 1), scales=(0.0,), breaks=[1.0]
-    )
+    found, _ = fallback.integrate(rate, [], [1.0], 0.0, [1.0, 3.0], 1e-11, blocks=(0, 1), scales=(0.0,), breaks=[1.0])
     assert found[:, 0] == pytest.approx([math.exp(-1.0), math.exp(3.0)], rel=1e-9)
 
 

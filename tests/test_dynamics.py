@@ -96,9 +96,7 @@ def test_an_expression_in_space_is_turned_into_the_body():
     k = symbols.constant("k")
     expected = Matrix(dcm_of(Q)).T * Matrix([k * symbols.t, 0, 0])
     assert torque_law(structure, MOTION).torque == expected
-    assert (
-        formula(parse("2*cos(pi*t)**2 - 1/3"), {"t": symbols.t}).subs(symbols.t, 0) == Rational(5, 3)
-    )
+    assert formula(parse("2*cos(pi*t)**2 - 1/3"), {"t": symbols.t}).subs(symbols.t, 0) == Rational(5, 3)
 
 
 def test_every_kind_has_a_law():

@@ -65,7 +65,9 @@ def test_a_library_is_built_once(own_cache, no_compiling):
 
 
 @pytest.mark.parametrize(
-    "change", ["source", "flags", "compiler", "compiler arguments", "processor"], ids=lambda text: text.replace(" ", "-")
+    "change",
+    ["source", "flags", "compiler", "compiler arguments", "processor"],
+    ids=lambda text: text.replace(" ", "-"),
 )
 def test_whatever_shapes_a_library_is_in_its_key(change, tmp_path, monkeypatch, no_compiling):
     tool = fake_compiler(tmp_path, 'exec cc "$@"')

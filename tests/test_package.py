@@ -48,7 +48,9 @@ def imports_of(path):
     """The modules of symrot that a file imports when it is imported itself."""
     for node in ast.parse(path.read_text(encoding="utf-8")).body:
         if isinstance(node, ast.ImportFrom) and node.module and not node.level:
-            names = [f"{node.module}.{alias.name}" for alias in node.names] if node.module == "symrot" else [node.module]
+            names = (
+                [f"{node.module}.{alias.name}" for alias in node.names] if node.module == "symrot" else [node.module]
+            )
             yield from (name for name in names if room_of(name) in ORDER)
         elif isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names if room_of(alias.name))
@@ -96,7 +98,18 @@ def test_a_name_that_is_not_there_is_an_attribute_error():
 def unpacked_wheel(tmp_path_factory):
     """The wheel, unpacked outside the source tree."""
     directory = tmp_path_factory.mktemp("wheel")
-    command = [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--no-build-isolation", "-w", str(directory), str(ROOT)]
+    command = [
+        sys.executable,
+        "-m",
+        "pip",
+        "wheel",
+        "--quiet",
+        "--no-deps",
+        "--no-build-isolation",
+        "-w",
+        str(directory),
+        str(ROOT),
+    ]
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     (wheel,) = directory.glob("symrot-*.whl")
@@ -116,6 +129,10 @@ def test_the_wheel_runs_a_shipped_scene_outside_the_source_tree(unpacked_wheel, 
 
 def test_the_wheel_holds_all_data_and_no_test(unpacked_wheel):
     held = {str(path.relative_to(unpacked_wheel)) for path in unpacked_wheel.rglob("*") if path.is_file()}
-    wanted = {str(path.relative_to(ROOT)) for suffix in ("py", "toml", "c", "h", "typed") for path in PACKAGE.rglob(f"*.{suffix}")}
+    wanted = {
+        str(path.relative_to(ROOT))
+        for suffix in ("py", "toml", "c", "h", "typed")
+        for path in PACKAGE.rglob(f"*.{suffix}")
+    }
     assert wanted <= held
     assert not any(name.startswith("tests") for name in held)

@@ -79,7 +79,9 @@ def filled(page):
 
 def test_the_markdown_page(page):
     text = filled(page).markdown()
-    assert text.startswith("# A page\n\nAbout $x$.\n\n*Source:* Nobody, *Nothing*, p. 1.\n\n## Part, one\n\nLet\n\n$$\n")
+    assert text.startswith(
+        "# A page\n\nAbout $x$.\n\n*Source:* Nobody, *Nothing*, p. 1.\n\n## Part, one\n\nLet\n\n$$\n"
+    )
     assert "$$\n\\omega_{1} = \\dot{\\phi}\n$$" in text
     assert "**1.** It is.\n\n$$\ns = 1\n$$\n\n*Why:* of $`[a]_\\times`$ & `b_c`." in text
     assert "*Given:* $q_{0}^{2} + q_{1}^{2} + q_{2}^{2} + q_{3}^{2} = 1$." in text

@@ -194,4 +194,3 @@ def test_rates_stay_finite_for_motion_that_the_locked_chart_can_follow():
             jacobian = rate_jacobian(sequence, angles=(phi, point.middle, psi))
             assert normal_form(limit.residue * jacobian) == Matrix.zeros(3)
             assert normal_form(limit.residue * point.lost_axis_b) != Matrix.zeros(3, 1)
-

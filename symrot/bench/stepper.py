@@ -24,9 +24,9 @@ from symrot.propagation import dop853
 
 __all__ = ["Measurement", "main", "measure"]
 
-MOMENTS = (1.0, 2.0, 3.0)             # kg m^2
+MOMENTS = (1.0, 2.0, 3.0)  # kg m^2
 INITIAL = (0.3, 1.0, 0.5, 1.0, 0.0, 0.0, 0.0)  # rad/s, 1
-SLOW_ROUNDS = 3                       # of SciPy's, which takes a thousand times as long
+SLOW_ROUNDS = 3  # of SciPy's, which takes a thousand times as long
 
 Floats = NDArray[np.float64]
 
@@ -49,8 +49,17 @@ def measure(tolerance: float, stop: float, rounds: int) -> list[Measurement]:
     p = ((b - c) / a, (c - a) / b, (a - b) / c)
     fast = tuple("-O3" if flag == "-O2" else flag for flag in library.FLAGS)
     contestants: list[tuple[str, int, Callable[[], tuple[int, Floats]]]] = [
-        ("symrot", rounds, partial(_symrot, library.build(
-            dop853.translation_unit(kernel, "free_body", 7, 3), "free_body_stepper"), p, tolerance, stop)),
+        (
+            "symrot",
+            rounds,
+            partial(
+                _symrot,
+                library.build(dop853.translation_unit(kernel, "free_body", 7, 3), "free_body_stepper"),
+                p,
+                tolerance,
+                stop,
+            ),
+        ),
         ("by hand, -O2", rounds, _by_hand(library.build(by_hand, "stepper_by_hand"), p, tolerance, stop)),
         ("by hand, -O3", rounds, _by_hand(library.build(by_hand, "stepper_by_hand", fast), p, tolerance, stop)),
         ("solve_ivp", min(rounds, SLOW_ROUNDS), partial(_scipy, p, tolerance, stop)),
@@ -98,11 +107,17 @@ def _scipy(p: tuple[float, ...], tolerance: float, stop: float) -> tuple[int, Fl
 
     def rhs(t: float, y: Floats) -> Floats:
         w1, w2, w3, q0, q1, q2, q3 = y
-        return np.array([
-            p[0] * w2 * w3, p[1] * w3 * w1, p[2] * w1 * w2,
-            0.5 * (-q1 * w1 - q2 * w2 - q3 * w3), 0.5 * (q0 * w1 + q2 * w3 - q3 * w2),
-            0.5 * (q0 * w2 + q3 * w1 - q1 * w3), 0.5 * (q0 * w3 + q1 * w2 - q2 * w1),
-        ])
+        return np.array(
+            [
+                p[0] * w2 * w3,
+                p[1] * w3 * w1,
+                p[2] * w1 * w2,
+                0.5 * (-q1 * w1 - q2 * w2 - q3 * w3),
+                0.5 * (q0 * w1 + q2 * w3 - q3 * w2),
+                0.5 * (q0 * w2 + q3 * w1 - q1 * w3),
+                0.5 * (q0 * w3 + q1 * w2 - q2 * w1),
+            ]
+        )
 
     found = solve_ivp(rhs, (0.0, stop), np.array(INITIAL), method="DOP853", rtol=tolerance, atol=tolerance)
     return int(found.nfev), found.y[:, -1]

@@ -30,9 +30,7 @@ def derive() -> Derivation:
     d.step("The exponential is a rotation.", dcm_sb * dcm_sb.T, eye(3), because=r"$[v]_\times$ is skew",
            named=r"R R^{\mathsf T},\quad R = 1 + \frac{\sin a}{a}[v]_\times + \frac{1 - \cos a}{a^2}[v]_\times^2:\quad "
            r"R R^{\mathsf T}")  # fmt: skip
-    d.step(
-        "The axis stays where it is.", dcm_sb * V, V, because=r"$v \times v = 0$", named="R v", shown="v"
-    )
+    d.step("The axis stays where it is.", dcm_sb * V, V, because=r"$v \times v = 0$", named="R v", shown="v")
     d.step(
         "It is the rotation of the quaternion with half the angle.",
         dcm_of(quaternion_of_rotation_vector(V)),

@@ -419,9 +419,7 @@ def euler_to_quaternion(angles: Any, sequence: str, degrees: bool = False) -> Ar
     return _by_components(product, np.radians(angles) if degrees else angles, 4)
 
 
-def quaternion_to_euler(
-    q: Any, sequence: str, degrees: bool = False, lock: float = LOCK
-) -> tuple[Array, Mask]:
+def quaternion_to_euler(q: Any, sequence: str, degrees: bool = False, lock: float = LOCK) -> tuple[Array, Mask]:
     """Return Euler angles in order of application, shape (..., 3), and where they lock, shape (...).
 
     Parameters

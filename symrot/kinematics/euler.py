@@ -153,9 +153,7 @@ def _solved(carry: Matrix, core: Matrix, order: Matrix) -> tuple[Expr, Immutable
     return determinant, ImmutableMatrix(order.T * core_inverse * carry.T)
 
 
-def _along(
-    sequence: str, frame: str, angles: tuple[Expr, ...], middle: Expr
-) -> tuple[Expr, ImmutableMatrix | None]:
+def _along(sequence: str, frame: str, angles: tuple[Expr, ...], middle: Expr) -> tuple[Expr, ImmutableMatrix | None]:
     return _solved(*_core(sequence, frame, (angles[0], middle, angles[2])))
 
 

@@ -60,9 +60,7 @@ def unit_vector(axis: int | str) -> ImmutableMatrix:
 
 def cross_sign(first: int, second: int) -> tuple[int, int]:
     """Return ``(m, sign)`` with ``e_first x e_second = sign * e_m``, for two different axes."""
-    ((m, sign),) = (
-        (k, int(LeviCivita(i, j, k))) for i, j, k in permutations(range(3)) if (i, j) == (first, second)
-    )
+    ((m, sign),) = ((k, int(LeviCivita(i, j, k))) for i, j, k in permutations(range(3)) if (i, j) == (first, second))
     return m, sign
 
 

@@ -24,7 +24,7 @@ __all__ = ["MAX_STEPS", "Recording", "Stats", "integrate", "record", "step_toler
 MAX_STEPS = 1_000_000_000
 STEPS_PER_CALL = 100_000  # some 20 ms in C, after which Python can see an interrupt
 STEP_SHARE, NATURAL_TIMES = 0.14, 0.16  # of the tolerance; of the span, see step_tolerance
-ROWS_PER_CALL = 256       # steps recorded per call
+ROWS_PER_CALL = 256  # steps recorded per call
 
 Floats = NDArray[np.float64]
 
@@ -90,16 +90,18 @@ def translation_unit(
             f"scales {list(scales)}"
         )
     here = Path(__file__).parent
-    return "\n".join((
-        kernel,
-        f"#define SYMROT_STATES {states}",
-        f"#define SYMROT_PARAMETERS {parameters}",
-        f"#define SYMROT_RHS {name}",
-        f"#define SYMROT_BLOCKS {{{', '.join(map(str, edges))}}}",
-        f"#define SYMROT_SCALES {{{', '.join(map(repr, map(float, scales)))}}}",
-        (here / "dop853_tableau.h").read_text(encoding="utf-8"),
-        (here / "dop853.c").read_text(encoding="utf-8"),
-    ))
+    return "\n".join(
+        (
+            kernel,
+            f"#define SYMROT_STATES {states}",
+            f"#define SYMROT_PARAMETERS {parameters}",
+            f"#define SYMROT_RHS {name}",
+            f"#define SYMROT_BLOCKS {{{', '.join(map(str, edges))}}}",
+            f"#define SYMROT_SCALES {{{', '.join(map(repr, map(float, scales)))}}}",
+            (here / "dop853_tableau.h").read_text(encoding="utf-8"),
+            (here / "dop853.c").read_text(encoding="utf-8"),
+        )
+    )
 
 
 def integrate(

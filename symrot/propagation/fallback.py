@@ -26,10 +26,10 @@ METHODS = {"DOP853": 0.1, "RK45": 0.1, "RK23": 0.1, "Radau": 1.0, "BDF": 0.01, "
 """SciPy's methods, and the share of the tolerance that one step of each is given; calibrated as in dop853.py."""
 
 DEFAULT = "DOP853"
-PILOT_TOLERANCE = 1e-3    # of the coarse pass
-PILOT_STEPS = 10          # a motion of so many coarse steps may spend the whole share in every step
+PILOT_TOLERANCE = 1e-3  # of the coarse pass
+PILOT_STEPS = 10  # a motion of so many coarse steps may spend the whole share in every step
 MAX_EVALUATIONS = 1_000_000_000
-MAX_BROKEN = 1000         # derivatives that are not finite, before the motion is given up
+MAX_BROKEN = 1000  # derivatives that are not finite, before the motion is given up
 SMALLEST_RTOL = 100 * float(np.finfo(float).eps)  # SciPy takes no smaller one
 
 

@@ -58,9 +58,7 @@ def _head(arrays: list[Labelled], about: dict[str, Any]) -> Iterator[str]:
     for key in ("scene", "source", "method", "tolerance"):
         yield f"{key}: {one_line(str(about[key]))}"
     yield "columns:"
-    rows = [
-        (f"  {component}", item.unit, item.frame, item.meaning) for item in arrays for component in item.components
-    ]
+    rows = [(f"  {component}", item.unit, item.frame, item.meaning) for item in arrays for component in item.components]
     yield from columns(rows, width=1000)
     yield "invariants (largest change since the start, relative):"
     yield from columns([(f"  {i['name']}", f"{i['drift']:.3g}", i["reason"]) for i in about["invariants"]], width=1000)
