@@ -19,7 +19,7 @@ typedef struct {
  * start + rate*t + more, less whole parts: `rest`, at most half a part, and how many of them were taken off, -7 to 7 of
  * 4. It carries one rounding of its own size however many turns have passed. |start| <= 1/2, |more| <= 1/8.
  */
-static inline double phase_rest(const phase *p, double t, double parts, double more, double *taken)
+ALWAYS_INLINE double phase_rest(const phase *p, double t, double parts, double more, double *taken)
 {
     const double turns = t*p->rate[0];
     double small = product_error(t, p->rate[0], turns) + t*p->rate[1];
@@ -30,7 +30,7 @@ static inline double phase_rest(const phase *p, double t, double parts, double m
 }
 
 /* The same of what is not periodic: start + rate*t to one rounding. */
-static inline double phase_whole(const phase *p, double t)
+ALWAYS_INLINE double phase_whole(const phase *p, double t)
 {
     const double turns = t*p->rate[0];
     const dd sum = two_sum(turns, p->start[0]);
@@ -38,7 +38,7 @@ static inline double phase_whole(const phase *p, double t)
 }
 
 /* The sine and cosine of rest + taken/4 turns, |rest| <= 1/8. */
-static inline void sincos_quarters(double rest, double taken, double *sine, double *cosine)
+ALWAYS_INLINE void sincos_quarters(double rest, double taken, double *sine, double *cosine)
 {
     const double x = rest*rest;
     double s = 0x1.aaec32af93359p-4, c = -0x1.2a0c591af8314p-5;
@@ -68,7 +68,7 @@ static inline void sincos_quarters(double rest, double taken, double *sine, doub
 }
 
 /* exp(x) for |x| <= 700. */
-static inline double exp_moderate(double x)
+ALWAYS_INLINE double exp_moderate(double x)
 {
     const double k = rint(x*0x1.71547652b82fep+0); /* 1/ln 2 */
     const double rest = MUL_ADD(-k, 0x1.abc9e3b39803fp-56, MUL_ADD(-k, 0x1.62e42fefa39efp-1, x));

@@ -22,6 +22,13 @@
 #define MUL_ADD(a, b, c) ((a)*(b) + (c))
 #endif
 
+/* Loops over samples turn into SIMD code only where everything in them is inlined. */
+#if defined(__GNUC__)
+#define ALWAYS_INLINE static inline __attribute__((always_inline))
+#else
+#define ALWAYS_INLINE static inline
+#endif
+
 typedef struct {
     double hi, lo;
 } dd;

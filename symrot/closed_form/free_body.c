@@ -142,21 +142,60 @@ static void odd_series(const dd c[SERIES], double sign, double to[SERIES])
     even_series(even, to);
 }
 
-/* Steady rotation: q = (cos, n sin) of half the angle, on the left of nothing but q0. */
-static void prepare_steady(const dd omega[3], const dd q0[4], const double *omega_given, free_body *f)
+/* From the principal axes to those in which omega and the attitude are given: v_given = matrix*v_principal. */
+typedef struct {
+    dd matrix[3][3], quaternion[4];
+} body_axes;
+
+static void take_axes(const double *given, body_axes *axes)
+{
+    for (int i = 0; i < 3; ++i) {
+        for (int k = 0; k < 3; ++k)
+            axes->matrix[i][k] = given ? dd_pair(given[6*i + 2*k], given[6*i + 2*k + 1]) : dd_of(i == k);
+    }
+    for (int i = 0; i < 4; ++i)
+        axes->quaternion[i] = given ? dd_pair(given[18 + 2*i], given[19 + 2*i]) : dd_of(i == 0);
+}
+
+/* f->attitude, column j = left*e_i*right*conj(axes). */
+static void store_column(const dd left[4], int i, const dd right[4], const body_axes *axes, int j, free_body *f)
+{
+    dd back[4], last[4], unit[4], first[4], column[4];
+    for (int k = 0; k < 4; ++k) {
+        back[k] = k ? dd_negative(axes->quaternion[k]) : axes->quaternion[k];
+        unit[k] = dd_of(k == i);
+    }
+    quaternion_product(right, back, last);
+    quaternion_product(left, unit, first);
+    quaternion_product(first, last, column);
+    for (int k = 0; k < 4; ++k)
+        f->attitude[k][j] = column[k].hi;
+}
+
+/* f->omega from the column n of a matrix that belongs to axis e_n of the canonical frame. */
+static void store_omega(const body_axes *axes, int axis, dd amplitude, double scale, int n, free_body *f)
+{
+    for (int i = 0; i < 3; ++i)
+        f->omega[i][n] = dd_mul(axes->matrix[i][axis], amplitude).hi*scale;
+}
+
+/* Steady rotation about n: X = (cos, n sin) of half the angle; the map of X is that of (cos, sin, 0, 0). */
+static void prepare_steady(const dd omega[3], const dd q0[4], const body_axes *axes, double scale, free_body *f)
 {
     static const dd pi = DD_PI;
+    const dd one[4] = {{1.0, 0.0}, {0.0, 0.0}, {0.0, 0.0}, {0.0, 0.0}};
     const dd speed = dd_sqrt(dd_add(dd_add(dd_square(omega[0]), dd_square(omega[1])), dd_square(omega[2])));
     dd unit[4] = {{0.0, 0.0}}, turned[4];
     for (int i = 0; i < 3; ++i) {
+        dd given = dd_of(0.0);
+        for (int k = 0; k < 3; ++k)
+            given = dd_add(given, dd_mul(axes->matrix[i][k], omega[k]));
+        f->omega[i][0] = given.hi*scale;
         unit[i + 1] = speed.hi > 0.0 ? dd_div(omega[i], speed) : dd_of(0.0);
-        f->omega[i][0] = omega_given[2*i];
     }
     quaternion_product(q0, unit, turned);
-    for (int i = 0; i < 4; ++i) {
-        f->attitude[i][0] = q0[i].hi;
-        f->attitude[i][1] = turned[i].hi;
-    }
+    store_column(q0, 0, one, axes, 0, f);
+    store_column(turned, 0, one, axes, 1, f);
     f->regime = STEADY;
     store_phase(dd_scale(dd_div(speed, pi), 0.25), dd_of(0.0), f->turning);
 }
@@ -226,9 +265,9 @@ static dd half_turning(const canonical_motion *c)
 
 enum { TERMS = 8 };
 
-/* base^(n(n+1)) and base^(n^2) with the signs of theta 1 and theta 4, and what normalises cn, sn, dn. */
+/* nome^(n(n+1)) and nome^(n^2), also with the signs of theta1 and theta4; the sums at 0, theta2 over 2 nome^(1/4). */
 typedef struct {
-    dd odd[TERMS], odd_signed[TERMS], even[TERMS], even_signed[TERMS], cn, sn, dn;
+    dd odd[TERMS], odd_signed[TERMS], even[TERMS], even_signed[TERMS], theta2, theta3, theta4;
 } theta_terms;
 
 static void theta_terms_of(dd nome, theta_terms *t)
@@ -252,9 +291,9 @@ static void theta_terms_of(dd nome, theta_terms *t)
         even = dd_add(even, t->even[n]);
         alternating = dd_add(alternating, t->even_signed[n]);
     }
-    t->cn = odd_sum;       /* theta2(0) or theta2(0), over 2 nome^(1/4) */
-    t->dn = even;          /* theta3(0) */
-    t->sn = alternating;   /* theta4(0) */
+    t->theta2 = odd_sum;
+    t->theta3 = even;
+    t->theta4 = alternating;
 }
 
 static void scaled(const dd from[TERMS], dd factor, dd to[SERIES])
@@ -277,15 +316,13 @@ static dd prepare_circular(const canonical_motion *c, dd k, dd k_prime, dd eta, 
     theta_terms_of(nome, &t);
     dd c4[SERIES], work[SERIES];
     /* theta4 scaled so that it is about 1, the numerators so that cn(0) = sn(K) = dn(0) = 1 */
-    dd at_k = dd_of(0.0); /* theta1(pi/2) = sum q^(n(n+1)) */
-    at_k = t.cn;
     scaled(t.even_signed, dd_of(1.0), c4);
     even_series(c4, f->series[3]);
-    scaled(t.odd, dd_div(t.sn, t.cn), work);
+    scaled(t.odd, dd_div(t.theta4, t.theta2), work);
     odd_series(work, 1.0, f->series[0]);
-    scaled(t.odd_signed, dd_div(t.dn, at_k), work); /* theta4(pi/2) = theta3(0) */
+    scaled(t.odd_signed, dd_div(t.theta3, t.theta2), work); /* theta1, theta4 at pi/2 are theta2, theta3 at 0 */
     odd_series(work, -1.0, f->series[1]);
-    scaled(t.even, dd_div(t.sn, t.dn), work);
+    scaled(t.even, dd_div(t.theta4, t.theta3), work);
     even_series(work, f->series[2]);
 
     dd cosines[TERMS], sines[TERMS];
@@ -351,11 +388,11 @@ static dd prepare_hyperbolic(const canonical_motion *c, dd k, dd k_prime, dd eta
     dd work[SERIES];
     scaled(t.odd, dd_of(1.0), work);
     odd_series(work, 1.0, f->series[3]);
-    scaled(t.even_signed, dd_div(t.cn, t.sn), work);
+    scaled(t.even_signed, dd_div(t.theta2, t.theta4), work);
     even_series(work, f->series[0]);
-    scaled(t.odd_signed, dd_div(t.dn, t.sn), work);
+    scaled(t.odd_signed, dd_div(t.theta3, t.theta4), work);
     odd_series(work, -1.0, f->series[1]);
-    scaled(t.even, dd_div(t.cn, t.dn), work);
+    scaled(t.even, dd_div(t.theta2, t.theta3), work);
     even_series(work, f->series[2]);
 
     const dd turns = dd_scale(dd_div(dd_sub(k_prime, eta), k_prime), 0.125*c->s); /* x/(2 pi) */
@@ -402,9 +439,10 @@ static dd prepare_hyperbolic(const canonical_motion *c, dd k, dd k_prime, dd eta
     return dd_sub(kappa, even);
 }
 
-static void prepare_attitude(const canonical_motion *c, dd real, dd imag, dd lead, const dd q0[4], free_body *f)
+static void prepare_attitude(const canonical_motion *c, dd real, dd imag, dd lead, const dd q0[4], const body_axes *axes,
+    free_body *f)
 {
-    dd x[4], spun[4], back[4], left[4], turn[4], column[4], unit[4], rotated[4];
+    dd x[4], spun[4], back[4], left[4], turn[4];
     dd sine, cosine;
     dd_sincos_turns(lead, &sine, &cosine);
     const dd re = dd_sub(dd_mul(real, cosine), dd_mul(imag, sine));
@@ -420,14 +458,8 @@ static void prepare_attitude(const canonical_motion *c, dd real, dd imag, dd lea
     for (int i = 0; i < 4; ++i)
         back[i] = i ? dd_negative(spun[i]) : spun[i];
     quaternion_product(q0, back, left);
-    for (int j = 0; j < 4; ++j) {
-        for (int i = 0; i < 4; ++i)
-            unit[i] = dd_of(i == j ? 1.0 : 0.0);
-        quaternion_product(left, unit, rotated);
-        quaternion_product(rotated, turn, column);
-        for (int i = 0; i < 4; ++i)
-            f->attitude[i][j] = column[i].hi;
-    }
+    for (int j = 0; j < 4; ++j)
+        store_column(left, j, turn, axes, j, f);
 }
 
 /* A power of two near the largest of some pairs hi, lo; 1 where they are zero. */
@@ -453,13 +485,18 @@ static double near_power(const double *values, int count)
  * in   exact[8]               for numbers that two doubles do not hold exactly, each as hi, lo: I2 - I3, I3 - I1, I1 - I2
  *                             and |L|^2 - 2 T I_mid over the square of the largest moment times the largest |omega_i|;
  *                             else NULL
+ * in   axes[26]       1       NULL where the axes of the body are principal; else each as hi, lo the matrix, row by row,
+ *                             and the unit quaternion that take principal components to the body's own:
+ *                             quaternion[] is then the attitude of the body's own axes, omega[] still along principal
+ *                             ones, and the motion is returned in the body's own
  * out  f                      the constants
  *
  * Domain: moments positive and finite, |omega| finite. Components of omega below 1e-150 of the largest count as zero.
  * Returns 0, or 1 where the numbers are not of this domain, or 2 where the compiler has broken error-free arithmetic.
  */
 int symrot_free_body_prepare(
-    const double inertia[6], const double omega[6], const double quaternion[8], const double *exact, free_body *f)
+    const double inertia[6], const double omega[6], const double quaternion[8], const double *exact,
+    const double *axes, free_body *f)
 {
     static const dd pi = DD_PI;
     static const free_body blank;
@@ -470,7 +507,8 @@ int symrot_free_body_prepare(
         if (!(fabs(inertia[i]) <= 1e308 && fabs(omega[i]) <= 1e308))
             return 1;
     const double moment_scale = near_power(inertia, 3), omega_scale = near_power(omega, 3);
-    dd moments[3], w[3], q0[4], differences[3], defect;
+    dd moments[3], w[3], given[4], q0[4], differences[3], defect;
+    body_axes frame;
     for (int i = 0; i < 3; ++i) {
         moments[i] = dd_pair(inertia[2*i]/moment_scale, inertia[2*i + 1]/moment_scale);
         w[i] = dd_pair(omega[2*i]/omega_scale, omega[2*i + 1]/omega_scale);
@@ -481,8 +519,10 @@ int symrot_free_body_prepare(
     }
     const double quaternion_scale = near_power(quaternion, 4);
     for (int i = 0; i < 4; ++i)
-        q0[i] = dd_pair(quaternion[2*i]/quaternion_scale, quaternion[2*i + 1]/quaternion_scale);
-    normalise(q0);
+        given[i] = dd_pair(quaternion[2*i]/quaternion_scale, quaternion[2*i + 1]/quaternion_scale);
+    normalise(given);
+    take_axes(axes, &frame);
+    quaternion_product(given, frame.quaternion, q0);
     if (!(fabs(q0[0].hi) <= 2.0))
         return 1;
     f->time_scale = omega_scale;
@@ -504,7 +544,7 @@ int symrot_free_body_prepare(
     for (int i = 0; i < 3; ++i)
         steady = steady && !(differences[i].hi != 0.0 && w[(i + 1)%3].hi != 0.0 && w[(i + 2)%3].hi != 0.0);
     if (steady) {
-        prepare_steady(w, q0, omega, f);
+        prepare_steady(w, q0, &frame, omega_scale, f);
         return 0;
     }
     canonical_motion c;
@@ -526,43 +566,43 @@ int symrot_free_body_prepare(
     if (f->regime == HYPERBOLIC)
         lead = dd_scale(dd_mul(dd_div(c.u, k), dd_of(f->slope)), 0.5); /* the sawtooth of psi/2 at the start */
     store_phase(dd_scale(dd_div(kappa, pi), 0.5), dd_of(0.0), f->turning);
-    prepare_attitude(&c, real, imag, lead, q0, f);
+    prepare_attitude(&c, real, imag, lead, q0, &frame, f);
     const double signs[3] = {1.0, c.s, 1.0};
     for (int n = 0; n < 3; ++n) {
-        const dd amplitude = dd_div(c.amplitudes[n], c.moments[n]);
+        const dd amplitude = dd_scale(dd_div(c.amplitudes[n], c.moments[n]), signs[n]*c.direction[n]);
         f->momentum[n] = signs[n]*dd_div(c.amplitudes[n], c.total).hi;
-        f->omega[c.axis[n]][n] = signs[n]*c.direction[n]*amplitude.hi*omega_scale;
+        store_omega(&frame, c.axis[n], amplitude, omega_scale, n, f);
     }
     return 0;
 }
 
 /* ------------------------------------------------------------------------------------------------ at any time */
 
-static inline double polynomial(const double c[SERIES], double x)
+ALWAYS_INLINE double polynomial(const double c[SERIES], double x)
 {
     return MUL_ADD(MUL_ADD(MUL_ADD(MUL_ADD(c[4], x, c[3]), x, c[2]), x, c[1]), x, c[0]);
 }
 
-static inline double cubic(const double c[SERIES], double x)
+ALWAYS_INLINE double cubic(const double c[SERIES], double x)
 {
     return MUL_ADD(MUL_ADD(MUL_ADD(c[3], x, c[2]), x, c[1]), x, c[0]);
 }
 
-static inline double clamped(double x, double limit)
+ALWAYS_INLINE double clamped(double x, double limit)
 {
     x = x > limit ? limit : x;
     return x < -limit ? -limit : x;
 }
 
 /* omega = map*(cn, sn, dn). */
-static inline void put_omega(const double map[3][3], double cn, double sn, double dn, double *restrict omega)
+ALWAYS_INLINE void put_omega(const double map[3][3], double cn, double sn, double dn, double *restrict omega)
 {
     for (int i = 0; i < 3; ++i)
         omega[i] = MUL_ADD(map[i][0], cn, MUL_ADD(map[i][1], sn, map[i][2]*dn));
 }
 
 /* q = map*X, X = exp(k psi/2) P, from (re, im) ~ N and the sine and cosine of the even part of psi/2. */
-static inline void put_quaternion(
+ALWAYS_INLINE void put_quaternion(
     const free_body *f, double cn, double sn, double dn, double re, double im, double sine, double cosine,
     double *restrict q)
 {
@@ -575,7 +615,7 @@ static inline void put_quaternion(
                MUL_ADD(f->attitude[i][2], x2, f->attitude[i][3]*x3)));
 }
 
-static inline void at_circular(
+ALWAYS_INLINE void at_circular(
     const free_body *restrict f, ptrdiff_t count, const double *restrict times, double *restrict omega,
     double *restrict q, int want_omega, int want_q)
 {
@@ -602,7 +642,7 @@ static inline void at_circular(
     }
 }
 
-static inline void at_hyperbolic(
+ALWAYS_INLINE void at_hyperbolic(
     const free_body *restrict f, ptrdiff_t count, const double *restrict times, double *restrict omega,
     double *restrict q, int want_omega, int want_q, int endless)
 {
@@ -640,7 +680,7 @@ static inline void at_hyperbolic(
     }
 }
 
-static inline void at_steady(
+ALWAYS_INLINE void at_steady(
     const free_body *restrict f, ptrdiff_t count, const double *restrict times, double *restrict omega,
     double *restrict q, int want_omega, int want_q)
 {

@@ -1,0 +1,1 @@
+"""Exact motions: rotations at any time without stepping."""
