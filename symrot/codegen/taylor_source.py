@@ -283,17 +283,13 @@ class _Jet:
             group = range(first, min(first + COLUMNS_PER_LOOP, len(columns)))
             for i in group:
                 lines.append(f"symrot_v4 a{i} = V_ALL(0.0), b{i} = a{i}, f{i} = {self.at(columns[i].a, '1')};")
-            lines.append("for (int k = 1; k < n - 1; k += 2) {")
-            for i in group:
+            lines.append("for (int64_t k = 1; k < n - 1; k += 2) {")
+            for i in group:  # one column after the other: three numbers in work beside the sums
                 a, b, _ = columns[i]
                 lines += [
                     f"    const symrot_v4 g{i} = {self.at(a, 'k + 1')}, h{i} = {self.at(b, 'n - k')};",
                     f"    a{i} = V_FMA(f{i}, h{i}, a{i});",
                     f"    b{i} = V_FMA(g{i}, h{i}, b{i});",
-                ]
-            for i in group:
-                a, b, _ = columns[i]
-                lines += [
                     f"    f{i} = {self.at(a, 'k + 2')};",
                     f"    const symrot_v4 j{i} = {self.at(b, 'n - k - 1')};",
                     f"    a{i} = V_FMA(g{i}, j{i}, a{i});",
@@ -327,8 +323,8 @@ class _Jet:
             *(f"symrot_v4 d{i};" for i in divisors),
             "{", *_indented(orders["0"]), "}",
             "{", *_indented(orders["1"]), "}",
-            "for (int n = 2; n < order; n += 2) {",
-            *_indented(["const int m = n + 1;", *self.loops(), "{", *_indented(orders["n"]), "}",
+            "for (int64_t n = 2; n < order; n += 2) {",
+            *_indented(["const int64_t m = n + 1;", *self.loops(), "{", *_indented(orders["n"]), "}",
                         *self.between(), "{", *_indented(orders["m"]), "}"]),
             "}",
         ]  # fmt: skip
@@ -347,7 +343,7 @@ class _Jet:
             "",
             "/* Fill x[row][1] to x[row][order], order even, from x[row][0]; step[n] is the unit of time over n. */",
             "static SYMROT_APART void symrot_jet(const symrot_v4 *SYMROT_RESTRICT c, double t,",
-            "    const double *SYMROT_RESTRICT step, int order, symrot_v4 (*SYMROT_RESTRICT x)[SYMROT_ORDER + 1])",
+            "    const double *SYMROT_RESTRICT step, int64_t order, symrot_v4 (*SYMROT_RESTRICT x)[SYMROT_ORDER + 1])",
             "{",
             *_indented(body),
             "}",

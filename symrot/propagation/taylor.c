@@ -47,7 +47,13 @@ static const int symrot_blocks[] = SYMROT_ROW_BLOCKS;
 static const double symrot_scales[] = SYMROT_SCALES;
 enum { SYMROT_BLOCK_COUNT = (int)(sizeof(symrot_scales)/sizeof(symrot_scales[0])) };
 
-#define EACH_ROW(r) for (int r = 0; r < SYMROT_ROWS; ++r)
+#if defined(__GNUC__)
+#define SYMROT_UNROLLED _Pragma("GCC unroll 8")
+#else
+#define SYMROT_UNROLLED
+#endif
+#define EACH_ROW(r) SYMROT_UNROLLED for (int r = 0; r < SYMROT_ROWS; ++r)
+#define EACH_BLOCK(b) SYMROT_UNROLLED for (int b = 0; b < SYMROT_BLOCK_COUNT; ++b)
 
 static const double SYMROT_LEAST_TAIL = 1e-18;   /* below round-off nothing is gained */
 static const double SYMROT_RATE_FLOOR = 1e-3;    /* a rate turns the body by less than this in a step: no need to see it */
@@ -80,7 +86,7 @@ static inline double symrot_size(symrot_v4 (*x)[SYMROT_ORDER + 1], int n, int bl
 {
     double size = 0.0;
     EACH_ROW(r) if (symrot_blocks[r] == block)
-        for (int i = 0; i < symrot_sizes[r]; ++i) {
+        SYMROT_UNROLLED for (int i = 0; i < symrot_sizes[r]; ++i) {
             const double value = fabs(V_LANE(x[r][n], i));
             size = size < value ? value : size;
         }
@@ -100,7 +106,7 @@ static inline double symrot_reference(symrot_v4 (*x)[SYMROT_ORDER + 1], double u
 static inline double symrot_step_log(symrot_v4 (*x)[SYMROT_ORDER + 1], double tail, double unit)
 {
     double shortest = 60.0;  /* the series of a motion that is a polynomial in time ends early */
-    for (int b = 0; b < SYMROT_BLOCK_COUNT; ++b) {
+    EACH_BLOCK(b) {
         const double allowed = symrot_log2(tail*symrot_reference(x, unit, b));
         const double last = (allowed - symrot_log2(symrot_size(x, SYMROT_ORDER, b)))*(1.0/SYMROT_ORDER);
         const double before = (allowed - symrot_log2(symrot_size(x, SYMROT_ORDER - 1, b)))*(1.0/(SYMROT_ORDER - 1));
@@ -136,7 +142,7 @@ static SYMROT_APART double symrot_first_unit(const symrot_v4 *c, double t, doubl
         if (symrot_finite(x, 2)) break;
     }
     if (tries == 64) return 0.0;
-    for (int b = 0; b < SYMROT_BLOCK_COUNT; ++b) {
+    EACH_BLOCK(b) {
         const double fixed = symrot_scales[b], size = fixed > 0.0 ? fixed : symrot_size(x, 0, b);
         if (size > 0.0) {
             fastest = symrot_larger(fastest, symrot_size(x, 1, b)/size/unit);
@@ -150,16 +156,19 @@ static SYMROT_APART double symrot_first_unit(const symrot_v4 *c, double t, doubl
     return ldexp(1.0, exponent);
 }
 
-/* Return coefficients from 1 on, summed at s units, and divided by s: even and odd powers apart. */
+/* Return coefficients from 1 on, summed at s units, and divided by s: four sums, each of every fourth power. */
 static inline symrot_v4 symrot_sum(const symrot_v4 *x, double s)
 {
-    const symrot_v4 square = V_ALL(s*s);
-    symrot_v4 odd = x[SYMROT_ORDER - 1], even = x[SYMROT_ORDER];
-    for (int n = SYMROT_ORDER - 3; n > 0; n -= 2) {
-        odd = V_FMA(odd, square, x[n]);
-        even = V_FMA(even, square, x[n + 1]);
+    const symrot_v4 first = V_ALL(s), second = V_ALL(s*s), fourth = V_ALL(s*s*(s*s));
+    symrot_v4 a = x[SYMROT_ORDER - 3], b = x[SYMROT_ORDER - 2], c = x[SYMROT_ORDER - 1], d = x[SYMROT_ORDER];
+    for (int n = SYMROT_ORDER - 7; n > 0; n -= 4) {
+        a = V_FMA(a, fourth, x[n]);
+        b = V_FMA(b, fourth, x[n + 1]);
+        c = V_FMA(c, fourth, x[n + 2]);
+        d = V_FMA(d, fourth, x[n + 3]);
     }
-    return V_FMA(even, V_ALL(s), odd);
+    const symrot_v4 sum = V_FMA(V_FMA(d, first, c), second, V_FMA(b, first, a));
+    return SYMROT_ORDER%4 ? V_FMA(sum, second, V_FMA(x[2], first, x[1])) : sum;  /* two are left of an order 4 k + 2 */
 }
 
 /* Write the lanes of all rows as one vector of states. */
