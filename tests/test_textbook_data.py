@@ -18,10 +18,15 @@ LISTS = {"lost", "symbols", "functions", "given", "alternatives"}
 REQUIRED = {"id", "where", "printed", "kind", "against"}
 KINDS = {"formula", "table", "number"}
 BUILT_IN = set(
-    "Rx Ry Rz skew vee cross dot det transpose inverse trace eye diag Matrix hstack qmul dcm_of "
-    "sqrt sin cos tan cot sec csc atan2 diff integrate pi".split()
+    re.findall(
+        r"\w+",
+        "Rx Ry Rz skew vee cross dot det transpose inverse trace eye diag Matrix hstack qmul dcm_of "
+        "sqrt sin cos tan cot sec csc atan2 diff integrate pi",
+    )
 )
-TOKEN = re.compile(r"\s*(?:(?P<number>\d+(?:\.\d+)?(?![\w.]))|(?P<name>[A-Za-z]\w*)|(?P<mark>\*\*|==|[-+*/(),\[\]]|\.T\b))", re.ASCII)
+TOKEN = re.compile(
+    r"\s*(?:(?P<number>\d+(?:\.\d+)?(?![\w.]))|(?P<name>[A-Za-z]\w*)|(?P<mark>\*\*|==|[-+*/(),\[\]]|\.T\b))", re.ASCII
+)
 OPENING = {")": "(", "]": "["}
 
 
