@@ -13,7 +13,7 @@ from symrot.codegen.c_source import c_expression
 from symrot.codegen.recurrences import recurrences
 from symrot.codegen.taylor_lanes import LANES, Address, Layout, Pack, Row, Term, lay_out
 from symrot.errors import InputError
-from symrot.expression import Node
+from symrot.expression import Node, rename
 from symrot.kernel import Program
 
 __all__ = ["ORDER", "jet_source", "taylor_definitions"]
@@ -328,17 +328,17 @@ class _Jet:
                         *self.between(), "{", *_indented(orders["m"]), "}"]),
             "}",
         ]  # fmt: skip
+        places = {name: f"p[{i}]" for i, name in enumerate(self.parameters)}
         values = [
-            f"c[{index}] = V_SET({', '.join(map(c_expression, weights))});"
+            f"c[{index}] = V_SET({', '.join(c_expression(rename(weight, places)) for weight in weights)});"
             for weights, index in self.constants.items()
         ]
-        inputs = [f"const double {name} = p[{i}];" for i, name in enumerate(self.parameters)]
         return "\n".join([
             f"#define SYMROT_CONSTANTS {max(1, len(self.constants))}",
             "",
             "static void symrot_constants(const double *p, symrot_v4 *c)",
             "{",
-            *_indented(["(void)p;", "(void)c;", *inputs, *(f"(void){name};" for name in self.parameters), *values]),
+            *_indented(["(void)p;", "(void)c;", *values]),
             "}",
             "",
             "/* Fill x[row][1] to x[row][order], order even, from x[row][0]; step[n] is the unit of time over n. */",

@@ -34,7 +34,7 @@ typedef struct {
     double t, t_low;     /* reached so far: the time is their sum */
     double unit;         /* of time, a power of two near the next step; 0 before the first one */
     double stop;         /* end of the span, on either side of t */
-    double tail;         /* of one step of length `pace` or more, relative; a shorter one is allowed its share of it */
+    double tail;         /* of one step of length `pace` or more, relative; a shorter one is allowed less of it */
     double pace;
     double max_step;     /* positive */
     int64_t next;        /* first sample not yet written */
@@ -120,6 +120,16 @@ static inline void symrot_set_unit(double unit, double *step)
 {
     step[0] = 0.0;
     for (int n = 1; n <= SYMROT_ORDER; ++n) step[n] = unit*symrot_inverse[n];
+}
+
+/*
+ * Return the tail allowed to a step of about one unit. Errors of single steps add up about as (number of steps)^(7/4),
+ * because an error of the rates turns the body ever further; the tail of a step is its share of the span to that power.
+ */
+static inline double symrot_allowed(const symrot_run *run, double unit)
+{
+    const double share = fabs(unit)/run->pace, tail = run->tail*(share < 1.0 ? share*sqrt(share*sqrt(share)) : 1.0);
+    return tail > SYMROT_LEAST_TAIL ? tail : SYMROT_LEAST_TAIL;
 }
 
 /* Return whether the last two coefficients are all finite: nothing times zero is zero but a finite number. */
@@ -277,6 +287,7 @@ SYMROT_EXPORT int symrot_taylor(symrot_run *run, const double *p, const double *
         if (unit == 0.0) status = SYMROT_NOT_FINITE;
     }
     symrot_set_unit(unit, step);
+    double allowed = symrot_allowed(run, unit);
 
     while (status == SYMROT_PAUSED && accepted < attempts) {
         if (room > 0 && recorded == room) { status = SYMROT_FULL; break; }
@@ -286,10 +297,9 @@ SYMROT_EXPORT int symrot_taylor(symrot_run *run, const double *p, const double *
             if (++halvings > 60) { status = SYMROT_NOT_FINITE; break; }
             unit *= 0x1p-8;
             symrot_set_unit(unit, step);
+            allowed = symrot_allowed(run, unit);
             continue;
         }
-        const double share = fabs(unit) < run->pace ? run->tail*fabs(unit)/run->pace : run->tail;
-        const double allowed = share > SYMROT_LEAST_TAIL ? share : SYMROT_LEAST_TAIL;
         const double logarithm = symrot_step_log(x, allowed, fabs(unit));
         double s = symrot_exp2(logarithm), h = s*unit;
         if (fabs(h) > run->max_step) {
@@ -332,6 +342,7 @@ SYMROT_EXPORT int symrot_taylor(symrot_run *run, const double *p, const double *
         if (logarithm > 0.6 || logarithm < -0.6) {
             unit *= symrot_exp2((double)(int)(logarithm + (logarithm > 0.0 ? 0.5 : -0.5)));
             symrot_set_unit(unit, step);
+            allowed = symrot_allowed(run, unit);
         }
     }
 
