@@ -16,13 +16,10 @@
  * Sources: Whittaker, Analytical Dynamics, 4th ed., section 69; van Zon & Schofield, J. Comput. Phys. 225 (2007) 145;
  * Carlson, Numer. Algorithms 10 (1995) 13 for R_F. Compile with -ffp-contract=off.
  */
-#include <stddef.h>
-
-#include "circular.h"
 #include "expansion.h"
+#include "series.h"
 
 enum { STEADY, CIRCULAR, HYPERBOLIC, SEPARATRIX };
-enum { SERIES = 5 };
 
 /* Everything is a double, so that other languages see one array. */
 typedef struct {
@@ -38,12 +35,6 @@ typedef struct {
     double attitude[4][4];    /* from X to q */
 } free_body;
 
-static phase phase_of(const double v[4])
-{
-    const phase p = {{v[0], v[1]}, {v[2], v[3]}};
-    return p;
-}
-
 /* ------------------------------------------------------------------------------------------------ one motion, once */
 
 /* The body in its own renamed axes, everything to 31 digits. */
@@ -54,28 +45,6 @@ typedef struct {
     dd moments[3], momenta[3], amplitudes[3], total, twice_energy; /* I, L, A, |L|, 2T */
     dd modulus, complement, rate, u;                              /* m, 1 - m, lambda, u0 */
 } canonical_motion;
-
-static void quaternion_product(const dd a[4], const dd b[4], dd c[4])
-{
-    static const int other[4][4] = {{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 3, 0, 1}, {3, 2, 1, 0}};
-    static const double sign[4][4] = {{1, -1, -1, -1}, {1, 1, -1, 1}, {1, 1, 1, -1}, {1, -1, 1, 1}};
-    for (int i = 0; i < 4; ++i) {
-        c[i] = dd_of(0.0);
-        for (int j = 0; j < 4; ++j)
-            c[i] = dd_add(c[i], dd_scale(dd_mul(a[other[i][j]], b[j]), sign[i][j]));
-    }
-}
-
-/* Divide by the norm; a norm of 1 to the last bit is left alone. */
-static void normalise(dd q[4])
-{
-    dd square = dd_of(0.0);
-    for (int i = 0; i < 4; ++i)
-        square = dd_add(square, dd_square(q[i]));
-    const dd norm = dd_sqrt(square);
-    for (int i = 0; i < 4; ++i)
-        q[i] = dd_div(q[i], norm);
-}
 
 /* The quaternion of the change of axes from the given ones to e1, e2, e3 (Shepperd's choice of the largest). */
 static void renaming(const canonical_motion *c, dd q[4])
@@ -100,46 +69,6 @@ static void renaming(const canonical_motion *c, dd q[4])
     for (int i = 0; i < 4; ++i)
         q[i] = dd_of(row[best][i]);
     normalise(q);
-}
-
-static void store(dd x, double to[2])
-{
-    to[0] = x.hi;
-    to[1] = x.lo;
-}
-
-/* A phase from its rate and start, both in turns; the start is taken between -1/2 and 1/2. */
-static void store_phase(dd rate, dd start, double to[4])
-{
-    start = dd_sub(start, dd_of(rint(start.hi)));
-    store(rate, to);
-    store(start, to + 2);
-}
-
-/* sum of c[n] T_n(x) as a polynomial in x, for n < SERIES (T: Chebyshev's, cos n z = T_n(cos z)). */
-static void even_series(const dd c[SERIES], double to[SERIES])
-{
-    to[0] = dd_add(dd_sub(c[0], c[2]), c[4]).hi;
-    to[1] = dd_sub(c[1], dd_add(dd_scale(c[3], 2.0), c[3])).hi;
-    to[2] = dd_sub(dd_scale(c[2], 2.0), dd_scale(c[4], 8.0)).hi;
-    to[3] = 4.0*c[3].hi;
-    to[4] = 8.0*c[4].hi;
-}
-
-/*
- * sum of c[n] cos((2n+1)z)/cos z as a polynomial in x = cos 2z, n < SERIES; with sin for cos where sign is -1:
- * cos((2n+1)z)/cos z = 2 cos 2nz - cos((2n-1)z)/cos z, sin((2n+1)z)/sin z = 2 cos 2nz + sin((2n-1)z)/sin z.
- */
-static void odd_series(const dd c[SERIES], double sign, double to[SERIES])
-{
-    dd even[SERIES];
-    for (int n = 0; n < SERIES; ++n) {
-        even[n] = dd_of(0.0);
-        double flip = n ? 2.0 : 1.0;
-        for (int k = n; k < SERIES; ++k, flip *= -sign)
-            even[n] = dd_add(even[n], dd_scale(c[k], flip));
-    }
-    even_series(even, to);
 }
 
 /* From the principal axes to those in which omega and the attitude are given: v_given = matrix*v_principal. */
@@ -462,20 +391,6 @@ static void prepare_attitude(const canonical_motion *c, dd real, dd imag, dd lea
         store_column(left, j, turn, axes, j, f);
 }
 
-/* A power of two near the largest of some pairs hi, lo; 1 where they are zero. */
-static double near_power(const double *values, int count)
-{
-    int exponent = 0;
-    double largest = 0.0;
-    for (int i = 0; i < count; ++i)
-        largest = fmax(largest, fabs(values[2*i]));
-    if (!(largest > 0.0))
-        return 1.0;
-    (void)frexp(largest, &exponent);
-    exponent = exponent > 1000 ? 1000 : exponent < -1000 ? -1000 : exponent;
-    return ldexp(1.0, exponent);
-}
-
 /*
  * Find the constants of a motion.
  *
@@ -578,27 +493,12 @@ int symrot_free_body_prepare(
 
 /* ------------------------------------------------------------------------------------------------ at any time */
 
-ALWAYS_INLINE double polynomial(const double c[SERIES], double x)
-{
-    return MUL_ADD(MUL_ADD(MUL_ADD(MUL_ADD(c[4], x, c[3]), x, c[2]), x, c[1]), x, c[0]);
-}
-
-ALWAYS_INLINE double cubic(const double c[SERIES], double x)
-{
-    return MUL_ADD(MUL_ADD(MUL_ADD(c[3], x, c[2]), x, c[1]), x, c[0]);
-}
-
-ALWAYS_INLINE double clamped(double x, double limit)
-{
-    x = x > limit ? limit : x;
-    return x < -limit ? -limit : x;
-}
-
 /* omega = map*(cn, sn, dn). */
 ALWAYS_INLINE void put_omega(const double map[3][3], double cn, double sn, double dn, double *restrict omega)
 {
-    for (int i = 0; i < 3; ++i)
-        omega[i] = MUL_ADD(map[i][0], cn, MUL_ADD(map[i][1], sn, map[i][2]*dn));
+    omega[0] = MUL_ADD(map[0][0], cn, MUL_ADD(map[0][1], sn, map[0][2]*dn));
+    omega[1] = MUL_ADD(map[1][0], cn, MUL_ADD(map[1][1], sn, map[1][2]*dn));
+    omega[2] = MUL_ADD(map[2][0], cn, MUL_ADD(map[2][1], sn, map[2][2]*dn));
 }
 
 /* q = map*X, X = exp(k psi/2) P, from (re, im) ~ N and the sine and cosine of the even part of psi/2. */
@@ -606,13 +506,15 @@ ALWAYS_INLINE void put_quaternion(
     const free_body *f, double cn, double sn, double dn, double re, double im, double sine, double cosine,
     double *restrict q)
 {
+    const double (*map)[4] = f->attitude;
     const double p0 = 1.0 + f->momentum[2]*dn, p1 = f->momentum[1]*sn, p2 = -f->momentum[0]*cn;
     const double size = 1.0/sqrt(2.0*p0*MUL_ADD(re, re, im*im));
     const double c = MUL_ADD(re, cosine, -im*sine)*size, s = MUL_ADD(re, sine, im*cosine)*size;
     const double x0 = c*p0, x1 = MUL_ADD(c, p1, -s*p2), x2 = MUL_ADD(c, p2, s*p1), x3 = s*p0;
-    for (int i = 0; i < 4; ++i)
-        q[i] = MUL_ADD(f->attitude[i][0], x0, MUL_ADD(f->attitude[i][1], x1,
-               MUL_ADD(f->attitude[i][2], x2, f->attitude[i][3]*x3)));
+    q[0] = MUL_ADD(map[0][0], x0, MUL_ADD(map[0][1], x1, MUL_ADD(map[0][2], x2, map[0][3]*x3)));
+    q[1] = MUL_ADD(map[1][0], x0, MUL_ADD(map[1][1], x1, MUL_ADD(map[1][2], x2, map[1][3]*x3)));
+    q[2] = MUL_ADD(map[2][0], x0, MUL_ADD(map[2][1], x1, MUL_ADD(map[2][2], x2, map[2][3]*x3)));
+    q[3] = MUL_ADD(map[3][0], x0, MUL_ADD(map[3][1], x1, MUL_ADD(map[3][2], x2, map[3][3]*x3)));
 }
 
 ALWAYS_INLINE void at_circular(
@@ -687,15 +589,19 @@ ALWAYS_INLINE void at_steady(
     const free_body g = *f;
     const phase turning = phase_of(g.turning);
     for (ptrdiff_t i = 0; i < count; ++i) {
-        if (want_omega)
-            for (int k = 0; k < 3; ++k)
-                omega[3*i + k] = g.omega[k][0];
+        if (want_omega) {
+            omega[3*i] = g.omega[0][0];
+            omega[3*i + 1] = g.omega[1][0];
+            omega[3*i + 2] = g.omega[2][0];
+        }
         if (want_q) {
             double taken, sine, cosine;
             const double turn = phase_rest(&turning, times[i]*g.time_scale, 4.0, 0.0, &taken);
             sincos_quarters(turn, taken, &sine, &cosine);
-            for (int k = 0; k < 4; ++k)
-                q[4*i + k] = MUL_ADD(g.attitude[k][0], cosine, g.attitude[k][1]*sine);
+            q[4*i] = MUL_ADD(g.attitude[0][0], cosine, g.attitude[0][1]*sine);
+            q[4*i + 1] = MUL_ADD(g.attitude[1][0], cosine, g.attitude[1][1]*sine);
+            q[4*i + 2] = MUL_ADD(g.attitude[2][0], cosine, g.attitude[2][1]*sine);
+            q[4*i + 3] = MUL_ADD(g.attitude[3][0], cosine, g.attitude[3][1]*sine);
         }
     }
 }

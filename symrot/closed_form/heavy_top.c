@@ -1,0 +1,696 @@
+/*
+ * The symmetric heavy top (Lagrange's) at any time, without stepping; spherical and physical pendulums are among them.
+ *
+ * A body with moments A, A, C and its centre of mass on its axis e3, held at a point of that axis: V = M cos theta, M > 0,
+ * theta from the upward vertical to e3. Divided by A below, so A = 1. With s = 1 - cos theta, l = C omega_3,
+ *     (ds/dt)^2 = 2 (E - M + M s) s (2 - s) - (D + l s)^2,  D = L_z - l,
+ * has roots S3 <= 0 <= S2 <= s <= S1 <= 2, and s = S1 - (S1 - S2) sn^2 u, u = lambda t + u0. The Cayley-Klein parameters
+ *     alpha = q0 + i q3 = cos(theta/2) exp(i (phi + psi)/2) = Ca exp(i ka t) theta1(z + i sa ya)/theta4(z),
+ *     beta = q1 + i q2 = sin(theta/2) exp(i (phi - psi)/2) = Cb exp(i kb t) theta2(z + i sb yb)/theta4(z),  z = pi u/2K,
+ * have no singularity at the vertical, and omega_1 + i omega_2 = 2 (conj(alpha) beta' - beta conj(alpha')). What vanishes
+ * with the distance from the vertical is found from products of what else vanishes, never as a difference.
+ * Jacobi's imaginary transformation takes the place of the series where m >= 0.7; it holds to m = 1.
+ *
+ * Sources: Klein & Sommerfeld, Theory of the Top, vol. 2, chapter 6; Whittaker, Analytical Dynamics, section 72.
+ * Compile with -ffp-contract=off.
+ */
+#include "series.h"
+
+enum { STEADY, CIRCULAR, HYPERBOLIC, SEPARATRIX };
+
+/* Everything is a double, so that other languages see one array. */
+typedef struct {
+    double regime;
+    double time_scale;               /* a power of two; times are multiplied by it */
+    double axial[4];                 /* the phase of u: turns of 4K; on the separatrix of v itself */
+    double turning[2][4];            /* the phases of ka t and kb t */
+    double slope[2];                 /* turns per 2K of u in the imaginary transformation */
+    double stretch;                  /* v per 2K of u */
+    double value[2][2][SERIES];      /* alpha, beta but for a common factor: real, imaginary part */
+    double derivative[2][2][SERIES]; /* their rates, with that factor held */
+    double omega[3][3];              /* from omega_1, omega_2 in turning axes and 1 to omega, rad/s */
+    double attitude[4][4];           /* from the parts of alpha, beta to q */
+} heavy_top;
+
+typedef struct {
+    dd re, im;
+} complex_dd;
+
+static complex_dd complex_of(dd re, dd im)
+{
+    const complex_dd z = {re, im};
+    return z;
+}
+
+static complex_dd times(complex_dd a, complex_dd b)
+{
+    return complex_of(dd_sub(dd_mul(a.re, b.re), dd_mul(a.im, b.im)), dd_add(dd_mul(a.re, b.im), dd_mul(a.im, b.re)));
+}
+
+static dd square_of(complex_dd a)
+{
+    return dd_add(dd_square(a.re), dd_square(a.im));
+}
+
+static complex_dd quotient(complex_dd a, complex_dd b)
+{
+    const dd size = square_of(b);
+    const complex_dd c = times(a, complex_of(b.re, dd_negative(b.im)));
+    return complex_of(dd_div(c.re, size), dd_div(c.im, size));
+}
+
+static complex_dd turned(complex_dd a, dd turns)
+{
+    dd sine, cosine;
+    dd_sincos_turns(turns, &sine, &cosine);
+    return times(a, complex_of(cosine, sine));
+}
+
+/* The nutation to 31 digits. Gaps are between roots; `low` = 2 - S1, `below` = -S3. */
+typedef struct {
+    dd s, c, pull, spin, axial_rate, d, sigma, speed; /* s0, 2 - s0, M, l, omega_3, D, D + 2 l, ds/dt */
+    dd s1, s2, below, low;                            /* S1, S2, -S3, 2 - S1 */
+    dd gap12, gap23, gap13, modulus, complement, rate, u;
+    dd ya, yb; /* where theta1 and theta2 vanish */
+} nutation;
+
+static double outer_root(double b, double c, double d, double x)
+{
+    for (int n = 0; n < 200; ++n) {
+        const double slope = (3.0*x + 2.0*b)*x + c;
+        if (slope == 0.0)
+            break;
+        const double next = x - (((x + b)*x + c)*x + d)/slope;
+        if (fabs(next - x) <= 1e-15*fabs(next))
+            return next;
+        x = next;
+    }
+    return x;
+}
+
+/* A simple root near x of x^3 + b x^2 + c x + d. */
+static dd polished(dd b, dd c, dd d, double x)
+{
+    dd root = dd_of(x);
+    for (int n = 0; n < 4; ++n) {
+        const dd value = dd_add(dd_mul(dd_add(dd_mul(dd_add(root, b), root), c), root), d);
+        const dd slope = dd_add(dd_mul(dd_add(dd_add(dd_scale(root, 2.0), root), dd_scale(b, 2.0)), root), c);
+        if (slope.hi == 0.0)
+            break;
+        root = dd_sub(root, dd_div(value, slope));
+    }
+    return root;
+}
+
+static dd ratio(dd a, dd b)
+{
+    return b.hi != 0.0 ? dd_div(a, b) : dd_of(0.0);
+}
+
+/* From s0, its rate and omega to the roots. w2 = omega_1^2 + omega_2^2, y = D + l s0. */
+static void find_roots(nutation *n, dd w2, dd y)
+{
+    const dd m2 = dd_scale(n->pull, 2.0), one_less = dd_scale(dd_sub(n->c, n->s), 0.5);
+    /* x^3 + b x^2 + c x + d for x = s - s0; d <= 0 */
+    const dd b = dd_div(dd_sub(dd_add(w2, dd_square(n->spin)), dd_mul(dd_scale(m2, 2.0), one_less)), m2);
+    dd c = dd_add(dd_mul(m2, dd_mul(n->s, n->c)), dd_scale(dd_mul(w2, one_less), 2.0));
+    c = dd_div(dd_sub(dd_scale(dd_mul(n->spin, y), 2.0), c), m2);
+    const dd size = dd_div(dd_square(n->speed), m2), d = dd_negative(size);
+    const double far = fmax(fabs(b.hi), fmax(sqrt(fabs(c.hi)), cbrt(fabs(d.hi))));
+    double first = d.hi == 0.0 && c.hi >= 0.0 ? 0.0 : outer_root(b.hi, c.hi, d.hi, n->c.hi*1.0000001 + 1e-300);
+    double last = outer_root(b.hi, c.hi, d.hi, -2.0*far);
+    first = first < 0.0 ? 0.0 : first;
+    const double between = -b.hi - first - last;
+    dd x1, x2, x3;
+    if (first - between >= between - last) {
+        x1 = first > 0.0 ? polished(b, c, d, first) : dd_of(0.0);
+        n->s1 = dd_add(n->s, x1);
+        const dd p = dd_div(dd_square(n->d), dd_mul(m2, n->s1)); /* -S2 S3 */
+        const dd em2 = dd_sub(w2, dd_mul(m2, n->s));             /* 2 (E - M) */
+        const dd sum = dd_div(dd_add(dd_div(dd_sub(dd_mul(n->d, n->spin), em2), n->pull), p), n->s1); /* S2 + S3 */
+        n->gap23 = dd_sqrt(dd_add(dd_square(sum), dd_scale(p, 4.0)));
+        const dd larger = dd_scale(dd_add(n->gap23, dd_abs(sum)), 0.5);
+        n->s2 = sum.hi >= 0.0 ? larger : ratio(p, larger);
+        n->below = sum.hi >= 0.0 ? ratio(p, larger) : larger;
+        x3 = dd_negative(dd_add(n->below, n->s));
+        x2 = dd_sub(n->s2, n->s);
+        if (x1.hi > -x2.hi)
+            x2 = ratio(size, dd_mul(x1, x3));
+        n->gap12 = dd_sub(x1, x2);
+    } else {
+        x3 = polished(b, c, d, last);
+        const dd product = dd_div(size, x3), sum = dd_negative(dd_add(b, x3)); /* x1 x2 <= 0, x1 + x2 */
+        n->gap12 = dd_sqrt(dd_sub(dd_square(sum), dd_scale(product, 4.0)));
+        const dd larger = dd_scale(dd_add(n->gap12, dd_abs(sum)), 0.5);
+        x1 = sum.hi >= 0.0 ? larger : dd_negative(ratio(product, larger));
+        x2 = sum.hi >= 0.0 ? ratio(product, larger) : dd_negative(larger);
+        n->s1 = dd_add(n->s, x1);
+        n->s2 = dd_add(n->s, x2);
+        n->below = dd_negative(dd_add(n->s, x3));
+        const dd p = dd_div(dd_square(n->d), dd_mul(m2, n->s1));
+        if (dd_less(n->below, n->s2))
+            n->below = dd_div(p, n->s2);
+        else
+            n->s2 = dd_div(p, n->below);
+        n->gap23 = dd_sub(x2, x3);
+    }
+    n->gap13 = dd_sub(x1, x3);
+    n->modulus = dd_div(n->gap12, n->gap13);
+    n->complement = dd_div(n->gap23, n->gap13);
+    n->rate = dd_sqrt(dd_scale(dd_mul(n->pull, n->gap13), 0.5));
+    const dd high = dd_sub(n->c, x2), higher = dd_sub(n->c, x3); /* 2 - S2, 2 - S3 */
+    n->low = dd_div(dd_square(n->sigma), dd_mul(m2, dd_mul(high, higher)));
+    n->u = n->ya = n->yb = dd_of(0.0);
+    if (n->gap12.hi == 0.0)
+        return;
+    const dd one = dd_of(1.0);
+    const dd sine = dd_sqrt(dd_div(x1, n->gap12)), delta = dd_negative(dd_div(x3, n->gap13));
+    n->u = dd_mul(sine, dd_rf(dd_negative(dd_div(x2, n->gap12)), delta, one));
+    if (n->speed.hi > 0.0)
+        n->u = dd_negative(n->u);
+    const dd sine_a = dd_div(n->low, high), cosine_a = dd_div(n->gap12, high);
+    n->ya = dd_mul(dd_sqrt(sine_a), dd_rf(cosine_a, dd_add(cosine_a, dd_mul(n->modulus, sine_a)), one));
+    if (n->gap23.hi > 0.0) {
+        const dd base = dd_mul(n->s1, n->gap23);
+        const dd sine_b = dd_div(dd_mul(n->s2, n->gap13), base), cosine_b = dd_div(dd_mul(n->below, n->gap12), base);
+        n->yb = dd_mul(dd_sqrt(sine_b), dd_rf(cosine_b, dd_div(n->gap12, n->s1), one));
+    }
+}
+
+enum { TERMS = 8 };
+
+/*
+ * One of the two numerators as series. Real part: sum re[n] * even function, imaginary: sum im[n] * odd function, or the
+ * reverse; `order` is what each term's derivative is multiplied by.
+ */
+typedef struct {
+    dd re[TERMS], im[TERMS];
+    int odd, sine_first; /* terms of odd or even multiples; whether re goes with sines */
+} numerator;
+
+/* A value and its derivative to z or v at one place, from the functions cos, sin (or cosh, sinh) of it. */
+static void value_at(const numerator *f, double sign, const dd c[TERMS], const dd s[TERMS], complex_dd *value, complex_dd *slope)
+{
+    *value = *slope = complex_of(dd_of(0.0), dd_of(0.0));
+    for (int n = 0; n < TERMS; ++n) {
+        const dd order = dd_of(f->odd ? 2.0*n + 1.0 : 2.0*n), back = dd_scale(order, sign); /* cos' = sign sin */
+        const dd re = f->re[n], im = f->im[n];
+        value->re = dd_add(value->re, dd_mul(re, f->sine_first ? s[n] : c[n]));
+        value->im = dd_add(value->im, dd_mul(im, f->sine_first ? c[n] : s[n]));
+        slope->re = dd_add(slope->re, dd_mul(dd_mul(re, f->sine_first ? order : back), f->sine_first ? c[n] : s[n]));
+        slope->im = dd_add(slope->im, dd_mul(dd_mul(im, f->sine_first ? back : order), f->sine_first ? s[n] : c[n]));
+    }
+}
+
+/* Terms in sines or cosines as a polynomial: of odd multiples, or of even ones (sin 2nz = sin 2z U_(n-1)(cos 2z)). */
+static void polynomial_of(const dd terms[TERMS], int odd, int sine, double to[SERIES])
+{
+    if (odd) {
+        odd_series(terms, sine ? -1.0 : 1.0, to);
+    } else if (!sine) {
+        even_series(terms, to);
+    } else {
+        to[0] = dd_sub(terms[1], terms[3]).hi;
+        to[1] = dd_sub(dd_scale(terms[2], 2.0), dd_scale(terms[4], 4.0)).hi;
+        to[2] = 4.0*terms[3].hi;
+        to[3] = 8.0*terms[4].hi;
+        to[4] = 0.0;
+    }
+}
+
+/* The polynomials of a numerator and of i kappa times it plus its rate, all times `size`. */
+static void store_numerator(const numerator *f, double sign, dd kappa, dd rate, dd size, int which, heavy_top *t)
+{
+    dd re[TERMS], im[TERMS], re_rate[TERMS], im_rate[TERMS];
+    for (int n = 0; n < TERMS; ++n) {
+        const dd order = dd_mul(dd_of(f->odd ? 2.0*n + 1.0 : 2.0*n), rate), back = dd_scale(order, sign);
+        re[n] = dd_mul(f->re[n], size);
+        im[n] = dd_mul(f->im[n], size);
+        re_rate[n] = dd_sub(dd_mul(re[n], f->sine_first ? order : back), dd_mul(kappa, im[n]));
+        im_rate[n] = dd_add(dd_mul(im[n], f->sine_first ? back : order), dd_mul(kappa, re[n]));
+    }
+    polynomial_of(re, f->odd, f->sine_first, t->value[which][0]);
+    polynomial_of(im, f->odd, !f->sine_first, t->value[which][1]);
+    polynomial_of(re_rate, f->odd, !f->sine_first, t->derivative[which][0]);
+    polynomial_of(im_rate, f->odd, f->sine_first, t->derivative[which][1]);
+}
+
+/* m < 0.7: theta1(z + i sign y) (alternating) or theta2(z + i sign y), times 2 exp(-pi y/2K). */
+static void circular_terms(dd per, dd k_prime, dd nome, dd y, double sign, int alternating, numerator *f, dd *drift)
+{
+    dd plus = dd_of(1.0), minus = dd_of(0.0), close = dd_of(0.0), shrink = dd_of(0.0);
+    if (nome.hi > 0.0) {
+        minus = shrink = dd_exp(dd_negative(dd_mul(per, y)));
+        close = dd_exp(dd_negative(dd_mul(per, dd_sub(k_prime, y))));
+    }
+    dd odd_power = nome, square = dd_square(nome), even_power = square; /* nome^(2n+1), nome^(2n+2) */
+    dd slope = dd_of(0.0), level = dd_of(0.0);
+    f->odd = 1;
+    f->sine_first = alternating;
+    for (int n = 0; n < TERMS; ++n) {
+        const dd cosh2 = dd_add(plus, minus), sinh2 = dd_scale(dd_sub(plus, minus), sign);
+        const double flip = alternating && n%2 ? -1.0 : 1.0;
+        f->re[n] = dd_scale(cosh2, flip);
+        f->im[n] = dd_scale(sinh2, alternating ? flip : -flip);
+        level = dd_add(level, cosh2);
+        slope = dd_add(slope, dd_mul(sinh2, dd_of(2.0*n + 1.0)));
+        plus = dd_mul(plus, dd_mul(odd_power, close));
+        minus = dd_mul(minus, dd_mul(even_power, shrink));
+        odd_power = dd_mul(odd_power, square);
+        even_power = dd_mul(even_power, square);
+    }
+    *drift = dd_negative(dd_div(slope, level)); /* d arg/dz of theta1 at z = pi/2, of theta2 at 0 */
+}
+
+/* m >= 0.7, nome q', v = pi u/2K': the images of theta1(z + i sign y) and of theta2(z + i sign y); chi in turns. */
+static void hyperbolic_terms(dd nome, dd chi, double sign, int first, numerator *f, dd *drift)
+{
+    dd product = dd_of(1.0), step = nome, power = dd_of(1.0), square = dd_square(nome), sine, cosine;
+    complex_dd value = complex_of(dd_of(0.0), dd_of(0.0)), slope = value;
+    f->odd = first;
+    f->sine_first = 0;
+    for (int n = 0; n < TERMS; ++n) {
+        const double flip = n%2 ? -1.0 : 1.0, order = first ? 2.0*n + 1.0 : 2.0*n;
+        dd_sincos_turns(dd_mul(chi, dd_of(order)), &sine, &cosine);
+        if (first) { /* product = nome^(n^2), power = nome^n */
+            const dd weight = dd_scale(dd_mul(product, power), flip);
+            f->re[n] = dd_scale(dd_mul(weight, sine), sign);
+            f->im[n] = dd_negative(dd_mul(weight, cosine));
+            /* at u = K, times 2 sqrt(nome): cosh, sinh -> nome^(n^2) +- nome^((n+1)^2) */
+            const dd next = dd_mul(product, step), even = dd_add(product, next), odd = dd_sub(product, next);
+            const dd up = dd_scale(sine, sign*flip), across = dd_scale(cosine, -flip);
+            value.re = dd_add(value.re, dd_mul(up, even));
+            value.im = dd_add(value.im, dd_mul(across, odd));
+            slope.re = dd_add(slope.re, dd_mul(dd_mul(up, odd), dd_of(order)));
+            slope.im = dd_add(slope.im, dd_mul(dd_mul(across, even), dd_of(order)));
+        } else {
+            const dd weight = dd_scale(product, n ? 2.0*flip : 1.0);
+            f->re[n] = dd_mul(weight, cosine);
+            f->im[n] = dd_scale(dd_mul(weight, sine), sign);
+            value.re = dd_add(value.re, f->re[n]);
+            slope.im = dd_add(slope.im, dd_mul(f->im[n], dd_of(order)));
+        }
+        product = dd_mul(product, step);
+        step = dd_mul(step, square);
+        power = dd_mul(power, nome);
+    }
+    *drift = quotient(slope, value).im; /* d arg/dv of theta1 at u = K, of theta2 at u = 0 */
+}
+
+/* cos, sin (or cosh, sinh) of the multiples of an angle that a numerator takes, from those of the angle itself. */
+static void multiples(int odd, double sign, dd c1, dd s1, dd c[TERMS], dd s[TERMS])
+{
+    const dd c2 = dd_add(dd_square(c1), dd_scale(dd_square(s1), sign)), s2 = dd_scale(dd_mul(c1, s1), 2.0);
+    c[0] = odd ? c1 : dd_of(1.0);
+    s[0] = odd ? s1 : dd_of(0.0);
+    for (int n = 1; n < TERMS; ++n) {
+        c[n] = dd_add(dd_mul(c[n - 1], c2), dd_scale(dd_mul(s[n - 1], s2), sign));
+        s[n] = dd_add(dd_mul(s[n - 1], c2), dd_mul(c[n - 1], s2));
+        if (sign > 0.0 && c[n].hi > 1e60) { /* its weight is far below what counts, and powers would overflow */
+            for (; n < TERMS; ++n)
+                c[n] = s[n] = dd_of(0.0);
+        }
+    }
+}
+
+typedef struct {
+    dd matrix[3][3], quaternion[4];
+} body_axes;
+
+static void take_axes(const double *given, body_axes *axes)
+{
+    for (int i = 0; i < 3; ++i) {
+        for (int k = 0; k < 3; ++k)
+            axes->matrix[i][k] = given ? dd_pair(given[6*i + 2*k], given[6*i + 2*k + 1]) : dd_of(i == k);
+    }
+    for (int i = 0; i < 4; ++i)
+        axes->quaternion[i] = given ? dd_pair(given[18 + 2*i], given[19 + 2*i]) : dd_of(i == 0);
+}
+
+/* Column j of the map to q: space*x*conj(axes). */
+static void store_column(const dd space[4], const dd x[4], const body_axes *axes, int j, heavy_top *t)
+{
+    dd back[4], first[4], column[4];
+    for (int i = 0; i < 4; ++i)
+        back[i] = i ? dd_negative(axes->quaternion[i]) : axes->quaternion[i];
+    quaternion_product(space, x, first);
+    quaternion_product(first, back, column);
+    for (int i = 0; i < 4; ++i)
+        t->attitude[i][j] = column[i].hi;
+}
+
+/* The maps from alpha, beta as evaluated to q, and from omega_1, omega_2 so turned to omega; a, b: unit constants. */
+static void store_maps(
+    complex_dd a, complex_dd b, dd axial_rate, const dd space[4], const body_axes *axes, double scale, heavy_top *t)
+{
+    const dd zero = dd_of(0.0);
+    const dd columns[4][4] = {
+        {a.re, zero, zero, a.im}, {dd_negative(a.im), zero, zero, a.re},
+        {zero, b.re, b.im, zero}, {zero, dd_negative(b.im), b.re, zero},
+    };
+    for (int j = 0; j < 4; ++j)
+        store_column(space, columns[j], axes, j, t);
+    const complex_dd turn = times(b, complex_of(a.re, dd_negative(a.im)));
+    for (int i = 0; i < 3; ++i) {
+        const dd *m = axes->matrix[i];
+        t->omega[i][0] = dd_add(dd_mul(m[0], turn.re), dd_mul(m[1], turn.im)).hi*scale;
+        t->omega[i][1] = dd_sub(dd_mul(m[1], turn.re), dd_mul(m[0], turn.im)).hi*scale;
+        t->omega[i][2] = dd_mul(m[2], axial_rate).hi*scale;
+    }
+}
+
+static dd in_turns(dd rate)
+{
+    static const dd pi = DD_PI;
+    return dd_scale(dd_div(rate, pi), 0.5);
+}
+
+/*
+ * Find the constants of a motion.
+ *
+ * in   moments[4]     kg m^2  A, C about the fixed point, each as hi, lo; C may be zero with omega_3 zero
+ * in   pull[2]        N m     weight times the distance of the centre of mass from the fixed point, positive
+ * in   omega[6]       rad/s   along e1, e2, e3 at time 0; e3 points from the fixed point to the centre of mass
+ * in   quaternion[8]  1       attitude of e1, e2, e3 at time 0, to axes whose third points up
+ * in   space[8]       1       unit quaternion from those axes to the space axes in which the motion is returned
+ * in   axes[26]       1       NULL, or the matrix, row by row, and the unit quaternion from e1, e2, e3 to the body's own
+ * out  t                      the constants
+ * Returns 0; 1 where the numbers are not of this domain; 2 where the compiler has broken error-free arithmetic.
+ */
+int symrot_heavy_top_prepare(
+    const double moments[4], const double pull[2], const double omega[6], const double quaternion[8],
+    const double space[8], const double *axes, heavy_top *t)
+{
+    static const dd pi = DD_PI;
+    static const heavy_top blank;
+    *t = blank;
+    if (!dd_sound())
+        return 2;
+    for (int i = 0; i < 6; ++i)
+        if (!(fabs(omega[i]) <= 1e150))
+            return 1;
+    if (!(moments[0] > 0.0 && moments[2] >= 0.0 && pull[0] > 0.0 && moments[0] <= 1e150 && pull[0] <= 1e150))
+        return 1;
+    body_axes frame;
+    take_axes(axes, &frame);
+    const dd a_moment = dd_pair(moments[0], moments[1]);
+    const dd shape = dd_div(dd_pair(moments[2], moments[3]), a_moment), force = dd_div(dd_pair(pull[0], pull[1]), a_moment);
+    const double fall[2] = {sqrt(force.hi), 0.0};
+    const double scale = fmax(near_power(omega, 3), near_power(fall, 1));
+    if (!(scale > 1e-140 && scale < 1e140))
+        return 1;
+    dd w[3], q[4], up[4];
+    for (int i = 0; i < 3; ++i)
+        w[i] = dd_pair(omega[2*i]/scale, omega[2*i + 1]/scale);
+    const double quaternion_scale = near_power(quaternion, 4);
+    for (int i = 0; i < 4; ++i) {
+        q[i] = dd_pair(quaternion[2*i]/quaternion_scale, quaternion[2*i + 1]/quaternion_scale);
+        up[i] = dd_pair(space[2*i], space[2*i + 1]);
+    }
+    normalise(q);
+    if (!(fabs(q[0].hi) <= 2.0))
+        return 1;
+    t->time_scale = scale;
+
+    complex_dd alpha = complex_of(q[0], q[3]), beta = complex_of(q[1], q[2]);
+    if (square_of(alpha).hi < 1e-62)
+        alpha = complex_of(dd_of(0.0), dd_of(0.0));
+    if (square_of(beta).hi < 1e-62)
+        beta = complex_of(dd_of(0.0), dd_of(0.0));
+    const complex_dd across = complex_of(w[0], w[1]);
+    const complex_dd lever = times(complex_of(alpha.re, dd_negative(alpha.im)), beta); /* sin theta exp(-i psi)/2 */
+    const complex_dd motion = times(across, complex_of(dd_scale(lever.re, 2.0), dd_scale(lever.im, -2.0)));
+    const dd w2 = square_of(across);
+    nutation n;
+    n.s = dd_scale(square_of(beta), 2.0);
+    n.c = dd_scale(square_of(alpha), 2.0);
+    n.pull = dd_scale(dd_scale(force, 1.0/scale), 1.0/scale);
+    n.axial_rate = w[2];
+    n.spin = dd_mul(shape, w[2]);
+    n.speed = motion.re;
+    n.d = dd_sub(motion.im, dd_mul(n.spin, n.s));
+    n.sigma = dd_add(motion.im, dd_mul(n.spin, n.c));
+    const complex_dd unit = complex_of(dd_of(1.0), dd_of(0.0));
+    if (w2.hi == 0.0 && (n.s.hi == 0.0 || n.c.hi == 0.0)) { /* upright or hanging, spinning or not */
+        const dd half = dd_scale(w[2], 0.5);
+        const int upright = n.s.hi == 0.0;
+        t->regime = STEADY;
+        store_phase(in_turns(half), dd_of(0.0), t->turning[0]);
+        store_phase(dd_negative(in_turns(half)), dd_of(0.0), t->turning[1]);
+        t->value[0][0][0] = upright ? 1.0 : 0.0;
+        t->value[1][0][0] = upright ? 0.0 : 1.0;
+        store_maps(upright ? alpha : unit, upright ? unit : beta, w[2], up, &frame, scale, t);
+        return 0;
+    }
+    find_roots(&n, w2, motion.im);
+    const dd zero = dd_of(0.0), half_pi = dd_scale(pi, 0.5);
+    const dd k = n.complement.hi > 0.0 ? dd_div(half_pi, dd_agm(dd_sqrt(n.complement))) : zero;
+    const dd k_prime = n.modulus.hi > 0.0 ? dd_div(half_pi, dd_agm(dd_sqrt(n.modulus))) : zero;
+    const double signs[2] = {n.sigma.hi > 0.0 ? -1.0 : 1.0, n.d.hi > 0.0 ? -1.0 : 1.0};
+    const dd ys[2] = {n.ya, n.yb};
+    /* d arg alpha/dt where s = S2, d arg beta/dt where s = S1; theta - omega_3/2 etc. as in the text above */
+    const dd rates[2] = {
+        dd_scale(dd_add(dd_sub(n.axial_rate, n.spin), ratio(n.sigma, dd_add(n.low, n.gap12))), 0.5),
+        dd_scale(dd_add(dd_sub(n.spin, n.axial_rate), ratio(n.d, n.s1)), 0.5),
+    };
+    numerator numerators[2];
+    dd kappas[2], drifts[2], leads[2] = {zero, zero}, rate, c1, s1, denominator, denominator_rate;
+    double sign;
+    if (n.modulus.hi < 0.7) {
+        const dd per = dd_div(pi, k);
+        const dd nome = n.modulus.hi > 0.0 ? dd_exp(dd_negative(dd_mul(per, k_prime))) : zero;
+        t->regime = CIRCULAR;
+        sign = -1.0;
+        rate = dd_scale(dd_mul(per, n.rate), 0.5); /* dz/dt */
+        for (int i = 0; i < 2; ++i) {
+            circular_terms(per, k_prime, nome, ys[i], signs[i], i == 0, &numerators[i], &drifts[i]);
+            kappas[i] = dd_sub(rates[i], dd_mul(rate, drifts[i]));
+            store_phase(in_turns(kappas[i]), zero, t->turning[i]);
+        }
+        const dd start = dd_scale(dd_div(n.u, k), 0.25);
+        store_phase(dd_scale(dd_div(n.rate, k), 0.25), start, t->axial);
+        dd_sincos_turns(start, &s1, &c1);
+        dd even = dd_of(1.0), power = nome, step = dd_mul(nome, dd_square(nome)), c[TERMS], s[TERMS];
+        multiples(0, sign, c1, s1, c, s);
+        denominator = dd_of(1.0);
+        denominator_rate = zero;
+        for (int j = 1; j < TERMS; ++j) { /* theta4 */
+            even = dd_scale(power, j%2 ? -2.0 : 2.0);
+            denominator = dd_add(denominator, dd_mul(even, c[j]));
+            denominator_rate = dd_sub(denominator_rate, dd_mul(dd_mul(even, dd_of(2.0*j)), s[j]));
+            power = dd_mul(power, step);
+            step = dd_mul(step, dd_square(nome));
+        }
+    } else {
+        const int endless = !(n.complement.hi > 0.0);
+        const dd per = dd_div(pi, k_prime);
+        const dd nome = endless ? zero : dd_exp(dd_negative(dd_mul(per, k)));
+        t->regime = endless ? SEPARATRIX : HYPERBOLIC;
+        sign = 1.0;
+        rate = dd_scale(dd_mul(per, n.rate), 0.5); /* dv/dt */
+        for (int i = 0; i < 2; ++i) {
+            hyperbolic_terms(nome, dd_scale(dd_div(ys[i], k_prime), 0.25), signs[i], i == 0, &numerators[i], &drifts[i]);
+            kappas[i] = dd_sub(rates[i], dd_mul(rate, drifts[i]));
+            dd steady = kappas[i];
+            if (!endless) {
+                const dd slope = dd_scale(dd_div(ys[i], k_prime), -0.5*signs[i]);
+                steady = dd_sub(steady, dd_mul(dd_div(dd_mul(slope, pi), k), n.rate));
+                leads[i] = dd_scale(dd_mul(dd_div(n.u, k), dd_of(slope.hi)), 0.5);
+                t->slope[i] = slope.hi;
+            }
+            store_phase(in_turns(steady), zero, t->turning[i]);
+        }
+        const dd v = dd_scale(dd_mul(per, n.u), 0.5), grown = dd_exp(v), shrunk = dd_exp(dd_negative(v));
+        c1 = dd_scale(dd_add(grown, shrunk), 0.5);
+        s1 = dd_scale(dd_sub(grown, shrunk), 0.5);
+        if (endless) {
+            store(rate, t->axial);
+            store(v, t->axial + 2);
+        } else {
+            t->stretch = dd_mul(per, k).hi;
+            store_phase(dd_scale(dd_div(n.rate, k), 0.25), dd_scale(dd_div(n.u, k), 0.25), t->axial);
+        }
+        dd weight = dd_of(1.0), step = dd_square(nome), c[TERMS], s[TERMS];
+        multiples(1, sign, c1, s1, c, s);
+        denominator = denominator_rate = zero;
+        for (int j = 0; j < TERMS; ++j) { /* theta2(i v) */
+            denominator = dd_add(denominator, dd_mul(weight, c[j]));
+            denominator_rate = dd_add(denominator_rate, dd_mul(dd_mul(weight, dd_of(2.0*j + 1.0)), s[j]));
+            weight = dd_mul(weight, step);
+            step = dd_mul(step, dd_square(nome));
+        }
+    }
+
+    /* What multiplies the series: from the initial value, or where that is small, from its rate. */
+    const complex_dd back = complex_of(across.re, dd_negative(across.im));
+    const complex_dd fall_a = times(beta, back), climb_b = times(alpha, across);
+    const dd half_spin = dd_scale(w[2], 0.5);
+    const complex_dd start[2] = {alpha, beta};
+    const complex_dd start_rate[2] = {
+        complex_of(dd_sub(dd_scale(fall_a.re, -0.5), dd_mul(half_spin, alpha.im)),
+                   dd_sub(dd_mul(half_spin, alpha.re), dd_scale(fall_a.im, 0.5))),
+        complex_of(dd_add(dd_scale(climb_b.re, 0.5), dd_mul(half_spin, beta.im)),
+                   dd_sub(dd_scale(climb_b.im, 0.5), dd_mul(half_spin, beta.re))),
+    };
+    complex_dd constants[2];
+    dd sizes[2];
+    const dd inner = dd_div(dd_mul(rate, denominator_rate), denominator);
+    for (int i = 0; i < 2; ++i) {
+        dd c[TERMS], s[TERMS];
+        complex_dd value, slope;
+        multiples(numerators[i].odd, sign, c1, s1, c, s);
+        value_at(&numerators[i], sign, c, s, &value, &slope);
+        complex_dd moving = complex_of(
+            dd_sub(dd_mul(slope.re, rate), dd_mul(kappas[i], value.im)),
+            dd_add(dd_mul(slope.im, rate), dd_mul(kappas[i], value.re)));
+        moving.re = dd_sub(moving.re, dd_mul(inner, value.re));
+        moving.im = dd_sub(moving.im, dd_mul(inner, value.im));
+        const int by_rate = square_of(value).hi < 1e-6*square_of(moving).hi;
+        constants[i] = turned(by_rate ? quotient(start_rate[i], moving) : quotient(start[i], value), dd_negative(leads[i]));
+        sizes[i] = dd_sqrt(square_of(constants[i]));
+        constants[i] = sizes[i].hi > 0.0
+            ? complex_of(dd_div(constants[i].re, sizes[i]), dd_div(constants[i].im, sizes[i])) : unit;
+    }
+    const dd total = dd_sqrt(dd_add(dd_square(sizes[0]), dd_square(sizes[1])));
+    for (int i = 0; i < 2; ++i)
+        store_numerator(&numerators[i], sign, kappas[i], rate, dd_div(sizes[i], total), i, t);
+    store_maps(constants[0], constants[1], w[2], up, &frame, scale, t);
+    return 0;
+}
+
+/* ------------------------------------------------------------------------------------------------ at any time */
+
+/* From alpha, beta, their rates (re, im) and the turning of both to what is asked for. */
+ALWAYS_INLINE void put_motion(
+    const heavy_top *t, const double a[2], const double b[2], const double a_rate[2], const double b_rate[2],
+    const double turn_a[2], const double turn_b[2], double *restrict omega, double *restrict q, int want_omega, int want_q)
+{
+    const double size = 1.0/(MUL_ADD(a[0], a[0], a[1]*a[1]) + MUL_ADD(b[0], b[0], b[1]*b[1]));
+    if (want_omega) { /* 2 (conj(a) b' - b conj(a')) */
+        const double re = MUL_ADD(a[0], b_rate[0], a[1]*b_rate[1]) - MUL_ADD(b[0], a_rate[0], b[1]*a_rate[1]);
+        const double im = MUL_ADD(a[0], b_rate[1], -a[1]*b_rate[0]) - MUL_ADD(b[1], a_rate[0], -b[0]*a_rate[1]);
+        const double c = MUL_ADD(turn_a[0], turn_b[0], turn_a[1]*turn_b[1])*(2.0*size);
+        const double s = MUL_ADD(turn_a[0], turn_b[1], -turn_a[1]*turn_b[0])*(2.0*size);
+        const double x = MUL_ADD(re, c, -im*s), y = MUL_ADD(re, s, im*c);
+        omega[0] = MUL_ADD(t->omega[0][0], x, MUL_ADD(t->omega[0][1], y, t->omega[0][2]));
+        omega[1] = MUL_ADD(t->omega[1][0], x, MUL_ADD(t->omega[1][1], y, t->omega[1][2]));
+        omega[2] = MUL_ADD(t->omega[2][0], x, MUL_ADD(t->omega[2][1], y, t->omega[2][2]));
+    }
+    if (want_q) {
+        const double (*map)[4] = t->attitude;
+        const double unit = sqrt(size);
+        const double x0 = MUL_ADD(a[0], turn_a[0], -a[1]*turn_a[1])*unit;
+        const double x1 = MUL_ADD(a[0], turn_a[1], a[1]*turn_a[0])*unit;
+        const double x2 = MUL_ADD(b[0], turn_b[0], -b[1]*turn_b[1])*unit;
+        const double x3 = MUL_ADD(b[0], turn_b[1], b[1]*turn_b[0])*unit;
+        q[0] = MUL_ADD(map[0][0], x0, MUL_ADD(map[0][1], x1, MUL_ADD(map[0][2], x2, map[0][3]*x3)));
+        q[1] = MUL_ADD(map[1][0], x0, MUL_ADD(map[1][1], x1, MUL_ADD(map[1][2], x2, map[1][3]*x3)));
+        q[2] = MUL_ADD(map[2][0], x0, MUL_ADD(map[2][1], x1, MUL_ADD(map[2][2], x2, map[2][3]*x3)));
+        q[3] = MUL_ADD(map[3][0], x0, MUL_ADD(map[3][1], x1, MUL_ADD(map[3][2], x2, map[3][3]*x3)));
+    }
+}
+
+ALWAYS_INLINE void turning_at(const double v[4], double t, double lead, double turn[2])
+{
+    const phase p = phase_of(v);
+    double taken;
+    const double rest = phase_rest(&p, t, 4.0, lead, &taken);
+    sincos_quarters(rest, taken, &turn[1], &turn[0]);
+}
+
+ALWAYS_INLINE void at_circular(
+    const heavy_top *restrict f, ptrdiff_t count, const double *restrict times, double *restrict omega,
+    double *restrict q, int want_omega, int want_q)
+{
+    const heavy_top g = *f;
+    const phase axial = phase_of(g.axial);
+    for (ptrdiff_t i = 0; i < count; ++i) {
+        const double t = times[i]*g.time_scale;
+        double taken, s, c, turn_a[2], turn_b[2];
+        const double rest = phase_rest(&axial, t, 4.0, 0.0, &taken);
+        sincos_quarters(rest, taken, &s, &c);
+        const double x = (c - s)*(c + s); /* cos 2z */
+        const double a[2] = {s*cubic(g.value[0][0], x), c*cubic(g.value[0][1], x)};
+        const double b[2] = {c*cubic(g.value[1][0], x), s*cubic(g.value[1][1], x)};
+        const double a_rate[2] = {c*cubic(g.derivative[0][0], x), s*cubic(g.derivative[0][1], x)};
+        const double b_rate[2] = {s*cubic(g.derivative[1][0], x), c*cubic(g.derivative[1][1], x)};
+        turning_at(g.turning[0], t, 0.0, turn_a);
+        turning_at(g.turning[1], t, 0.0, turn_b);
+        put_motion(&g, a, b, a_rate, b_rate, turn_a, turn_b, omega + 3*i, q + 4*i, want_omega, want_q);
+    }
+}
+
+ALWAYS_INLINE void at_hyperbolic(
+    const heavy_top *restrict f, ptrdiff_t count, const double *restrict times, double *restrict omega,
+    double *restrict q, int want_omega, int want_q, int endless)
+{
+    const heavy_top g = *f;
+    const phase axial = phase_of(g.axial);
+    for (ptrdiff_t i = 0; i < count; ++i) {
+        const double t = times[i]*g.time_scale;
+        double taken, v, flip = 1.0, lead_a = 0.0, lead_b = 0.0, turn_a[2], turn_b[2];
+        if (endless) {
+            v = phase_whole(&axial, t);
+        } else {
+            const double whole = 2.0*phase_rest(&axial, t, 2.0, 0.0, &taken); /* of 2K, -1/2 to 1/2 */
+            const double odd = taken - 2.0*rint(0.5*taken);
+            flip = 1.0 - 2.0*odd*odd; /* alpha and beta change sign with every 2K */
+            v = g.stretch*whole;
+            lead_a = g.slope[0]*whole;
+            lead_b = g.slope[1]*whole;
+        }
+        v = clamped(v, 80.0);
+        const double up = exp_moderate(v), down = 1.0/up;
+        const double c = 0.5*(up + down)*flip, s = 0.5*(up - down)*flip;
+        const double s2 = 2.0*s*c, x = MUL_ADD(s, 2.0*s, 1.0); /* of 2v */
+        const double e2 = s2*flip, e0 = flip;
+        const double a[2] = {c*cubic(g.value[0][0], x), s*cubic(g.value[0][1], x)};
+        const double b[2] = {e0*cubic(g.value[1][0], x), e2*cubic(g.value[1][1], x)};
+        const double a_rate[2] = {s*cubic(g.derivative[0][0], x), c*cubic(g.derivative[0][1], x)};
+        const double b_rate[2] = {e2*cubic(g.derivative[1][0], x), e0*cubic(g.derivative[1][1], x)};
+        turning_at(g.turning[0], t, lead_a, turn_a);
+        turning_at(g.turning[1], t, lead_b, turn_b);
+        put_motion(&g, a, b, a_rate, b_rate, turn_a, turn_b, omega + 3*i, q + 4*i, want_omega, want_q);
+    }
+}
+
+ALWAYS_INLINE void at_steady(
+    const heavy_top *restrict f, ptrdiff_t count, const double *restrict times, double *restrict omega,
+    double *restrict q, int want_omega, int want_q)
+{
+    const heavy_top g = *f;
+    for (ptrdiff_t i = 0; i < count; ++i) {
+        const double t = times[i]*g.time_scale, none[2] = {0.0, 0.0};
+        const double a[2] = {g.value[0][0][0], 0.0}, b[2] = {g.value[1][0][0], 0.0};
+        double turn_a[2], turn_b[2];
+        turning_at(g.turning[0], t, 0.0, turn_a);
+        turning_at(g.turning[1], t, 0.0, turn_b);
+        put_motion(&g, a, b, none, none, turn_a, turn_b, omega + 3*i, q + 4*i, want_omega, want_q);
+    }
+}
+
+/* One copy of each loop for each thing asked for, so that nothing is decided inside. */
+#define BY_REQUEST(loop, ...) \
+    if (omega != NULL && quaternion != NULL) \
+        loop(f, count, times, omega, quaternion, 1, 1 __VA_ARGS__); \
+    else if (quaternion != NULL) \
+        loop(f, count, times, omega, quaternion, 0, 1 __VA_ARGS__); \
+    else if (omega != NULL) \
+        loop(f, count, times, omega, quaternion, 1, 0 __VA_ARGS__)
+
+/* The motion at times counted from that of the initial state; arguments as symrot_free_body_at. */
+void symrot_heavy_top_at(const heavy_top *f, ptrdiff_t count, const double *times, double *omega, double *quaternion)
+{
+    switch ((int)f->regime) {
+    case CIRCULAR: BY_REQUEST(at_circular, ); break;
+    case HYPERBOLIC: BY_REQUEST(at_hyperbolic, , 0); break;
+    case SEPARATRIX: BY_REQUEST(at_hyperbolic, , 1); break;
+    default: BY_REQUEST(at_steady, ); break;
+    }
+}
+
+/* The length of the constants in doubles, for callers that lay them out themselves. */
+ptrdiff_t symrot_heavy_top_length(void)
+{
+    return (ptrdiff_t)(sizeof(heavy_top)/sizeof(double));
+}

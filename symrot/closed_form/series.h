@@ -1,0 +1,111 @@
+/*
+ * What the exact motions share: how constants are kept, theta series as polynomials, quaternions to 31 digits.
+ */
+#ifndef SYMROT_SERIES_H
+#define SYMROT_SERIES_H
+
+#include <stddef.h>
+
+#include "circular.h"
+
+enum { SERIES = 5 }; /* terms of a series, coefficients of a polynomial */
+
+static inline phase phase_of(const double v[4])
+{
+    const phase p = {{v[0], v[1]}, {v[2], v[3]}};
+    return p;
+}
+
+static inline void quaternion_product(const dd a[4], const dd b[4], dd c[4])
+{
+    static const int other[4][4] = {{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 3, 0, 1}, {3, 2, 1, 0}};
+    static const double sign[4][4] = {{1, -1, -1, -1}, {1, 1, -1, 1}, {1, 1, 1, -1}, {1, -1, 1, 1}};
+    for (int i = 0; i < 4; ++i) {
+        c[i] = dd_of(0.0);
+        for (int j = 0; j < 4; ++j)
+            c[i] = dd_add(c[i], dd_scale(dd_mul(a[other[i][j]], b[j]), sign[i][j]));
+    }
+}
+
+/* Divide by the norm; a norm of 1 to the last bit is left alone. */
+static inline void normalise(dd q[4])
+{
+    dd square = dd_of(0.0);
+    for (int i = 0; i < 4; ++i)
+        square = dd_add(square, dd_square(q[i]));
+    const dd norm = dd_sqrt(square);
+    for (int i = 0; i < 4; ++i)
+        q[i] = dd_div(q[i], norm);
+}
+
+static inline void store(dd x, double to[2])
+{
+    to[0] = x.hi;
+    to[1] = x.lo;
+}
+
+/* A phase from its rate and start, both in turns; the start is taken between -1/2 and 1/2. */
+static inline void store_phase(dd rate, dd start, double to[4])
+{
+    start = dd_sub(start, dd_of(rint(start.hi)));
+    store(rate, to);
+    store(start, to + 2);
+}
+
+/* sum of c[n] T_n(x) as a polynomial in x, for n < SERIES (T: Chebyshev's, cos n z = T_n(cos z)). */
+static inline void even_series(const dd c[SERIES], double to[SERIES])
+{
+    to[0] = dd_add(dd_sub(c[0], c[2]), c[4]).hi;
+    to[1] = dd_sub(c[1], dd_add(dd_scale(c[3], 2.0), c[3])).hi;
+    to[2] = dd_sub(dd_scale(c[2], 2.0), dd_scale(c[4], 8.0)).hi;
+    to[3] = 4.0*c[3].hi;
+    to[4] = 8.0*c[4].hi;
+}
+
+/*
+ * sum of c[n] cos((2n+1)z)/cos z as a polynomial in x = cos 2z, n < SERIES; with sin for cos where sign is -1:
+ * cos((2n+1)z)/cos z = 2 cos 2nz - cos((2n-1)z)/cos z, sin((2n+1)z)/sin z = 2 cos 2nz + sin((2n-1)z)/sin z.
+ */
+static inline void odd_series(const dd c[SERIES], double sign, double to[SERIES])
+{
+    dd even[SERIES];
+    for (int n = 0; n < SERIES; ++n) {
+        even[n] = dd_of(0.0);
+        double flip = n ? 2.0 : 1.0;
+        for (int k = n; k < SERIES; ++k, flip *= -sign)
+            even[n] = dd_add(even[n], dd_scale(c[k], flip));
+    }
+    even_series(even, to);
+}
+
+/* A power of two near the largest of some pairs hi, lo; 1 where they are zero. */
+static inline double near_power(const double *values, int count)
+{
+    int exponent = 0;
+    double largest = 0.0;
+    for (int i = 0; i < count; ++i)
+        largest = fmax(largest, fabs(values[2*i]));
+    if (!(largest > 0.0))
+        return 1.0;
+    (void)frexp(largest, &exponent);
+    exponent = exponent > 1000 ? 1000 : exponent < -1000 ? -1000 : exponent;
+    return ldexp(1.0, exponent);
+}
+
+ALWAYS_INLINE double polynomial(const double c[SERIES], double x)
+{
+    return MUL_ADD(MUL_ADD(MUL_ADD(MUL_ADD(c[4], x, c[3]), x, c[2]), x, c[1]), x, c[0]);
+}
+
+ALWAYS_INLINE double cubic(const double c[SERIES], double x)
+{
+    return MUL_ADD(MUL_ADD(MUL_ADD(c[3], x, c[2]), x, c[1]), x, c[0]);
+}
+
+ALWAYS_INLINE double clamped(double x, double limit)
+{
+    x = x > limit ? limit : x;
+    return x < -limit ? -limit : x;
+}
+
+#endif
