@@ -49,7 +49,7 @@ def find_scene(source: str | Path) -> Path:
 
 
 def read_toml(path: Path, label: str, what: str = "scene") -> dict[str, Any]:
-    """Return the table of a TOML file, of a scene or whatever it holds; numbers with a point come as Decimal, as they are written.
+    """Return the table of a TOML file, of a scene or whatever it holds; numbers with a point are Decimal, as written.
 
     Parameters
     ----------

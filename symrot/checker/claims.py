@@ -11,7 +11,8 @@ from typing import Any
 from sympy import Symbol
 
 from symrot.checker.decision import Problem
-from symrot.checker.meaning import BUILT_IN, CONSTANTS, Meaning, time
+from symrot.checker.latex import Names, read_latex
+from symrot.checker.meaning import BUILT_IN, CONSTANTS, Meaning, is_matrix, time
 from symrot.checker.reader import Relation, read_expression, read_relation
 from symrot.checker.tree import Node, text
 from symrot.errors import InputError
@@ -134,7 +135,12 @@ def _hypothesis(source: str, where: str) -> Relation:
 
 
 def claim_of_text(source: str, given: Sequence[str] = ()) -> Claim:
-    """Return the claim of a text ``left == right``; its names are real symbols, or functions of time as in ``f(t)``."""
+    """Return the claim of a text ``left == right`` or of LaTeX, which is text with a backslash or a dollar sign.
+
+    Its names are real symbols, or functions of time where they are written ``f(t)``.
+    """
+    if isinstance(source, str) and ("\\" in source or "$" in source):
+        source = read_latex(source).text
     relation = read_relation(source)
     if relation[0] != "==":
         raise InputError(f"expected a claim with '==', got '{relation[0]}' in {source[:60]!r}")
@@ -211,17 +217,22 @@ def _claim(entry: dict[str, Any], number: int, label: str) -> Claim:
         value = read_expression(entry["value"], f"{place}: value")
         return Claim(**made, value=value, printed=entry["printed_value"], sources=sources)
     if kinds == ["latex"]:
-        from symrot.checker.latex import read_latex
-
-        reading = read_latex(entry["latex"], f"{place}: latex", {*symbols}, {*functions}, known)
-        sources["claim"] = shown_relation(reading.relation)
-        made["symbols"] = tuple(dict.fromkeys([*symbols, *reading.symbols]))
-        made["functions"] = tuple(dict.fromkeys([*functions, *reading.functions]))
-        return Claim(**made, relation=reading.relation, sources=sources)
+        names = _names_for_latex(Claim(**made, sources=sources))
+        reading = read_latex(entry["latex"], f"{place}: latex", names)
+        return Claim(**made, relation=reading.relation, sources=sources | {"claim": reading.text})
     sources["claim"] = entry["claim"]
     relation = _equation(entry["claim"], f"{place}: claim")
     alternatives = tuple(_equation(text, f"{place}: alternatives") for text in entry.get("alternatives", ()))
     return Claim(**made, relation=relation, alternatives=alternatives, sources=sources)
+
+
+def _names_for_latex(claim: Claim) -> Names:
+    """Return what is declared, with the definitions that are matrices, which LaTeX marks in its own ways."""
+    values = claim.meaning().values
+    defined = [name for name, _ in claim.define]
+    matrices = {name for name in defined if is_matrix(values[name])}
+    columns = {name for name in matrices if values[name].cols == 1}
+    return Names(claim.symbols, claim.functions, matrices, columns, {*defined} - matrices, implied=False)
 
 
 def _equation(source: str, where: str) -> Relation:

@@ -21,8 +21,8 @@ def check(left: Any, right: Any = None, *, assume: Sequence[Any] = (), repair: b
     Parameters
     ----------
     left : str, Expr or Matrix
-        The whole claim as text, ``"left == right"``, in the language of claims: names are real symbols, ``phi(t)`` is
-        a function of time. Or the left side as a SymPy expression or matrix.
+        The whole claim as text, ``"left == right"`` in the language of claims or LaTeX (text with a backslash): names
+        are real symbols, ``phi(t)`` is a function of time. Or the left side as a SymPy expression or matrix.
     right : Expr or Matrix, optional
         The right side, with a left side of SymPy.
     assume : sequence

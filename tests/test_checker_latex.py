@@ -1,0 +1,138 @@
+"""LaTeX in, the same equation out, or a refusal with the place: nothing is dropped and nothing is chosen."""
+
+import re
+
+import pytest
+
+import symrot
+from symrot.checker.latex import Names, read_latex
+from symrot.checker.latex_tokens import tokens
+from symrot.errors import InputError
+
+READINGS = (
+    (r"\ddot{\theta} = -\frac{g}{l}\sin\theta", "diff(theta(t), t, t) == -g/l*sin(theta(t))"),
+    (r"$\cos 2\theta = 1 - 2\sin^2\theta$.", "cos(2*theta) == 1 - 2*sin(theta)**2"),
+    (r"\[ a^{2}_1 = \frac{a_{12}}{2} \]", None),
+    (r"a_1^{2} = \frac{a_{12}}{2}", "a_1**2 == a_12/2"),
+    (r"I_1\dot\omega_1 = (I_2-I_3)\omega_2\omega_3 + \tau_1", "I_1*diff(omega_1(t), t) == (I_2 - I_3)*omega_2*omega_3 + tau_1"),
+    (r"\dot{\omega}_{1} = \dot{\omega_1}", "diff(omega_1(t), t) == diff(omega_1(t), t)"),
+    (r"\frac{d}{dt}\left(\frac{\partial L}{\partial \dot\theta}\right) = 0", "diff(diff(L, diff(theta(t), t)), t) == 0"),
+    (r"\frac{d^2\theta}{dt^2}=\ddot\theta", "diff(theta(t), t, t) == diff(theta(t), t, t)"),
+    (r"\frac{\mathrm{d}\theta}{\mathrm{d}t}=1", "diff(theta(t), t) == 1"),
+    (r"\frac{\partial^2 f}{\partial x\partial y}=1", "diff(diff(f, x), y) == 1"),
+    (r"\dfrac12 m v^2 = 1/2 m v^2", "1/2*m*v**2 == 1/2*m*v**2"),
+    (r"\begin{pmatrix}c & -s\\ s & c\end{pmatrix}^T = \left[\begin{array}{cc}c & s\\ -s & c\end{array}\right]",
+     "Matrix([[c, -s], [s, c]]).T == Matrix([[c, s], [-s, c]])"),
+    (r"\begin{vmatrix}a & b\\ c & d\end{vmatrix} = ad - bc", "det(Matrix([[a, b], [c, d]])) == a*d - b*c"),
+    (r"\left|\begin{matrix}3\\4\end{matrix}\right| = 5", "sqrt(dot(Matrix([[3], [4]]), Matrix([[3], [4]]))) == 5"),
+    (r"x' = x\cos\theta + y\sin\theta", "x_prime == x*cos(theta) + y*sin(theta)"),
+    (r"x^{\prime} = x'", "x_prime == x_prime"),
+    (r"f'(t) = \dot f", "diff(f(t), t) == diff(f(t), t)"),
+    (r"\sin\omega t = \sin(\omega t)", "sin(omega*t) == sin(omega*t)"),
+    (r"\sin\theta\,\dot\phi = \dot\phi\sin\theta", "sin(theta)*diff(phi(t), t) == diff(phi(t), t)*sin(theta)"),
+    (r"\sin\theta\cos\phi = \tfrac{1}{2}(\sin(\theta+\phi)+\sin(\theta-\phi))",
+     "sin(theta)*cos(phi) == 1/2*(sin(theta + phi) + sin(theta - phi))"),
+    (r"\tan\frac{\theta}{2} = \frac{\sin\theta}{1+\cos\theta}", "tan(theta/2) == sin(theta)/(1 + cos(theta))"),
+    (r"d \cdot 2 = 2d", "d*2 == 2*d"),
+    (r"\sqrt[3]{x^3} = |x|", "(x**3)**(1/3) == abs(x)"),
+    (r"I_{xx}=\int_{-a/2}^{a/2} \rho x^2\,dx", "I_xx == integrate(rho*x**2, (x, -a/2, a/2))"),
+    (r"\int_0^{2\pi}\int_0^R r^3\,dr\,d\theta = \frac{\pi R^4}{2}", "integrate(r**3, (r, 0, R), (theta, 0, 2*pi)) == pi*R**4/2"),
+    (r"\int_0^1 \mathrm{d}x = 1", "integrate(1, (x, 0, 1)) == 1"),
+    (r"\operatorname{tr}(A) = \mathrm{tr}\,A", "trace(A) == trace(A)"),
+    (r"I_{\text{cm}} = I_\mathrm{cm}", None),
+    (r"I_{\mathrm{cm}} = \bar{I}_{1}", "I_cm == I_bar_1"),
+    (r"−a·b = -a \times b", "-a*b == -a*b"),
+    (r"a/b = \frac{a}{b}", "a/b == a/b"),
+    (r"e^{-1} = \frac1e", "e**(-1) == 1/e"),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(("latex", "text"), [case for case in READINGS if case[1]])
+def test_latex_is_read_as(latex, text):
+    assert read_latex(latex).text == text
+
+
+@pytest.mark.parametrize(("latex", "text"), [case for case in READINGS if case[1]])
+def test_no_symbol_is_dropped(latex, text):
+    """Every letter of the source that is no part of a command is in the text, as often, but for signs of differentiation."""
+    latex = re.sub(r"(?<=\\,)d(?=[a-z\\])|_\{?\w+\}?", " ", latex)
+    commands = re.sub(r"\\(mathrm|operatorname|text)\{?[a-z]*\}?|\\begin\{array\}\{\w*\}|\\(begin|end)\{\w*\}|\\[A-Za-z]+", " ", latex)
+    letters = [letter for letter in re.findall(r"[A-Za-z]", commands) if letter not in "dfTte"]
+    shown = re.sub(r"[a-z]{2,}|Matrix", " ", re.sub(r"_\w+", " ", text))
+    for letter in set(letters):
+        assert shown.count(letter) >= letters.count(letter), letter
+
+
+VECTORS = Names(
+    symbols={"m", "t", "omega1", "I_2"}, functions={"theta"}, matrices={"omega", "r", "R", "I", "L"}, columns={"omega", "r", "L"},
+    others={"T"}, implied=False,
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(("latex", "text"), [
+    (r"\mathbf{L} = m\,\mathbf r\times(\boldsymbol\omega\times\mathbf r)", "L == cross(m*r, cross(omega, r))"),
+    (r"\vec r\cdot\vec r = |\mathbf r|^2", "dot(r, r) == sqrt(dot(r, r))**2"),
+    (r"\|\vec r\| = |R|", "sqrt(dot(r, r)) == det(R)"),
+    (r"\omega\cdot I\omega = 2T", "dot(omega, I*omega) == 2*T"),
+    (r"\dot{\mathbf R} = \mathbf{R}^{\mathsf T}", "diff(R, t) == R.T"),
+    (r"R^{-1}R = R^\top R", "R**(-1)*R == R.T*R"),
+    (r"\omega_1 + I_2 = \dot\theta", "omega1 + I_2 == diff(theta(t), t)"),
+])  # fmt: skip
+def test_declared_names_give_vectors_their_meaning(latex, text):
+    assert read_latex(latex, "", VECTORS).text == text
+
+
+REFUSED = (
+    (r"a/b c = 1", 2), (r"\sin\theta/2 = 1", 11), (r"\sin^{-1}x = 1", 1), (r"x_12 = 1", 3), (r"x^10 = 1", 3), (r"\cos(a)^2 = 1", 8),
+    (r"\sin\theta\phi = 1", 11), (r"\foo = 1", 1), (r"\sum_i m_i = 1", 1), (r"a = b = c", 7), (r"a \le b", 3), (r"\vec r = 1", 1),
+    (r"a = b \text{ for all } x", 7), (r"\left.x\right|_0 = 1", 6), (r"\frac{d}{dt} R v = 0", 16), (r"\frac{d x}{d t^2} = 1", 1),
+    (r"\begin{pmatrix}1&2\\3\end{pmatrix} = 1", 1), (r"\begin{cases}1\end{cases} = 1", 1), (r"(a = b)", 4), (r"a) = b", 2),
+    (r"\frac{a} = b", 10), (r"a^2^3 = b", 4), (r"a_{i,} = \sqrt", 15), (r"x = y!", 6), (r"\mathrm{d}x = 1", 1), (r"{\rm tr}(R) = 1", 2),
+    (r"\int_0^1 x = 1", 12), (r"|x = 1", 4), (r"x2 = 1", 2), ("a = b\n\n§", 8), ("(" * 500 + "a = b", 31), (r"\sin -x = 1", 6),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(("latex", "position"), REFUSED, ids=[latex[:30] for latex, _ in REFUSED])
+def test_what_is_not_understood_is_refused_with_its_place(latex, position):
+    with pytest.raises(InputError, match=f"position {position},"):
+        read_latex(latex)
+
+
+@pytest.mark.parametrize(("latex", "words"), [
+    (r"\mathbf r\times\mathbf r\times\mathbf r = 0", "brackets"), (r"m\times\mathbf r = 0", "two vectors"),
+    (r"\dot{m} = 0", "function of time"), (r"\vec v = 0", "'v'"),
+])  # fmt: skip
+def test_vectors_are_refused_where_they_make_no_sense(latex, words):
+    with pytest.raises(InputError, match=words):
+        read_latex(latex, "", VECTORS)
+
+
+@pytest.mark.parametrize("latex", [r"\frac{" * 3000, "a" * 30_000 + r"\theta = 1", "$", r"\[\]", "{" * 40, r"\dot" * 100 + "x=1"])
+def test_hostile_latex_is_refused_at_once(latex):
+    with pytest.raises(InputError):
+        symrot.check(latex)
+
+
+def test_every_token_but_space_and_size_is_kept():
+    source = r"\left( a \, \quad b \right) % comment"
+    assert [token.text for token in tokens(source, "")] == ["(", "a", "b", ")", ""]
+
+
+def test_a_formula_copied_from_a_paper_gets_its_verdict():
+    """Body rates of the sequence ZXZ: the sign of the second term of omega_2 is wrong in the second copy."""
+    line = r"\left(\dot\phi\sin\theta\cos\psi %s \dot\theta\sin\psi\right)^2 + \left(\dot\phi\sin\theta\sin\psi + \dot\theta\cos\psi\right)^2" \
+        r" = \dot\phi^2\sin^2\theta + \dot\theta^2"  # fmt: skip
+    assert symrot.check(line % "-").verdict == "true"
+    assert symrot.check(line % "+", repair=False).verdict == "false"
+
+
+def test_latex_in_a_file_of_claims(tmp_path):
+    path = tmp_path / "claims.toml"
+    path.write_text(
+        "schema = 1\n[[claim]]\nid = 'euler'\nsymbols = ['t', 'x', 'y', 'z']\nfunctions = ['theta']\n"
+        "define = [['R', 'Rz(theta(t))'], ['omega', 'Matrix([0, 0, diff(theta(t), t)])'], ['r', 'Matrix([x, y, z])']]\n"
+        r"latex = '\frac{d}{dt}(\mathbf{R}\vec r) = \boldsymbol\omega\times(\mathbf R\vec r)'",
+        encoding="utf-8",
+    )
+    (verdict,) = symrot.check_file(path)
+    assert (verdict.verdict, verdict.text) == ("true", "diff(R*r, t) == cross(omega, R*r)")
