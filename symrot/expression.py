@@ -283,7 +283,8 @@ def text(node: Node, binding: int = 0, literal: Callable[[Fraction], str] = str)
         return f"({inner})" if binding > 10 else inner
     if kind == "**":
         power = str(node[2]) if node[2] >= 0 else f"({node[2]})"
-        return f"{text(node[1], 41, literal)}**{power}"
+        inner = f"{text(node[1], 41, literal)}**{power}"
+        return f"({inner})" if binding > 40 else inner
     own, mark = _INFIX[kind]
     inner = f"{text(node[1], own, literal)}{mark}{text(node[2], own + 1, literal)}"
     return f"({inner})" if binding > own else inner

@@ -3,7 +3,7 @@
 from fractions import Fraction
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from symrot.errors import InputError
@@ -24,6 +24,7 @@ TREES = st.recursive(
 )
 
 
+@example(("neg", ("**", ("**", ("number", Fraction(0)), 0), 0)))
 @given(TREES)
 def test_printing_and_reading_are_inverse(tree):
     """Brackets are neither lost nor needless: the order of evaluation survives."""
