@@ -1,0 +1,102 @@
+"""What every exact motion offers: angular velocity and attitude at any times, each sample for itself."""
+
+import ctypes
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from symrot.closed_form.library import Floats, address, load, times_of
+from symrot.errors import CompilerError, InputError
+
+__all__ = ["REGIMES", "ExactMotion", "prepared"]
+
+REGIMES = ("steady", "circular", "hyperbolic", "separatrix")
+"""Which series a motion takes: none; those of the elliptic functions; their imaginary transforms; on the separatrix."""
+
+_DOMAIN = 1
+_Functions = tuple[Any, Any, Any]
+_bound: dict[str, _Functions] = {}
+
+
+class ExactMotion:
+    """A motion with its constants. Times are counted from that of the initial state."""
+
+    def __init__(self, constants: Any, evaluate: Any) -> None:
+        self.constants, self._evaluate = constants, evaluate
+        self._address = ctypes.addressof(constants)
+
+    @property
+    def regime(self) -> str:
+        """One of :data:`REGIMES`."""
+        return REGIMES[int(self.constants[0])]
+
+    def evaluate(
+        self, t: ArrayLike, omega: bool = True, quaternion: bool = True
+    ) -> tuple[Floats | None, Floats | None]:
+        """Return angular velocity and attitude at any times.
+
+        Parameters
+        ----------
+        t : number or sequence of n numbers
+            s, from the initial state, in any order, negative ones too.
+        omega, quaternion : bool
+            What is asked for; the other is None and costs nothing.
+
+        Returns
+        -------
+        omega : array, shape (n, 3), or None
+            rad/s, along the body's axes.
+        quaternion : array, shape (n, 4), or None
+            Body to space, scalar first, unit, continuous in time.
+
+        Raises
+        ------
+        InputError
+            If a time is not finite.
+        """
+        times = times_of(t)
+        rates = np.empty((len(times), 3)) if omega else None
+        attitudes = np.empty((len(times), 4)) if quaternion else None
+        self._evaluate(self._address, len(times), address(times), address(rates), address(attitudes))
+        return rates, attitudes
+
+
+def _functions(name: str, arguments: int) -> _Functions:
+    if name not in _bound:
+        library = load(name)
+        prepare, evaluate, length = (getattr(library, f"symrot_{name}_{part}") for part in ("prepare", "at", "length"))
+        pointer, size = ctypes.c_void_p, ctypes.c_ssize_t
+        prepare.argtypes, prepare.restype = (pointer,) * (arguments + 1), ctypes.c_int
+        evaluate.argtypes, evaluate.restype = (pointer, size, pointer, pointer, pointer), None
+        length.restype = size
+        _bound[name] = (prepare, evaluate, ctypes.c_double * length())
+    return _bound[name]
+
+
+def prepared(name: str, arguments: tuple[list[float] | None, ...], refusal: str) -> ExactMotion:
+    """Return a motion of ``name.c`` from what its `prepare` takes, each a list of doubles or None.
+
+    Raises
+    ------
+    InputError
+        With the sentence ``refusal`` if the numbers are not of the motion's domain.
+    CompilerError
+        If there is no C compiler, or one that breaks error-free arithmetic.
+    """
+    prepare, evaluate, record = _functions(name, len(arguments))
+    constants = record()
+    given = [None if values is None else _array(values) for values in arguments]
+    status = prepare(*given, ctypes.addressof(constants))
+    if status == _DOMAIN:
+        raise InputError(refusal)
+    if status:
+        raise CompilerError("the C compiler breaks error-free arithmetic: it must round every operation as written")
+    return ExactMotion(constants, evaluate)
+
+
+_kinds = {length: ctypes.c_double * length for length in (2, 4, 6, 8, 26)}
+
+
+def _array(values: list[float]) -> Any:
+    return _kinds[len(values)](*values)
