@@ -165,7 +165,7 @@ class _Builder:
     def product(self, left: _Linear, right: _Linear) -> _Linear:
         if not left.terms or not right.terms:
             constant, form = (left, right) if not left.terms else (right, left)
-            return _Linear(ZERO, {}) if _value(constant) == ZERO else _scaled(form, _value(constant))
+            return _scaled(form, _value(constant))
         (a, u), (b, v) = self.factored(left), self.factored(right)
         return _Linear(None, {self.add(Series("product", (min(u, v), max(u, v)))): _folded(("*", a, b))})
 
@@ -335,15 +335,15 @@ def _number_and_rest(weight: Node) -> tuple[Fraction, Node]:
 
 
 def _scaled(form: _Linear, factor: Node | int) -> _Linear:
-    if isinstance(factor, int):
-        factor = ("number", Fraction(factor))
-    constant = None if form.constant is None else _folded(("*", factor, form.constant))
-    if factor == ("number", Fraction(-1)):
-        return _Linear(
-            None if form.constant is None else _folded(("neg", form.constant)),
-            {series: _folded(("neg", weight)) for series, weight in form.terms.items()},
-        )
-    return _Linear(constant, {series: _folded(("*", factor, weight)) for series, weight in form.terms.items()})
+    weight: Node = ("number", Fraction(factor)) if isinstance(factor, int) else factor
+    if weight == ZERO:
+        return _Linear(ZERO, {})
+
+    def times(value: Node) -> Node:
+        return _folded(("*", weight, value))
+
+    constant = None if form.constant is None else times(form.constant)
+    return _Linear(constant, {series: times(value) for series, value in form.terms.items()})
 
 
 def _sum(left: _Linear, right: _Linear, sign: int) -> _Linear:
@@ -430,7 +430,7 @@ def _convolution(u: Sequence[Any], v: Sequence[Any], n: int, first: int, last: i
 
 def _sum_rule(run: _Run, series: Series, n: int, own: list[Any]) -> Any:
     *weights, constant = series.weights
-    total = run.constant(constant) if n == 0 and constant is not None else 0
+    total = run.constant(constant if n == 0 and constant is not None else ZERO)
     for operand, weight in zip(series.operands, weights, strict=True):
         total = total + run.constant(weight) * run.found[operand][n]  # type: ignore[arg-type]
     return total

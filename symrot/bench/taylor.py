@@ -1,0 +1,292 @@
+"""Measure the Taylor stepper: against symrot's DOP853 and against heyoka where it is installed, at equal error.
+
+    python -m symrot.bench.taylor [--rounds 9] [--settings] [--orders] [--motion NAME]
+
+Each contestant runs over a range of tolerances; runs are interleaved, the least time of each counts, the error is that
+of the last state against a Taylor series in 40 digits. At each decade of the error the table takes the fastest run
+that is at least as good, so no curve is smoothed or extended. ``--settings`` adds heyoka's other ways of compiling (fast
+math, high accuracy, compact) and counts the best of all; ``--orders`` compares the orders of our own series instead.
+
+heyoka is no requirement: ``pip install heyoka``.
+"""
+
+import argparse
+import gc
+import tomllib
+from collections.abc import Callable, Iterable, Sequence
+from fractions import Fraction
+from functools import partial
+from pathlib import Path
+from time import perf_counter
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symrot.codegen import library
+from symrot.codegen.recurrences import coefficients, recurrences
+from symrot.planner import Plan, make_plan
+from symrot.propagation import dop853, taylor
+from symrot.propagation.kernels import error_blocks, library_source, scene_kernel
+from symrot.scene import Scene
+from symrot.scene_kernel import SceneKernel, bind
+
+__all__ = ["MOTIONS", "Run", "best_of", "main", "measure", "reference"]
+
+Floats = NDArray[np.float64]
+
+GRAVITY = {"kind": "gravity", "weight": 1}
+TILTED = {"axis": [1, 0, 0], "angle": "1/2"}
+MOTIONS: dict[str, dict[str, Any]] = {
+    "free asymmetric": {
+        "body": {"principal": [1, 2, 3]}, "initial": {"omega": ["3/10", 1, "1/2"]}, "span": {"t": [0, 1000]},
+    },
+    "heavy symmetric": {
+        "body": {"principal": [1, 1, "1/2"], "about": "fixed_point"},
+        "initial": {"omega": ["3/10", "-9/5", 4], "attitude": TILTED},
+        "torque": [{**GRAVITY, "center_of_mass": [0, 0, 1]}], "span": {"t": [0, 200]},
+    },
+    "heavy asymmetric": {
+        "body": {"principal": [1, "3/2", "7/10"], "about": "fixed_point"},
+        "initial": {"omega": ["1/2", "3/10", 4], "attitude": TILTED},
+        "torque": [{**GRAVITY, "center_of_mass": ["1/10", "1/5", "9/10"]}], "span": {"t": [0, 200]},
+    },
+}  # fmt: skip
+SETTINGS: dict[str, dict[str, bool]] = {
+    "heyoka": {}, "heyoka fast": {"fast_math": True}, "heyoka accurate": {"high_accuracy": True},
+    "heyoka compact": {"compact_mode": True},
+}  # fmt: skip
+DECADES = tuple(10.0**-k for k in range(3, 14))
+ORDERS = (12, 16, 18, 20, 22, 24, 28)
+REFERENCE_DIGITS, REFERENCE_ORDER, REFERENCE_TAIL = 40, 32, 1e-28
+REFERENCES = Path(__file__).with_name("taylor.toml")
+
+
+class Run(NamedTuple):
+    """One contestant at one tolerance: steps, error of the last state, seconds of each round."""
+
+    name: str
+    tolerance: float
+    steps: int
+    error: float
+    seconds: list[float]
+
+
+class _Problem:
+    """A motion with its kernel bound to numbers."""
+
+    def __init__(self, name: str, scale: float) -> None:
+        self.plan: Plan = make_plan(_scene(name))
+        self.kernel: SceneKernel = scene_kernel(self.plan)
+        self.p = bind(self.kernel.rate_parameters, self.plan.constants)
+        self.y0 = [float(value) for value in self.plan.initial_state]
+        self.stop = float(self.plan.scene.span.stop) * scale
+        self.blocks, self.scales = error_blocks(self.plan)
+
+    def taylor_library(self, order: int | None = None) -> Any:
+        return library.build(taylor.translation_unit(self.kernel.rates, self.blocks, self.scales, order), "taylor")
+
+    def error(self, state: Iterable[Any], exact: Floats) -> float:
+        """Return the largest error of a state, rates relative to the largest rate."""
+        found, worst = np.array([float(value) for value in state]), 0.0
+        for low, high, scale in zip(self.blocks[:-1], self.blocks[1:], self.scales, strict=True):
+            size = scale or float(np.linalg.norm(exact[low:high]))
+            worst = max(worst, float(abs(found[low:high] - exact[low:high]).max()) / size)
+        return worst
+
+
+def _scene(name: str) -> Scene:
+    form = {"schema": 1, "title": name, "output": {"quantities": ["omega", "quaternion"]}, **MOTIONS[name]}
+    form["span"] = {**form["span"], "samples": 2}
+    return Scene.from_dict(form, name)
+
+
+def reference(name: str, scale: float = 1.0) -> Floats:
+    """Return the last state of a motion: as kept in :data:`REFERENCES` for the whole span, else computed anew."""
+    kept = tomllib.loads(REFERENCES.read_text(encoding="utf-8")).get(name)
+    return np.array([float(value) for value in kept]) if kept and scale == 1.0 else np.array(
+        [float(value) for value in compute_reference(name, scale)]
+    )
+
+
+def compute_reference(name: str, scale: float = 1.0) -> list[Any]:
+    """Return the last state by Taylor series in 40 digits, from the parameters as they are in the kernel."""
+    import mpmath
+
+    problem = _Problem(name, scale)
+    system = recurrences(problem.kernel.rates)
+    with mpmath.workdps(REFERENCE_DIGITS):
+        functions = {function: getattr(mpmath, function) for function in ("sqrt", "sin", "cos", "exp")}
+        values: dict[str, Any] = {n: mpmath.mpf(v) for n, v in zip(system.parameters, problem.p, strict=True)}
+        state, now, stop = [mpmath.mpf(v) for v in problem.y0], mpmath.mpf(0), mpmath.mpf(problem.stop)
+        while now < stop:
+            values |= {"t": now, **dict(zip(system.states, state, strict=True))}
+            series = coefficients(system, REFERENCE_ORDER, values, functions, _as_mpf)
+            last = max(max(abs(one[-1]), abs(one[-2])) for one in series)
+            step = min((REFERENCE_TAIL / last) ** (mpmath.mpf(1) / REFERENCE_ORDER), stop - now)
+            state = [mpmath.polyval(one[::-1], step) for one in series]
+            now += step
+        return state
+
+
+def references_text() -> str:
+    """Return the text of :data:`REFERENCES`."""
+    import mpmath
+
+    lines = ["# Last states of the motions of symrot.bench.taylor.", "# Printed by `python -m symrot.bench.taylor --reference`."]
+    for name in MOTIONS:
+        values = "".join(f'  "{mpmath.nstr(value, 25)}",\n' for value in compute_reference(name))
+        lines.append(f'\n"{name}" = [\n{values}]')
+    return "\n".join(lines) + "\n"
+
+
+def _as_mpf(value: Fraction) -> Any:
+    import mpmath
+
+    return mpmath.mpf(value.numerator) / value.denominator
+
+
+# ------------------------------------------------------------------------------------------------ contestants
+
+Task = Callable[[], tuple[int, Iterable[Any]]]
+
+
+def _stepper(integrate: Callable[..., Any], path: Any, problem: _Problem, tolerance: float) -> tuple[int, Iterable[Any]]:
+    states, stats = integrate(path, problem.p, problem.y0, 0.0, [problem.stop], tolerance)
+    return stats.accepted, states[0]
+
+
+def _heyoka(problem: _Problem, tolerance: float, settings: dict[str, bool]) -> Task:
+    """Return a run of heyoka over the same right-hand side, its parameters compiled in as numbers."""
+    import heyoka
+
+    names = [name for name, *_ in problem.kernel.rates.signature.argument("y").components]
+    variables = dict(zip(names, heyoka.make_vars(*names), strict=True))
+    parameters = dict(zip((name for name, _ in problem.kernel.rate_parameters), problem.p, strict=True))
+    functions = {name: getattr(heyoka, name) for name in ("sqrt", "sin", "cos", "exp")}
+    rates = problem.kernel.rates.evaluate({**variables, **parameters, "t": heyoka.time}, functions, float)
+    system = [(variables[name], rates[f"d{name}"]) for name in names]
+    integrator = heyoka.taylor_adaptive(system, problem.y0, tol=tolerance, **settings)
+
+    def run() -> tuple[int, Iterable[Any]]:
+        integrator.time = 0.0
+        integrator.state[:] = problem.y0
+        steps = integrator.propagate_until(problem.stop)[3]
+        return int(steps), integrator.state
+
+    return run
+
+
+def _contestants(problem: _Problem, settings: bool) -> list[tuple[str, float, Task]]:
+    tolerances = [10.0**-k for k in range(2, 15)]
+    ours, hairer = problem.taylor_library(), library.build(
+        library_source(problem.plan, problem.kernel.source, len(problem.p)), "motion"
+    )
+    tasks: list[tuple[str, float, Task]] = []
+    tasks += [("taylor", e, partial(_stepper, taylor.integrate, ours, problem, e)) for e in tolerances]
+    tasks += [("dop853", e, partial(_stepper, dop853.integrate, hairer, problem, e)) for e in tolerances[:-2]]
+    for name, how in SETTINGS.items() if settings else list(SETTINGS.items())[:1]:
+        try:
+            tasks += [(name, e, _heyoka(problem, e, how)) for e in (*tolerances[2:], 1e-15, 1e-16)]
+        except ImportError:
+            return tasks
+    return tasks
+
+
+def measure(name: str, rounds: int = 9, settings: bool = False, scale: float = 1.0) -> list[Run]:
+    """Return the runs of all contestants on one motion; ``scale`` shortens its span."""
+    problem, exact = _Problem(name, scale), reference(name, scale)
+    return _raced(problem, exact, _contestants(problem, settings), rounds)
+
+
+def _raced(problem: _Problem, exact: Floats, tasks: Sequence[tuple[str, float, Task]], rounds: int) -> list[Run]:
+    runs = []
+    for name, tolerance, task in tasks:
+        steps, state = task()
+        runs.append(Run(name, tolerance, steps, problem.error(state, exact), []))
+    gc.disable()
+    for _ in range(rounds):
+        for (_, _, task), run in zip(tasks, runs, strict=True):
+            began = perf_counter()
+            task()
+            run.seconds.append(perf_counter() - began)
+    gc.enable()
+    return runs
+
+
+def best_of(runs: Iterable[Run], error: float, names: Sequence[str]) -> Run | None:
+    """Return the fastest run of some contestants with at most that error, or None."""
+    good = [run for run in runs if run.name in names and run.error <= error]
+    return min(good, key=lambda run: min(run.seconds), default=None)
+
+
+# ------------------------------------------------------------------------------------------------ tables
+
+
+def _print_table(name: str, runs: list[Run]) -> None:
+    stop = MOTIONS[name]["span"]["t"][1]
+    present = [n for n in ("taylor", "dop853", *SETTINGS) if any(run.name == n for run in runs)]
+    peers = [n for n in present if n.startswith("heyoka")]
+    print(f"\n{name}, t = {stop} s")
+    for contestant in present:
+        pace = min(min(run.seconds) / run.steps for run in runs if run.name == contestant)
+        best = min((run for run in runs if run.name == contestant), key=lambda run: run.error)
+        print(f"  {contestant:16}{pace * 1e9:6.0f} ns per step, least error {best.error:.1e} at tolerance {best.tolerance:g}")
+    columns = [("taylor", ["taylor"]), ("dop853", ["dop853"])]
+    columns += [("heyoka", ["heyoka"])] if peers else []
+    columns += [("best heyoka", peers)] if len(peers) > 1 else []
+    print(f"{'  error <=':10}{'taylor ms':>12}" + "".join(f"{title:>14} ms{'ratio':>8}" for title, _ in columns[1:]))
+    ratios: dict[str, list[float]] = {title: [] for title, _ in columns[1:]}
+    for decade in DECADES:
+        ours = best_of(runs, decade, ["taylor"])
+        line = f"{decade:10.0e}" + (f"{min(ours.seconds) * 1e3:12.3f}" if ours else f"{'-':>12}")
+        for title, names in columns[1:]:
+            other = best_of(runs, decade, names)
+            if ours is None or other is None:
+                line += f"{'-':>17}{'-':>8}"
+                continue
+            ratios[title].append(min(other.seconds) / min(ours.seconds))
+            line += f"{min(other.seconds) * 1e3:17.3f}{ratios[title][-1]:8.2f}"
+        print(line)
+    for title, found in ratios.items():
+        if found:
+            print(f"  {title}: median ratio {np.median(found):.2f}, least {min(found):.2f}")
+
+
+def _print_orders(name: str, rounds: int) -> None:
+    """Compare orders: the least time for each decade of the error."""
+    problem, exact = _Problem(name, 1.0), reference(name)
+    paths = {f"{order}": problem.taylor_library(order) for order in ORDERS}
+    tasks: list[tuple[str, float, Task]] = [
+        (order, 10.0**-k, partial(_stepper, taylor.integrate, path, problem, 10.0**-k))
+        for k in range(2, 15) for order, path in paths.items()
+    ]  # fmt: skip
+    runs = _raced(problem, exact, tasks, rounds)
+    print(f"\n{name}: ms for an error, by order of the series")
+    print(f"{'  error <=':10}" + "".join(f"{order:>10}" for order in paths))
+    for decade in DECADES:
+        found = [best_of(runs, decade, [order]) for order in paths]
+        print(f"{decade:10.0e}" + "".join(f"{min(run.seconds) * 1e3:10.3f}" if run else f"{'-':>10}" for run in found))
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Print the tables."""
+    parser = argparse.ArgumentParser(prog="python -m symrot.bench.taylor", description=(__doc__ or "").split("\n")[0])
+    parser.add_argument("--rounds", type=int, default=9)
+    parser.add_argument("--settings", action="store_true", help="race heyoka's other settings too")
+    parser.add_argument("--orders", action="store_true", help="compare orders of the series")
+    parser.add_argument("--reference", action="store_true", help="compute the last states anew (minutes) and print them")
+    parser.add_argument("--motion", choices=list(MOTIONS), help="one motion only")
+    options = parser.parse_args(arguments)
+    if options.reference:
+        print(references_text(), end="")
+        return
+    for name in [options.motion] if options.motion else MOTIONS:
+        if options.orders:
+            _print_orders(name, options.rounds)
+        else:
+            _print_table(name, measure(name, options.rounds, options.settings))
+
+
+if __name__ == "__main__":
+    main()
