@@ -9,7 +9,7 @@ from argparse import ArgumentParser, Namespace
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from time import perf_counter
-from typing import Any, NoReturn
+from typing import Any, NoReturn, TextIO
 
 import symrot
 from symrot.errors import InputError, SymrotError
@@ -154,6 +154,12 @@ def _derive(options: Namespace) -> int:
 def _check(options: Namespace) -> int:
     from symrot.report import verdicts
 
+    if (options.claim is None) == (options.textbook is None):
+        raise InputError("check: expected a CLAIM, a FILE or --textbook NAME (see `symrot check --help`)")
+    if options.all and options.textbook != "all":
+        raise InputError("--all: expected --textbook all beside it, since the page holds every document")
+    if options.textbook:
+        return _check_textbook(options)
     found = verdicts.check(options.claim, options.given, not options.no_repair, _progress)
     _progress("")
     if options.json:
@@ -233,11 +239,33 @@ def _derive_arguments(parser: ArgumentParser) -> None:
 
 
 def _check_arguments(parser: ArgumentParser) -> None:
-    parser.add_argument("claim", metavar="CLAIM", help="'left == right', LaTeX with a backslash, or a FILE.toml")
+    parser.add_argument("claim", metavar="CLAIM", nargs="?", help="'left == right', LaTeX, or a FILE.toml of claims")
+    parser.add_argument("--textbook", metavar="NAME", help="check what a document says: chen, sahakian, brown, "
+                        "beer-johnston, or all")  # fmt: skip
+    parser.add_argument("--all", action="store_true", help="with --textbook all: write the page of errata")
+    parser.add_argument("-o", "--output", metavar="DIR", default="generated", help="folder of --all (./generated)")
     parser.add_argument("--given", metavar="HYPOTHESIS", action="append", default=[],
                         help="'a == b', 'x > 0' or 'x != 0', with a claim as text; may be repeated")  # fmt: skip
     parser.add_argument("--no-repair", action="store_true", help="do not look for true formulas near a false one")
     _json_option(parser)
+
+
+def _check_textbook(options: Namespace) -> int:
+    from symrot.report import errata, files
+    from symrot.textbook import DOCUMENTS
+
+    names = DOCUMENTS if options.textbook == "all" else (options.textbook,)
+    found = errata.survey(names, not options.no_repair, _progress)
+    _progress("")
+    if options.all:
+        target = Path(options.output) / "errata.md"
+        files.write(target, lambda stream: stream.write(errata.page(found).encode("utf-8")))
+        _say([f"{target}: written"])
+    elif options.json:
+        _say_json(errata.facts(found))
+    else:
+        _say(errata.lines(found))
+    return GOOD if options.all or all(item.outcome == "holds" for _, items in found for item in items) else FAILED
 
 
 def _doctor_arguments(parser: ArgumentParser) -> None:
@@ -255,6 +283,11 @@ COMMANDS: dict[str, tuple[str, Callable[[Namespace], int], Callable[[ArgumentPar
     "doctor": ("check compiler, cache and installed versions", _doctor, _doctor_arguments),
 }
 """Command -> what it does, the function that does it, the function that declares its arguments."""
+
+
+def _nowhere() -> TextIO:
+    """Return a stream for a process that was started with that one closed."""
+    return Path(os.devnull).open("w", encoding="utf-8")
 
 
 def _parser() -> _Parser:
@@ -298,6 +331,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         The words after ``symrot``; default: those of this process.
     """
     arguments = sys.argv[1:] if argv is None else list(argv)
+    sys.stdout, sys.stderr = sys.stdout or _nowhere(), sys.stderr or _nowhere()
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="replace")  # a title in letters that the terminal has not is no reason to fail

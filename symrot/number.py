@@ -42,6 +42,8 @@ def show(value: object, limit: int = 60) -> str:
         text = str(value) if value.denominator == 1 else f"{float(value):.15g}"
     elif isinstance(value, Decimal):
         text = str(value).lower().replace("infinity", "inf")
+    elif isinstance(value, list | tuple | dict) and limit < 2:  # deep inside: nobody reads on
+        text = ".."
     elif isinstance(value, list | tuple):
         text = "[" + ", ".join(show(item, limit // 2) for item in value[:12]) + (", ..]" if len(value) > 12 else "]")
     elif isinstance(value, dict):

@@ -131,10 +131,19 @@ def _general_torque(number: int, torque: Any, taken: set[str]) -> Structure:
             for name, value in torque.values.items()
             if value is not None
         }
-        names, found = list(fields), {"fields": fields}
-    prefix = f"torque{number}_" if taken & set(names) else ""
-    taken |= set(names)
+        names, found = [name for field in fields.items() for name in _component_names(*field)], {"fields": fields}
+    prefix = ""
+    while taken & {f"{prefix}{name}" for name in names}:
+        prefix = f"{prefix}_" if prefix else f"torque{number}_"
+    taken |= {f"{prefix}{name}" for name in names}
     return {"kind": torque.kind, "prefix": prefix, **found}
+
+
+def _component_names(name: str, pattern: str | list[str]) -> list[str]:
+    """Return the names of the constants of one field: a vector is numbered from 1, a quaternion from 0."""
+    if isinstance(pattern, str):
+        return [name]
+    return [f"{name}_{index}" for index, _ in enumerate(pattern, start=0 if len(pattern) == 4 else 1)]
 
 
 def _pattern(value: Fraction, unit: bool) -> str:
@@ -160,9 +169,8 @@ def _constants(scene: Scene, structure: Structure) -> dict[str, Fraction]:
             if isinstance(pattern, str):
                 found |= {f"{prefix}{name}": value} if pattern == "*" else {}
                 continue
-            first = 0 if len(pattern) == 4 else 1
-            for index, (entry, mark) in enumerate(zip(value, pattern, strict=True), start=first):
-                found |= {f"{prefix}{name}_{index}": entry} if mark == "*" else {}
+            for component, entry, mark in zip(_component_names(name, pattern), value, pattern, strict=True):
+                found |= {f"{prefix}{component}": entry} if mark == "*" else {}
     for number, mark in structure["constant"].items():
         if mark == "*":
             found[f"omega_{number + 1}"] = scene.initial.omega_b[number]

@@ -69,7 +69,22 @@ def _formula(value: Any, where: str) -> str:
     node = expression.parse(value, where)
     if _depth(node) > DEEPEST_FORMULA:
         expected(where, f"a formula of at most {DEEPEST_FORMULA} levels", value, "put brackets around groups of terms")
+    if _divides_by_zero(node):
+        expected(where, "a formula with finite values", value, "it divides by zero")
     return value.strip()
+
+
+def _divides_by_zero(node: expression.Node) -> bool:
+    """Whether a formula divides by a number that is zero."""
+    if any(map(_divides_by_zero, expression.children(node))):
+        return True
+    divisor = node[2] if node[0] == "/" else node[1] if node[0] == "**" and node[2] < 0 else None
+    if divisor is None or expression.names(divisor):
+        return False
+    try:
+        return bool(expression.evaluate(divisor, {}) == 0)
+    except KeyError:  # a function of a number
+        return False
 
 
 def _formulas(value: Any, where: str) -> tuple[str, ...]:

@@ -285,3 +285,37 @@ def test_bold_only_on_a_terminal_that_wants_it(monkeypatch):
     assert emphasis("x", Terminal()) == "\x1b[1mx\x1b[0m" and emphasis("x", StringIO()) == "x"
     monkeypatch.setenv("NO_COLOR", "1")
     assert emphasis("x", Terminal()) == "x"
+
+
+def test_a_pipe_or_device_is_no_place_for_an_output(tmp_path, capsys):
+    """Renaming onto it would replace it."""
+    pipe = tmp_path / "pipe.csv"
+    os.mkfifo(pipe)
+    assert cli.main(["run", "chen_cylinder", "--out", str(pipe)]) == 2
+    assert "device or pipe" in capsys.readouterr().err and pipe.is_fifo()
+
+
+def test_an_output_keeps_the_permissions_of_the_file_it_replaces(tmp_path):
+    target = tmp_path / "motion.csv"
+    target.touch(mode=0o600)
+    assert cli.main(["run", "chen_cylinder", "--out", str(target)]) == 0
+    assert target.stat().st_mode & 0o777 == 0o600 and target.stat().st_size > 1000
+
+
+@pytest.mark.parametrize(("closed", "code"), [(">&-", 0), ("2>&-", 0)])
+def test_a_closed_stream_is_no_failure(closed, code):
+    command = f"{sys.executable} -m symrot run chen_cylinder {closed}"
+    done = subprocess.run(["bash", "-c", command], capture_output=True, text=True)
+    assert done.returncode == code and "Traceback" not in done.stderr
+
+
+def test_hostile_keys_and_formulas_are_one_sentence(tmp_path, capsys):
+    scene = tmp_path / "bad.toml"
+    scene.write_text(".".join(["a"] * 5000) + " = 1\n")
+    assert cli.main(["run", str(scene)]) == 2
+    assert capsys.readouterr().err.count("\n") == 1
+    good = 'schema = 1\ntitle = "x"\n[body]\nprincipal = [1, 2, 3]\n[initial]\nomega = [1, 1, 1]\n[span]\nt = [0, 1]\n[[torque]]\nkind = "expression"\n'
+    for formula in ("1/0", "1/(2 - 2)", "0**-1", "t/(t - t)"):
+        scene.write_text(f'{good}torque = ["{formula}", "0", "0"]\n')
+        assert cli.main(["run", str(scene)]) == 2
+        assert "divides by zero" in capsys.readouterr().err

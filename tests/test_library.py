@@ -144,7 +144,7 @@ def test_processes_that_build_at_once_do_not_disturb_each_other(own_cache):
 
 
 def test_a_refused_source_quotes_the_first_complaint():
-    with pytest.raises(CompilerError, match=r"refuses wrong: <stdin>:2:\d+: error: ") as caught:
+    with pytest.raises(CompilerError, match=r"fails on the kernel 'wrong': <stdin>:2:\d+: error: ") as caught:
         library.build("double answer(void)\n{ return nothing; }\n", "wrong")
     assert "\n" not in str(caught.value)
 
@@ -176,9 +176,9 @@ def test_the_compiler_may_have_arguments_or_a_blank_in_its_name(monkeypatch, tmp
     [
         ("exit 3", "exit status 3, no message"),
         ("exit 0", "no library was written"),
-        ("echo first >&2; echo second >&2; exit 1", "refuses answer: first"),
-        ("echo note >&2; echo 'x: error: bad' >&2; exit 1", "refuses answer: x: error: bad"),
-        ("printf '\\377\\376' >&2; exit 1", "refuses answer: "),
+        ("echo first >&2; echo second >&2; exit 1", "fails on the kernel 'answer': first"),
+        ("echo note >&2; echo 'x: error: bad' >&2; exit 1", "fails on the kernel 'answer': x: error: bad"),
+        ("printf '\\377\\376' >&2; exit 1", "fails on the kernel 'answer': "),
     ],
 )
 def test_a_failing_compiler_is_one_sentence(script, sentence, monkeypatch, tmp_path):

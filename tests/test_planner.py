@@ -2,6 +2,7 @@
 
 import pytest
 
+from symrot.errors import InputError
 from symrot.planner import RULES, make_plan
 from symrot.scene import Scene, load_scene, shipped_scenes
 
@@ -118,3 +119,35 @@ def test_repeated_torques_and_parameters_with_taken_names_keep_apart():
     named = {"kind": "expression", "torque": ["A*omega_1", "0", "t"], "parameters": {"A": 7}}
     plan = plan_of(FREE, [1, 1, 1], push, push, named)
     assert plan.constants == {"A": 1, "B": 2, "C": 3, "torque_1": 1, "torque2_torque_1": 1, "torque3_A": 7}
+
+
+@pytest.mark.parametrize(
+    "name", ["torque_1", "linear_1", "torque2_linear_1", "direction_2", "omega_3", "theta", "L_1", "p0", "x0"]
+)
+def test_a_parameter_may_have_any_name(name):
+    """A parameter called like a component of another torque is still itself: the motion does not depend on its name."""
+    from symrot.propagation.propagator import propagate
+
+    def motion(parameter):
+        body = {"principal": [1, 2, 3], "about": "fixed_point"}
+        torques = [
+            {"kind": "constant_body", "torque": [0.1, 0.2, -0.3]}, {"kind": "damping", "linear": [0.1, 0.2, 0.3]},
+            {"kind": "damping", "linear": [0.3, 0.2, 0.1]}, {**weight(0.1, 0.2, 0.3), "direction": [1, 2, 2]},
+            {"kind": "expression", "torque": [f"{parameter}*sin(t)", "0", f"-{parameter}"], "parameters": {parameter: "0.17"}},
+        ]  # fmt: skip
+        return propagate(plan_of(body, [1, 1, 1], *torques).scene).omega[-1]
+
+    if name in ("omega_3",):
+        with pytest.raises(InputError, match="omega_3"):
+            motion(name)
+    else:
+        assert abs(motion(name) - motion("kk")).max() < 1e-12
+
+
+def test_the_constants_of_any_torques_have_names_of_their_own():
+    four = [
+        {"kind": "expression", "torque": [f"{k}*t", "0", "0"], "parameters": {k: n}}
+        for n, k in enumerate(("k", "k", "torque2_k", "torque1_k"), 1)
+    ]
+    constants = plan_of(FREE, [1, 1, 1], *four).constants
+    assert sorted(constants.values()) == [1, 1, 2, 2, 3, 3, 4]

@@ -256,3 +256,27 @@ def test_a_second_scene_of_the_same_structure_compiles_nothing(monkeypatch):
     monkeypatch.setattr(library, "_compile", lambda *a, **k: pytest.fail("compiled again"))
     scene = load_scene("tumbling_prism_largest")
     assert propagate(scene).success
+
+
+@pytest.mark.parametrize(
+    ("torque", "potential"),
+    [
+        ([], False),
+        ([{"kind": "damping", "linear": 0.1}], True),
+        ([{"kind": "constant_body", "torque": [0, 0.1, 0]}], True),
+    ],
+    ids=["alone", "damped", "pushed"],
+)
+def test_energy_holds_every_potential_there_is(torque, potential):
+    """Kinetic energy plus weight times height, whatever else acts; and what takes energy is named."""
+    scene = Scene.from_dict({
+        "schema": 1, "title": "top", "body": {"principal": [2, 3, 1], "about": "fixed_point"}, "span": {"t": [0, 5]},
+        "initial": {"omega": [1, 0.2, 3]}, "output": {"quantities": ["omega", "quaternion", "energy"]},
+        "torque": [{"kind": "gravity", "weight": 2, "center_of_mass": [0.1, 0.2, 0.5]}, *torque],
+    })  # fmt: skip
+    trajectory = propagate(scene)
+    height = np.einsum("nij,j->ni", trajectory.dcm, [0.1, 0.2, 0.5])[:, 2]
+    kinetic = trajectory.omega**2 @ [2, 3, 1] / 2
+    assert np.abs(trajectory.energy - kinetic - 2 * height).max() < 1e-12
+    kept = {item.name for item in trajectory.invariants}
+    assert ("energy" in kept) != potential

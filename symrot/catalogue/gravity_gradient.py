@@ -30,9 +30,9 @@ def derive() -> Derivation:
     n, epsilon, mass = symbols.n, symbols.epsilon, symbols.m
     d.section("The torque")
     d.given(
-        r"A point of mass $m$ at $\rho = (x, y, z)$, in units of the radius $\epsilon \rho$, is "
-        r"attracted by the inverse "
-        r"square of its distance; on a circular orbit $\mu / a^3 = n^2$, with $n$ the mean motion (Kepler):",
+        r"A point of mass $m$ at $\rho = (x, y, z)$ from the centre of mass, which is $a = 1/\epsilon$ from the centre of "
+        r"attraction in the direction $r$, is attracted by the inverse square of its distance; on a circular orbit "
+        r"$\mu / a^3 = n^2$, with $n$ the mean motion (Kepler):",
         (r"F", r"-\,m\,n^2 a\, \frac{r + \epsilon \rho}{|r + \epsilon \rho|^3}"),
     )
     place = R + epsilon * P
@@ -44,7 +44,7 @@ def derive() -> Derivation:
         mass * n**2 * (3 * R.dot(P) * R - P),
         because="the derivative at the centre of mass, where the radius has length 1",
         relations=unit,
-        named=r"\left. \frac{\partial F}{\partial \epsilon} \right|_0",
+        named=r"\frac{1}{a} \left. \frac{\partial F}{\partial \epsilon} \right|_0",
         shown=r"m\,n^2 \left( 3\,(r \cdot \rho)\,r - \rho \right)",
     )
     tensor = Matrix(inertia_of_point(mass, P))
@@ -54,7 +54,7 @@ def derive() -> Derivation:
         3 * n**2 * R.cross(tensor * R),
         because=r"$I_\rho\, r = m\,(|\rho|^2 r - (r \cdot \rho)\,\rho)$, and the first part is along $r$",
         relations=unit,
-        named=r"\tau = \rho \times \left. \frac{\partial F}{\partial \epsilon} \right|_0",
+        named=r"\tau = \rho \times \frac{1}{a} \left. \frac{\partial F}{\partial \epsilon} \right|_0",
         shown=r"3 n^2\, r \times I_\rho\, r",
     )
     torque = 3 * n**2 * R.cross(TENSOR * R)

@@ -321,7 +321,7 @@ def _compile(tool: Compiler, source: str, name: str, entry: str, flags: tuple[st
                 portable = tuple(flag for flag in flags if flag != NATIVE)
                 complaint = complaint if _run(tool, source, portable, output) else ""
             if complaint:
-                raise CompilerError(f"the C compiler {tool.command[0]} refuses {name}: {complaint}")
+                raise CompilerError(f"the C compiler {tool.command[0]} fails on the kernel {name!r}: {complaint}")
             content = output.read_bytes()
     except OSError as error:
         raise CompilerError(f"compiling {name} needs a temporary directory: {error}") from error

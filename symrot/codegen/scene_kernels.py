@@ -53,8 +53,7 @@ def _quantities(equations: Equations, found: Mapping[str, Expr]) -> Lowered:
     momentum = equations.momentum_b
     outputs += [(f"momentum_{i + 1}", "kg m^2/s", value) for i, value in enumerate(momentum)]
     outputs.append(("kinetic_energy", "J", equations.kinetic_energy))
-    if equations.potential is not None:
-        outputs.append(("energy", "J", equations.kinetic_energy + equations.potential))
+    outputs.append(("energy", "J", equations.kinetic_energy + equations.potential))
     if equations.motion.quaternion is not None:
         outputs += [(f"q{i} of t", "1", q) for i, q in enumerate(equations.motion.quaternion)]
         momentum_s = dcm_of(equations.motion.quaternion) * momentum
@@ -111,7 +110,7 @@ def scene_description(title: str, name: str, target: str) -> Description:
     """Return what an emitted file says of a scene's own kernel."""
     return Description(
         title=f"equations of motion of the scene {name!r} ({title})",
-        domain="all states; q need not be of unit norm, its rate keeps the norm",
+        domain="all states of finite size; a quaternion is of unit norm, and its rate keeps the norm",
         derivation="derivations/euler_equations.md, derivations/quaternion_rates.md",
         command=f"symrot emit {name} --target {target}",
     )

@@ -52,10 +52,9 @@ class Equations:
         return omega_b.dot(self.motion.inertia * omega_b) / 2
 
     @property
-    def potential(self) -> Expr | None:
-        """Return the sum of the potentials in J, or None when a torque has none."""
-        potentials = [law.potential for law in self.laws]
-        return None if None in potentials else reduce(add, potentials, S.Zero)
+    def potential(self) -> Expr:
+        """Return the sum of the potentials in J of the torques that have one."""
+        return reduce(add, (law.potential for law in self.laws if law.potential is not None), S.Zero)
 
 
 def inertia_matrix(structure: Mapping[str, Any]) -> Matrix:
@@ -116,14 +115,22 @@ def euler_equations(inertia: Any = symbols.principal, torque: Any = symbols.torq
     >>> euler_equations(torque=None)[0]
     omega_2*omega_3*(B - C)/A
     """
-    given = Matrix(inertia)
+    given = _read(inertia, "inertia: expected 3 principal moments or a symmetric 3x3 tensor in kg m^2")
     tensor = diag(*given) if len(given) == 3 else given
     if tensor.shape != (3, 3) or not tensor.is_symmetric():
         raise InputError(f"inertia: expected 3 principal moments or a symmetric 3x3 tensor in kg m^2, got {inertia}")
-    moment = zeros(3, 1) if torque is None else Matrix(torque)
+    spoken = "torque: expected 3 body components in N m"
+    moment = zeros(3, 1) if torque is None else _read(torque, spoken)
     if len(moment) != 3:
-        raise InputError(f"torque: expected 3 body components in N m, got {torque}")
+        raise InputError(f"{spoken}, got {torque}")
     return angular_acceleration(tensor, Matrix(symbols.omega_b), moment.reshape(3, 1))
+
+
+def _read(values: Any, expectation: str) -> Matrix:
+    try:
+        return Matrix(values)
+    except (TypeError, ValueError):
+        raise InputError(f"{expectation}, got {values!r}") from None
 
 
 def inverse(tensor: Matrix) -> Matrix:

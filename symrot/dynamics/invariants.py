@@ -19,6 +19,15 @@ from symrot.kinematics.quaternion import dcm_of
 __all__ = ["Invariant", "find_invariants", "rate_along"]
 
 
+SPOKEN = {
+    "constant_body": "the torque constant in the body",
+    "constant_space": "the torque constant in space",
+    "expression": "the torque given by formulas",
+    "rotor": "the rotor",
+    "spring": "the spring",
+}  # kinds of torque as a sentence calls them, where their name does not do
+
+
 @dataclass(frozen=True)
 class Invariant:
     """A quantity that a motion keeps or, with ``kept`` false, one that it would keep without some torque."""
@@ -38,10 +47,8 @@ def rate_along(expression: Expr, equations: Equations) -> Expr:
 
 def _candidates(equations: Equations, structure: Mapping[str, Any]) -> Iterable[tuple[str, str, Expr, Expr]]:
     """Yield (name, unit, value, what is differentiated): the same, or its square where the value is a root."""
-    momentum, potential = equations.momentum_b, equations.potential
-    energy = None if potential is None else equations.kinetic_energy + potential
-    if energy is not None:
-        yield "energy", "J", energy, energy
+    momentum, energy = equations.momentum_b, equations.kinetic_energy + equations.potential
+    yield "energy", "J", energy, energy
     if equations.motion.quaternion is None:
         square = momentum.dot(momentum)
         yield "angular momentum", "kg m^2/s", sqrt(square), square
@@ -59,9 +66,7 @@ def _candidates(equations: Equations, structure: Mapping[str, Any]) -> Iterable[
             yield f"spin omega_{number + 1}", "rad/s", spin, spin
 
 
-def _of_torque(
-    torque: Mapping[str, Any], momentum_s: Matrix, energy: Expr | None
-) -> Iterable[tuple[str, str, Expr, Expr]]:
+def _of_torque(torque: Mapping[str, Any], momentum_s: Matrix, energy: Expr) -> Iterable[tuple[str, str, Expr, Expr]]:
     """Yield what one torque of the table singles out: the vertical of gravity, the normal of an orbit."""
     prefix = torque["prefix"]
     if torque["kind"] == "gravity" and torque["fields"]["direction"].count("0") < 2:
@@ -69,7 +74,7 @@ def _of_torque(
         down = field_value(f"{prefix}direction", pattern)
         vertical = -momentum_s.dot(down)
         yield "vertical angular momentum", "kg m^2/s", vertical, vertical
-    if torque["kind"] == "gravity_gradient" and energy is not None:
+    if torque["kind"] == "gravity_gradient":
         jacobi = energy - symbols.constant(f"{prefix}mean_motion") * momentum_s[2]
         yield "Jacobi integral", "J", jacobi, jacobi
 
@@ -79,9 +84,11 @@ def _reason(name: str, kept: bool, equations: Equations, kinds: Sequence[str]) -
         return "equal moments, and no torque about that axis"
     if not kinds:
         return "no torque acts"
-    acting = " and ".join(kind.replace("_", " ") for kind in kinds)
+    acting = _listed(kinds)
     if not kept:
-        return f"changed by {acting}"
+        without = [kind for kind, law in zip(kinds, equations.laws, strict=True) if law.potential is None]
+        guilty = (without or kinds) if name == "energy" else kinds
+        return f"changed by {_listed(guilty)}"
     if name == "energy":
         return "; ".join(dict.fromkeys(law.keeps for law in equations.laws if law.keeps)) or f"{acting} does no work"
     if name == "Jacobi integral":
@@ -89,6 +96,11 @@ def _reason(name: str, kept: bool, equations: Equations, kinds: Sequence[str]) -
     if name == "angular momentum":
         return f"{acting} changes only its direction in the body"
     return f"{acting} has no moment about that axis of space"
+
+
+def _listed(kinds: Sequence[str]) -> str:
+    """Return kinds of torque in words, each once."""
+    return " and ".join(SPOKEN.get(kind, kind.replace("_", " ")) for kind in dict.fromkeys(kinds))
 
 
 def find_invariants(equations: Equations, structure: Mapping[str, Any]) -> tuple[Invariant, ...]:

@@ -14,6 +14,7 @@ from sympy import Expr, ImmutableMatrix, Integer, Matrix, Rational, Symbol, cos,
 
 from symrot import symbols
 from symrot.dynamics.torque_kinds import EXPRESSION_NAMES, TORQUE_KINDS
+from symrot.errors import InputError
 from symrot.expression import FUNCTIONS, Node, evaluate, parse
 from symrot.kinematics.quaternion import conjugate, dcm_of, qmul, quaternion_rates
 from symrot.symbols import constant
@@ -156,10 +157,17 @@ def torque_law(structure: Mapping[str, Any], motion: Motion) -> TorqueLaw:
         values = dict(zip(EXPRESSION_NAMES[:4], (symbols.t, *motion.omega_b), strict=True))
         values.update(zip(EXPRESSION_NAMES[4:], motion.quaternion or (), strict=False))
         values.update({name: constant(f"{prefix}{name}") for name in structure["parameters"]})
-        torque = Matrix([formula(parse(source), values) for source in structure["formulas"]])
+        torque = Matrix([_finite_formula(source, values) for source in structure["formulas"]])
         return _expression(motion, torque, structure["frame"])
     arguments = {name: field_value(f"{prefix}{name}", pattern) for name, pattern in structure["fields"].items()}
     return LAWS[structure["kind"]](motion, **arguments)
+
+
+def _finite_formula(source: str, values: Mapping[str, Expr]) -> Expr:
+    result = formula(parse(source), values)
+    if result.has(sympy.nan, sympy.zoo, sympy.oo, -sympy.oo):
+        raise InputError(f"torque: expected a formula with finite values, got {source!r}, which divides by zero")
+    return result
 
 
 def field_value(name: str, pattern: str | list[str]) -> Any:

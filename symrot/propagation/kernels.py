@@ -5,7 +5,6 @@ compiler works on the rates, the invariants are proven.
 """
 
 import json
-import os
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -21,19 +20,20 @@ from symrot.scene_kernel import SceneKernel
 __all__ = ["compiled", "error_blocks", "kernel_key", "library_source", "missing_compiler", "scene_kernel"]
 
 PACKAGE = Path(__file__).parents[1]
+DERIVING = ("codegen", "dynamics", "exact", "kinematics", "expression.py", "kernel.py", "scene_kernel.py", "symbols.py")
 ATTITUDE_SCALE = 1.0  # a quaternion has unit norm; an error of an angle counts in rad
 RATE_SCALE = 0.0  # an error of omega counts relative to omega
 
 
 @cache
 def _version() -> str:
-    """Return what identifies the code that derives: names, sizes and times of symrot's own files."""
+    """Return what identifies the code that derives: names, sizes and times of its files."""
     found = []
-    for directory, _, files in os.walk(PACKAGE):
-        for name in files:
-            if name.endswith((".py", ".c", ".h", ".toml")):
-                status = (Path(directory) / name).stat()
-                found.append(f"{Path(directory, name).relative_to(PACKAGE)} {status.st_size} {status.st_mtime_ns}")
+    for place in DERIVING:
+        path = PACKAGE / place
+        for file in path.glob("*.py") if path.is_dir() else (path,):
+            status = file.stat()
+            found.append(f"{place}/{file.name} {status.st_size} {status.st_mtime_ns}")
     return "\n".join(sorted(found))
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from symrot import number
-from symrot.errors import InputError
+from symrot.errors import InputError, PropagationError
 from symrot.planner import Plan, make_plan
 from symrot.propagation import dop853
 from symrot.propagation.dop853 import Stats
@@ -56,8 +56,12 @@ def choose_method(plan: Plan, method: str = "auto") -> Choice:
     """
     if method == "auto":
         return next(Choice(name, reason) for name, condition in AUTO if (reason := condition(plan)))
-    name, _, solver = method.partition(":")
-    if name not in METHODS or (solver and name != "scipy") or name == "constant":
+    name, colon, solver = method.partition(":")
+    if name == "scipy" and colon:
+        from symrot.propagation.fallback import method_name
+
+        method_name(solver or method)
+    elif name not in METHODS or colon or name == "constant":
         listed = ", ".join(name for name in METHODS if name != "constant")
         raise InputError(f"method: expected one of {listed} or scipy:NAME, got {method!r}")
     return Choice(method, "asked for") if plan.states else choose_method(plan)
@@ -83,10 +87,6 @@ class Motion:
     def _quantity_values(self) -> dict[str, float]:
         names = [name for name, _ in self.kernel.quantity_parameters]
         return dict(zip(names, bind(self.kernel.quantity_parameters, self.plan.constants), strict=True))
-
-    @cached_property
-    def quantity_names(self) -> frozenset[str]:
-        return frozenset(name for name, _ in self.kernel.quantities.outputs)
 
     def evaluate(self, t: Floats, states: Floats, names: Sequence[str]) -> Floats:
         """Return quantities of the kernel at states of shape (n, N), as an array of shape (n, len(names))."""
@@ -248,7 +248,10 @@ class Propagator:
         motion = self._motion
         if omega is not None or quaternion is not None:
             motion = self._prepare(make_plan(self.scene, _initial(self.scene, omega, quaternion)))
-        states, stats = motion.integrate(times)
+        try:
+            states, stats = motion.integrate(times)
+        except PropagationError as error:
+            raise PropagationError(f"{self.scene.name}: {error}") from None
         message = f"{motion.choice.method}: {motion.choice.reason}"
         return Trajectory(motion, times, states, motion.choice.method, stats, message)
 

@@ -169,9 +169,8 @@ class Trajectory:
 
     @cached_property
     def energy(self) -> Floats:
-        """Kinetic and potential energy in J, shape (n,); of torques without a potential, only the kinetic part."""
-        known = self._motion.quantity_names
-        return self._evaluate("energy" if "energy" in known else "kinetic_energy")[:, 0]
+        """Kinetic energy and the potentials of the torques that have one, in J, shape (n,)."""
+        return self._evaluate("energy")[:, 0]
 
     @property
     def axis_number(self) -> int:

@@ -23,6 +23,8 @@ def check_target(path: Path, suffixes: Sequence[str], option: str) -> None:
     try:
         if path.is_dir():
             raise InputError(f"{option}: expected the name of a file, got the folder {str(path)!r}")
+        if path.exists() and not path.is_file():
+            raise InputError(f"{option}: expected the name of a file, got the device or pipe {str(path)!r}")
         if not path.parent.is_dir():
             raise InputError(f"{option}: expected a folder that is there, got {str(path)!r}")
         if not os.access(path if path.exists() else path.parent, os.W_OK):
@@ -53,6 +55,8 @@ def write(path: Path, content: Callable[[BinaryIO], object]) -> None:
                 content(stream)
                 stream.flush()
                 os.fsync(stream.fileno())
+                if target.exists():
+                    passing.chmod(target.stat().st_mode & 0o777)
             passing.replace(target)
         finally:
             passing.unlink(missing_ok=True)

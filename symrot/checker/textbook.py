@@ -1,0 +1,78 @@
+"""Verdicts on what a document says, with the doubt that a lossy extraction leaves."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from typing import Any
+
+from symrot.checker.claims import Claim, read_claims, shown_relation
+from symrot.checker.interface import check_claim
+from symrot.checker.tree import text
+from symrot.checker.verdict import Verdict
+from symrot.textbook import Document
+
+__all__ = ["OUTCOMES", "Finding", "findings"]
+
+OUTCOMES = {
+    "holds": "holds",
+    "other reading": "holds in another reading of the extracted text",
+    "conditional": "holds under a condition that is not stated",
+    "fails": "does not hold",
+    "fails or lost": "does not hold as extracted; the extraction lost characters here that may be the reason",
+    "undecided": "undecided",
+}
+"""What became of a claim, from good to bad."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What was found of one claim: its data, the verdict, another reading that holds, and the outcome."""
+
+    claim: dict[str, Any]
+    verdict: Verdict
+    outcome: str
+    reading: str  # the alternative that holds, else empty
+    right: str  # what would be right, where the claim is not
+
+    @property
+    def reason(self) -> str:
+        """Why the claim is not simply true."""
+        if self.verdict.verdict == "conditional":
+            return "true if " + " or ".join(self.verdict.requires)
+        if self.verdict.diagnosis.code != "none":
+            return self.verdict.diagnosis.text
+        return str(self.verdict.counterexample or self.verdict.reason)
+
+
+def findings(
+    document: Document, repair: bool = True, progress: Callable[[str], None] = lambda text: None
+) -> Iterator[Finding]:
+    """Yield what is found of each claim of a document, in its order."""
+    for claim in read_claims(document.path):
+        progress(f"checking {claim.id} ..")
+        yield _finding(document.claims[claim.id], claim, repair)
+
+
+def _finding(data: dict[str, Any], claim: Claim, repair: bool) -> Finding:
+    verdict = check_claim(claim, False)
+    if verdict:
+        return Finding(data, verdict, "holds", "", "")
+    for relation in claim.alternatives:
+        source = shown_relation(relation)
+        other = replace(claim, relation=relation, sources={**claim.sources, "claim": source})
+        if check_claim(other, False):
+            return Finding(data, verdict, "other reading", source, source)
+    if repair:
+        verdict = check_claim(claim, True)
+    outcome = {"conditional": "conditional", "undecided": "undecided"}.get(verdict.verdict, "fails")
+    if outcome == "fails" and data.get("lost"):
+        outcome = "fails or lost"
+    return Finding(data, verdict, outcome, "", _right_form(claim, verdict))
+
+
+def _right_form(claim: Claim, verdict: Verdict) -> str:
+    """Return what would be right: the value, the nearest proven repair, or the side that was derived."""
+    if claim.relation is None:
+        return verdict.counterexample.lhs if verdict.counterexample else ""
+    if verdict.repairs:
+        return verdict.repairs[0].text
+    return text(claim.relation[2])

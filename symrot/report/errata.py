@@ -1,0 +1,106 @@
+"""What documents get right and wrong, as a table for the terminal and as the page ``generated/errata.md``."""
+
+from collections import Counter
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from symrot.checker.textbook import OUTCOMES, Finding, findings
+from symrot.report.layout import one_line
+from symrot.textbook import DOCUMENTS, Document, document
+
+__all__ = ["facts", "lines", "page", "survey"]
+
+Survey = list[tuple[Document, list[Finding]]]
+
+
+def survey(
+    names: Sequence[str] = DOCUMENTS, repair: bool = True, progress: Callable[[str], None] = lambda text: None
+) -> Survey:
+    """Return the findings of some documents."""
+    found = []
+    for name in names:
+        source = document(name)
+        found.append((source, list(findings(source, repair, progress))))
+    return found
+
+
+def _total(found: Sequence[Finding]) -> str:
+    counts = Counter(finding.outcome for finding in found)
+    listed = ", ".join(f"{counts[name]} {OUTCOMES[name].split(';')[0]}" for name in OUTCOMES if counts[name])
+    return f"{len(found)} claims: {listed}."
+
+
+def lines(found: Survey) -> list[str]:
+    """Return the findings as text: a line for each claim, more for those that do not hold, and a summary."""
+    shown: list[str] = []
+    for source, items in found:
+        shown += [f"{source.title} [{source.name}]", ""]
+        for item in items:
+            where = one_line(item.claim["where"])
+            shown.append(f"  {item.outcome:<13} {item.claim['id']} ({where})")
+            if item.outcome != "holds":
+                shown += [f"      {label:<8} {one_line(words)}" for label, words in _details(item) if words]
+        shown += ["", f"  {_total(items)}", ""]
+    return shown[:-1]
+
+
+def _details(item: Finding) -> list[tuple[str, str]]:
+    return [
+        ("printed", item.claim["printed"]),
+        ("read as", item.verdict.text),
+        ("because", item.reason if not item.reading else ""),
+        ("right", item.right),
+        ("against", item.claim.get("against", "")),
+        ("lost", ", ".join(item.claim.get("lost", []))),
+    ]
+
+
+def facts(found: Survey) -> list[dict[str, Any]]:
+    """Return the findings as JSON data."""
+    return [
+        {
+            "document": source.name,
+            **item.verdict.to_json(),
+            "id": item.claim["id"],
+            "where": item.claim["where"],
+            "printed": item.claim["printed"],
+            "outcome": item.outcome,
+            "right": item.right,
+            "against": item.claim.get("against", ""),
+        }
+        for source, items in found
+        for item in items
+    ]
+
+
+def page(found: Survey) -> str:
+    """Return ``errata.md``: for each document what does not hold, its right form, the reason and the proof."""
+    text = [
+        "# Errata",
+        "",
+        "What four documents on rigid-body rotation print that does not hold as it stands: every claim was read into a",
+        "formula, compared with something derived from first principles, and decided exactly. Printed by",
+        "`symrot check --textbook all --all`; do not edit.",
+        "",
+        "The documents are known here as text extracted from PDF files, which loses characters. Where what was lost may",
+        "be the reason, or another reading holds, the entry says so.",
+    ]
+    for source, items in found:
+        text += ["", f"## {source.title}", "", _total(items), ""]
+        for item in items:
+            if item.outcome != "holds":
+                text += _entry(item)
+    return "\n".join(text).rstrip() + "\n"
+
+
+def _entry(item: Finding) -> list[str]:
+    rows = [f"### {item.claim['where']}: {item.claim['id']}", "", f"- **{OUTCOMES[item.outcome]}**"]
+    rows += [f"- {label}: {_code(words)}" for label, words in _details(item) if words]
+    return [*rows, ""]
+
+
+def _code(words: str) -> str:
+    """Return words as inline code, on one line, whatever they hold."""
+    flat = " ".join(words.split())
+    fence = "``" if "`" in flat else "`"
+    return f"{fence}{flat}{fence}"

@@ -1,0 +1,43 @@
+"""What four documents on rigid-body rotation say, claim by claim: data, one TOML file per document.
+
+The data says where a claim stands, as printed and as read; nothing about verdicts, they are computed
+(:mod:`symrot.checker.textbook`).
+"""
+
+import tomllib
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from symrot.errors import InputError
+
+__all__ = ["DOCUMENTS", "Document", "document"]
+
+DOCUMENTS = ("chen", "sahakian", "brown", "beer-johnston")
+"""The short names of the documents."""
+
+
+class Document(NamedTuple):
+    """A document: its short name, what it is, what its extraction lost, the file of its claims, each claim as data."""
+
+    name: str
+    title: str
+    kind: str
+    lost: tuple[str, ...]
+    path: Path
+    claims: dict[str, dict[str, Any]]
+
+
+def document(name: str) -> Document:
+    """Return a document by its short name.
+
+    Raises
+    ------
+    InputError
+        For another name.
+    """
+    if name not in DOCUMENTS:
+        raise InputError(f"expected one of the documents {', '.join(DOCUMENTS)}, got {name!r}")
+    path = Path(__file__).with_name(f"{name}.toml")
+    content = tomllib.loads(path.read_text(encoding="utf-8"))
+    claims = {claim["id"]: claim for claim in content["claim"]}
+    return Document(name, content["title"], content["kind"], tuple(content["lost"]), path, claims)
