@@ -102,7 +102,7 @@ def check_random_bodies(count, seed):
 
 
 def test_s5_random_bodies():
-    check_random_bodies(40, 5)
+    check_random_bodies(25, 5)
 
 
 @pytest.mark.campaign

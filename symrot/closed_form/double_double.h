@@ -29,6 +29,13 @@
 #define ALWAYS_INLINE static inline
 #endif
 
+/* What is long and used often while constants are found: one copy each, or compiling takes several times as long. */
+#if defined(__GNUC__)
+#define ONE_COPY static __attribute__((noinline, unused))
+#else
+#define ONE_COPY static
+#endif
+
 typedef struct {
     double hi, lo;
 } dd;
@@ -117,7 +124,7 @@ static inline dd dd_scale(dd a, double power)
     return dd_pair(a.hi*power, a.lo*power);
 }
 
-static inline dd dd_div(dd a, dd b)
+ONE_COPY dd dd_div(dd a, dd b)
 {
     const double first = a.hi/b.hi;
     dd rest = dd_sub(a, dd_mul(dd_of(first), b));
@@ -128,7 +135,7 @@ static inline dd dd_div(dd a, dd b)
 }
 
 /* The square root; of what is not positive, zero. */
-static inline dd dd_sqrt(dd a)
+ONE_COPY dd dd_sqrt(dd a)
 {
     if (!(a.hi > 0.0))
         return dd_of(0.0);
@@ -183,7 +190,7 @@ static const dd DD_INVERSE_FACTORIALS[] = {
 #define DD_TERMS ((int)(sizeof DD_INVERSE_FACTORIALS/sizeof DD_INVERSE_FACTORIALS[0]))
 
 /* exp(a): 2^k times the 64th power of exp of what is left; 0 below the smallest double. */
-static inline dd dd_exp(dd a)
+ONE_COPY dd dd_exp(dd a)
 {
     static const dd ln2 = DD_LN2;
     if (a.hi < -745.0)
@@ -201,7 +208,7 @@ static inline dd dd_exp(dd a)
 }
 
 /* Sine and cosine of an angle given in turns. */
-static inline void dd_sincos_turns(dd turns, dd *sine, dd *cosine)
+ONE_COPY void dd_sincos_turns(dd turns, dd *sine, dd *cosine)
 {
     static const dd pi = DD_PI;
     dd rest = dd_sub(turns, dd_of(rint(turns.hi)));
@@ -223,7 +230,7 @@ static inline void dd_sincos_turns(dd turns, dd *sine, dd *cosine)
 }
 
 /* The arithmetic-geometric mean of 1 and a, 0 < a <= 1. */
-static inline dd dd_agm(dd a)
+ONE_COPY dd dd_agm(dd a)
 {
     dd arithmetic = dd_of(1.0), geometric = a;
     for (int n = 0; n < 64; ++n) {
@@ -241,7 +248,7 @@ static inline dd dd_agm(dd a)
  * Carlson's R_F(x, y, z), not negative, at most one of them zero: duplication until the arguments agree to 1e-4, then the
  * series to the seventh order (Carlson 1995; DLMF 19.36.1).
  */
-static inline dd dd_rf(dd x, dd y, dd z)
+ONE_COPY dd dd_rf(dd x, dd y, dd z)
 {
     const dd third = dd_div(dd_of(1.0), dd_of(3.0));
     for (int n = 0; n < 200; ++n) {

@@ -13,9 +13,8 @@ from fractions import Fraction
 from symrot.closed_form import free_body
 from symrot.closed_form.frames import product, quaternion_of, to_axis
 from symrot.closed_form.motion import ExactMotion, prepared
-from symrot.closed_form.pairs import Number, numbers, spread
+from symrot.closed_form.pairs import Number, numbers, same, spread
 from symrot.errors import InputError
-from symrot.number import equal
 
 __all__ = ["motion"]
 
@@ -59,15 +58,15 @@ def motion(
     >>> motion((1, 1, 0.5), 1, (0, 0, 1), (0, 0, 2)).regime
     'steady'
     """
-    moments = [Fraction(x) for x in numbers("inertia", inertia, 3)]
-    center = [Fraction(x) for x in numbers("center_of_mass", center_of_mass, 3)]
-    force = Fraction(numbers("weight", [weight], 1)[0])
-    down = [Fraction(x) for x in numbers("direction", direction, 3)]
+    moments = numbers("inertia", inertia, 3)
+    center = numbers("center_of_mass", center_of_mass, 3)
+    force = numbers("weight", [weight], 1)[0]
+    down = numbers("direction", direction, 3)
     rates, attitude = numbers("omega", omega0, 3), numbers("quaternion", quaternion0, 4)
     along = [k for k in range(3) if center[k]]
     if not any(down):
         raise InputError("direction: expected the direction of gravity, got zero")
-    if len(along) > 1 or (along and not equal(moments[along[0] - 2], moments[along[0] - 1])):
+    if len(along) > 1 or (along and not same(moments[along[0] - 2], moments[along[0] - 1])):
         raise InputError(
             "a symmetric heavy top has its centre of mass on one axis of the body and equal moments about the two "
             f"others, got the centre {[float(x) for x in center]} m and moments {[float(x) for x in moments]} kg m^2"
@@ -75,16 +74,15 @@ def motion(
     if not along or not force:
         return free_body.motion(moments, rates, attitude)
     axis = along[0]
-    pull = force * center[axis]
+    pull = Fraction(force) * Fraction(center[axis])
     up = [-x for x in down] if pull > 0 else down
     across = moments[axis - 2]
-    space, start = _UPRIGHT, attitude
-    if up[0] or up[1] or up[2] < 0:
-        turn = quaternion_of(to_axis(up))
+    space, start, axes = _UPRIGHT, attitude, None
+    if up[0] or up[1] or up[2] < 0:  # turned so that the third axis points up
+        turn = quaternion_of(to_axis([Fraction(x) for x in up]))
         space = spread(turn)
         back = (turn[0], -turn[1], -turn[2], -turn[3])
         start = list(product(back, [Fraction(x) for x in attitude]))
-    axes = None
     if axis != 2:
         named = [(axis + 1) % 3, (axis + 2) % 3, axis]  # e1, e2, e3 among the body's axes, in cyclic order
         matrix = [[Fraction(int(named[k] == i)) for k in range(3)] for i in range(3)]
@@ -95,6 +93,6 @@ def motion(
     return prepared(
         "heavy_top",
         (spread([across, moments[axis]]), spread([abs(pull)]), spread(rates), spread(start), space, axes),
-        "a heavy top has positive moments (kg m^2), a finite angular velocity (rad/s) and a quaternion that is not zero, "
-        f"got moments {[float(x) for x in moments]}, omega {[float(x) for x in rates]}",
+        lambda: "a heavy top has positive moments (kg m^2), a finite angular velocity (rad/s) and a quaternion that is "
+        f"not zero, got moments {[float(x) for x in moments]}, omega {[float(x) for x in rates]}",
     )

@@ -1,6 +1,7 @@
 """What every exact motion offers: angular velocity and attitude at any times, each sample for itself."""
 
 import ctypes
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -74,13 +75,13 @@ def _functions(name: str, arguments: int) -> _Functions:
     return _bound[name]
 
 
-def prepared(name: str, arguments: tuple[list[float] | None, ...], refusal: str) -> ExactMotion:
+def prepared(name: str, arguments: tuple[list[float] | None, ...], refusal: Callable[[], str]) -> ExactMotion:
     """Return a motion of ``name.c`` from what its `prepare` takes, each a list of doubles or None.
 
     Raises
     ------
     InputError
-        With the sentence ``refusal`` if the numbers are not of the motion's domain.
+        With the sentence of ``refusal`` if the numbers are not of the motion's domain.
     CompilerError
         If there is no C compiler, or one that breaks error-free arithmetic.
     """
@@ -89,7 +90,7 @@ def prepared(name: str, arguments: tuple[list[float] | None, ...], refusal: str)
     given = [None if values is None else _array(values) for values in arguments]
     status = prepare(*given, ctypes.addressof(constants))
     if status == _DOMAIN:
-        raise InputError(refusal)
+        raise InputError(refusal())
     if status:
         raise CompilerError("the C compiler breaks error-free arithmetic: it must round every operation as written")
     return ExactMotion(constants, evaluate)

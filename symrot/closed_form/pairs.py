@@ -5,8 +5,9 @@ from fractions import Fraction
 from math import isfinite, lcm
 
 from symrot.errors import InputError
+from symrot.number import equal
 
-__all__ = ["Number", "common", "numbers", "pair", "quotient", "spread"]
+__all__ = ["Number", "common", "numbers", "pair", "quotient", "same", "spread"]
 
 Number = float | int | Fraction
 
@@ -25,7 +26,15 @@ def pair(value: Number) -> tuple[float, float]:
 
 def spread(values: Sequence[Number]) -> list[float]:
     """Return hi, lo of each number in one list."""
-    return [part for value in values for part in pair(value)]
+    result: list[float] = []
+    for value in values:
+        result += (value, 0.0) if isinstance(value, float) else quotient(value.numerator, value.denominator)
+    return result
+
+
+def same(a: Number, b: Number) -> bool:
+    """Return whether two numbers are equal, to 2^-200."""
+    return a == b or (not (isinstance(a, float) and isinstance(b, float)) and equal(Fraction(a), Fraction(b)))
 
 
 def common(values: Sequence[Number]) -> tuple[list[int], int]:
@@ -44,6 +53,8 @@ def numbers(what: str, values: Sequence[Number], length: int) -> list[Number]:
         If there is another count of them, or one is not a finite real number.
     """
     found = list(values)
+    if len(found) == length and all(type(value) is float and isfinite(value) for value in found):
+        return found
     if len(found) != length:
         raise InputError(f"{what}: expected {length} numbers, got {len(found)}")
     for index, value in enumerate(found):

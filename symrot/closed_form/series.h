@@ -16,7 +16,7 @@ static inline phase phase_of(const double v[4])
     return p;
 }
 
-static inline void quaternion_product(const dd a[4], const dd b[4], dd c[4])
+ONE_COPY void quaternion_product(const dd a[4], const dd b[4], dd c[4])
 {
     static const int other[4][4] = {{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 3, 0, 1}, {3, 2, 1, 0}};
     static const double sign[4][4] = {{1, -1, -1, -1}, {1, 1, -1, 1}, {1, 1, 1, -1}, {1, -1, 1, 1}};
@@ -28,7 +28,7 @@ static inline void quaternion_product(const dd a[4], const dd b[4], dd c[4])
 }
 
 /* Divide by the norm; a norm of 1 to the last bit is left alone. */
-static inline void normalise(dd q[4])
+ONE_COPY void normalise(dd q[4])
 {
     dd square = dd_of(0.0);
     for (int i = 0; i < 4; ++i)
@@ -53,7 +53,7 @@ static inline void store_phase(dd rate, dd start, double to[4])
 }
 
 /* sum of c[n] T_n(x) as a polynomial in x, for n < SERIES (T: Chebyshev's, cos n z = T_n(cos z)). */
-static inline void even_series(const dd c[SERIES], double to[SERIES])
+ONE_COPY void even_series(const dd c[SERIES], double to[SERIES])
 {
     to[0] = dd_add(dd_sub(c[0], c[2]), c[4]).hi;
     to[1] = dd_sub(c[1], dd_add(dd_scale(c[3], 2.0), c[3])).hi;
@@ -66,7 +66,7 @@ static inline void even_series(const dd c[SERIES], double to[SERIES])
  * sum of c[n] cos((2n+1)z)/cos z as a polynomial in x = cos 2z, n < SERIES; with sin for cos where sign is -1:
  * cos((2n+1)z)/cos z = 2 cos 2nz - cos((2n-1)z)/cos z, sin((2n+1)z)/sin z = 2 cos 2nz + sin((2n-1)z)/sin z.
  */
-static inline void odd_series(const dd c[SERIES], double sign, double to[SERIES])
+ONE_COPY void odd_series(const dd c[SERIES], double sign, double to[SERIES])
 {
     dd even[SERIES];
     for (int n = 0; n < SERIES; ++n) {

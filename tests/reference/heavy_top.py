@@ -5,7 +5,23 @@
 not pass through the vertical. Held against the Taylor series of :mod:`tests.reference.taylor`.
 """
 
-from mpmath import atan2, cos, ellipfun, ellipk, ellippi, elliprf, elliprj, expj, floor, mp, mpc, mpf, polyroots, sin, sqrt
+from mpmath import (
+    atan2,
+    cos,
+    ellipfun,
+    ellipk,
+    ellippi,
+    elliprf,
+    elliprj,
+    expj,
+    floor,
+    mp,
+    mpc,
+    mpf,
+    polyroots,
+    sin,
+    sqrt,
+)
 
 from tests.reference.free_body import exactly, normalised
 
@@ -15,7 +31,7 @@ DIGITS = 90
 def motion(transverse, axial, pull, omega, quaternion, digits=DIGITS):
     """Return a function of time that gives ``(omega_b, quaternion)``; e3 the symmetry axis, gravity along -z."""
     with mp.workdps(digits):
-        a, c, m2 = exactly(transverse), exactly(axial) / exactly(transverse), 2 * exactly(pull) / exactly(transverse)
+        c, m2 = exactly(axial) / exactly(transverse), 2 * exactly(pull) / exactly(transverse)
         w1, w2, w3 = (exactly(x) for x in omega)
         q = normalised([exactly(x) for x in quaternion])
         alpha, beta, across, spin = mpc(q[0], q[3]), mpc(q[1], q[2]), mpc(w1, w2), c * w3

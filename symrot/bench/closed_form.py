@@ -1,0 +1,88 @@
+"""Measure the exact motions: nanoseconds per sample, microseconds to set up, and a call from Python in all.
+
+    python -m symrot.bench.closed_form [--rounds 300]
+
+Minima of interleaved rounds, since other work on the machine only adds. Errors are the business of
+``pytest tests/test_closed_form_*.py``.
+"""
+
+import argparse
+from collections.abc import Callable
+from functools import partial
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+from symrot.closed_form import free_body, gyrostat, heavy_top
+
+__all__ = ["main", "measure"]
+
+SAMPLES = 1000
+SPAN = 50.0  # s
+ATTITUDE = (0.1, 0.7, -0.5, 0.5)
+Case = tuple[str, Callable[[], Any]]
+
+
+def _free(moments: tuple[float, ...], omega: tuple[float, ...]) -> Callable[[], Any]:
+    return partial(free_body.motion, moments, omega, ATTITUDE)
+
+
+def _top(omega: tuple[float, ...], attitude: tuple[float, ...]) -> Callable[[], Any]:
+    return partial(heavy_top.motion, (1.0, 1.0, 0.5), 1.0, (0.0, 0.0, 1.0), omega, attitude)
+
+
+CASES: tuple[Case, ...] = (
+    ("free body, m < 0.7", _free((1.0, 2.0, 3.0), (0.3, 1.0, 1.5))),
+    ("free body, m >= 0.7", _free((1.0, 2.0, 3.0), (0.01, 1.0, 0.01))),
+    ("free body, separatrix", _free((3.0, 4.0, 6.0), (2.0, 1.5, 1.0))),
+    ("free body, steady", _free((2.0, 2.0, 2.0), (0.3, 1.0, 0.5))),
+    ("heavy top, m < 0.7", _top((0.3, -1.8, 4.0), (0.9, 0.3, 0.0, 0.1))),
+    ("heavy top, m >= 0.7", _top((0.0, 0.0, 3.0), (1.0, 0.001, 0.0, 0.0))),
+    ("gyrostat", partial(gyrostat.motion, (1.0, 1.0, 2.0), (0.0, 0.0, 3.0), (0.3, 1.0, 0.5), ATTITUDE)),
+)
+
+
+def _seconds(run: Callable[[], Any]) -> float:
+    began = perf_counter()
+    run()
+    return perf_counter() - began
+
+
+def measure(rounds: int) -> list[tuple[str, str, list[float]]]:
+    """Return name, regime and the minima in s: set-up, both, omega alone, q alone, one sample, set-up with both."""
+    t = np.linspace(0.0, SPAN, SAMPLES)
+    one = t[:1]
+    runs: list[tuple[str, str, list[Callable[[], Any]]]] = []
+    for name, prepare in CASES:
+        motion = prepare()
+        runs.append((name, motion.regime, [
+            prepare,
+            partial(motion.evaluate, t),
+            partial(motion.evaluate, t, quaternion=False),
+            partial(motion.evaluate, t, omega=False),
+            partial(motion.evaluate, one),
+            lambda prepare=prepare: prepare().evaluate(t),  # type: ignore[misc]
+        ]))
+    best = [[float("inf")] * 6 for _ in runs]
+    for _ in range(rounds):
+        for (_, _, functions), row in zip(runs, best, strict=True):
+            row[:] = [min(old, _seconds(run)) for old, run in zip(row, functions, strict=True)]
+    return [(name, regime, row) for (name, regime, _), row in zip(runs, best, strict=True)]
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
+    parser.add_argument("--rounds", type=int, default=300, help="repetitions, of which the fastest counts")
+    rounds = parser.parse_args(arguments).rounds
+    print(f"{'':24}{'series':>12}{'set-up':>9}{'both':>8}{'omega':>8}{'q':>8}{'1 sample':>10}{f'{SAMPLES} in all':>13}")
+    print(f"{'':36}{'us':>9}{'ns':>8}{'ns':>8}{'ns':>8}{'us':>10}{'us':>13}")
+    for name, regime, (setup, both, omega, attitude, one, whole) in measure(rounds):
+        each = [(seconds - one) / (SAMPLES - 1) * 1e9 for seconds in (both, omega, attitude)]
+        print(f"{name:24}{regime:>12}{setup * 1e6:9.1f}" + "".join(f"{x:8.1f}" for x in each)
+              + f"{one * 1e6:10.1f}{whole * 1e6:13.1f}")
+
+
+if __name__ == "__main__":
+    main()
