@@ -211,7 +211,8 @@ def _equal_moments(scene: Scene, structure: Structure) -> Outcome:
 
 
 def _special_constants(scene: Scene, structure: Structure) -> Outcome:
-    torques, found = [], []
+    torques: list[Structure] = []
+    found: dict[str, list[str]] = {"0": [], "1": [], "-1": []}
     for torque, given in zip(structure["torques"], scene.torques, strict=True):
         if given.kind == "expression":
             torques.append(torque)
@@ -221,13 +222,14 @@ def _special_constants(scene: Scene, structure: Structure) -> Outcome:
             value, unit = given.values[name], name in UNIT_FIELDS
             many = isinstance(pattern, list)
             fields[name] = [_pattern(entry, unit) for entry in value] if many else _pattern(value, unit)
-            found += [f"{name}_{i}" for i, mark in enumerate(fields[name], 1) if many and mark != "*"]
-            found += [name] if fields[name] == "0" else []
+            for component, mark in zip(_component_names(name, pattern), fields[name], strict=True):
+                found.get(mark, []).append(component)
         torques.append(torque | {"fields": fields})
     if not structure["torques"]:
         return structure, True, "no torque acts: Euler's equations are free", "euler_equations"
-    why = f"{', '.join(found)} exactly zero or one" if found else "no component of a torque is exactly zero"
-    return structure | {"torques": torques}, bool(found), why, ""
+    said = [f"{', '.join(names)} = {mark}" for mark, names in found.items() if names]
+    why = "; ".join(said) or "no component of a torque is exactly zero"
+    return structure | {"torques": torques}, bool(said), why, ""
 
 
 def _depends_on_attitude(torque: Structure) -> bool:

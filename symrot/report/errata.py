@@ -78,12 +78,12 @@ def page(found: Survey) -> str:
     text = [
         "# Errata",
         "",
-        "What four documents on rigid-body rotation print that does not hold as it stands: every claim was read into a",
+        "What four documents on rigid-body rotation print that does not hold: every claim was read into a",
         "formula, compared with something derived from first principles, and decided exactly. Printed by",
         "`symrot check --textbook all --all`; do not edit.",
         "",
-        "The documents are known here as text extracted from PDF files, which loses characters. Where what was lost may",
-        "be the reason, or another reading holds, the entry says so.",
+        "The documents are known here as text extracted from PDF files, which loses characters. Where what was lost",
+        "may be the reason, or another reading holds, the entry says so.",
     ]
     for source, items in found:
         text += ["", f"## {source.title}", "", _total(items), ""]
