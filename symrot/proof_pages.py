@@ -14,6 +14,8 @@ __all__ = ["formula", "latex_document", "markdown"]
 
 MANY_SECTIONS = 8
 MADE = {str(symbol): symbol for symbol in UNIT}
+RATES = {"dd": "ddot", "d": "dot"}
+ROMAN = ("sn", "cn", "dn")
 
 
 class PagePrinter(LatexPrinter):  # type: ignore[misc]
@@ -21,9 +23,12 @@ class PagePrinter(LatexPrinter):  # type: ignore[misc]
 
     def _print_Symbol(self, symbol: Symbol, style: str = "plain") -> str:
         name = symbol.name
-        if name.startswith("d") and name[1:] in MADE:
-            letter, _, index = self._print_Symbol(MADE[name[1:]]).partition("_")
-            return rf"\dot{{{letter}}}" + (f"_{index}" if index else "")
+        if name in ROMAN:
+            return rf"\mathrm{{{name}}}"
+        for rate, dot in RATES.items():
+            if name.startswith(rate) and name[len(rate) :] in MADE:
+                letter, _, index = self._print_Symbol(MADE[name[len(rate) :]]).partition("_")
+                return rf"\{dot}{{{letter}}}" + (f"_{index}" if index else "")
         return str(super()._print_Symbol(symbol))
 
     def _print_of_angle(self, function: Expr, exp: str | None = None) -> str:

@@ -75,9 +75,35 @@ normal = k_1, k_2, k_3 = _make("k_1 k_2 k_3", "1")  # normal of the orbit
 rotor = h_1, h_2, h_3 = _make("h_1 h_2 h_3", "kg m^2/s")  # angular momentum of a rotor relative to the body
 offset = d_x, d_y, d_z = _make("d_x d_y d_z", "m")
 
+# matrices and vectors, for derivations
+rotation_entries = _make(" ".join(f"R_{i}{j}" for i in "123" for j in "123"), "1")
+rotation_entry_rates = _make(" ".join(f"dR_{i}{j}" for i in "123" for j in "123"), "1/s")
+second_quaternion = _make("p0 p1 p2 p3", "1")
+angle_accelerations = ddphi, ddtheta, ddpsi = _make("ddphi ddtheta ddpsi", "rad/s^2")
+particle_masses = m_1, m_2, m_3 = _make("m_1 m_2 m_3", "kg", positive=True)
+velocity = v_x, v_y, v_z = _make("v_x v_y v_z", "m/s")  # of a reference point
+acceleration = a_x, a_y, a_z = _make("a_x a_y a_z", "m/s^2")
+relative_velocity = u_x, u_y, u_z = _make("u_x u_y u_z", "m/s")  # seen from the body
+relative_acceleration = w_x, w_y, w_z = _make("w_x w_y w_z", "m/s^2")
+force = F_x, F_y, F_z = _make("F_x F_y F_z", "N")
+damping = b_1, b_2, b_3 = _make("b_1 b_2 b_3", "N m s", positive=True)
+impulse = J_x, J_y, J_z = _make("J_x J_y J_z", "N s")
+
 # scalars, for derivations
 (W,) = _make("W", "N", positive=True)  # weight
 (n,) = _make("n", "rad/s", positive=True)  # mean motion
 (Omega,) = _make("Omega", "rad/s", positive=True)
 excess = delta_1, delta_2 = _make("delta_1 delta_2", "kg m^2", positive=True)  # of one moment over another
 (epsilon,) = _make("epsilon", "1")
+(D,) = _make("D", "1", positive=True)  # number of dimensions
+(E,) = _make("E", "J")  # energy
+(H,) = _make("H", "kg m^2/s", positive=True)  # length of the angular momentum
+momenta = p_phi, p_theta, p_psi = _make("p_phi p_theta p_psi", "kg m^2/s")  # conjugate to the Euler angles
+(g,) = _make("g", "m/s^2", positive=True)
+elliptic = sn, cn, dn = _make("sn cn dn", "1")  # of Jacobi, at the argument p t
+(mu,) = _make("mu", "1")  # their parameter, the square of the modulus
+(p,) = _make("p", "rad/s", positive=True)
+amplitudes = a_1, a_3 = _make("a_1 a_3", "rad/s", positive=True)
+(mu_f,) = _make("mu_f", "1", positive=True)  # coefficient of friction
+gear_rates = omega_S, omega_R, omega_C, omega_P = _make("omega_S omega_R omega_C omega_P", "rad/s")
+teeth = Z_S, Z_R, Z_P = _make("Z_S Z_R Z_P", "1", positive=True)

@@ -17,18 +17,33 @@ if TYPE_CHECKING:
 __all__ = ["READING_ORDER", "check", "derivation", "derive_all", "names", "pages"]
 
 READING_ORDER: dict[str, tuple[str, ...]] = {
-    "Attitude and its rate": (
+    "Attitude": (
+        "rotation_matrices",
+        "axis_and_angle",
+        "composition",
+        "euler_parameters",
+    ),
+    "Angular velocity": (
+        "spin_tensor",
         "euler_body_rates",
+        "euler_singularities",
         "quaternion_rates",
         "rotation_vector",
         "rodrigues",
+        "relative_motion",
     ),
     "Inertia": (
+        "angular_momentum",
+        "kinetic_energy",
         "parallel_axis",
         "tensor_rotation",
+        "standard_solids",
     ),
     "Equations of motion": (
         "euler_equations",
+        "lagrange_and_euler",
+        "work_and_power",
+        "impulse_and_momentum",
         "attitude_not_needed",
         "planar_motion",
     ),
@@ -38,11 +53,20 @@ READING_ORDER: dict[str, tuple[str, ...]] = {
         "symmetric_spin",
         "symmetric_top",
         "intermediate_axis",
+        "poinsot",
+        "free_asymmetric_body",
     ),
     "Bodies under torques": (
         "heavy_top_invariants",
+        "heavy_top",
+        "gyroscopic_wheel",
         "gyrostat_invariants",
         "gravity_gradient",
+    ),
+    "Constraints": (
+        "rolling",
+        "gear_trains",
+        "planar_linkages",
     ),
 }
 """Part -> names of its derivations; a name is that of the module which derives it."""

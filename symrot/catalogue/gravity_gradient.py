@@ -30,7 +30,8 @@ def derive() -> Derivation:
     n, epsilon, mass = symbols.n, symbols.epsilon, symbols.m
     d.section("The torque")
     d.given(
-        r"A point of mass $m$ at $\rho = (x, y, z)$ from the centre of mass, which is $a = 1/\epsilon$ from the centre of "
+        r"A point of mass $m$ at $\rho = (x, y, z)$ from the centre of mass, which is $a = 1/\epsilon$ from the "
+        r"centre of "
         r"attraction in the direction $r$, is attracted by the inverse square of its distance; on a circular orbit "
         r"$\mu / a^3 = n^2$, with $n$ the mean motion (Kepler):",
         (r"F", r"-\,m\,n^2 a\, \frac{r + \epsilon \rho}{|r + \epsilon \rho|^3}"),

@@ -1,10 +1,11 @@
 """Torque-free symmetric top (Landau & Lifshitz, Mechanics, 3rd ed., sections 33 and 36)."""
 
-from sympy import Matrix, diag
+from sympy import Matrix, cos, diag
 
 from symrot import symbols
 from symrot.catalogue._motion import OMEGA, pairs, rate, squared
 from symrot.dynamics.equations import angular_acceleration
+from symrot.kinematics.euler import dcm, rate_jacobian
 from symrot.proof import Derivation
 
 AXIS = Matrix([0, 0, 1])
@@ -95,6 +96,7 @@ def derive() -> Derivation:
         shown=r"\left( \frac{A}{C} \right)^2 \tan^2 \angle(\omega, e_3)",
     )
 
+    _angles(d)
     d.section("Direct or retrograde")
     d.given(
         r"Precession has the component $\frac{L \cdot e_3}{A}$ along the axis. The spin relative to it is "
@@ -121,3 +123,49 @@ def derive() -> Derivation:
         named=r"-\frac{\dot\psi}{\dot\phi \cos\theta}",
     )
     return d
+
+
+def _angles(d: Derivation) -> None:
+    d.section("Precession, nutation and spin")
+    a, c, h = symbols.A, symbols.C, symbols.H
+    theta = symbols.theta
+    d.given("Let axis 3 of space be along the angular momentum, of length $H$, and the angles be those of ZXZ.")
+    momentum = Matrix(dcm("ZXZ")).T * Matrix([0, 0, h])
+    omega = diag(a, a, c).inv() * momentum
+    rates = rate_jacobian("ZXZ").inverse * omega
+    d.step(
+        "Precession and spin are constant, and there is no nutation.",
+        rates,
+        Matrix([h / a, 0, h * cos(theta) * (1 / c - 1 / a)]),
+        because=r"$\omega_b = I^{-1} R^{\mathsf T} L_s$, and $\dot q = B^{-1} \omega_b$",
+        named=r"\begin{bmatrix} \dot\phi \\ \dot\theta \\ \dot\psi \end{bmatrix}",
+    )
+    d.step(
+        r"The spin is that of the transverse part in the body, backwards: $\dot\psi = -\lambda$.",
+        rates[2],
+        -((c - a) / a * omega[2]),
+        because=r"$C\,\omega_3 = H \cos\theta$",
+        named=r"\dot\psi",
+        shown=r"-\frac{C - A}{A}\,\omega_3",
+    )
+    axis_b, axis_s = AXIS, Matrix(dcm("ZXZ")).T * AXIS
+    d.step(
+        "The angular velocity is the sum of a turn about the axis of the space cone and one about that of the body "
+        "cone: "
+        "along it, where the cones touch, neither slips.",
+        omega,
+        rates[0] * axis_s + rates[2] * axis_b,
+        because="precession is about the angular momentum, spin about the symmetry axis",
+        named=r"\omega_b",
+        shown=r"\dot\phi\,R^{\mathsf T} e_3 + \dot\psi\,e_3",
+    )
+    d.step(
+        "The sines of the half angles of space cone and body cone are in the ratio of spin and precession: one turn "
+        "of each "
+        "rolls off as much as the other.",
+        squared(omega.cross(axis_s)) * rates[0] ** 2,
+        squared(omega.cross(axis_b)) * rates[2] ** 2,
+        because=r"$\omega \times \omega = 0$, with the sum put in for one factor",
+        named=r"\dot\phi^2\,|\omega|^2 \sin^2 \angle(\omega, L)",
+        shown=r"\dot\psi^2\,|\omega|^2 \sin^2 \angle(\omega, e_3)",
+    )

@@ -3,7 +3,7 @@
 from sympy import Matrix, eye
 
 from symrot import symbols
-from symrot.catalogue._motion import OMEGA, TENSOR, attitude_rates, rate
+from symrot.catalogue._motion import OMEGA, TENSOR, attitude_rates, pairs, rate
 from symrot.inertia.tensor import inertia_of_point, rotate
 from symrot.kinematics.quaternion import dcm_of, unit_relation
 from symrot.kinematics.rotations import skew
@@ -62,6 +62,18 @@ def derive() -> Derivation:
         relations=unit,
         named=r"\dot I_s",
         shown=r"[\omega_s]_\times I_s - I_s\,[\omega_s]_\times",
+    )
+    motion = attitude_rates() | pairs(symbols.omega_b, symbols.omega_rates)
+    d.step(
+        "In the rate of angular momentum the changing tensor makes the gyroscopic term: Euler's equations, in axes of "
+        "space.",
+        rate(turned, motion) * omega_s + turned * rate(omega_s, motion),
+        turned * dcm_sb * Matrix(symbols.omega_rates) + omega_s.cross(turned * omega_s),
+        because=r"$\left( [\omega]_\times I - I\,[\omega]_\times \right) \omega = \omega \times I\,\omega$, and "
+        r"$\dot\omega_s = R\,\dot\omega_b$",
+        relations=unit,
+        named=r"\dot I_s\,\omega_s + I_s\,\dot\omega_s",
+        shown=r"I_s\,\dot\omega_s + \omega_s \times I_s\,\omega_s",
     )
     d.step(
         "It stays constant if the body is spherical.",
