@@ -21,7 +21,7 @@ Floats = NDArray[np.float64]
 
 FLAGS = (
     "-std=c99",
-    "-O3",
+    "-O2",
     library.NATIVE,
     "-ffp-contract=off",    # double-double arithmetic counts on every rounding
     "-fno-math-errno",      # sqrt in one instruction
