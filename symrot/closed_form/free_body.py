@@ -41,9 +41,9 @@ def motion(
 
     Examples
     --------
-    >>> omega, _ = motion((1, 1, 2), (1, 0, 1)).evaluate([0.0], quaternion=False)
+    >>> omega, _ = motion((1, 1, 2), (0, 0, 1)).evaluate([0.0], quaternion=False)
     >>> omega.tolist()
-    [[1.0, 0.0, 1.0]]
+    [[0.0, 0.0, 1.0]]
     """
     moments, rates = numbers("inertia", inertia, 3), numbers("omega", omega0, 3)
     attitude = numbers("quaternion", quaternion0, 4)
