@@ -5,14 +5,14 @@ becomes a rule that gives coefficient n of its result from coefficients up to n 
 circle, ``x[n+1] = rate[n]/(n+1)``. What is linear stays linear (a sum with constant weights), equal operations are one
 series, and a product is the only rule with a sum over n terms besides those solved from one:
 
-====================  =====================================================================================
+=====================  ====================================================================================
 product ``w = u v``    ``w[n] = sum(u[k] v[n-k], k = 0..n)``; a square adds each pair once and doubles it
 quotient ``w v = u``   ``w[n] = (u[n] - sum(v[k] w[n-k], k = 1..n))/v[0]``
 root ``w w = u``       ``w[n] = (u[n] - sum(w[k] w[n-k], k = 1..n-1))/(2 w[0])``
-driven                 ``n w[n] = s sum(e[k] v[n-k], k = 1..n)`` for ``t w' = s e v`` with ``e = t u'``: exp, sin, tan, ...
-primitive              ``n w[n] = (g[n] - sum(e[k] v[n-k], k = 1..n-1))/v[0]`` for ``v t w' = g``, ``e = t w'``: log, atan, ...
+driven                 ``n w[n] = s sum(e[k] v[n-k], k = 1..n)``: ``t w' = s e v``, ``e = t u'``; exp, sin, tan, ...
+primitive              ``n w[n] = (g[n] - sum(e[k] v[n-k], k = 1..n-1))/v[0]``: ``v e = g``, ``e = t w'``; log, atan, ...
 clock                  ``n w[n] = s a v[n-1]``: exp, sin, cos, sinh, cosh of ``a t + b``
-====================  =====================================================================================
+=====================  ====================================================================================
 
 Here t is the time from the middle of the expansion, so that ``t u'`` has the coefficients ``n u[n]``.
 Source: A. Griewank, A. Walther, Evaluating Derivatives, 2nd ed., sections 10.2 and 13.2.
@@ -44,7 +44,7 @@ class Series(NamedTuple):
 
     ``weights`` holds the constants of a sum, one per operand, and then the constant that is added to coefficient 0 (or
     None); for a clock, a and b. ``function`` gives coefficient 0 where the rule does not, from coefficient 0 of
-    the last operands; ``sign`` is s of the rule. A state has its number in ``index``.
+    the last operands; ``sign`` is s of the rule. A state has its number in ``number``.
     """
 
     rule: str  # state time sum product quotient root theta driven primitive clock
@@ -52,7 +52,7 @@ class Series(NamedTuple):
     weights: tuple[Node | None, ...] = ()
     function: str = ""
     sign: int = 1
-    index: int = 0
+    number: int = 0
 
 
 class Recurrences(NamedTuple):
@@ -99,7 +99,7 @@ class _Builder:
         self.known: dict[tuple[Any, ...], int] = {}
         self.values: dict[str, _Linear] = {name: _Linear(("symbol", name), {}) for name in self.parameters}
         for i, name in enumerate(self.states):
-            self.values[name] = _alone(self.add(Series("state", index=i)))
+            self.values[name] = _alone(self.add(Series("state", number=i)))
         self.clock_names = inputs.get("t", ())
 
     def result(self) -> Recurrences:
@@ -124,8 +124,8 @@ class _Builder:
         if kind == "symbol":
             return _alone(self.add(Series("time"))) if node[1] in self.clock_names else self.values[node[1]]
         parts = [self.read(child) for child in children(node)]
-        if kind != "call" and not any(part.terms for part in parts):
-            return _Linear(_folded((kind, *(_value(part) for part in parts), *node[2:][kind != "**" :])), {})
+        if kind in "+-*/neg" and not any(part.terms for part in parts):
+            return _Linear(_folded((kind, *map(_value, parts))), {})
         return _READERS[kind](self, node, parts)
 
     def series_of(self, form: _Linear) -> int:
@@ -348,8 +348,9 @@ def _scaled(form: _Linear, factor: Node | int) -> _Linear:
 
 def _sum(left: _Linear, right: _Linear, sign: int) -> _Linear:
     right = right if sign > 0 else _scaled(right, -1)
-    constants = [form.constant for form in (left, right) if form.constant is not None]
-    constant = _folded(("+", *constants)) if len(constants) == 2 else (constants or [None])[0]
+    constant = left.constant if right.constant is None else right.constant
+    if left.constant is not None and right.constant is not None:
+        constant = _folded(("+", left.constant, right.constant))
     terms = dict(left.terms)
     for series, weight in right.terms.items():
         total = _folded(("+", terms[series], weight)) if series in terms else weight
@@ -361,8 +362,8 @@ def _sum(left: _Linear, right: _Linear, sign: int) -> _Linear:
 
 
 _READERS: dict[str, Callable[[_Builder, Node, list[_Linear]], _Linear]] = {
-    "+": lambda builder, node, parts: _sum(*parts, 1),
-    "-": lambda builder, node, parts: _sum(*parts, -1),
+    "+": lambda builder, node, parts: _sum(parts[0], parts[1], 1),
+    "-": lambda builder, node, parts: _sum(parts[0], parts[1], -1),
     "neg": lambda builder, node, parts: _scaled(parts[0], -1),
     "*": lambda builder, node, parts: builder.product(*parts),
     "/": lambda builder, node, parts: builder.quotient(*parts),
@@ -412,7 +413,7 @@ def coefficients(
         lambda node: evaluate(node, values, functions, number), functions or {}, [[] for _ in system.series],
         values.get("t", number(Fraction(0))),
     )  # fmt: skip
-    state = {series.index: run.found[i] for i, series in enumerate(system.series) if series.rule == "state"}
+    state = {series.number: run.found[i] for i, series in enumerate(system.series) if series.rule == "state"}
     for i, name in enumerate(system.states):
         state.setdefault(i, []).append(values[name])
     for n in range(order):

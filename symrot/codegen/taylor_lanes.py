@@ -8,7 +8,7 @@ storage, which is how ``dq/dt = 1/2 q*(0, omega)`` becomes three broadcasts time
 
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
-from itertools import product
+from itertools import pairwise, product
 from typing import NamedTuple
 
 from symrot.codegen.recurrences import Recurrences, Series, split_sign
@@ -133,10 +133,10 @@ class _Placer:
         self.rows: list[Row] = []
         self.columns: list[Column] = []
         self.place: dict[int, Address] = {}
-        numbers = {s.index: i for i, s in enumerate(self.series) if s.rule == "state"}
+        numbers = {s.number: i for i, s in enumerate(self.series) if s.rule == "state"}
         self.state_rows = [
             tuple(range(first, min(first + LANES, high)))
-            for low, high in zip(edges[:-1], edges[1:], strict=True)
+            for low, high in pairwise(edges)
             for first in range(low, high, LANES)
         ]
         for states in self.state_rows:
@@ -164,8 +164,8 @@ class _Placer:
         """Return in which round of one order a series can be computed: the states are there before the first."""
         if i not in self.levels:
             s = self.series[i]
-            waits = {"driven": s.operands[:1], "primitive": s.operands[:1], "clock": ()}.get(s.rule, s.operands)
-            self.levels[i] = -1  # what asks for itself waits for its older coefficients alone
+            older = {"driven": (1,), "primitive": (1,), "clock": (0,)}.get(s.rule, ())  # used below coefficient n alone
+            waits = [operand for k, operand in enumerate(s.operands) if k not in older]
             deepest = max((self.level(operand) for operand in waits), default=0)
             self.levels[i] = 0 if s.rule == "state" else deepest if i in self.inlined else 1 + deepest
         return self.levels[i]
@@ -201,11 +201,16 @@ class _Placer:
 
     def pack(self, items: Sequence[tuple[int, int] | None]) -> Pack:
         """Return the addresses of signed series; a lane of no use takes what costs nothing."""
-        found = [None if item is None else self.place[item[1]]._replace(sign=item[0]) for item in items]
+        found = [None if item is None else self.address(*item, lane) for lane, item in enumerate(items)]
         first = next(address for address in found if address is not None)
         if len({address for address in found if address is not None}) == 1 and len(found) - found.count(None) > 1:
             return (first,) * LANES
         return tuple(Address(1, first.row, lane) if a is None else a for lane, a in enumerate(found))
+
+    def address(self, sign: int, series: int, lane: int) -> Address:
+        """Return where a series stands, in that lane if it stands there too."""
+        first = self.place[series]
+        return Address(sign, first.row, lane if self.rows[first.row].lanes[lane] == series else first.lane)
 
     def column(self, pairs: Sequence[_Pair | None], ends: str, needed: Sequence[bool] = ()) -> int:
         """Make a column; a lane without a pair adds nothing where it is needed, else whatever costs nothing."""
@@ -285,7 +290,7 @@ class _Placer:
 
     def _columns(self, lanes: list[list[tuple[int, int]]]) -> Iterable[int]:
         """Yield columns that hold all products of the lanes: broadcasts while they last, then one per lane each."""
-        rest = [[(sign, *self.series[p].operands) for sign, p in lane] for lane in lanes]
+        rest = [[(sign, self.series[p].operands[0], self.series[p].operands[1]) for sign, p in lane] for lane in lanes]
         needed = [bool(lane) for lane in lanes]
         while any(rest):
             shared = self._shared([lane for lane in rest if lane])

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Sequence
 
 from symrot.codegen.c_source import c_expression
 from symrot.codegen.recurrences import recurrences
-from symrot.codegen.taylor_lanes import LANES, Address, Layout, Pack, Row, Term, lay_out
+from symrot.codegen.taylor_lanes import LANES, Address, Layout, Pack, Row, lay_out
 from symrot.errors import InputError
 from symrot.expression import Node, rename
 from symrot.kernel import Program
@@ -154,18 +154,17 @@ class _Jet:
         parts = [(self.picked(term.pack), term.weights) for term in row.terms]
         parts += [(self.slot(slot.columns, phase, sums), slot.weights) for slot in reversed(row.slots)]
         if phase == "first" and row.constant is not None:
-            value = self._weighted("", row.constant, factor)
+            value = self._weighted(row.constant, factor) or "V_ALL(1.0)"
         for part, weights in parts:
             if part:
-                scale = self._weighted("", weights, factor)
-                plain = scale == "" or (not value and set(weights) == {("number", 1)})
-                value = (
-                    (f"V_ADD({part}, {value})" if value else part) if plain
-                    else f"V_FMA({part}, {scale}, {value})" if value else f"V_MUL({part}, {scale})"
-                )  # fmt: skip
+                scale = self._weighted(weights, factor)
+                if not scale:
+                    value = f"V_ADD({part}, {value})" if value else part
+                else:
+                    value = f"V_FMA({part}, {scale}, {value})" if value else f"V_MUL({part}, {scale})"
         return value or "V_ALL(0.0)"
 
-    def _weighted(self, value: str, weights: tuple[Node, ...], factor: str) -> str:
+    def _weighted(self, weights: tuple[Node, ...], factor: str) -> str:
         """Return a vector of constants times the factor; empty when both are one."""
         ones = all(weight == ("number", 1) for weight in weights)
         if ones:
@@ -191,12 +190,13 @@ class _Jet:
         if row.rule == "clock":
             if phase == "first":
                 return self._clock_seed(row, name)
-            rates = self._weighted("", row.terms[0].weights, f"V_ALL(step[{n}])")
+            rates = self._weighted(row.terms[0].weights, f"V_ALL(step[{n}])")
             return [f"{name} = V_MUL({terms[0]}, {rates});"]
         if row.rule == "driven":
             if phase == "first":
                 return [f"{name} = {self._seed(row)};"]
-            return [f"{name} = {total};" if phase == "second" else f"{name} = V_MUL({total}, V_ALL(symrot_inverse[{n}]));"]
+            share = f"V_MUL({total}, V_ALL(symrot_inverse[{n}]))"
+            return [f"{name} = {total if phase == 'second' else share};"]
         if row.rule == "root":
             if phase == "first":
                 return [f"{name} = {self._seed(row)};", f"d{number} = V_ADD({name}, {name});"]
@@ -209,17 +209,16 @@ class _Jet:
         return [f"{name} = V_DIV({upper}, {lower});"]
 
     def _quotient(self, row: Row, name: str, phase: str, terms: list[str], total: str) -> list[str]:
-        plain = len(terms) > 1 and set(row.terms[1].weights) == {("number", 1)}
-        upper = "" if len(terms) == 1 else terms[1] if plain else f"V_MUL({terms[1]}, {self.constant(row.terms[1].weights)})"
-        before = []
-        divisor = f"d{name[1:]}"
-        if phase == "first":
-            before = [f"{divisor} = {terms[0]};"]
-            if row.constant is not None and set(row.constant) != {("number", 0)}:
-                upper = f"V_ADD({upper}, {self.constant(row.constant)})" if upper else self.constant(row.constant)
-            return [*before, f"{name} = V_DIV({upper}, {divisor});"]
-        upper = f"V_SUB({upper or 'V_ALL(0.0)'}, {total})"
-        return [f"{name} = V_DIV({upper}, {divisor});"]
+        """Return the statements of ``(u - sum)/v``, where a numerator of one counts in coefficient 0 alone."""
+        divisor, upper = f"d{name[1:]}", "V_ALL(0.0)"
+        if len(terms) > 1:
+            weights = self._weighted(row.terms[1].weights, "")
+            upper = f"V_MUL({terms[1]}, {weights})" if weights else terms[1]
+        if phase != "first":
+            return [f"{name} = V_DIV(V_SUB({upper}, {total}), {divisor});"]
+        if row.constant is not None and set(row.constant) != {("number", 0)}:
+            upper = f"V_ADD({upper}, {self.constant(row.constant)})"
+        return [f"{divisor} = {terms[0]};", f"{name} = V_DIV({upper}, {divisor});"]
 
     def _seed(self, row: Row) -> str:
         """Return coefficient 0 of a row of functions."""
@@ -277,7 +276,7 @@ class _Jet:
 
     def loops(self) -> list[str]:
         """Return the sums over what is known, for orders n and m = n + 1: a over k + j = n, b over k + j = m."""
-        lines = []
+        lines: list[str] = []
         columns = self.layout.columns
         for first in range(0, len(columns), COLUMNS_PER_LOOP):
             group = range(first, min(first + COLUMNS_PER_LOOP, len(columns)))
@@ -302,7 +301,7 @@ class _Jet:
 
     def between(self) -> list[str]:
         """Return the terms of order m that hold coefficient n, which has just been computed."""
-        lines = []
+        lines: list[str] = []
         for i, (a, b, _) in enumerate(self.layout.columns):
             one, two = (self.at(a, "1"), self.at(b, "n")), (self.at(a, "n"), self.at(b, "1"))
             lines.append(f"b{i} = V_FMA({one[0]}, {one[1]}, V_FMA({two[0]}, {two[1]}, b{i}));")

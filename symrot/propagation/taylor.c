@@ -57,20 +57,20 @@ enum { SYMROT_BLOCK_COUNT = (int)(sizeof(symrot_scales)/sizeof(symrot_scales[0])
 
 static const double SYMROT_LEAST_TAIL = 1e-18;   /* below round-off nothing is gained */
 static const double SYMROT_RATE_FLOOR = 1e-3;    /* a rate turns the body by less than this in a step: no need to see it */
-static const double SYMROT_EXPONENT = 1023.0;    /* of 1.0 in the bits of a double */
 
-/* Return log2(x) + 1023 to 0.09, for x >= 0: the bits of a number are nearly its logarithm. */
-static inline double symrot_log2(double x)
+/* Return log2(a/b) to 0.09, for a, b >= 0: the bits of a number are nearly its logarithm, and no unit matters. */
+static inline double symrot_log2(double a, double b)
 {
-    int64_t bits;
-    memcpy(&bits, &x, sizeof bits);
-    return (double)bits*0x1p-52;
+    int64_t upper, lower;
+    memcpy(&upper, &a, sizeof upper);
+    memcpy(&lower, &b, sizeof lower);
+    return (double)(upper - lower)*(1.0/4503599627370496.0);  /* 2^-52 */
 }
 
 /* Return 2^x to 1e-4, for |x| < 1000. */
 static inline double symrot_exp2(double x)
 {
-    const double shifted = x + 0x1.8p52, fraction = x - (shifted - 0x1.8p52);  /* |fraction| <= 1/2 */
+    const double shifted = x + 6755399441055744.0, fraction = x - (shifted - 6755399441055744.0);  /* |fraction| <= 1/2 */
     int64_t bits;
     memcpy(&bits, &shifted, sizeof bits);
     bits = (int64_t)((uint64_t)(bits + 1023) << 52);
@@ -107,9 +107,9 @@ static inline double symrot_step_log(symrot_v4 (*x)[SYMROT_ORDER + 1], double ta
 {
     double shortest = 60.0;  /* the series of a motion that is a polynomial in time ends early */
     EACH_BLOCK(b) {
-        const double allowed = symrot_log2(tail*symrot_reference(x, unit, b));
-        const double last = (allowed - symrot_log2(symrot_size(x, SYMROT_ORDER, b)))*(1.0/SYMROT_ORDER);
-        const double before = (allowed - symrot_log2(symrot_size(x, SYMROT_ORDER - 1, b)))*(1.0/(SYMROT_ORDER - 1));
+        const double size = tail*symrot_reference(x, unit, b);
+        const double last = symrot_log2(size, symrot_size(x, SYMROT_ORDER, b))*(1.0/SYMROT_ORDER);
+        const double before = symrot_log2(size, symrot_size(x, SYMROT_ORDER - 1, b))*(1.0/(SYMROT_ORDER - 1));
         shortest = last < shortest ? last : shortest;
         shortest = before < shortest ? before : shortest;
     }
@@ -146,7 +146,7 @@ static SYMROT_APART double symrot_first_unit(const symrot_v4 *c, double t, doubl
 {
     double step[SYMROT_ORDER + 1], unit = 1.0, fastest = 0.0;
     int tries = 0, exponent;
-    for (; tries < 64; ++tries, unit *= 0x1p-16) {
+    for (; tries < 64; ++tries, unit *= 1.0/65536) {
         symrot_set_unit(unit, step);
         symrot_jet(c, t, step, 2, x);
         if (symrot_finite(x, 2)) break;
@@ -295,7 +295,7 @@ SYMROT_EXPORT int symrot_taylor(symrot_run *run, const double *p, const double *
         ++jets;
         if (!symrot_finite(x, SYMROT_ORDER)) {
             if (++halvings > 60) { status = SYMROT_NOT_FINITE; break; }
-            unit *= 0x1p-8;
+            unit *= 1.0/256;
             symrot_set_unit(unit, step);
             allowed = symrot_allowed(run, unit);
             continue;

@@ -182,7 +182,8 @@ class _Stepper:
     def __init__(self, path: str) -> None:
         try:
             library = ctypes.CDLL(path)
-            self.run, self._dense, self._jet = library.symrot_taylor, library.symrot_taylor_dense, library.symrot_taylor_jet
+            self.run, self._dense = library.symrot_taylor, library.symrot_taylor_dense
+            self._jet = library.symrot_taylor_jet
             sizes, carry = library.symrot_taylor_sizes, library.symrot_taylor_carry
         except (OSError, AttributeError) as error:
             raise CompilerError(f"the compiled kernel {path} cannot be loaded: {error}") from error
