@@ -26,6 +26,9 @@ __all__ = ["Counterexample", "closed_form_witness", "rational_witness"]
 ATTEMPTS = 60
 """Random points tried: a nonzero polynomial of degree d vanishes at one with a chance of about d/40."""
 
+SIMPLER_TERMS = 200_000
+"""Terms of the residual that may be evaluated to make a point simpler."""
+
 DIGITS = 50
 
 
@@ -93,8 +96,12 @@ def rational_witness(
             break
     else:
         return None
+    affordable = SIMPLER_TERMS // max(len(residual), 1)
     for place, coordinate in enumerate(coordinates):
         for simpler in coordinate.simple:
+            affordable -= 1
+            if affordable < 0:
+                break
             trial = [*choices[:place], simpler, *choices[place + 1 :]]
             if point(trial) is not None:
                 choices = trial

@@ -131,7 +131,7 @@ class Ratios:
         return below
 
     def _spend(self, products: int) -> None:
-        self.products += products
+        self.products += products * (1 + len(self.generators) // 32)  # a long monomial costs more
         if self.products > MOST_PRODUCTS:
             raise TooLarge(f"expanding the formula takes more than {MOST_PRODUCTS} products of terms")
 
@@ -170,7 +170,8 @@ def _most_terms(poly: PolyElement, exponent: int) -> int:
     """Return a bound on the number of terms of a power: by choosing terms, and by the degrees."""
     if len(poly) < 2 or exponent == 1:
         return len(poly)
-    return min(comb(len(poly) + exponent - 1, exponent), prod(degree * exponent + 1 for degree in poly.degrees()))
+    by_degrees = prod(int(degree) * exponent + 1 for degree in poly.degrees())
+    return min(comb(len(poly) + exponent - 1, exponent), by_degrees)
 
 
 def _primitive(poly: PolyElement) -> tuple[Fraction, PolyElement]:
