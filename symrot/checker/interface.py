@@ -81,6 +81,11 @@ def check_claim(claim: Claim, repair: bool = True) -> Verdict:
             raise
         raise InputError(f"{claim.id}: {reason}") from None
     verdict = _verdict(decision, claim.text, start)
+    if repair and claim.relation is not None and decision.verdict in ("false", "conditional"):
+        from symrot.checker.diagnose import diagnose
+
+        diagnosis, repairs = diagnose(claim, decision)
+        verdict = replace(verdict, diagnosis=diagnosis, repairs=repairs)
     return replace(verdict, id=claim.id, where=claim.where, seconds=perf_counter() - start)
 
 
