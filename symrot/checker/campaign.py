@@ -1,0 +1,524 @@
+"""A campaign against the checker itself: generated claims whose truth is known by other means. No wrong verdict passes.
+
+True claims are made by rewriting a random formula with rules that hold by name (angle addition, the distributive law,
+``(A B)^T = B^T A^T``); false ones by one random edit of a true one, confirmed to be false at rational points by exact
+arithmetic of its own, which shares nothing with the engine. Run it by ``python -m symrot.checker.campaign --count N``.
+"""
+
+import sys
+from argparse import ArgumentParser
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from random import Random
+from time import perf_counter
+from typing import Any
+
+from symrot.checker.edits import single_edits
+from symrot.checker.interface import check
+from symrot.checker.points import Dual
+from symrot.checker.reader import read_expression
+from symrot.checker.tree import Node, number, product, replaced, sum_of, text, walk
+from symrot.errors import InputError
+
+__all__ = ["RULES", "Outcome", "RationalPoint", "Undefined", "campaign", "claims", "main"]
+
+ANGLES = ("a", "b", "c")
+SYMBOLS = ("x", "y", "z")
+FUNCTIONS = ("phi", "theta")
+QUATERNIONS = (("p0", "p1", "p2", "p3"), ("q0", "q1", "q2", "q3"))
+
+RULES = (
+    ("sin(A + B)", "sin(A)*cos(B) + cos(A)*sin(B)"), ("cos(A + B)", "cos(A)*cos(B) - sin(A)*sin(B)"),
+    ("sin(A - B)", "sin(A)*cos(B) - cos(A)*sin(B)"), ("cos(A - B)", "cos(A)*cos(B) + sin(A)*sin(B)"),
+    ("sin(2*A)", "2*sin(A)*cos(A)"), ("cos(2*A)", "1 - 2*sin(A)**2"), ("cos(2*A)", "2*cos(A)**2 - 1"),
+    ("sin(3*A)", "3*sin(A) - 4*sin(A)**3"), ("cos(3*A)", "4*cos(A)**3 - 3*cos(A)"),
+    ("sin(A)", "2*sin(A/2)*cos(A/2)"), ("cos(A)", "1 - 2*sin(A/2)**2"), ("sin(A)", "cos(A - pi/2)"),
+    ("cos(A)", "sin(A + pi/2)"), ("sin(A)", "-sin(A + pi)"), ("sin(A)**2", "1 - cos(A)**2"),
+    ("cos(A)**2", "(1 + cos(2*A))/2"), ("sin(A)*cos(B)", "(sin(A + B) + sin(A - B))/2"),
+    ("cos(A)*cos(B)", "(cos(A - B) + cos(A + B))/2"), ("sin(A)*sin(B)", "(cos(A - B) - cos(A + B))/2"),
+    ("tan(A)", "sin(A)/cos(A)"), ("tan(A)", "sin(2*A)/(1 + cos(2*A))"), ("sin(A)", "tan(A)*cos(A)"),
+    ("X*(Y + Z)", "X*Y + X*Z"), ("(X + Y)*Z", "X*Z + Y*Z"), ("(X + Y)**2", "X**2 + 2*X*Y + Y**2"),
+    ("X**2", "(X - 1)*(X + 1) + 1"), ("X/Y", "X*Y/Y**2"), ("X - Y", "(X**2 - Y**2)/(X + Y)"),
+    ("X", "X*(sin(a)**2 + cos(a)**2)"), ("X", "X + y - y"), ("X", "2*X - X"), ("X", "X*z/z"), ("X", "(3*X + X)/4"),
+    ("X", "-(-X)"), ("X*Y", "((X + Y)**2 - (X - Y)**2)/4"), ("1", "cos(b)**2 + sin(b)**2"),
+    ("Rx(A)", "Rx(-A).T"), ("Ry(A)", "Ry(A/2)*Ry(A/2)"), ("Rz(A)", "Rz(A + b)*Rz(-b)"),
+    ("Rz(A)", "Rz(A)*Rx(c)*Rx(c).T"),
+    ("skew(X, Y, Z)", "-skew(X, Y, Z).T"), ("cross(U, V)", "-cross(V, U)"), ("dot(U, V)", "dot(V, U)"),
+    ("qmul(P, qmul(Q, P))", "qmul(qmul(P, Q), P)"), ("dcm_of(qmul(P, Q))", "dcm_of(P)*dcm_of(Q)"),
+    ("diff(sin(F), t)", "cos(F)*diff(F, t)"), ("diff(cos(F), t)", "-sin(F)*diff(F, t)"),
+    ("diff(X*Y, t)", "diff(X, t)*Y + X*diff(Y, t)"), ("diff(X + Y, t)", "diff(X, t) + diff(Y, t)"),
+)  # fmt: skip
+"""Left and right of identities; A, B angles, X, Y, Z scalars, U, V columns, P, Q quaternions, F a function of time."""
+
+SEEDS = (
+    "sin(a + b)*cos(c)", "x*sin(a) + y*cos(b)", "(x + y)*(z - x)", "cos(2*a) + sin(b)**2", "tan(a)*x",
+    "x/y + z*cos(3*a)", "sin(a)*sin(b)*sin(c)", "(x*cos(a) - y*sin(a))**2 + (x*sin(a) + y*cos(a))**2",
+    "cos(a/2)*sin(b - c)", "x**2*y - z/x", "Rx(a)*Ry(b)", "Rz(a)*Rx(b)*Rz(c)", "Ry(a).T*skew(x, y, z)*Ry(a)", "skew(x, y, z)*skew(x, y, z)",
+    "Rx(a)*Matrix([x, y, z])", "cross(Rz(a)*Matrix([x, y, z]), Matrix([y, z, x]))", "det(Rx(a)*diag(x, y, z))",
+    "dot(Matrix([x, y, z]), Rx(b)*Matrix([z, x, y]))", "qmul((p0, p1, p2, p3), (q0, q1, q2, q3))",
+    "dcm_of(qmul((p0, p1, p2, p3), (q0, q1, q2, q3)))", "diff(sin(phi(t))*cos(theta(t)), t)", "diff(Rz(phi(t)), t)",
+    "diff(x*cos(phi(t))**2, t)", "vee(Rz(phi(t)).T*diff(Rz(phi(t)), t))",
+    "trace(Rx(a)*Rz(b))", "(Rx(a)*Rz(b)).T", "inverse(Rx(a))*Ry(c)", "diff(Rx(theta(t))*Rz(phi(t)), t)",
+)  # fmt: skip
+
+
+# -- exact values at rational points ----------------------------------------------------------------------------------
+
+
+class Undefined(Exception):
+    """No value at this point."""
+
+
+@dataclass
+class RationalPoint:
+    """Rational values of everything: ``halves`` are (cos, sin) of half the angles, ``rates`` of the functions."""
+
+    halves: dict[str, tuple[Any, Any]]
+    values: dict[str, Any]
+    rates: dict[str, Fraction]
+
+    def angle(self, node: Node) -> tuple[Any, Any]:
+        """Return (cos, sin) of an angle; ``Undefined`` for one that is no combination of whole and half angles."""
+        return self._turned(node, Fraction(1))
+
+    def _turned(self, node: Node, times: Fraction) -> tuple[Any, Any]:
+        if node.kind == "sum":
+            total: tuple[Any, Any] = (Fraction(1), Fraction(0))
+            for term in node.args:
+                total = _added(total, self._turned(term, times))
+            return total
+        if node.kind == "neg":
+            return self._turned(node.args[0], -times)
+        if node.kind == "product":
+            rest = []
+            for factor in node.args:
+                if factor.kind == "number":
+                    times *= factor.value
+                elif factor.kind == "inv" and factor.args[0].kind == "number":
+                    times /= factor.args[0].value
+                else:
+                    rest.append(factor)
+            if len(rest) != 1:
+                raise Undefined
+            return self._turned(rest[0], times)
+        if node == Node("name", "pi"):
+            quarters = times * 2
+            if quarters.denominator != 1:
+                raise Undefined
+            return [(1, 0), (0, 1), (-1, 0), (0, -1)][int(quarters) % 4]
+        name = node.value if node.kind == "name" or node.args == (Node("name", "t"),) else None
+        halves = times * 2
+        if name not in self.halves or halves.denominator != 1:
+            raise Undefined
+        c, s = self.halves[name]
+        point: tuple[Any, Any] = (Fraction(1), Fraction(0))
+        for _ in range(abs(int(halves))):
+            point = _added(point, (c, s if halves > 0 else -s))
+        return point
+
+    def value(self, node: Node) -> Any:
+        """Return a rational, or a matrix as a list of rows."""
+        try:
+            return self._value(node)
+        except (ZeroDivisionError, KeyError, TypeError, ValueError, IndexError, AttributeError):
+            raise Undefined from None
+
+    def _value(self, node: Node) -> Any:
+        kind, args = node.kind, node.args
+        if kind == "number":
+            return node.value
+        if kind == "name":
+            return self.values[node.value]
+        if kind == "sum":
+            total = self._value(args[0])
+            for term in args[1:]:
+                total = _plus(total, self._value(term))
+            return total
+        if kind == "product":
+            total = self._value(args[0])
+            for factor in args[1:]:
+                total = _times(total, self._value(factor))
+            return total
+        if kind == "neg":
+            return _times(Fraction(-1), self._value(args[0]))
+        if kind == "inv":
+            return _over(self._value(args[0]))
+        if kind == "power":
+            exponent = self._value(args[1])
+            base = self._value(args[0])
+            if exponent.denominator != 1 or isinstance(base, list):
+                raise Undefined
+            total = Fraction(1)
+            for _ in range(abs(int(exponent))):
+                total = total * base
+            return total if exponent >= 0 else _over(total)
+        if kind == "transpose":
+            return [list(row) for row in zip(*self._value(args[0]), strict=True)]
+        if kind == "list":
+            return self._list(node)
+        return self._call(node)
+
+    def _list(self, node: Node) -> Any:
+        return [self._value(member) for member in node.args]
+
+    def _call(self, node: Node) -> Any:
+        name, args = node.value, node.args
+        if name in ("sin", "cos", "tan", "cot"):
+            c, s = self.angle(args[0])
+            above, below = {"sin": (s, 1), "cos": (c, 1), "tan": (s, c), "cot": (c, s)}[name]
+            return above * _over(below)
+        if name in ("Rx", "Ry", "Rz"):
+            c, s = self.angle(args[0])
+            axis = "xyz".index(name[1])
+            rows: list[list[Any]] = [[Fraction(0)] * 3 for _ in range(3)]
+            i, j = (axis + 1) % 3, (axis + 2) % 3
+            rows[axis][axis] = Fraction(1)
+            rows[i][i] = rows[j][j] = c
+            rows[i][j], rows[j][i] = -s, s
+            return rows
+        if name == "diff":
+            return self._derivative(args[0], args[1])
+        values = [self._value(argument) for argument in args]
+        if name == "Matrix":
+            (rows,) = values
+            return [row if isinstance(row, list) else [row] for row in rows]
+        if name == "skew":
+            a, b, c = values
+            return [[Fraction(0), -c, b], [c, Fraction(0), -a], [-b, a, Fraction(0)]]
+        if name == "cross":
+            (a, b, c), (d, e, f) = ([_single(row) for row in value] for value in values)
+            return [[b * f + -(c * e)], [c * d + -(a * f)], [a * e + -(b * d)]]
+        if name == "dot":
+            return sum((_single(p) * _single(q) for p, q in zip(*values, strict=True)), Fraction(0))
+        if name == "diag":
+            return [[v if i == j else Fraction(0) for j in range(len(values))] for i, v in enumerate(values)]
+        if name == "trace":
+            return sum((values[0][i][i] for i in range(len(values[0]))), Fraction(0))
+        if name == "det":
+            return _determinant(values[0])
+        if name == "vee":
+            (rows,) = values
+            return [[rows[2][1]], [rows[0][2]], [rows[1][0]]]
+        if name == "inverse":
+            (rows,) = values
+            if rows != self._value(args[0]) or _times(rows, _transposed(rows)) != _identity(len(rows)):
+                raise Undefined
+            return _transposed(rows)
+        if name == "qmul":
+            return [[component] for component in _hamilton(*([_single(p) for p in value] for value in values))]
+        if name == "dcm_of":
+            q = [_single(p) for p in (values[0] if len(values) == 1 else values)]
+            return _turning(q)
+        raise Undefined
+
+    def _derivative(self, formula: Node, variable: Node) -> Any:
+        if variable != Node("name", "t") or any(node.value == "diff" for _, node in walk(formula)):
+            if formula.kind == "call" and formula.args == (Node("name", "t"),) and formula.value in self.rates:
+                return self.rates[formula.value]
+            raise Undefined
+        if formula.kind == "call" and formula.value in self.rates:
+            return self.rates[formula.value]
+        lifted = {}
+        for name, (c, s) in self.halves.items():
+            rate = self.rates.get(name, Fraction(0)) / 2
+            lifted[name] = (Dual(c, -s * rate), Dual(s, c * rate))
+        values = {name: Dual(value, Fraction(0)) for name, value in self.values.items()}
+        found = RationalPoint(lifted, values, self.rates)._value(formula)
+        return [[_slope(v) for v in row] for row in found] if isinstance(found, list) else _slope(found)
+
+
+def _slope(value: Any) -> Any:
+    return value.slope if isinstance(value, Dual) else Fraction(0)
+
+
+def _single(value: Any) -> Any:
+    if isinstance(value, list):
+        (value,) = value
+    return value
+
+
+def _added(p: tuple[Any, Any], q: tuple[Any, Any]) -> tuple[Any, Any]:
+    return p[0] * q[0] + -(p[1] * q[1]), p[1] * q[0] + p[0] * q[1]
+
+
+def _over(value: Any) -> Any:
+    if isinstance(value, list):
+        raise Undefined
+    if isinstance(value, Dual):
+        below = _over(value.value)
+        return Dual(below, -(below * below) * value.slope)
+    return Fraction(1) / value
+
+
+def _plus(left: Any, right: Any) -> Any:
+    if isinstance(left, list) != isinstance(right, list):
+        raise Undefined
+    if not isinstance(left, list):
+        return left + right
+    return [[a + b for a, b in zip(x, y, strict=True)] for x, y in zip(left, right, strict=True)]
+
+
+def _times(left: Any, right: Any) -> Any:
+    if not isinstance(left, list):
+        left, right = right, left
+        if not isinstance(left, list):
+            return left * right
+    if not isinstance(right, list):
+        return [[right * entry for entry in row] for row in left]
+    columns = list(zip(*right, strict=True))
+    return [[sum((a * b for a, b in zip(row, column, strict=True)), Fraction(0)) for column in columns] for row in left]
+
+
+def _transposed(rows: list[list[Any]]) -> list[list[Any]]:
+    return [list(row) for row in zip(*rows, strict=True)]
+
+
+def _identity(size: int) -> list[list[Any]]:
+    return [[Fraction(int(i == j)) for j in range(size)] for i in range(size)]
+
+
+def _determinant(rows: list[list[Any]]) -> Any:
+    if len(rows) == 1:
+        return rows[0][0]
+    minors = ([row[:c] + row[c + 1 :] for row in rows[1:]] for c in range(len(rows)))
+    return sum(
+        (entry * _determinant(minor) * (-1) ** c for c, (entry, minor) in enumerate(zip(rows[0], minors, strict=True))),
+        Fraction(0),
+    )
+
+
+def _hamilton(p: Sequence[Any], q: Sequence[Any]) -> list[Any]:
+    """Return the product of quaternions by scalar and vector parts."""
+    (p0, *u), (q0, *v) = p, q
+    turned = [u[1] * v[2] + -(u[2] * v[1]), u[2] * v[0] + -(u[0] * v[2]), u[0] * v[1] + -(u[1] * v[0])]
+    scalar = p0 * q0
+    for a, b in zip(u, v, strict=True):
+        scalar = scalar + -(a * b)
+    return [scalar, *(p0 * b + q0 * a + c for a, b, c in zip(u, v, turned, strict=True))]
+
+
+def _turning(q: Sequence[Any]) -> list[list[Any]]:
+    """Return ``(q0^2 - |v|^2) 1 + 2 v v^T + 2 q0 skew(v)``."""
+    q0, *v = q
+    size = q0 * q0 + -(v[0] * v[0]) + -(v[1] * v[1]) + -(v[2] * v[2])
+    skew = [[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]]
+    places = range(3)
+    return [
+        [(size if i == j else Fraction(0)) + 2 * (v[i] * v[j]) + 2 * (q0 * skew[i][j]) for j in places] for i in places
+    ]
+
+
+def random_point(source: Random) -> RationalPoint:
+    """Return a point of random small rationals."""
+
+    def circle() -> tuple[Fraction, Fraction]:
+        t = Fraction(source.randint(-9, 9), source.randint(1, 9))
+        return (1 - t * t) / (1 + t * t), 2 * t / (1 + t * t)
+
+    def value() -> Fraction:
+        return Fraction(source.choice([n for n in range(-12, 13) if n]), source.randint(1, 5))
+
+    names = [*SYMBOLS, *(name for q in QUATERNIONS for name in q)]
+    return RationalPoint(
+        {name: circle() for name in (*ANGLES, *FUNCTIONS)}, {n: value() for n in names}, {f: value() for f in FUNCTIONS}
+    )
+
+
+def truth(left: Node, right: Node, source: Random, wanted: int = 3) -> bool | None:
+    """Return whether two sides agree exactly at rational points; None if too few of those drawn are defined."""
+    defined = 0
+    for _ in range(4 * wanted):
+        point = random_point(source)
+        try:
+            a, b = point.value(left), point.value(right)
+        except Undefined:
+            continue
+        if isinstance(a, list) != isinstance(b, list) or a != b:
+            return False
+        defined += 1
+        if defined == wanted:
+            return True
+    return None
+
+
+# -- claims -----------------------------------------------------------------------------------------------------------
+
+_KINDS = {"A": "angle", "B": "angle", "X": "scalar", "Y": "scalar", "Z": "scalar", "U": "matrix", "V": "matrix",
+          "P": "matrix", "Q": "matrix", "F": "function"}  # fmt: skip
+_MATRICES = ("Rx", "Ry", "Rz", "skew", "cross", "Matrix", "qmul", "dcm_of", "vee", "diag", "inverse")
+
+
+def is_matrix(node: Node) -> bool:
+    """Return whether a piece of a generated claim is a matrix."""
+    if node.kind == "call":
+        return node.value in _MATRICES or (node.value == "diff" and is_matrix(node.args[0]))
+    if node.kind == "list":
+        return True
+    return node.kind not in ("name", "number") and any(map(is_matrix, node.args))
+
+
+def _fits(kind: str, node: Node) -> bool:
+    if kind == "matrix":
+        return is_matrix(node)
+    if kind == "function":
+        return node.kind == "call" and node.value in FUNCTIONS
+    if is_matrix(node):
+        return False
+    names = {piece.value for _, piece in walk(node) if piece.kind == "name"} - {"t", "pi"}
+    calls = {piece.value for _, piece in walk(node) if piece.kind == "call"}
+    if kind == "angle":
+        return names <= {*ANGLES} and calls <= {*FUNCTIONS} and node.kind != "number"
+    return bool(names <= {*SYMBOLS, *ANGLES} and (not names & {*ANGLES} or calls & {"sin", "cos", "tan"}))
+
+
+def _matched(pattern: Node, node: Node, found: dict[str, Node]) -> bool:
+    """Fill ``found`` so that the pattern with its letters replaced is the piece."""
+    if pattern.kind == "name" and pattern.value in _KINDS:
+        if pattern.value in found:
+            return found[pattern.value] == node
+        found[pattern.value] = node
+        return _fits(_KINDS[pattern.value], node)
+    if pattern.kind != node.kind or pattern.value != node.value or len(pattern.args) != len(node.args):
+        return False
+    return all(_matched(p, n, found) for p, n in zip(pattern.args, node.args, strict=True))
+
+
+def _filled(pattern: Node, found: dict[str, Node]) -> Node:
+    if pattern.kind == "name" and pattern.value in found:
+        return found[pattern.value]
+    args = [_filled(child, found) for child in pattern.args]
+    if pattern.kind == "sum":
+        return sum_of(args)
+    if pattern.kind == "product":
+        return product(args)
+    if pattern.kind == "neg":
+        return product([number(-1), args[0]]) if args[0].kind == "number" else product([Node("neg", None, (args[0],))])
+    return Node(pattern.kind, pattern.value, tuple(args))
+
+
+_COMPILED = tuple((read_expression(left), read_expression(right)) for left, right in RULES)
+
+
+def rewritten(tree: Node, source: Random) -> Node:
+    """Return a tree with one random rule used at one random piece, read again as text."""
+    places = [(path, node) for path, node in walk(tree) if node.kind not in ("list",)]
+    for _ in range(60):
+        path, node = source.choice(places)
+        if _inside(tree, path, ("Rx", "Ry", "Rz", "sin", "cos", "tan", *FUNCTIONS)) or path_in_exponent(tree, path):
+            continue
+        left, right = source.choice(_COMPILED)
+        found: dict[str, Node] = {}
+        if _matched(left, node, found) and (found or node.kind != "name"):
+            made = _filled(right, found)
+            return read_expression(text(replaced(tree, path, lambda _, made=made: made)))  # type: ignore[misc]
+    return tree
+
+
+def _inside(tree: Node, path: Sequence[int], names: Sequence[str]) -> bool:
+    """Return whether a piece is an argument of one of these functions, or a variable of differentiation."""
+    for place in path:
+        if tree.kind == "call" and (tree.value in names or (tree.value == "diff" and place)):
+            return True
+        tree = tree.args[place]
+    return False
+
+
+def path_in_exponent(tree: Node, path: Sequence[int]) -> bool:
+    """Return whether a piece is an exponent, or a part of one."""
+    for place in path:
+        if tree.kind == "power" and place == 1:
+            return True
+        tree = tree.args[place]
+    return False
+
+
+def claims(count: int, seed: int = 0) -> Iterator[tuple[str, bool]]:
+    """Yield generated claims as text, with their truth: half of them true."""
+    source = Random(seed)
+    made = 0
+    while made < count:
+        left = right = read_expression(source.choice(SEEDS))
+        for _ in range(source.randint(2, 5)):
+            right = rewritten(right, source)
+        if source.random() < 0.5:
+            left = rewritten(left, source)
+        if left == right or len(text(left)) + len(text(right)) > 1500 or truth(left, right, source, 1) is not True:
+            continue
+        wanted = made % 2 == 0
+        if not wanted:
+            edits = list(single_edits(right, [*SYMBOLS, *ANGLES], FUNCTIONS, is_matrix, moving=False))
+            right = source.choice(edits).tree
+            if truth(left, right, source) is not False:
+                continue
+        made += 1
+        yield f"{text(left)} == {text(right)}", wanted
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a campaign found: verdicts by (truth, verdict), wrong ones, refused true claims, the slowest claim.
+
+    An edit may make a claim that has no meaning, which is refused for good reason.
+    """
+
+    counts: dict[tuple[bool, str], int]
+    wrong: tuple[str, ...]
+    refused: tuple[str, ...]
+    slowest: float
+    seconds: float
+
+    @property
+    def undecided(self) -> int:
+        return sum(n for (_, verdict), n in self.counts.items() if verdict == "undecided")
+
+
+RIGHT = {(True, "true"), (False, "false"), (False, "conditional"), (True, "undecided"), (False, "undecided")}
+"""What may be said of a true and of a false claim; that a false claim holds under a condition is no error."""
+
+
+def campaign(count: int, seed: int = 0, progress: Callable[[int], None] = lambda done: None) -> Outcome:
+    """Check generated claims and return what came out."""
+    counts: Counter[tuple[bool, str]] = Counter()
+    wrong, refused = [], []
+    slowest, start = 0.0, perf_counter()
+    for done, (claim, true) in enumerate(claims(count, seed), start=1):
+        before = perf_counter()
+        try:
+            verdict = check(claim, repair=False).verdict
+        except InputError as reason:
+            verdict = "refused"
+            if true:
+                refused.append(f"{claim}: {reason}")
+        slowest = max(slowest, perf_counter() - before)
+        counts[true, verdict] += 1
+        if (true, verdict) not in RIGHT and verdict != "refused":
+            wrong.append(f"{'true' if true else 'false'} but {verdict}: {claim}")
+        progress(done)
+    return Outcome(dict(counts), tuple(wrong), tuple(refused), slowest, perf_counter() - start)
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run a campaign; exit code 1 when a verdict is wrong, a claim is refused, or more than 1 % stay undecided."""
+    parser = ArgumentParser(prog="python -m symrot.checker.campaign", description=__doc__.splitlines()[0])
+    parser.add_argument("--count", type=int, default=1000, help="claims (default: 1000)")
+    parser.add_argument("--seed", type=int, default=0)
+    options = parser.parse_args(argv)
+    found = campaign(options.count, options.seed, _shown_progress if sys.stderr.isatty() else lambda done: None)
+    for (true, verdict), number_of in sorted(found.counts.items()):
+        print(f"{'true' if true else 'false':<6} claims found {verdict:<12} {number_of}")
+    print(f"wrong {len(found.wrong)}, refused {len(found.refused)}, undecided {found.undecided} of {options.count}")
+    print(f"{found.seconds:.1f} s, slowest claim {found.slowest:.2f} s")
+    for line in (*found.wrong, *found.refused)[:20]:
+        print(line)
+    return int(bool(found.wrong or found.refused) or found.undecided > options.count / 100)
+
+
+def _shown_progress(done: int) -> None:
+    if done % 100 == 0:
+        sys.stderr.write(f"\r{done}")
+
+
+if __name__ == "__main__":
+    sys.exit(main())
