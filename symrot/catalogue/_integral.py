@@ -1,6 +1,5 @@
 """Iterated integrals by antiderivatives, each of which is proven by differentiating it."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -63,7 +62,8 @@ def antiderivative(integrand: Expr, variable: Symbol) -> Expr:
     return total
 
 
-def iterated(integrand: Any, limits: Sequence[tuple[Symbol, Expr, Expr]]) -> tuple[Stage, ...]:
+@cache
+def iterated(integrand: Any, limits: tuple[tuple[Symbol, Expr, Expr], ...]) -> tuple[Stage, ...]:
     """Return the integrations over (variable, lower, upper) in turn, the first of the limits innermost."""
     stages = []
     for variable, lower, upper in limits:

@@ -102,7 +102,8 @@ def _properties(d: Derivation) -> None:
     d.section("What every inertia tensor obeys")
     tensor = sum((Matrix(inertia_of_point(m, p)) for m, p in zip(MASSES, POINTS, strict=True)), zeros(3))
     d.step(
-        r"The product $\omega \cdot I\,\omega$ is a sum of squares: the principal moments are not negative, and zero only for "
+        r"The product $\omega \cdot I\,\omega$ is a sum of squares: the principal moments are not negative, and zero "
+        r"only for "
         r"particles "
         "on one line.",
         OMEGA.dot(tensor * OMEGA),

@@ -5,6 +5,7 @@ from sympy import Matrix, Symbol, eye
 from symrot import symbols
 from symrot.catalogue._motion import squared
 from symrot.conventions import INTRINSIC_SEQUENCES, parse_sequence
+from symrot.exact import normal_form
 from symrot.kinematics.dossier import LockedPoint, singularity_dossier
 from symrot.kinematics.euler import dcm, factors, rate_jacobian
 from symrot.proof import Derivation
@@ -76,7 +77,7 @@ def _locked(d: Derivation, sequence: str, adjugate: Matrix, point: LockedPoint) 
         silent[0] * outer[0] + silent[2] * outer[1],
         0,
         because="the first and the last turn are about one line",
-        named=rf"\left( {_latex(silent[0])}\,\partial_\phi {_signed(silent[2])}\,\partial_\psi \right) R",
+        named=rf"\left( \partial_\phi {'-' if silent[2] < 0 else '+'} \partial_\psi \right) R",
     )
     d.step(
         "No rates turn the body about this axis, of unit length:",
@@ -86,27 +87,21 @@ def _locked(d: Derivation, sequence: str, adjugate: Matrix, point: LockedPoint) 
         named=rf"\begin{{bmatrix}} B^{{\mathsf T}} n \\ n \cdot n \end{{bmatrix}},\ n = {_latex(lost)}: \quad"
         r"\begin{bmatrix} B^{\mathsf T} n \\ n \cdot n \end{bmatrix}",
     )
-    strength = (adjugate.subs(at) * lost).dot(silent) / silent.dot(silent)
+    strength = normal_form((adjugate.subs(at) * lost).dot(silent) / silent.dot(silent))
     d.step(
-        rf"The limit. On the way to ${where}$ the rates grow as $\det B\,\dot q \to {_latex(_plain(strength))}\;"
+        rf"The limit. On the way to ${where}$ the rates grow as $\det B\,\dot q \to {_sign(strength)}"
         rf"s\,(n \cdot \omega)$ along the silent combination $s$, however the attitude is approached.",
         adjugate.subs(at),
         strength * silent * lost.T,
         because="there the matrix of cofactors has rank one",
         named=r"\lim\, \det B\; B^{-1}",
-        shown=rf"{_latex(_plain(strength))} \; s\,n^{{\mathsf T}},\quad s = {_latex(silent)}",
+        shown=rf"{_sign(strength)} s\,n^{{\mathsf T}},\quad s = {_latex(silent)}",
     )
 
 
-def _plain(strength: object) -> object:
-    from symrot.exact import normal_form
-
-    return normal_form(strength)
-
-
-def _signed(value: object) -> str:
-    text = _latex(value)
-    return text if text.startswith("-") else f"+ {text}"
+def _sign(strength: object) -> str:
+    """Return a factor in front of a product: nothing for 1."""
+    return {"1": "", "-1": "-"}.get(_latex(strength), _latex(strength))
 
 
 def _latex(value: object) -> str:

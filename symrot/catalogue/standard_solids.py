@@ -2,10 +2,10 @@
 
 from collections.abc import Sequence
 
-from sympy import Expr, Matrix, diag, eye
+from sympy import Expr, Matrix, diag, eye, factor_terms
 
 from symrot import symbols
-from symrot.catalogue._integral import iterated
+from symrot.catalogue._integral import Stage, iterated
 from symrot.inertia.shapes import SHAPES
 from symrot.inertia.solids import Solid, solid
 from symrot.proof import Derivation
@@ -13,6 +13,7 @@ from symrot.proof import Derivation
 AXES = "xyz"
 MEASURE = {"solid": "V", "surface": "S", "curve": r"\ell"}
 PRODUCTS = ((0, 1), (0, 2), (1, 2))
+LONG = 300  # characters of LaTeX
 SPECIAL = {"tetrahedron": {"vertices": [(0, 0, 0), (symbols.a, 0, 0), (0, symbols.b, 0), (0, 0, symbols.c)]}}
 """With one corner at the origin and three edges along the axes; the general one is a linear image of it."""
 
@@ -49,34 +50,36 @@ def _shape(d: Derivation, body: Solid) -> None:
     coordinates = [variable for variable, _, _ in body.limits]
     letter = MEASURE[body.shape.kind]
     d.section(body.name.replace("_", " ").capitalize())
-    d.given(f"{body.shape.axes[0].upper()}{body.shape.axes[1:]}. The map, and its limits:".replace("..", "."),
-            (r"(x, y, z)^{\mathsf T}", body.position),
-            *_limits(body))  # fmt: skip
+    axes = body.shape.axes
+    d.given(
+        f"{axes[0].upper()}{axes[1:].rstrip('.')}. The map, with {_limits(body)}:",
+        (r"(x, y, z)^{\mathsf T}", body.position),
+    )
     columns = body.position.jacobian(coordinates)
     d.step(
         "The Jacobian.",
         (columns.T * columns).det(method="berkowitz"),
         body.jacobian**2,
         because="the square of the measure of a cell is the determinant of the scalar products of its edges",
-        named=r"\det \left( \frac{\partial (x,y,z)}{\partial ("
+        named=r"J^2 = \det \left( \frac{\partial (x,y,z)}{\partial ("
         + ",".join(map(_latex, coordinates))
         + r")}^{\mathsf T} "
         r"\frac{\partial (x,y,z)}{\partial (" + ",".join(map(_latex, coordinates)) + r")} \right)",
         shown=rf"\left( {_latex(body.jacobian)} \right)^2",
     )
-    measure = _integral(body, ())
     d.step(
         "Its measure.",
-        measure,
+        _integral(body, ()),
         body.measure,
-        because="antiderivatives, from the innermost integral outwards",
+        because=_antiderivatives(body, ()),
         named=rf"{letter} = {_integral_sign(body, ())}",
     )
     _moments(d, body, letter)
 
 
-def _limits(body: Solid) -> list[tuple[str, str]]:
-    return [(_latex(u), rf"{_latex(low)} \ldots {_latex(high)}") for u, low, high in body.limits]
+def _limits(body: Solid) -> str:
+    """Return the limits of all coordinates, as a sentence."""
+    return ", ".join(f"${_latex(u)}$ from ${_latex(low)}$ to ${_latex(high)}$" for u, low, high in body.limits)
 
 
 def _moments(d: Derivation, body: Solid, letter: str) -> None:
@@ -101,7 +104,7 @@ def _moments(d: Derivation, body: Solid, letter: str) -> None:
                 f"The centre of mass along ${AXES[axes[0]]}$.",
                 found[axes] / symbols.m,
                 body.center_of_mass[axes[0]],
-                because="antiderivatives, from the innermost integral outwards",
+                because=_antiderivatives(body, axes),
                 named=rf"c_{AXES[axes[0]]} = \frac{{1}}{{{letter}}} {_integral_sign(body, axes)}",
             )
         elif axes not in zero:
@@ -109,7 +112,7 @@ def _moments(d: Derivation, body: Solid, letter: str) -> None:
                 f"The second moment of ${_product(axes)}$.",
                 found[axes],
                 values[_quantity(axes)],
-                because="antiderivatives, from the innermost integral outwards",
+                because=_antiderivatives(body, axes),
                 named=rf"S_{{{''.join(AXES[i] for i in axes)}}} = \frac{{m}}{{{letter}}} {_integral_sign(body, axes)}",
             )
     _tensor(d, body, found)
@@ -130,13 +133,29 @@ def _tensor(d: Derivation, body: Solid, found: Moments) -> None:
     )
 
 
-def _integral(body: Solid, axes: Sequence[int]) -> Expr:
-    """Return the iterated integral of a product of coordinates x, y, z over the map, in closed form."""
+def _stages(body: Solid, axes: Sequence[int]) -> tuple[Expr, tuple[Stage, ...]]:
+    """Return a constant factor, and the integrations of the rest of a product of x, y, z over the map."""
     coordinates = [variable for variable, _, _ in body.limits]
     constant, weight = body.jacobian.as_independent(*coordinates, as_Add=False)
     for axis in axes:
         weight = weight * body.position[axis]
-    return constant * iterated(weight, body.limits)[-1].value
+    return constant, iterated(weight, body.limits)
+
+
+def _integral(body: Solid, axes: Sequence[int]) -> Expr:
+    """Return the iterated integral of a product of coordinates x, y, z over the map, in closed form."""
+    constant, stages = _stages(body, axes)
+    return constant * stages[-1].value
+
+
+def _antiderivatives(body: Solid, axes: Sequence[int]) -> str:
+    """Return the antiderivatives as a reason, from the innermost outwards; only the last where they are long."""
+    constant, stages = _stages(body, axes)
+    shown = [f"${_latex(factor_terms(stage.antiderivative))}$ in ${_latex(stage.variable)}$" for stage in stages]
+    before = "" if constant == 1 else f", before the factor ${_latex(constant)}$"
+    if sum(map(len, shown)) > LONG:
+        return f"antiderivatives, from the innermost integral outwards{before}, the last one {shown[-1]}"
+    return f"the antiderivatives are {', then '.join(shown)}{before}"
 
 
 def _integral_sign(body: Solid, axes: Sequence[int]) -> str:
