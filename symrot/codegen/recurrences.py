@@ -10,7 +10,7 @@ product ``w = u v``    ``w[n] = sum(u[k] v[n-k], k = 0..n)``; a square adds each
 quotient ``w v = u``   ``w[n] = (u[n] - sum(v[k] w[n-k], k = 1..n))/v[0]``
 root ``w w = u``       ``w[n] = (u[n] - sum(w[k] w[n-k], k = 1..n-1))/(2 w[0])``
 driven                 ``n w[n] = s sum(e[k] v[n-k], k = 1..n)``: ``t w' = s e v``, ``e = t u'``; exp, sin, tan, ...
-primitive              ``n w[n] = (g[n] - sum(e[k] v[n-k], k = 1..n-1))/v[0]``: ``v e = g``, ``e = t w'``; log, atan, ...
+primitive              ``n w[n] = (g[n] - sum(e[k] v[n-k], k = 1..n-1))/v[0]``: ``v e = g``, ``e = t w'``; log, atan
 clock                  ``n w[n] = s a v[n-1]``: exp, sin, cos, sinh, cosh of ``a t + b``
 =====================  ====================================================================================
 

@@ -18,7 +18,7 @@ from symrot.kernel import Program
 
 __all__ = ["ORDER", "jet_source", "taylor_definitions"]
 
-ORDER = 20  # chosen by measurement, see `python -m symrot.bench.taylor --orders`
+ORDER = 20  # by measurement: below errors of 1e-6, orders 16 to 24 lie within a tenth of each other
 COLUMNS_PER_LOOP = 4  # two sums each, so that sums and factors stay in 16 registers
 
 
@@ -249,7 +249,8 @@ class _Jet:
 
     def order(self, n: str, phase: str, sums: str) -> list[str]:
         """Return the statements of one order: packs and rows as they come to hand, then the next of the states."""
-        lines, done, packed = [], set(range(self.state_rows)), set[Pack]()
+        lines: list[str] = []
+        done, packed = set(range(self.state_rows)), set[Pack]()
 
         def pack_what_is_there() -> Iterable[str]:
             for pack, index in self.packs.items():
