@@ -23,6 +23,14 @@ OUTCOMES = {
 """What became of a claim, from good to bad."""
 
 
+EXPLAINS = {
+    "minus signs": {"sign_of_term", "overall_sign", "inertia_product_sign"},
+    "dots": {"wrong_symbol"},
+    "primes": {"wrong_symbol"},
+}
+"""What a lossy extraction can make of a true formula: characters lost -> codes of the fault that this looks like."""
+
+
 @dataclass(frozen=True)
 class Finding:
     """What was found of one claim: its data, the verdict, another reading that holds, and the outcome."""
@@ -64,7 +72,7 @@ def _finding(data: dict[str, Any], claim: Claim, repair: bool) -> Finding:
     if repair:
         verdict = check_claim(claim, True)
     outcome = {"conditional": "conditional", "undecided": "undecided"}.get(verdict.verdict, "fails")
-    if outcome == "fails" and data.get("lost"):
+    if outcome == "fails" and any(verdict.diagnosis.code in EXPLAINS.get(what, ()) for what in data.get("lost", [])):
         outcome = "fails or lost"
     return Finding(data, verdict, outcome, "", _right_form(claim, verdict))
 

@@ -1,14 +1,17 @@
 """From a scene to its motion: choose a method, bind the kernel to numbers once, then propagate as often as asked."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
+from time import perf_counter
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from symrot import number
+from symrot.closed_form.choose import FORMS, Exact, exact_form
 from symrot.errors import InputError, PropagationError
 from symrot.planner import Plan, make_plan
 from symrot.propagation import dop853
@@ -22,9 +25,12 @@ __all__ = ["METHODS", "Choice", "Motion", "Propagator", "choose_method", "propag
 
 Floats = NDArray[np.float64]
 
+UNREDUCED = {"planar": None, "initial_quaternion": None, "constant": {}}  # what an exact motion returns: all of it
+
 METHODS = {
     "auto": "the first of the table that fits",
     "constant": "every state keeps its value",
+    "exact": "closed form, at any time without stepping",
     "dop853": "Dormand-Prince 8(5,3), stepped in C around the emitted kernel",
     "scipy": "SciPy around the emitted NumPy kernel",
 }
@@ -56,11 +62,19 @@ def choose_method(plan: Plan, method: str = "auto") -> Choice:
     """
     if method == "auto":
         return next(Choice(name, reason) for name, condition in AUTO if (reason := condition(plan)))
+    if method == "exact":
+        form = exact_form(plan.scene, plan.structure["attitude"])
+        if form is None:
+            raise InputError(
+                f"method: expected a motion with a closed form ({', '.join(form.name for form in FORMS)}) for 'exact', "
+                f"got the scene {plan.scene.name!r}"
+            )
+        return Choice(method, form.name)
     name, colon, solver = method.partition(":")
-    if name == "scipy" and colon:
+    if name == "scipy" and solver:
         from symrot.propagation.fallback import method_name
 
-        method_name(solver or method)
+        method_name(solver)
     elif name not in METHODS or colon or name == "constant":
         listed = ", ".join(name for name in METHODS if name != "constant")
         raise InputError(f"method: expected one of {listed} or scipy:NAME, got {method!r}")
@@ -73,6 +87,9 @@ class Motion:
     def __init__(self, plan: Plan, choice: Choice, tolerance: float) -> None:
         self.plan, self.choice, self.tolerance = plan, choice, tolerance
         self.library: Path | None = None
+        if choice.method == "exact":
+            self.plan = replace(plan, structure=plan.structure | UNREDUCED)
+            plan = self.plan
         if choice.method == "dop853":
             self.kernel, self.library = compiled(plan)
         else:
@@ -120,6 +137,14 @@ class Motion:
         function = load_numpy_kernel(self.kernel.rates)
         return function if self.rate_parameters else lambda t, y, p: function(t, y)
 
+    @cached_property
+    def exact(self) -> Exact:
+        """The motion in closed form."""
+        scene = self.plan.scene
+        form = exact_form(scene, self.plan.structure["attitude"])
+        assert form is not None
+        return form.motion(scene)
+
     def solution(self, trajectory: Trajectory) -> Callable[[ArrayLike], Floats]:
         """Return omega and quaternion as a function of time over the trajectory's span."""
         times = trajectory.t
@@ -144,6 +169,8 @@ class Motion:
         """Return the states as a function of time."""
         if self.choice.method == "constant":
             return lambda t: np.empty((len(t), 0))
+        if self.choice.method == "exact":
+            return lambda t: _exact(self, t)[0]
         start = (self.rate_parameters, self.plan.initial_state, self.start)
         if self.library is not None:
             return dop853.record(self.library, *start, span, self.tolerance)
@@ -170,6 +197,14 @@ def _dop853(motion: Motion, times: Floats) -> tuple[Floats, Stats]:
     )
 
 
+def _exact(motion: Motion, times: Floats) -> tuple[Floats, Stats]:
+    began = perf_counter()
+    attitude = motion.plan.structure["attitude"]
+    omega, quaternion = motion.exact.evaluate(times - motion.start, quaternion=attitude)
+    states = np.hstack([part for part in (omega, quaternion) if part is not None])
+    return states, Stats(0, 0, 0, perf_counter() - began)
+
+
 def _scipy(motion: Motion, times: Floats) -> tuple[Floats, Stats]:
     from symrot.propagation import fallback
 
@@ -179,6 +214,7 @@ def _scipy(motion: Motion, times: Floats) -> tuple[Floats, Stats]:
 
 INTEGRATORS: dict[str, Callable[[Motion, Floats], tuple[Floats, Stats]]] = {
     "constant": _keep,
+    "exact": _exact,
     "dop853": _dop853,
     "scipy": _scipy,
 }

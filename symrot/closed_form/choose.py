@@ -1,0 +1,133 @@
+"""Which scenes have an exact motion, and that motion: a table of forms, each with its condition."""
+
+from collections.abc import Callable
+from fractions import Fraction
+from typing import NamedTuple, Protocol
+
+from numpy.typing import ArrayLike
+
+from symrot.closed_form.library import Floats
+from symrot.number import equal
+from symrot.scene import Scene
+
+__all__ = ["FORMS", "Exact", "Form", "exact_form"]
+
+
+class Exact(Protocol):
+    """A motion known at any time; times count from the initial state, s."""
+
+    def evaluate(
+        self, t: ArrayLike, omega: bool = True, quaternion: bool = True
+    ) -> tuple[Floats | None, Floats | None]:
+        """Return angular velocity (n, 3) in the body and attitude (n, 4), what is not asked for as None."""
+
+
+class Form(NamedTuple):
+    """A class of motions in closed form: what it is, which scenes have it, and how to make it."""
+
+    name: str
+    fits: Callable[[Scene, bool], bool]  # of the scene, and whether the attitude is wanted
+    motion: Callable[[Scene], Exact]
+
+
+def _torques(scene: Scene) -> list[str]:
+    return [torque.kind for torque in scene.torques]
+
+
+def _moments(scene: Scene) -> tuple[Fraction, Fraction, Fraction]:
+    a, b, c = (scene.body.inertia[i][i] for i in range(3))
+    return a, b, c
+
+
+def _symmetric_about(scene: Scene, axis: int) -> bool:
+    across, other = (moment for i, moment in enumerate(_moments(scene)) if i != axis)
+    return scene.body.principal.given_axes and equal(across, other)
+
+
+def _only_axis(vector: tuple[Fraction, ...]) -> int | None:
+    """Return the axis that a vector lies along, if it does."""
+    along = [axis for axis, component in enumerate(vector) if component != 0]
+    return along[0] if len(along) == 1 else None
+
+
+def _is_free(scene: Scene, attitude: bool) -> bool:
+    return not scene.torques
+
+
+def _free_body(scene: Scene) -> Exact:
+    from symrot.closed_form import free_body
+
+    return free_body.motion_of_tensor(scene.body.inertia, scene.initial.omega_b, scene.initial.quaternion)
+
+
+def _is_symmetric_top(scene: Scene, attitude: bool) -> bool:
+    if _torques(scene) != ["gravity"]:
+        return False
+    axis = _only_axis(scene.torques[0].values["center_of_mass"])
+    return axis is not None and _symmetric_about(scene, axis)
+
+
+def _heavy_top(scene: Scene) -> Exact:
+    from symrot.closed_form import heavy_top
+
+    given, start = scene.torques[0].values, scene.initial
+    return heavy_top.motion(
+        _moments(scene), given["weight"], given["center_of_mass"], start.omega_b, start.quaternion, given["direction"]
+    )
+
+
+def _is_symmetric_gyrostat(scene: Scene, attitude: bool) -> bool:
+    if _torques(scene) != ["rotor"]:
+        return False
+    axis = _only_axis(scene.torques[0].values["angular_momentum"])
+    return axis is not None and _symmetric_about(scene, axis)
+
+
+def _gyrostat(scene: Scene) -> Exact:
+    from symrot.closed_form import gyrostat
+
+    start = scene.initial
+    return gyrostat.motion(
+        _moments(scene), scene.torques[0].values["angular_momentum"], start.omega_b, start.quaternion
+    )
+
+
+def _driven_axis(scene: Scene, attitude: bool) -> int | None:
+    """Return the principal axis that constant torques and linear damping keep a rotation to."""
+    if not scene.torques or not set(_torques(scene)) <= {"constant_body", "damping"}:
+        return None
+    if not scene.body.principal.given_axes:
+        return None
+    pushes = [torque.values["torque"] for torque in scene.torques if torque.kind == "constant_body"]
+    push = tuple(sum((vector[i] for vector in pushes), Fraction(0)) for i in range(3))
+    turning = _only_axis(scene.initial.omega_b)
+    axis = turning if turning is not None else _only_axis(push)
+    across = [component for i, component in enumerate(scene.initial.omega_b) if i != axis]
+    if axis is None or any(across) or any(component for i, component in enumerate(push) if i != axis):
+        return None
+    return None if any(torque.values.get("quadratic") for torque in scene.torques) else axis
+
+
+def _axial(scene: Scene) -> Exact:
+    from symrot.closed_form import axial
+
+    axis = _driven_axis(scene, True)
+    assert axis is not None
+    push = sum((t.values["torque"][axis] for t in scene.torques if t.kind == "constant_body"), Fraction(0))
+    drag = sum((t.values["linear"][axis] for t in scene.torques if t.kind == "damping"), Fraction(0))
+    start = scene.initial
+    return axial.motion(_moments(scene), axis, push, start.omega_b, start.quaternion, drag)
+
+
+FORMS = (
+    Form("free body, theta functions", _is_free, _free_body),
+    Form("symmetric heavy top, theta functions", _is_symmetric_top, _heavy_top),
+    Form("symmetric gyrostat, two steady rotations", _is_symmetric_gyrostat, _gyrostat),
+    Form("rotation about one axis", lambda scene, attitude: _driven_axis(scene, attitude) is not None, _axial),
+)
+"""The motions in closed form, in the order in which they are looked for."""
+
+
+def exact_form(scene: Scene, attitude: bool) -> Form | None:
+    """Return the form of a scene's exact motion, or None if it has none here."""
+    return next((form for form in FORMS if form.fits(scene, attitude)), None)
