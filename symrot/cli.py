@@ -22,6 +22,7 @@ TARGETS = ("c", "numpy")
 PAGES: dict[str, Callable[[Any], str]] = {
     "markdown": lambda found: found.markdown(),
     "latex": lambda found: found.latex(),
+    "html": lambda found: found.html(),
 }
 
 
@@ -134,6 +135,10 @@ def _derive(options: Namespace) -> int:
 
     if sum(map(bool, (options.name, options.all, options.check))) > 1:
         raise InputError("derive: expected at most one of a NAME, --all and --check (see `symrot derive --help`)")
+    if options.step is None and options.detail:
+        raise InputError("derive: expected --step N with --detail (see `symrot derive --help`)")
+    if options.step is not None and not options.name:
+        raise InputError("derive: expected a NAME with --step N (see `symrot derive --help`)")
     directory = options.directory or Path("derivations")
     if options.check:
         if not directory.is_dir():
@@ -145,6 +150,8 @@ def _derive(options: Namespace) -> int:
         _say(str(path) for path in catalogue.derive_all(directory))
     elif options.name:
         found = catalogue.derivation(options.name)
+        if options.step is not None:
+            found = found.part(options.step, options.detail)
         sys.stdout.write(PAGES[options.format](found))
     else:
         _say(catalogue.names())
@@ -234,6 +241,10 @@ def _derive_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--all", action="store_true", help="write the pages of all derivations")
     parser.add_argument("--check", action="store_true", help="compare the written pages; exit 1 with a diff if stale")
     parser.add_argument("--format", choices=PAGES, default="markdown", help="of a derivation (default: markdown)")
+    parser.add_argument("--step", type=int, metavar="N", help="print one step of a derivation")
+    parser.add_argument(
+        "--detail", action="store_true", help="with --step: show every expression between its two sides"
+    )
     parser.add_argument("-o", type=Path, metavar="DIR", dest="directory",
                         help="folder of --all and --check (default: ./derivations)")  # fmt: skip
 

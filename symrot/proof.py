@@ -87,6 +87,8 @@ class Derivation:
         Where it is treated in print.
     about : str
         What it shows and what it is for, one paragraph.
+    first : int
+        The number of the first step; not 1 on a page that shows a part of a derivation.
     """
 
     name: str
@@ -95,6 +97,7 @@ class Derivation:
     about: str = ""
     items: list[Section | Passage | Step] = field(default_factory=list)
     assumed: list[Expr] = field(default_factory=list)
+    first: int = 1
 
     @property
     def steps(self) -> tuple[Step, ...]:
@@ -201,6 +204,24 @@ class Derivation:
         from symrot.proof_pages import latex_document
 
         return latex_document(self)
+
+    def html(self) -> str:
+        """Return the derivation as one HTML file with native MathML; it needs no network."""
+        from symrot.proof_pages import html_document
+
+        return html_document(self)
+
+    def part(self, number: int, detail: bool = False) -> "Derivation":
+        """Return a page with one step, from 1; in detail with every expression between its two sides.
+
+        Raises
+        ------
+        InputError
+            If there is no such step.
+        """
+        from symrot.proof_pages import excerpt
+
+        return excerpt(self, number, detail)
 
 
 def _frozen(side: Any) -> Any:

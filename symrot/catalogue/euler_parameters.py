@@ -96,12 +96,13 @@ def _all(d: Derivation) -> None:
     )
     for sequence in INTRINSIC_SEQUENCES:
         q = quaternion_of_euler(sequence)
+        d.define(f"{sequence}:", "q", q)
         d.step(
-            f"{sequence}, with $q$ as shown.",
+            "It is the rotation of the three angles.",
             dcm_of(q),
             dcm(sequence),
             because="the quaternion of a product is the product of the quaternions",
-            named=rf"q = {_latex(q)}: \qquad R(q)",
+            named="R(q)",
             shown=rf"R_{{\mathrm{{{sequence}}}}}(\phi, \theta, \psi)",
         )
     d.step(
@@ -120,9 +121,3 @@ def _all(d: Derivation) -> None:
         relations=[unit_relation()],
         named=r"\mathrm{tr}\,R",
     )
-
-
-def _latex(matrix: Matrix) -> str:
-    from symrot.proof_pages import formula
-
-    return formula(matrix)

@@ -79,13 +79,13 @@ def _locked(d: Derivation, sequence: str, adjugate: Matrix, point: LockedPoint) 
         because="the first and the last turn are about one line",
         named=rf"\left( \partial_\phi {'-' if silent[2] < 0 else '+'} \partial_\psi \right) R",
     )
+    d.define("The direction across the axes of the turns there, in the body:", "n", lost)
     d.step(
-        "No rates turn the body about this axis, of unit length:",
+        "No rates turn the body about it; its length is 1.",
         Matrix([*(jacobian.T * lost), squared(lost)]),
         Matrix([0, 0, 0, 1]),
         because="it is across all three axes of the turns",
-        named=rf"\begin{{bmatrix}} B^{{\mathsf T}} n \\ n \cdot n \end{{bmatrix}},\ n = {_latex(lost)}: \quad"
-        r"\begin{bmatrix} B^{\mathsf T} n \\ n \cdot n \end{bmatrix}",
+        named=r"\begin{bmatrix} B^{\mathsf T} n \\ n \cdot n \end{bmatrix}",
     )
     strength = normal_form((adjugate.subs(at) * lost).dot(silent) / silent.dot(silent))
     d.step(
@@ -95,7 +95,7 @@ def _locked(d: Derivation, sequence: str, adjugate: Matrix, point: LockedPoint) 
         strength * silent * lost.T,
         because="there the matrix of cofactors has rank one",
         named=r"\lim\, \det B\; B^{-1}",
-        shown=rf"{_sign(strength)} s\,n^{{\mathsf T}},\quad s = {_latex(silent)}",
+        shown=rf"{_sign(strength)}s\,n^{{\mathsf T}},\quad s = {_latex(silent)}",
     )
 
 

@@ -152,14 +152,16 @@ def _steady(d: Derivation, potential: Expr) -> None:
         shown=r"-\sin\theta \left( A\,n^2 \cos\theta - p_\psi\,n + W c_3 \right)",
     )
     fast, slow = _rates()
+    d.given(
+        r"This has two roots, a fast and a slow rate, real where $p_\psi^2 \ge 4 A W c_3 \cos\theta$:",
+        (r"n_\pm", r"\frac{p_\psi \pm \sqrt{p_\psi^2 - 4 A W c_3 \cos\theta}}{2 A \cos\theta}"),
+    )
     d.step(
-        r"Two rates, fast and slow; real where $p_\psi^2 \ge 4 A W c_3 \cos\theta$.",
+        "Both satisfy the condition.",
         Matrix([slope.subs(RATE, fast), slope.subs(RATE, slow)]),
         0,
-        because="the quadratic equation is solved",
-        named=r"\left. A n^2 \cos\theta - p_\psi n + W c_3 \right|_n, \quad n = \frac{p_\psi \pm \sqrt{p_\psi^2 - 4 A "
-        r"W c_3 "
-        r"\cos\theta}}{2 A \cos\theta}",
+        because="the roots are put in",
+        named=r"A\,n_\pm^2 \cos\theta - p_\psi\,n_\pm + W c_3",
     )
     d.step(
         r"Their sum and product: for a fast top they are $p_\psi / (A \cos\theta)$, as without weight, and $W c_3 / "

@@ -1,6 +1,6 @@
 """A struck body: impulse and momentum (Routh, Dynamics of a System of Rigid Bodies, Elementary Part, chapter IV)."""
 
-from sympy import Matrix, Rational, diag, eye, solve
+from sympy import Expr, Matrix, Rational, diag, eye, solve
 
 from symrot import symbols
 from symrot.catalogue._motion import OMEGA, squared
@@ -71,7 +71,7 @@ def _place(d: Derivation, change: Matrix) -> None:
 def _energy(d: Derivation, dv: Matrix, domega: Matrix, struck: Matrix, change: Matrix) -> None:
     d.section("Energy")
 
-    def energy(v: Matrix, omega: Matrix) -> object:
+    def energy(v: Matrix, omega: Matrix) -> Expr:
         return HALF * M * squared(v) + HALF * omega.dot(INERTIA * omega)
 
     d.step(

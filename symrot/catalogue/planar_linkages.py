@@ -78,16 +78,13 @@ def _slider(d: Derivation) -> None:
     )
     pin, slider = _bar(CRANK, PHI), Matrix([place, 0])
     center = Matrix([place, place * sin(PHI) / cos(PHI)])
+    d.define("The rod turns about the point over the slider that is in line with the crank:", "c", center)
     d.step(
-        "The rod turns about the point over the slider that is in line with the crank: seen from there both ends move "
-        "across.",
+        "Seen from there both its ends, $A$ at the crank and $B$ at the slider, move across.",
         Matrix([(pin - center).dot(rate(pin, MOTION)), (slider - center).dot(Matrix([velocity, 0]))]),
         0,
         because="the crank's end moves across the crank, the slider along its line",
-        named=r"\begin{bmatrix} (r_A - c) \cdot \dot r_A \\ (r_B - c) \cdot \dot r_B \end{bmatrix},\ c = "
-        r"\begin{bmatrix} x \\ x "
-        r"\tan\phi \end{bmatrix}: \quad \begin{bmatrix} (r_A - c) \cdot \dot r_A \\ (r_B - c) \cdot \dot r_B "
-        r"\end{bmatrix}",
+        named=r"\begin{bmatrix} (r_A - c) \cdot \dot r_A \\ (r_B - c) \cdot \dot r_B \end{bmatrix}",
     )
     force = symbols.F_x
     torque = solve(symbols.tau_3 * DPHI + force * velocity, symbols.tau_3)[0]

@@ -138,13 +138,13 @@ def _angle(d: Derivation) -> None:
     )
     for axis, name in enumerate("xyz"):
         turn = elementary_rotation(axis, alpha)
+        d.define(f"About the axis ${name}$:", f"R_{name}", turn)
         d.step(
-            f"About the axis ${name}$.",
+            "It is a rotation.",
             turn.T * turn,
             eye(3),
             because="one axis stays, the plane across it turns",
-            named=rf"R_{name}^{{\mathsf T}} R_{name} = 1, \qquad R_{name} = {_latex(turn)}: \qquad "
-            rf"R_{name}^{{\mathsf T}} R_{name}",
+            named=rf"R_{name}^{{\mathsf T}} R_{name}",
         )
     cayley = _cayley()
     d.step(
@@ -174,9 +174,3 @@ def _cayley() -> Matrix:
     g = skew(symbols.rodrigues)
     forward, backward = eye(3) + g, eye(3) - g
     return backward.adjugate() * forward / backward.det()
-
-
-def _latex(matrix: Matrix) -> str:
-    from symrot.proof_pages import formula
-
-    return formula(matrix)

@@ -1,5 +1,6 @@
 """Inertia of the standard solids, by integration over their maps (Beer & Johnston, Vector Mechanics, appendix)."""
 
+from collections import Counter
 from collections.abc import Sequence
 
 from sympy import Expr, Matrix, diag, eye, factor_terms
@@ -65,7 +66,7 @@ def _shape(d: Derivation, body: Solid) -> None:
         + ",".join(map(_latex, coordinates))
         + r")}^{\mathsf T} "
         r"\frac{\partial (x,y,z)}{\partial (" + ",".join(map(_latex, coordinates)) + r")} \right)",
-        shown=rf"\left( {_latex(body.jacobian)} \right)^2",
+        shown=None if body.jacobian.is_number else rf"\left( {_latex(body.jacobian)} \right)^2",
     )
     d.step(
         "Its measure.",
@@ -161,14 +162,16 @@ def _antiderivatives(body: Solid, axes: Sequence[int]) -> str:
 def _integral_sign(body: Solid, axes: Sequence[int]) -> str:
     signs = "".join(rf"\int_{{{_latex(low)}}}^{{{_latex(high)}}} " for _, low, high in reversed(body.limits))
     measure = "".join(rf"\,d{_latex(variable)}" for variable, _, _ in body.limits)
-    factors = [body.position[axis] for axis in axes] + [body.jacobian]
-    integrand = " ".join(_factor(factor) for factor in factors if factor != 1)
+    factors = Counter(factor for factor in (*(body.position[axis] for axis in axes), body.jacobian) if factor != 1)
+    integrand = r"\,".join(_factor(factor, power) for factor, power in factors.items())
     return f"{signs}{integrand}{measure}"
 
 
-def _factor(factor: Expr) -> str:
+def _factor(factor: Expr, power: int) -> str:
     text = _latex(factor)
-    return rf"\left( {text} \right)" if factor.is_Add else text
+    if factor.is_Add or factor.could_extract_minus_sign() or (power > 1 and not factor.is_Symbol):
+        text = rf"\left( {text} \right)"
+    return f"{text}^{power}" if power > 1 else text
 
 
 def _product(axes: Sequence[int]) -> str:

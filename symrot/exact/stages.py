@@ -115,7 +115,9 @@ def _way(ring: FormulaRing, side: Expr) -> Iterator[Link]:
             numerator = rest
             pairs = zip(quotients, ring.relations.basis, strict=True)
             cofactors = tuple((_plain(ring, q), _plain(ring, b)) for q, b in pairs if q)
-            yield Link(_fraction(ring, numerator, value), "multiples of what the hypotheses put to zero", None, cofactors)
+            yield Link(
+                _fraction(ring, numerator, value), "multiples of what the hypotheses put to zero", None, cofactors
+            )
     yield Link(ring.expression(value), "common factors")
 
 

@@ -1,0 +1,93 @@
+"""One step of a derivation, alone or with the way from its left side to its right side."""
+
+from sympy import factor
+
+from symrot.errors import InputError
+from symrot.exact import normal_form
+from symrot.exact.stages import Chain, Link, chains
+from symrot.proof import Derivation, Passage, Section, Step
+from symrot.proof_pages.printer import formula
+
+__all__ = ["excerpt"]
+
+
+def excerpt(derivation: Derivation, number: int, detail: bool = False) -> Derivation:
+    """Return a page with one step, and in detail every expression between its two sides.
+
+    Parameters
+    ----------
+    derivation : Derivation
+    number : int
+        Of the step, from 1.
+    detail : bool
+
+    Raises
+    ------
+    InputError
+        If there is no such step.
+    """
+    count = len(derivation.steps)
+    if not 1 <= number <= count:
+        raise InputError(f"{derivation.name} has steps 1 to {count}, got {number}")
+    step = derivation.steps[number - 1]
+    page = Derivation(derivation.name, f"{derivation.title}: step {number}", derivation.source, first=number)
+    place = next(n for n, item in enumerate(derivation.items) if item is step)
+    headings = [item for item in derivation.items[:place] if isinstance(item, Section)]
+    page.items += [*headings[-1:], step]
+    if detail:
+        page.items += [Section("In detail"), *(_detail(step) if step.relation == "=" else _signs(step))]
+    return page
+
+
+def _signs(step: Step) -> list[Passage]:
+    reduced = normal_form(step.left)
+    return [
+        Passage("As it was derived, brought to its normal form, and in factors:",
+                ((step.left, reduced), ("", factor(reduced)))),
+        Passage("Every factor is positive, by the signs of its symbols."),
+    ]  # fmt: skip
+
+
+def _detail(step: Step) -> list[Passage]:
+    found = chains(step.left, step.right, step.hypotheses)
+    passages = []
+    if step.named or step.shown is not None:
+        passages.append(Passage("The two sides as they were derived:", ((formula(step.left), formula(step.right)),)))
+    if not found:
+        return [*passages, Passage("The two sides are one expression, term by term: nothing is left to show.")]
+    total = 1 if found[0].entry is None else len(step.left)
+    if total > len(found):
+        passages.append(
+            Passage(f"Entries that are the same expression on both sides: {total - len(found)} of {total}.")
+        )
+    for chain in found:
+        passages += _chain(chain)
+    return passages
+
+
+def _chain(chain: Chain) -> list[Passage]:
+    start = (
+        "From the left side:" if chain.entry is None else f"Entry ({chain.entry[0]}, {chain.entry[1]}), from the left:"
+    )
+    passages = [Passage(start, ((formula(chain.links[0].expression), _continued(chain.links[1])),))]
+    passages[0] = Passage(f"{start} {_reason(chain.links[1])}", passages[0].equations)
+    for link in chain.links[2:]:
+        passages.append(Passage(_spoken(_reason(link)), (("", link.expression),)))
+    return passages
+
+
+def _continued(link: Link) -> str:
+    return formula(link.expression)
+
+
+def _spoken(reason: str) -> str:
+    return f"{reason[0].upper()}{reason[1:]}" if reason[0] != "$" else reason
+
+
+def _reason(link: Link) -> str:
+    if link.rule:
+        return f"with ${formula(link.rule[0])} = {formula(link.rule[1])}$:"
+    if link.cofactors:
+        terms = ", ".join(f"$({formula(q)}) \\cdot ({formula(b)})$" for q, b in link.cofactors)
+        return f"{link.reason} are taken away, {terms}:"
+    return f"{link.reason}:"
