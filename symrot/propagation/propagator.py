@@ -14,9 +14,9 @@ from symrot import number
 from symrot.closed_form.choose import FORMS, Exact, exact_form
 from symrot.errors import InputError, PropagationError
 from symrot.planner import Plan, make_plan
-from symrot.propagation import dop853
+from symrot.propagation import dop853, taylor
 from symrot.propagation.dop853 import Stats
-from symrot.propagation.kernels import compiled, error_blocks, missing_compiler, scene_kernel
+from symrot.propagation.kernels import compiled, error_blocks, missing_compiler, scene_kernel, taylor_library
 from symrot.propagation.trajectory import ARRAY_FUNCTIONS, Trajectory
 from symrot.scene import Initial, Scene, load_scene
 from symrot.scene_kernel import SceneKernel, bind
@@ -25,12 +25,17 @@ __all__ = ["METHODS", "Choice", "Motion", "Propagator", "choose_method", "propag
 
 Floats = NDArray[np.float64]
 
-UNREDUCED = {"planar": None, "initial_quaternion": None, "constant": {}}  # what an exact motion returns: all of it
+UNREDUCED: dict[str, Any] = {
+    "planar": None,
+    "initial_quaternion": None,
+    "constant": {},
+}  # what an exact motion returns: all of it
 
 METHODS = {
     "auto": "the first of the table that fits",
     "constant": "every state keeps its value",
     "exact": "closed form, at any time without stepping",
+    "taylor": "Taylor series stepped in C from the emitted recurrences",
     "dop853": "Dormand-Prince 8(5,3), stepped in C around the emitted kernel",
     "scipy": "SciPy around the emitted NumPy kernel",
 }
@@ -92,6 +97,9 @@ class Motion:
             plan = self.plan
         if choice.method == "dop853":
             self.kernel, self.library = compiled(plan)
+        elif choice.method == "taylor":
+            self.kernel = scene_kernel(plan)
+            self.library = taylor_library(plan, self.kernel, tolerance)
         else:
             self.kernel = scene_kernel(plan)
         self.start = float(plan.scene.span.start)
@@ -173,6 +181,8 @@ class Motion:
             return lambda t: _exact(self, t)[0]
         start = (self.rate_parameters, self.plan.initial_state, self.start)
         if self.library is not None:
+            if self.choice.method == "taylor":
+                return taylor.record(self.library, *start, span, self.tolerance)
             return dop853.record(self.library, *start, span, self.tolerance)
         from symrot.propagation import fallback
 
@@ -197,6 +207,12 @@ def _dop853(motion: Motion, times: Floats) -> tuple[Floats, Stats]:
     )
 
 
+def _taylor(motion: Motion, times: Floats) -> tuple[Floats, Stats]:
+    assert motion.library is not None
+    start = (motion.rate_parameters, motion.plan.initial_state, motion.start)
+    return taylor.integrate(motion.library, *start, times, motion.tolerance)
+
+
 def _exact(motion: Motion, times: Floats) -> tuple[Floats, Stats]:
     began = perf_counter()
     attitude = motion.plan.structure["attitude"]
@@ -215,6 +231,7 @@ def _scipy(motion: Motion, times: Floats) -> tuple[Floats, Stats]:
 INTEGRATORS: dict[str, Callable[[Motion, Floats], tuple[Floats, Stats]]] = {
     "constant": _keep,
     "exact": _exact,
+    "taylor": _taylor,
     "dop853": _dop853,
     "scipy": _scipy,
 }
