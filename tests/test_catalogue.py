@@ -1,19 +1,40 @@
 """The catalogue: every derivation derives, none is vacuous, and the printed pages are current."""
 
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 from sympy import Matrix, MatrixBase, Rational, Symbol
 
 from symrot import catalogue
+from symrot.cli import main
 from symrot.conventions import SEQUENCES
 from symrot.errors import InputError
 from symrot.exact import is_zero
 
 ROOT = Path(__file__).parents[1]
+
+
+SPREAD = (
+    "rotation_matrices",
+    "heavy_top",
+    "free_asymmetric_body",
+    "gear_trains",
+    "quaternion_rates",
+    "gravity_gradient",
+)
+ASKED = {  # what a course asks for, and the derivation that has it
+    "orthogonality": "rotation_matrices", "Rodrigues": "axis_and_angle", "order": "composition", "spin": "spin_tensor",
+    "lock": "euler_singularities", "Euler parameters": "euler_parameters", "two points": "relative_motion",
+    "particle sum": "angular_momentum", "energy": "kinetic_energy", "solids": "standard_solids", "Poinsot": "poinsot",
+    "Lagrange": "lagrange_and_euler", "top": "heavy_top", "wheel": "gyroscopic_wheel", "Jacobi": "free_asymmetric_body",
+    "power": "work_and_power", "blow": "impulse_and_momentum", "rolling": "rolling", "Willis": "gear_trains",
+    "slider": "planar_linkages",
+}  # fmt: skip
 
 
 @pytest.fixture(scope="module")
@@ -102,22 +123,77 @@ def test_check_finds_what_is_stale_missing_and_left_over(tmp_path, printed, monk
 
 def test_a_page_does_not_depend_on_hashing(printed):
     program = (
-        "from symrot.catalogue import derivation; import sys;"
-        "sys.stdout.write(''.join(derivation(n).markdown() for n in ('symmetric_top', 'quaternion_rates',"
-        "'gravity_gradient')))"
+        "from symrot.catalogue import derivation; import sys; names = sys.argv[1:];"
+        "sys.stdout.write(''.join(derivation(n).markdown() for n in names));"
+        "sys.stdout.write(''.join(derivation(n).html() + derivation(n).part(2, True).markdown() for n in names))"
     )
     pages = {
         subprocess.run(
-            [sys.executable, "-c", program],
+            [sys.executable, "-c", program, *SPREAD],
             env=os.environ | {"PYTHONHASHSEED": seed},
             capture_output=True,
             check=True,
         ).stdout.decode()
         for seed in ("1", "20")
     }
-    assert pages == {
-        "".join(printed[f"{name}.md"] for name in ("symmetric_top", "quaternion_rates", "gravity_gradient"))
-    }
+    (page,) = pages
+    assert page.startswith("".join(printed[f"{name}.md"] for name in SPREAD))
+
+
+def test_what_was_asked_for_is_there(derived):
+    assert set(ASKED.values()) <= set(derived)
+    assert sum(len(found.steps) for found in derived.values()) > 650
+
+
+def test_all_is_printed_as_html_that_is_well_formed(derived):
+    for name, found in derived.items():
+        page = found.html()
+        tree = ElementTree.fromstring(page.removeprefix("<!DOCTYPE html>\n").replace('<meta charset="utf-8">', "").replace(
+            '<meta name="viewport" content="width=device-width, initial-scale=1">', ""))  # fmt: skip
+        assert len(tree.findall(".//section")) == len(found.steps), name
+        assert "http" not in page.replace("http://www.w3.org/1998/Math/MathML", ""), name
+        text = "".join(tree.itertext())
+        assert "\\" not in text and "$" not in text, name
+
+
+def test_all_is_printed_as_latex_with_balanced_braces(derived):
+    for name, found in derived.items():
+        text = found.latex()
+        bare = text.replace("\\{", "").replace("\\}", "")
+        assert bare.count("{") == bare.count("}"), name
+        assert text.count(r"\left") - text.count(r"\leftarrow") == text.count(r"\right") - text.count(r"\rightarrow"), (
+            name
+        )
+
+
+def test_links_lead_to_pages(printed):
+    for name, text in printed.items():
+        for target in re.findall(r"\]\(([^)#]+)\)", text):
+            assert target in printed, (name, target)
+
+
+@pytest.mark.parametrize("form, start", [("markdown", "# "), ("latex", r"\documentclass"), ("html", "<!DOCTYPE html>")])
+def test_one_step_on_the_command_line(form, start, capsys):
+    assert main(["derive", "heavy_top", "--step", "3", "--detail", "--format", form]) == 0
+    text = capsys.readouterr().out
+    assert text.startswith(start) and "step 3" in text and "In detail" in text
+    assert main(["derive", "heavy_top", "--step", "3", "--format", form]) == 0
+    assert "In detail" not in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    "words, complaint",
+    [
+        (["heavy_top", "--step", "99"], "steps 1 to 17, got 99"),
+        (["heavy_top", "--detail"], "expected --step N"),
+        (["--step", "2"], "expected a NAME"),
+        (["--all", "--step", "2"], "expected a NAME"),
+        (["heavy_top", "--step", "two"], "invalid int"),
+    ],
+)
+def test_a_step_that_cannot_be_shown_is_refused(words, complaint, capsys):
+    assert main(["derive", *words]) == 2
+    assert complaint in capsys.readouterr().err
 
 
 def test_the_catalogue_is_named_without_sympy():

@@ -1,10 +1,15 @@
 """A derivation cannot hold a step that does not hold, and prints the same page every time."""
 
+from itertools import pairwise
+
 import pytest
-from sympy import Eq, MatMul, Matrix, cos, eye, sin, sqrt
+from sympy import Eq, Integer, MatMul, Matrix, cos, eye, sin, sqrt
 
 from symrot.errors import InputError
+from symrot.exact.decide import decide, is_zero
+from symrot.exact.stages import chains
 from symrot.proof import Derivation, Passage, ProofError, Section, Step
+from symrot.proof_pages.mathml import mathml, rows
 from symrot.symbols import A, B, C, delta_1, dphi, omega_1, omega_b, phi, q0, q1, q2, q3, theta, x
 
 UNIT = q0**2 + q1**2 + q2**2 + q3**2 - 1
@@ -94,9 +99,99 @@ def test_the_latex_document(page):
     text = filled(page).latex()
     assert text.startswith(r"\documentclass") and text.endswith("\\end{document}\n")
     assert r"With 50\% of" in text and r"\texttt{b\_c}" in text and r"\emph{Nothing}" in text and r"\&" in text
-    assert text.count(r"\[") == text.count(r"\]") == 6 - 0
+    assert text.count(r"\fitted{") == 6
     assert text.count(r"\left[") == text.count(r"\right]")
 
 
 def test_items_are_what_was_written(page):
     assert [type(item) for item in filled(page).items] == [Section, Passage, Passage, Step, Step, Step]
+
+
+def test_the_html_page(page):
+    text = filled(page).html()
+    assert text.startswith("<!DOCTYPE html>") and text.endswith("</html>\n")
+    assert "<h2" in text and "<code>b_c</code>" in text and "<em>Nothing</em>" in text and "&amp;" in text
+    assert text.count('<section class="step"') == 3 and "<script" not in text and "src=" not in text
+    assert "<mi>θ</mi>" not in text and "<mi>ϕ</mi>" in text
+    assert "kg m<sup>2</sup>" in text
+
+
+def test_one_step_alone(page):
+    part = filled(page).part(2)
+    assert [type(item) for item in part.items] == [Section, Step] and part.first == 2
+    text = part.markdown()
+    assert "**2.** So." in text and "**1.**" not in text and "One step, proven" in text
+    assert "2.</span>So." in part.html() and r"\paragraph{2.}" in part.latex()
+    for wrong in (0, 4, -1):
+        with pytest.raises(InputError, match=rf"page has steps 1 to 3, got {wrong}"):
+            page.part(wrong)
+
+
+def test_one_step_in_detail(page):
+    filled(page)
+    scalar, matrix, sign = (page.part(number, detail=True).markdown() for number in (1, 2, 3))
+    assert (
+        r"With $\sin^{2} \phi = 1 - \cos^{2} \phi$" in scalar or r"with $\sin^{2} \phi = 1 - \cos^{2} \phi$" in scalar
+    )
+    assert "Entry (1, 1), from the left" in matrix and "q_{0}^{2} = 1 - q_{1}^{2}" in matrix.replace(
+        "- q_{1}^{2} - q_{2}^{2} - q_{3}^{2} + 1", "1 - q_{1}^{2}")  # fmt: skip
+    assert "Every factor is positive" in sign
+
+
+HARD = [
+    (sin(2 * phi + theta), sin(2 * phi) * cos(theta) + cos(2 * phi) * sin(theta), ()),
+    (Matrix([q0**4, q1]), Matrix([(1 - q1**2 - q2**2 - q3**2) ** 2, q1]), (UNIT,)),
+    (1 / (1 - cos(theta)), (1 + cos(theta)) / sin(theta) ** 2, ()),
+    ((1 - sqrt(A)) * (1 + sqrt(A)) / (1 - A), Integer(1), ()),
+    (x**2 * A, B * A, (Eq(x**2, B),)),
+    (x * phi**2, phi * C, (x * phi - C, phi * theta - B)),
+]
+
+
+@pytest.mark.parametrize("left, right, relations", HARD)
+def test_every_link_of_a_chain_is_proven(left, right, relations):
+    found = chains(left, right, relations)
+    assert len(found) == 1
+    links = found[0].links
+    first, last = (links[0].expression, links[-1].expression)
+    entries = (left, right) if not isinstance(left, Matrix) else (left[0], right[0])
+    assert (first, last) == entries and len(links) >= 2
+    for before, after in pairwise(links):
+        assert before.expression != after.expression and after.reason
+        assert decide(before.expression, after.expression, relations).verdict == "true"
+    for link in links:
+        if link.rule:
+            assert is_zero(link.rule[0] - link.rule[1], relations)
+        for _, consequence in link.cofactors:
+            assert is_zero(consequence, relations)
+
+
+def test_a_chain_between_unequal_sides_is_refused():
+    with pytest.raises(ValueError, match="not proven equal"):
+        chains(sin(x), cos(x))
+
+
+def test_mathml_of_the_pages_own_latex():
+    assert mathml(r"\dot{\theta}") == (
+        '<math xmlns="http://www.w3.org/1998/Math/MathML"><mover accent="true"><mi>θ</mi><mo>˙</mo></mover></math>'
+    )
+    assert "<mfrac><mn>1</mn><mn>2</mn></mfrac>" in mathml(r"\tfrac12 x")
+    assert mathml("x_1^2").count("<msubsup>") == 1
+    assert '<mo form="prefix">−</mo>' in mathml("-x") and "<mo>−</mo>" in mathml("x - y")
+
+
+@pytest.mark.parametrize(
+    "text", [r"\undefined x", r"\frac{1}", r"\begin{tikz}x\end{tikz}", "{x", r"\left( x", "x^", "}"]
+)
+def test_latex_that_is_not_known_is_refused(text):
+    with pytest.raises(InputError, match=r"LaTeX|formula"):
+        mathml(text)
+
+
+def test_a_long_sum_is_broken_into_lines():
+    text = "y = " + " + ".join(f"x_{n}" for n in range(10)) + " - " + " - ".join("z" * 5 for _ in range(20))
+    lines = rows(text, 30)
+    assert len(lines) > 3
+    assert "".join(item.latex for line in lines for item in line).replace(" ", "") == text.replace(" ", "")
+    assert all(sum(item.width for item in line) <= 30 for line in lines)
+    assert mathml(text, display=True, width=30).count("<mtr>") == len(lines)

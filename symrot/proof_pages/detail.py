@@ -1,6 +1,6 @@
 """One step of a derivation, alone or with the way from its left side to its right side."""
 
-from sympy import factor
+from sympy import MatrixBase, factor
 
 from symrot.errors import InputError
 from symrot.exact import normal_form
@@ -51,7 +51,7 @@ def _signs(step: Step) -> list[Passage]:
 def _detail(step: Step) -> list[Passage]:
     found = chains(step.left, step.right, step.hypotheses)
     passages = []
-    if step.named or step.shown is not None:
+    if isinstance(step.left, MatrixBase) and (step.named or step.shown is not None):
         passages.append(Passage("The two sides as they were derived:", ((formula(step.left), formula(step.right)),)))
     if not found:
         return [*passages, Passage("The two sides are one expression, term by term: nothing is left to show.")]
@@ -69,15 +69,11 @@ def _chain(chain: Chain) -> list[Passage]:
     start = (
         "From the left side:" if chain.entry is None else f"Entry ({chain.entry[0]}, {chain.entry[1]}), from the left:"
     )
-    passages = [Passage(start, ((formula(chain.links[0].expression), _continued(chain.links[1])),))]
-    passages[0] = Passage(f"{start} {_reason(chain.links[1])}", passages[0].equations)
+    first, second = chain.links[0].expression, chain.links[1]
+    passages = [Passage(f"{start} {_reason(second)}", ((first, second.expression),))]
     for link in chain.links[2:]:
         passages.append(Passage(_spoken(_reason(link)), (("", link.expression),)))
     return passages
-
-
-def _continued(link: Link) -> str:
-    return formula(link.expression)
 
 
 def _spoken(reason: str) -> str:

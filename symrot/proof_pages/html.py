@@ -26,6 +26,7 @@ math { font-size: 1.05em; }
 .number { font-weight: bold; margin-right: 0.4em; }
 .remarks { color: #555; color: color-mix(in srgb, currentColor 75%, transparent); font-size: 0.97rem; }
 .source { font-size: 0.97rem; }
+.whole { white-space: nowrap; }
 code { font-size: 0.9em; }
 footer { margin-top: 3rem; border-top: 1px solid #8886; padding-top: 0.6rem; font-size: 0.9rem; }
 a { color: inherit; }
@@ -59,7 +60,7 @@ def html_document(derivation: Derivation) -> str:
             parts += [_display(text) for text in passage_equations(item)]
     used = units(derivation)
     if used:
-        parts.append(f"<p><strong>Units</strong> of the symbols in the proofs: {_prose(used)}.</p>")
+        parts.append(f"<p><strong>Units</strong> of the symbols in the proofs: {_raised(_prose(used))}.</p>")
     parts.append(f"<footer>{_prose(footer(derivation))}</footer>")
     title = escape(re.sub(r"[$*`]", "", derivation.title))
     head = (
@@ -72,6 +73,11 @@ def html_document(derivation: Derivation) -> str:
 
 def _display(latex: str) -> str:
     return f'<div class="display">{mathml(latex, display=True)}</div>'
+
+
+def _raised(prose: str) -> str:
+    """Return units with their powers raised."""
+    return re.sub(r"\^(\d)", r"<sup>\1</sup>", prose)
 
 
 def _contents(derivation: Derivation) -> Iterator[str]:
@@ -91,7 +97,12 @@ def _prose(text: str) -> str:
         shown += escape(text[place : found.start()], quote=False)
         quoted, plain, code, label, target, strong, emphasis = found.groups()
         if quoted or plain:
-            shown += mathml(quoted or plain)
+            after = re.match(r"[.,;:)']*", text[found.end() :])
+            stop = after[0] if after else ""
+            formula = mathml(quoted or plain)
+            shown += f'<span class="whole">{formula}{escape(stop)}</span>' if stop else formula
+            place = found.end() + len(stop)
+            continue
         elif code:
             shown += f"<code>{escape(code, quote=False)}</code>"
         elif label:

@@ -24,8 +24,8 @@ LETTERS = {
 OPERATORS = {
     "times": "×", "cdot": "⋅", "le": "≤", "ge": "≥", "leq": "≤", "geq": "≥", "neq": "≠", "ne": "≠", "to": "→",
     "in": "∈", "Rightarrow": "⇒", "rightarrow": "→", "mapsto": "↦", "ldots": "…", "cdots": "⋯", "dots": "…",
-    "angle": "∠", "pm": "±", "mp": "∓", "parallel": "∥", "perp": "⊥", "lbrace": "{", "rbrace": "}", "approx": "≈", "equiv": "≡",
-    "sim": "∼", "circ": "∘", "mid": "∣",
+    "angle": "∠", "pm": "±", "mp": "∓", "parallel": "∥", "perp": "⊥", "lbrace": "{", "rbrace": "}", "approx": "≈",
+    "equiv": "≡", "sim": "∼", "circ": "∘", "mid": "∣",
 }  # fmt: skip
 RELATIONS = {"=", "<", ">", "≤", "≥", "≠", "→", "⇒", "↦", "∈", "≈", ":"}
 LARGE = {"sum": "∑", "prod": "∏", "int": "∫"}
@@ -41,6 +41,8 @@ FENCES = {"(": "(", ")": ")", "[": "[", "]": "]", "|": "|", "\\{": "{", "\\}": "
           "\\rbrace": "}", "\\lvert": "|", "\\rvert": "|", "\\langle": "⟨", "\\rangle": "⟩"}  # fmt: skip
 TABLES = {"matrix": ("", ""), "bmatrix": ("[", "]"), "pmatrix": ("(", ")"), "vmatrix": ("|", "|"), "cases": ("{", "")}
 THIN = '<mspace width="0.17em"></mspace>'
+BAR = '<mo stretchy="false" form="prefix" lspace="0" rspace="0">|</mo>'
+WIDEST = 50  # letters to a line
 SMALL = 0.75  # scripts, relative to the line
 
 
@@ -92,17 +94,21 @@ class _Reader:
             raise InputError(f"expected {' or '.join(stops)} before the end of the formula {self.latex!r}")
         return items
 
-    def group(self) -> Item:
+    def argument(self) -> list[Item]:
         """Read a braced row, or one token, as the argument of a command."""
         if self.peek() == "{":
             self.next()
             items = self.row("}")
             self.next()
-            return _joined(items)
+            return items
         token = self.peek()
         if token.isdigit() and len(token) > 1:  # \tfrac12 is one over two
             self.tokens[self.place : self.place + 1] = list(token)
-        return self.atom(False)
+        return [self.atom(False)]
+
+    def group(self) -> Item:
+        """Read an argument as one item."""
+        return _joined(self.argument())
 
     def scripted(self, after_operand: bool) -> Item:
         base = self.atom(after_operand)
@@ -140,7 +146,9 @@ class _Reader:
             return Item("", f'<mo form="prefix">{shown}</mo>', 0.7)
         if token in "=<>:":
             return Item("", f"<mo>{escape(token)}</mo>", 1.4, "relation")
-        if token in "()[]|":
+        if token == "|":
+            return Item("", BAR, 0.4)
+        if token in "()[]":
             return Item("", f'<mo stretchy="false">{token}</mo>', 0.4)
         if token in ",;./!":
             return Item("", f"<mo>{token}</mo>", 0.4)
@@ -194,7 +202,8 @@ class _Reader:
 
     def fraction(self) -> Item:
         small = self.tokens[self.place - 1] == "\\tfrac"
-        above, below = self.group(), self.group()
+        shape = _joined if small else _stacked
+        above, below = shape(self.argument()), shape(self.argument())
         body = f"<mfrac>{above.mathml}{below.mathml}</mfrac>"
         if small:
             body = f'<mstyle displaystyle="false">{body}</mstyle>'
@@ -304,7 +313,10 @@ def read(latex: str) -> list[Item]:
 
 def rows(latex: str, width: float) -> list[list[Item]]:
     """Return a formula broken into lines no wider than asked where it can be: before relations, then before signs."""
-    items = read(latex)
+    return _broken(read(latex), width)
+
+
+def _broken(items: list[Item], width: float) -> list[list[Item]]:
     if sum(item.width for item in items) <= width:
         return [items]
     lines: list[list[Item]] = []
@@ -318,6 +330,15 @@ def rows(latex: str, width: float) -> list[list[Item]]:
     return [line for line in lines if line]
 
 
+def _stacked(items: list[Item]) -> Item:
+    """Return a row as one item; a long sum as lines below each other."""
+    lines = _broken(items, WIDEST)
+    if len(lines) == 1:
+        return _joined(items)
+    body = "".join(f"<mtr><mtd>{''.join(item.mathml for item in line)}</mtd></mtr>" for line in lines)
+    return Item("", f"<mtable>{body}</mtable>", max(sum(item.width for item in line) for line in lines))
+
+
 def _pieces(items: list[Item], kind: str) -> Iterator[list[Item]]:
     """Yield the items cut before each one of a kind."""
     piece: list[Item] = []
@@ -329,7 +350,7 @@ def _pieces(items: list[Item], kind: str) -> Iterator[list[Item]]:
     yield piece
 
 
-def mathml(latex: str, *, display: bool = False, width: float = 90) -> str:
+def mathml(latex: str, *, display: bool = False, width: float = WIDEST) -> str:
     """Return a ``math`` element; a display that is too wide is broken into lines."""
     start = '<math xmlns="http://www.w3.org/1998/Math/MathML"' + (' display="block"' if display else "") + ">"
     lines = rows(latex, width) if display else [read(latex)]
