@@ -55,7 +55,8 @@ RULES = (
 SEEDS = (
     "sin(a + b)*cos(c)", "x*sin(a) + y*cos(b)", "(x + y)*(z - x)", "cos(2*a) + sin(b)**2", "tan(a)*x",
     "x/y + z*cos(3*a)", "sin(a)*sin(b)*sin(c)", "(x*cos(a) - y*sin(a))**2 + (x*sin(a) + y*cos(a))**2",
-    "cos(a/2)*sin(b - c)", "x**2*y - z/x", "Rx(a)*Ry(b)", "Rz(a)*Rx(b)*Rz(c)", "Ry(a).T*skew(x, y, z)*Ry(a)", "skew(x, y, z)*skew(x, y, z)",
+    "cos(a/2)*sin(b - c)", "x**2*y - z/x",
+    "Rx(a)*Ry(b)", "Rz(a)*Rx(b)*Rz(c)", "Ry(a).T*skew(x, y, z)*Ry(a)", "skew(x, y, z)*skew(x, y, z)",
     "Rx(a)*Matrix([x, y, z])", "cross(Rz(a)*Matrix([x, y, z]), Matrix([y, z, x]))", "det(Rx(a)*diag(x, y, z))",
     "dot(Matrix([x, y, z]), Rx(b)*Matrix([z, x, y]))", "qmul((p0, p1, p2, p3), (q0, q1, q2, q3))",
     "dcm_of(qmul((p0, p1, p2, p3), (q0, q1, q2, q3)))", "diff(sin(phi(t))*cos(theta(t)), t)", "diff(Rz(phi(t)), t)",

@@ -4,7 +4,7 @@ Edits of the text are sieved by values at two points in double precision; what p
 and only what it proves is offered. The work is bounded by a count of evaluated pieces, so all runs find the same.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import combinations, islice
@@ -20,7 +20,7 @@ from symrot.checker.reader import read_expression
 from symrot.checker.tree import Node, negated, number, product, replaced, sum_of, text, walk
 from symrot.checker.verdict import Diagnosis, Repair
 from symrot.errors import InputError
-from symrot.exact.decide import normal_form
+from symrot.exact.decide import flatten, normal_form
 from symrot.exact.ratio import TooLarge
 
 __all__ = ["diagnose"]
@@ -33,6 +33,7 @@ MOST_EDITED = 200_000
 
 MOST_PAIRS_OF = 90
 MOST_PROOFS = 10
+MOST_BRACKETS = 8
 MOST_REPAIRS = 3
 
 
@@ -93,6 +94,7 @@ class _Search:
         hypotheses = [relation[1:] for relation in claim.given if relation[0] == "=="]
         self.points = points(self.symbols, self.functions, self.definitions, hypotheses, kept)
         self.matrix_names = {name for name, value in meaning.values.items() if getattr(value, "is_Matrix", False)}
+        self.seen: set[tuple[float, ...]] = set()
         self.moving = any(node.kind == "call" and node.value == "diff" for tree in trees for _, node in walk(tree))
 
     # -- the search -------------------------------------------------------------------------------------------------
@@ -103,12 +105,25 @@ class _Search:
             return ()
         changes = sorted(self.changes(), key=lambda change: (change.cost, change.place))
         passed: list[Found] = [(c.cost, c.edit.code, (c,)) for c in changes if self.holds([c])]
-        passed += self.by_entries()
-        proven = self.proven(sorted(passed, key=lambda found: found[0]))
-        for further in (self.fitted, self.renamed, self.missing, lambda: self.pairs(changes)):
-            if not proven:
-                proven = self.proven(further())
-        return proven
+        of_claim = [found for found in passed if not self.within(found)]
+        stages: Sequence[tuple[float, Callable[[], Iterable[Found]]]] = (
+            (0.0, lambda: sorted([*of_claim, *self.by_entries()], key=lambda found: found[0])),
+            (1.1, self.fitted),
+            (1.1, lambda: filter(self.within, passed)),
+            (1.5, self.missing),
+            (1.3, self.renamed),
+        )
+        repairs: list[Repair] = []
+        for dear, stage in stages:
+            if len(repairs) < MOST_REPAIRS and all(repair.cost >= dear for repair in repairs):
+                repairs += self.proven(stage(), MOST_REPAIRS - len(repairs))
+        if not repairs:
+            repairs = self.proven(self.pairs(changes), MOST_REPAIRS)
+        return tuple(sorted(repairs, key=lambda repair: repair.cost))
+
+    def within(self, found: Found) -> bool:
+        """Return whether a repair changes a definition."""
+        return any(change.place in self.definitions for change in found[2])
 
     def affordable(self) -> bool:
         return sum(point.spent[0] for point in self.points) < MOST_PIECES
@@ -201,20 +216,45 @@ class _Search:
     def missing(self) -> Iterator[Found]:
         """Yield the claim with the one term that it lacks, read off the exact difference of its sides."""
         problem = self.claim.problem()
-        if getattr(problem.left, "is_Matrix", False) or getattr(problem.right, "is_Matrix", False):
+        (lefts, shape), (rights, other) = flatten(problem.left), flatten(problem.right)
+        if shape != other:
             return
         try:
-            residual = normal_form(problem.left - problem.right, problem.hypotheses)
+            residuals = [normal_form(a - b, problem.hypotheses) for a, b in zip(lefts, rights, strict=True)]
         except TooLarge:
             return
-        above, below = residual.as_numer_denom()
-        if above.is_Add or not residual.free_symbols or len(shown(residual)) > MOST_LETTERS:
+        lacking = {n: term for n, term in enumerate(residuals) if term != 0}
+        if any(not _is_term(term) for term in lacking.values()):
             return
-        for place, term in (("right", residual), ("left", -residual)):
+        for place, sign in (("right", 1), ("left", -1)):
             tree = self.tree_at(place)
-            if _speaks(tree) and below.is_number and tree.kind in ("sum", "product", "neg"):
-                made = sum_of([tree, read_expression(shown(term))])
-                yield 1.6, "missing_term", (Change(place, Edit("missing_term", 1.6, (), made)),)
+            cells = {0: ()} if shape is None else _cells(tree)
+            if not _speaks(tree) or tree.kind == "name" or not lacking.keys() <= cells.keys():
+                continue
+            made = tree
+            for number_of, term in lacking.items():
+                piece = _at(made, cells[number_of])
+                assert piece is not None
+                added = read_expression(shown(sign * term))
+                whole = added if piece == number(0) else sum_of([piece, added])
+                made = replaced(made, cells[number_of], _always(whole))
+            cost = 1.6 * len(lacking)
+            yield cost, "missing_term", (Change(place, Edit("missing_term", cost, (), made)),)
+        if shape is None:
+            yield from self.missing_inside(residuals[0], problem.hypotheses)
+
+    def missing_inside(self, residual: Any, hypotheses: Sequence[Any]) -> Iterator[Found]:
+        """Yield a side with the one term that a bracket in it lacks: ``a (b + m)`` for ``a b``."""
+        meaning = self.claim.meaning()
+        for place, sign in (("right", 1), ("left", -1)):
+            tree = self.tree_at(place)
+            for path, piece in [found for found in _linear_pieces(tree) if found[0]][:MOST_BRACKETS]:
+                ends = [meaning.read(replaced(tree, path, _always(number(value)))) for value in (0, 1)]
+                term = normal_form(sign * residual / (ends[1] - ends[0]), hypotheses)
+                if not _is_term(term):
+                    continue
+                made = replaced(tree, path, _always(sum_of([piece, read_expression(shown(term))])))
+                yield 1.8, "missing_term", (Change(place, Edit("missing_term", 1.8, path, made)),)
 
     def pairs(self, changes: Sequence[Change]) -> Iterator[Found]:
         """Yield pairs of edits in different places that make the claim hold, by the budget."""
@@ -310,21 +350,31 @@ class _Search:
                 if ratio is not None:
                     made = replaced(tree, path, _always(_scaled(term, ratio)))
                     found.append((1.3, "factor", (Change(place, Edit("factor", 1.3, path, made)),)))
-            for factor in self.factors():
-                for path, term in _terms(tree):
-                    for by in (factor, Node("inv", None, (factor,))):
-                        made = replaced(tree, path, _always(product([term, by])))
-                        change = Change(place, Edit("factor", 1.4, path, made))
-                        if self.holds([change]):
-                            found.append((1.4, "factor", (change,)))
+            for path, made in self.multiplied(tree):
+                change = Change(place, Edit("factor", 1.4 + 0.05 * len(path), path, made))
+                if self.holds([change]):
+                    found.append((change.cost, "factor", (change,)))
         return sorted(found, key=lambda item: item[0])
+
+    def multiplied(self, tree: Node) -> Iterator[tuple[tuple[int, ...], Node]]:
+        """Yield a tree with one piece multiplied or divided by something that occurs in the claim."""
+        scalars, matrices = self.factors(), [Node("name", name) for name in sorted(self.matrix_names)]
+        for path, piece in _pieces(tree):
+            if self.is_matrix(piece):
+                turned = [*matrices, *(Node("transpose", None, (factor,)) for factor in matrices)]
+                both = [pair for factor in turned for pair in ([factor, piece], [piece, factor])]
+            else:
+                both = []
+            both += [[piece, by] for factor in scalars for by in (factor, Node("inv", None, (factor,)))]
+            for factors in both:
+                yield path, replaced(tree, path, _always(product(factors)))
 
     def factors(self) -> list[Node]:
         """Return what may be missing as a factor: symbols, and sines and cosines that occur."""
         pieces = [node for tree in (self.left, self.right) for _, node in walk(tree)]
         kinds = [
-            node for node in (*pieces, *(Node("name", name) for name in self.definitions))
-            if (node.kind == "name" and node.value != "pi" and not self.is_matrix(node))
+            node for node in (*pieces, *(Node("name", name) for name in (*self.symbols, *self.definitions)))
+            if (node.kind == "name" and node.value not in ("pi", "t") and not self.is_matrix(node))
             or (node.kind == "call" and (node.value in ("sin", "cos") or node.value in self.functions))
         ]  # fmt: skip
         return sorted(dict.fromkeys(kinds), key=text)
@@ -356,18 +406,17 @@ class _Search:
 
     # -- the proof --------------------------------------------------------------------------------------------------
 
-    def proven(self, passed: Any) -> tuple[Repair, ...]:
-        """Return the first repairs that the exact engine proves."""
+    def proven(self, passed: Iterable[Found], most: int) -> list[Repair]:
+        """Return the first repairs that the exact engine proves, none that was offered before."""
         repairs: list[Repair] = []
-        seen: set[tuple[float, ...]] = set()
         attempts = 0
         for cost, code, changes in passed:
-            if attempts >= MOST_PROOFS or len(repairs) == MOST_REPAIRS:
+            if attempts >= MOST_PROOFS or len(repairs) == most:
                 break
             values = self.fingerprint(changes)
-            if values in seen or self.idle(code, changes):
+            if values in self.seen or self.idle(code, changes):
                 continue
-            seen.add(values)
+            self.seen.add(values)
             attempts += 1
             try:
                 decision = decide_problem(self.edited(changes).problem())
@@ -375,7 +424,7 @@ class _Search:
                 continue
             if decision.verdict == "true":
                 repairs.append(Repair(self.text(changes), code, round(cost, 3)))
-        return tuple(repairs)
+        return repairs
 
     def edited(self, changes: Sequence[Change]) -> Claim:
         """Return the claim with its trees changed."""
@@ -414,6 +463,30 @@ def _named(trees: Sequence[Node]) -> set[tuple[str, bool]]:
 def _speaks(tree: Node) -> bool:
     """Return whether a tree holds a symbol or is a matrix: a bare number says nothing."""
     return any(node.kind in ("name", "call") and node.value != "pi" for _, node in walk(tree))
+
+
+def _is_term(term: Any) -> bool:
+    """Return whether an expression is one product, short and without a divisor, as a term that was left out is."""
+    above, below = term.as_numer_denom()
+    return bool(below.is_number and not above.is_Add and term.free_symbols and len(shown(term)) <= MOST_LETTERS)
+
+
+def _pieces(tree: Node, path: tuple[int, ...] = ()) -> Iterator[tuple[tuple[int, ...], Node]]:
+    """Yield the pieces that may lack a factor: no exponents, no variables of derivatives and integrals."""
+    if tree.kind not in ("list", "number", "inv"):
+        yield path, tree
+    for place, child in enumerate(tree.args):
+        fixed = tree.kind == "power" or (tree.kind == "call" and tree.value in ("diff", "integrate"))
+        if not (fixed and place):
+            yield from _pieces(child, (*path, place))
+
+
+def _linear_pieces(tree: Node, path: tuple[int, ...] = ()) -> Iterator[tuple[tuple[int, ...], Node]]:
+    """Yield the pieces in which a tree is linear and that may be brackets: factors, not divisors."""
+    yield path, tree
+    for place, child in enumerate(tree.args if tree.kind in ("sum", "product", "neg") else ()):
+        if child.kind not in ("inv", "number") and (tree.kind != "product" or child.kind in ("sum", "name", "call")):
+            yield from _linear_pieces(child, (*path, place))
 
 
 def _always(made: Node) -> Callable[[Node], Node]:

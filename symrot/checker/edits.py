@@ -96,8 +96,9 @@ def single_edits(
         Whether the claim differentiates: an exchanged order is then one of frames.
     """
     order = "frame_body_space" if moving else "commutator_order"
+    entries = {id(member) for _, node in walk(tree) if node.kind == "list" for member in node.args}
     for path, node in walk(tree):
-        for code, made, extra in _changes(node, path, names, functions, matrices, order):
+        for code, made, extra in _changes(node, path, names, functions, matrices, order, id(node) in entries):
             edited = replaced(tree, path, lambda _, made=made: made)  # type: ignore[misc]
             yield Edit(code, COST[code] + extra, path, neat(edited) if code == "factor" else edited)
     yield from _everywhere(tree, matrices)
@@ -108,9 +109,9 @@ Change = tuple[str, Node, float]
 
 def _changes(
     node: Node, path: Path, names: Collection[str], functions: Collection[str],
-    matrices: Callable[[Node], bool], order: str,
+    matrices: Callable[[Node], bool], order: str, lone: bool,
 ) -> Iterator[Change]:  # fmt: skip
-    """Yield (code, piece, extra cost) for one piece."""
+    """Yield (code, piece, extra cost) for one piece; a lone one is an entry of a matrix."""
     if node.kind == "sum":
         yield from _of_sum(node, matrices)
     elif node.kind == "product":
@@ -122,7 +123,7 @@ def _changes(
             yield "wrong_symbol", replace(node, value=other), 0.0
     elif node.kind == "number":
         for value in (node.value * 2, node.value / 2, node.value + 1, node.value - 1):
-            if value > 0:
+            if value > 0 or (value == 0 and (not path or lone)):
                 yield "factor", number(value), 0.0 if value in (node.value * 2, node.value / 2) else 0.15
     elif node.kind == "power" and node.args[0].kind == "call" and node.args[1].value == 2:
         yield "factor", node.args[0], 0.15
@@ -302,6 +303,8 @@ def _swapped_functions(tree: Node, angle: Node) -> Node:
 def neat(node: Node) -> Node:
     """Return a tree without factors 1 and without fractions under a fraction bar, which edits of numbers leave."""
     args = tuple(map(neat, node.args))
+    if node.kind == "power" and args[1] == number(1):
+        return args[0]
     if node.kind != "product":
         return node if args == node.args else replace(node, args=args)
     above, below, rest = Fraction(1), Fraction(1), []

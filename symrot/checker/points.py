@@ -20,7 +20,7 @@ __all__ = ["Meaningless", "Point", "agree", "entries_of", "points"]
 DERIVATIVES = 6
 """Derivatives of each function of time that a point holds, the value included."""
 
-GAUSS = {1: 20, 2: 16, 3: 12}
+GAUSS = {1: 20, 2: 18, 3: 16}
 """Nodes of Gauss and Legendre's rule in each direction, by the number of nested integrals."""
 CLOSE = 1e-8
 
@@ -48,10 +48,11 @@ class Dual:
         return Dual(self.value * other.value, self.value * other.slope + self.slope * other.value)
 
     __radd__, __rmul__ = __add__, __mul__
+    __array_ufunc__ = None  # an array leaves sums and products with a dual number to this class
 
 
 def _dual(value: Any) -> Dual:
-    return value if isinstance(value, Dual) else Dual(value, 0.0)
+    return value if isinstance(value, Dual) else Dual(value, 0)
 
 
 def _inverse(x: Any) -> Any:
@@ -65,22 +66,29 @@ def _minus(x: Any) -> Any:
     return -x
 
 
+def _plainly(function: Any, x: Any) -> Any:
+    """Return a function of a number, or of the numbers of a grid."""
+    return function(x) if isinstance(x, np.ndarray) else getattr(math, function.__name__)(x)
+
+
 def _sin(x: Any) -> Any:
-    return Dual(_sin(x.value), _cos(x.value) * x.slope) if isinstance(x, Dual) else math.sin(x)
+    return Dual(_sin(x.value), _cos(x.value) * x.slope) if isinstance(x, Dual) else _plainly(np.sin, x)
 
 
 def _cos(x: Any) -> Any:
-    return Dual(_cos(x.value), -_sin(x.value) * x.slope) if isinstance(x, Dual) else math.cos(x)
+    return Dual(_cos(x.value), -_sin(x.value) * x.slope) if isinstance(x, Dual) else _plainly(np.cos, x)
 
 
 def _sqrt(x: Any) -> Any:
     if isinstance(x, Dual):
         root = _sqrt(x.value)
         return Dual(root, _inverse(2.0 * root) * x.slope)
-    return math.sqrt(x)
+    return _plainly(np.sqrt, x)
 
 
 def _abs(x: Any) -> Any:
+    if isinstance(x, np.ndarray):
+        return np.abs(x)
     return -x if _plain(x) < 0 else x
 
 
@@ -107,7 +115,7 @@ def _power(x: Any, exponent: float) -> Any:
         return result if whole >= 0 else _inverse(result)
     if isinstance(x, Dual):
         return Dual(_power(x.value, exponent), exponent * _power(x.value, exponent - 1) * x.slope)
-    if x < 0:
+    if np.any(x < 0):
         raise Meaningless("a fractional power of a negative number")
     return x**exponent
 
@@ -369,9 +377,7 @@ def _call(point: Point, node: Node) -> Any:
         formula, *variables = node.args
         return _differentiated(point, formula, variables)
     if name == "integrate":
-        rule = np.polynomial.legendre.leggauss(GAUSS[min(len(node.args) - 1, 3)])
-        pairs = [(float(node), float(weight)) for node, weight in zip(*rule, strict=True)]
-        return _integrated(point, node.args[0], node.args[1:][::-1], pairs)
+        return _integrated(point, node.args[0], node.args[1:][::-1])
     arguments = [point._value(argument) for argument in node.args]
     if name in _SPREAD:
         if len(arguments) == 1 and _is_matrix(arguments[0]):
@@ -391,20 +397,23 @@ def _differentiated(point: Point, formula: Node, variables: Sequence[Node]) -> A
     return _map(lambda entry: entry.slope if isinstance(entry, Dual) else 0.0, lifted)
 
 
-def _integrated(
-    point: Point, integrand: Node, ranges: Sequence[Node], rule: Sequence[tuple[float, ...]]
-) -> Any:
-    if not ranges:
-        return point._value(integrand)
-    variable, lower, upper = ranges[0].args
-    low, high = point._value(lower), point._value(upper)
-    half, middle = (high + -low) * 0.5, (high + low) * 0.5
-    total: Any = 0.0
-    for node, weight in rule:
-        values = {**point.symbols, variable.value: middle + half * node}
-        inner = Point(values, point.functions, point.definitions, spent=point.spent)
-        total = total + _integrated(inner, integrand, ranges[1:], rule) * (half * weight)
-    return total
+def _integrated(point: Point, integrand: Node, ranges: Sequence[Node]) -> Any:
+    """Return an integral over a box by Gauss and Legendre's rule, on the whole grid of points at once, outer first."""
+    nodes, weights = np.polynomial.legendre.leggauss(GAUSS[min(len(ranges), 3)])
+    inner, total = point, np.ones((1,) * len(ranges))
+    for axis, part in enumerate(ranges):
+        shape = [len(nodes) if place == axis else 1 for place in range(len(ranges))]
+        variable, lower, upper = part.args
+        low, high = inner.value(lower), inner.value(upper)
+        half, middle = (high + -low) * 0.5, (high + low) * 0.5
+        symbols = {**inner.symbols, variable.value: middle + half * nodes.reshape(shape)}
+        total = total * weights.reshape(shape) * half
+        inner = Point(symbols, point.functions, point.definitions, spent=point.spent)
+    return _summed(inner.value(integrand) * total)
+
+
+def _summed(values: Any) -> Any:
+    return Dual(_summed(values.value), _summed(values.slope)) if isinstance(values, Dual) else float(np.sum(values))
 
 
 def _matrix(rows: Any) -> Rows:
