@@ -5,7 +5,8 @@ from random import Random
 import pytest
 from mpmath import mp
 
-from symrot.checker.campaign import RULES, Outcome, RationalPoint, Undefined, campaign, claims, main, truth
+from symrot.checker.campaign import RULES, Outcome, campaign, claims, main
+from symrot.checker.judge import RationalPoint, Undefined, random_point, truth
 from symrot.checker.points import Meaningless, Point, agree
 from symrot.checker.reader import read_expression, read_relation
 from symrot.checker.tree import walk
@@ -53,8 +54,6 @@ def test_every_rule_holds_in_numbers(left, right):
 @pytest.mark.parametrize("seed", range(6))
 def test_the_exact_values_agree_with_fifty_digits(seed):
     """Claims evaluated over the rationals and, independently, in double precision at the same point."""
-    from symrot.checker.campaign import random_point
-
     source = Random(seed)
     for claim, _ in claims(6, seed):
         exact = random_point(source)
