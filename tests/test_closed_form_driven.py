@@ -23,7 +23,9 @@ def flow(moments, omega, t, torque=(0, 0, 0), rotor=(0, 0, 0), damping=(0, 0, 0)
             gyro = [w[(i + 1) % 3] * m[(i + 2) % 3] - w[(i + 2) % 3] * m[(i + 1) % 3] for i in range(3)]
             turn = [-b * w[0] - c * w[1] - d * w[2], a * w[0] + c * w[2] - d * w[1],
                     a * w[1] + d * w[0] - b * w[2], a * w[2] + b * w[1] - c * w[0]]  # fmt: skip
-            return [(mpf(torque[i]) - mpf(damping[i]) * w[i] - gyro[i]) / mpf(moments[i]) for i in range(3)] + [x / 2 for x in turn]
+            return [(mpf(torque[i]) - mpf(damping[i]) * w[i] - gyro[i]) / mpf(moments[i]) for i in range(3)] + [
+                x / 2 for x in turn
+            ]
 
         y = odefun(rates, 0, [*(mpf(x) for x in omega), *(mpf(x) / norm for x in Q0)])(mpf(t))
         return np.array([float(x) for x in y[:3]]), np.array([float(x) for x in y[3:]])

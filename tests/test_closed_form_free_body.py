@@ -186,7 +186,9 @@ def test_s13_near_spherical():
     assert in_bar(moments, (0.3, 1.0, 0.5), [1e6 + 0.3], in_periods=True)
 
 
-@pytest.mark.parametrize("moments", [(1e-6, 1, 1 + 1e-7), (1, 2, 3), (0.3, 0.4, 0.7), (1e-12, 1, 1), (1e-9, 1, 1 + 1e-9)])
+@pytest.mark.parametrize(
+    "moments", [(1e-6, 1, 1 + 1e-7), (1, 2, 3), (0.3, 0.4, 0.7), (1e-12, 1, 1), (1e-9, 1, 1 + 1e-9)]
+)
 @pytest.mark.parametrize("omega", [(0.3, 1.0, 0.5), (0.5, 0.3, -1.0)])
 def test_s14_extreme_inertia(moments, omega):
     assert in_bar(moments, omega, SPREAD)
@@ -204,7 +206,8 @@ def test_s15_s16_scaling_is_exact(power):
 
 
 @pytest.mark.parametrize(
-    "moments, omega", [((1, 2, 3), (3e8, 1e8, 2e8)), ((1e200, 2e200, 3e200), (0.3, 1.0, 0.5)), ((1, 2, 3), (3e-160, 1e-160, 2e-160))]
+    "moments, omega",
+    [((1, 2, 3), (3e8, 1e8, 2e8)), ((1e200, 2e200, 3e200), (0.3, 1.0, 0.5)), ((1, 2, 3), (3e-160, 1e-160, 2e-160))],
 )
 def test_s16_magnitudes(moments, omega):
     assert in_bar(moments, omega, [7.3 / max(omega), 1e5 / max(omega)])
@@ -212,13 +215,17 @@ def test_s16_magnitudes(moments, omega):
 
 def test_inertia_tensors_in_any_axes():
     """A body given in turned axes moves as in its principal ones; the attitude is that of the given axes."""
-    turned = free_body.motion_of_tensor([[2, "1/3", 0], ["1/3", 2, 0], [0, 0, 3]], (Fraction(1), Fraction(1, 2), Fraction(2)), Q0)
+    turned = free_body.motion_of_tensor(
+        [[2, "1/3", 0], ["1/3", 2, 0], [0, 0, 3]], (Fraction(1), Fraction(1, 2), Fraction(2)), Q0
+    )
     half = Fraction(1) / 2
     root = 1 / math.sqrt(2)
     to_given = np.array([[root, -root, 0], [root, root, 0], [0, 0, 1]])
     quaternion = conversions.dcm_to_quaternion(to_given)
     principal = free_body.motion(
-        (Fraction(7, 3), Fraction(5, 3), 3), (to_given.T @ [1, 0.5, 2]).tolist(), conversions.multiply(np.array(Q0), quaternion).tolist()
+        (Fraction(7, 3), Fraction(5, 3), 3),
+        (to_given.T @ [1, 0.5, 2]).tolist(),
+        conversions.multiply(np.array(Q0), quaternion).tolist(),
     )
     rates, attitudes = turned.evaluate(SPREAD[:-2])
     expected_rates, expected = principal.evaluate(SPREAD[:-2])

@@ -46,7 +46,9 @@ def errors(omega, q0, times=TIMES, c=F(1, 2), pull=F(1)):
     omega = [F(x) for x in omega]
     motion = heavy_top.motion((1, 1, c), pull, (0, 0, 1), omega, q0)
     rates, attitudes = motion.evaluate([float(t) for t in times])
-    expected = taylor.trajectory([F(1), F(1), F(c)], omega, q0, times, torque=(F(pull), [F(0), F(0), F(1)], [F(0), F(0), F(-1)]))
+    expected = taylor.trajectory(
+        [F(1), F(1), F(c)], omega, q0, times, torque=(F(pull), [F(0), F(0), F(1)], [F(0), F(0), F(-1)])
+    )
     assert np.isfinite(rates).all() and np.isfinite(attitudes).all()
     with mp.workdps(50):
         size = max(mp.sqrt(sum(exactly(x) ** 2 for x in omega)), mp.sqrt(exactly(F(pull))))
@@ -81,7 +83,12 @@ def long_errors(omega, q0, times, c=F(1, 2), pull=F(1), in_periods=True):
     return worst
 
 
-S18 = {"cusps": (0, 0, 5), "loops": (F(3, 10), F(-9, 5), 4), "waves": (F(3, 10), F(4, 5), 5), "backwards": (F(3, 10), F(4, 5), -5)}
+S18 = {
+    "cusps": (0, 0, 5),
+    "loops": (F(3, 10), F(-9, 5), 4),
+    "waves": (F(3, 10), F(4, 5), 5),
+    "backwards": (F(3, 10), F(4, 5), -5),
+}
 
 
 @pytest.mark.parametrize("omega", S18.values(), ids=S18)
@@ -92,7 +99,13 @@ def test_s18_cusps_loops_waves(omega):
 @pytest.mark.parametrize("omega", S18.values(), ids=S18)
 def test_the_reference_agrees_with_taylor_series(omega):
     q0 = tilted(F(1, 2))
-    expected = taylor.trajectory([F(1), F(1), F(1, 2)], [F(x) for x in omega], q0, [F(5, 2)], torque=(F(1), [F(0), F(0), F(1)], [F(0), F(0), F(-1)]))
+    expected = taylor.trajectory(
+        [F(1), F(1), F(1, 2)],
+        [F(x) for x in omega],
+        q0,
+        [F(5, 2)],
+        torque=(F(1), [F(0), F(0), F(1)], [F(0), F(0), F(-1)]),
+    )
     w, q = reference.motion(1, F(1, 2), 1, omega, q0)(F(5, 2))
     with mp.workdps(50):
         dcm = dcm_of(q)
@@ -150,7 +163,9 @@ def test_s21_hanging(omega):
     assert in_bar(omega, tilted(F(31415, 10000)))
 
 
-@pytest.mark.parametrize("w3, tilt", [(F(3), F(1, 10**3)), (F(3), F(1, 10**5)), (F(39, 10), F(1, 10**3)), (F(39, 10), F(1, 10**6))])
+@pytest.mark.parametrize(
+    "w3, tilt", [(F(3), F(1, 10**3)), (F(3), F(1, 10**5)), (F(39, 10), F(1, 10**3)), (F(39, 10), F(1, 10**6))]
+)
 def test_s21_sleeping_tops_that_fall_for_long(w3, tilt):
     """Near the separatrix, a thousand falls later."""
     assert max(long_errors((0, 0, w3), tilted(tilt), [F(1, 3), F(51, 10), F(10003, 10)])) <= BAR
@@ -194,16 +209,22 @@ def test_any_axis_any_direction_of_gravity():
         matrix = np.eye(3)[:, named]  # components along e1, e2, e3 to those along the body's axes
         moments = [0.5 if k == axis else 1.0 for k in range(3)]
         turned = conversions.multiply(q0, conversions.dcm_to_quaternion(matrix.T))
-        found = heavy_top.motion(moments, 1, np.eye(3)[axis].tolist(), (matrix @ [float(x) for x in omega]).tolist(), turned.tolist()).evaluate([2.0, 7.0])
+        found = heavy_top.motion(
+            moments, 1, np.eye(3)[axis].tolist(), (matrix @ [float(x) for x in omega]).tolist(), turned.tolist()
+        ).evaluate([2.0, 7.0])
         assert np.abs(found[0] - rates @ matrix.T).max() < 1e-13
         expected = conversions.multiply(attitudes, conversions.dcm_to_quaternion(matrix.T))
         assert min(np.abs(found[1] - expected).max(), np.abs(found[1] + expected).max()) < 1e-13
     half = np.array([math.cos(0.6), 0.0, math.sin(0.6), 0.0])
     down = -conversions.quaternion_to_dcm(half)[:, 2]
-    leaning = heavy_top.motion((1, 1, 0.5), 1, (0, 0, 1), omega, conversions.multiply(half, q0).tolist(), down.tolist()).evaluate([2.0, 7.0])
+    leaning = heavy_top.motion(
+        (1, 1, 0.5), 1, (0, 0, 1), omega, conversions.multiply(half, q0).tolist(), down.tolist()
+    ).evaluate([2.0, 7.0])
     assert np.abs(leaning[0] - rates).max() < 1e-13
     below = heavy_top.motion((1, 1, 0.5), 1, (0, 0, -1), omega, q0.tolist(), (0, 0, 1)).evaluate([2.0, 7.0])
-    assert np.abs(below[0] - rates).max() < 1e-15 and np.abs(np.abs((below[1] * attitudes).sum(axis=1)) - 1).max() < 1e-15
+    assert (
+        np.abs(below[0] - rates).max() < 1e-15 and np.abs(np.abs((below[1] * attitudes).sum(axis=1)) - 1).max() < 1e-15
+    )
 
 
 @pytest.mark.parametrize(
@@ -230,4 +251,6 @@ def test_random_tops():
         pull = F(10 ** source.uniform(-2, 2))
         omega = [F(source.choice((1, -1)) * 10 ** source.uniform(-2, 1)) for _ in range(3)]
         q0 = [F(source.gauss(0, 1)) for _ in range(4)]
-        assert max(long_errors(omega, q0, [F(source.uniform(-3, 3)), F(source.uniform(-1000, 1000))], c, pull)) <= BAR, (c, pull, omega, q0)
+        assert (
+            max(long_errors(omega, q0, [F(source.uniform(-3, 3)), F(source.uniform(-1000, 1000))], c, pull)) <= BAR
+        ), (c, pull, omega, q0)

@@ -335,3 +335,22 @@ def test_rotation_about_one_axis_has_a_closed_form(name):
 def test_a_motion_without_closed_form_is_not_called_exact(name):
     with pytest.raises(InputError, match="expected a motion with a closed form"):
         propagate(name, method="exact")
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_taylor_and_dormand_prince_agree(name):
+    series, stepped = propagate(name, method="taylor", tolerance=1e-11), propagate(name, method="dop853")
+    bound = 1e-7 if name == "t_handle" else 1e-9
+    assert series.method == "taylor"
+    assert rate_error(stepped.omega, series.omega) < bound
+    assert attitude_error(stepped.dcm, series.dcm) < bound
+    assert np.abs(series.sol(series.t[::50])[:3].T - series.omega[::50]).max() < bound * np.abs(series.omega).max()
+
+
+def test_what_has_no_taylor_series_is_refused():
+    scene = Scene.from_dict({
+        "schema": 1, "title": "drag", "body": {"principal": [1, 2, 3]}, "span": {"t": [0, 5]},
+        "initial": {"omega": [0, 0, 1]}, "torque": [{"kind": "damping", "quadratic": 1}],
+    })  # fmt: skip
+    with pytest.raises(InputError, match="abs"):
+        propagate(scene, method="taylor")

@@ -16,7 +16,13 @@ from symrot.kernel import Argument, Program, Signature
 
 SYSTEMS = {  # states and their rates; k is a parameter
     "free body": {"w1": "-k*w2*w3", "w2": "w3*w1/3", "w3": "2*w1*w2"},
-    "quaternion": {"w": "0*w", "q0": "-(q1*w + q2*t)/2", "q1": "(q0*w + q3*t)/2", "q2": "q0*t - k*q1", "q3": "q1*q1 - q0**2"},
+    "quaternion": {
+        "w": "0*w",
+        "q0": "-(q1*w + q2*t)/2",
+        "q1": "(q0*w + q3*t)/2",
+        "q2": "q0*t - k*q1",
+        "q3": "q1*q1 - q0**2",
+    },
     "quotients": {"x": "y/(1 + x*x)", "y": "k/x - x/y + 1/(x*y)", "z": "(x - y)/(2*z - 2*x)"},
     "powers": {"x": "x**5 - k*y**3", "y": "y**(-3)*x**2", "z": "(x + y - 2*z)**3/k**2"},
     "time": {"x": "t*x - t**3/(1 + t)", "y": "(t - k)*(2*t + 3*k)*y"},

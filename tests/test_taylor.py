@@ -114,13 +114,19 @@ def test_any_even_order(order):
     assert abs(states[0] - (math.cos(3), math.sin(3))).max() < 1e-6
 
 
-@pytest.mark.parametrize("name", ["heavy_top_loops", "gravity_gradient_satellite", "damped_disk", "gyrostat", "t_handle"])
+@pytest.mark.parametrize(
+    "name", ["heavy_top_loops", "gravity_gradient_satellite", "damped_disk", "gyrostat", "t_handle"]
+)
 def test_jets_of_shipped_scenes(name):
     plan = make_plan(load_scene(name))
     kernel = scene_kernel(plan)
     system = recurrences(kernel.rates)
     p = bind(kernel.rate_parameters, plan.constants)
-    values = {**dict(zip(system.states, plan.initial_state, strict=True)), **dict(zip(system.parameters, p, strict=True)), "t": 0.25}
+    values = {
+        **dict(zip(system.states, plan.initial_state, strict=True)),
+        **dict(zip(system.parameters, p, strict=True)),
+        "t": 0.25,
+    }
     expected = np.array(coefficients(system, 20, values, MATH, float)).T
     found = taylor._stepper(scene_library(name)).jet(0.25, plan.initial_state, p)
     assert (abs(found - expected) <= 1e-11 * abs(expected).max(axis=1, keepdims=True) + 1e-300).all()
@@ -421,7 +427,21 @@ def test_a_library_of_another_stepper_is_refused(tmp_path):
 def test_the_text_is_cplusplus_too_and_draws_no_warning(plain, tmp_path):
     source = taylor.translation_unit(rigid_body_program())
     for compiler, language, standard in (("gcc", "c", "-std=c99"), ("g++", "c++", "-std=c++14")):
-        command = [compiler, "-x", language, standard, "-O1", "-march=native", "-Wall", "-Wextra", "-Werror", *plain, "-c", "-", "-o"]
+        command = [
+            compiler,
+            "-x",
+            language,
+            standard,
+            "-O1",
+            "-march=native",
+            "-Wall",
+            "-Wextra",
+            "-Werror",
+            *plain,
+            "-c",
+            "-",
+            "-o",
+        ]
         subprocess.run([*command, str(tmp_path / "x.o")], input=source.encode(), check=True)
 
 

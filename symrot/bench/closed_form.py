@@ -56,14 +56,20 @@ def measure(rounds: int) -> list[tuple[str, str, list[float]]]:
     runs: list[tuple[str, str, list[Callable[[], Any]]]] = []
     for name, prepare in CASES:
         motion = prepare()
-        runs.append((name, motion.regime, [
-            prepare,
-            partial(motion.evaluate, t),
-            partial(motion.evaluate, t, quaternion=False),
-            partial(motion.evaluate, t, omega=False),
-            partial(motion.evaluate, one),
-            lambda prepare=prepare: prepare().evaluate(t),  # type: ignore[misc]
-        ]))
+        runs.append(
+            (
+                name,
+                motion.regime,
+                [
+                    prepare,
+                    partial(motion.evaluate, t),
+                    partial(motion.evaluate, t, quaternion=False),
+                    partial(motion.evaluate, t, omega=False),
+                    partial(motion.evaluate, one),
+                    lambda prepare=prepare: prepare().evaluate(t),  # type: ignore[misc]
+                ],
+            )
+        )
     best = [[float("inf")] * 6 for _ in runs]
     for _ in range(rounds):
         for (_, _, functions), row in zip(runs, best, strict=True):
@@ -80,8 +86,11 @@ def main(arguments: list[str] | None = None) -> None:
     print(f"{'':36}{'us':>9}{'ns':>8}{'ns':>8}{'ns':>8}{'us':>10}{'us':>13}")
     for name, regime, (setup, both, omega, attitude, one, whole) in measure(rounds):
         each = [(seconds - one) / (SAMPLES - 1) * 1e9 for seconds in (both, omega, attitude)]
-        print(f"{name:24}{regime:>12}{setup * 1e6:9.1f}" + "".join(f"{x:8.1f}" for x in each)
-              + f"{one * 1e6:10.1f}{whole * 1e6:13.1f}")
+        print(
+            f"{name:24}{regime:>12}{setup * 1e6:9.1f}"
+            + "".join(f"{x:8.1f}" for x in each)
+            + f"{one * 1e6:10.1f}{whole * 1e6:13.1f}"
+        )
 
 
 if __name__ == "__main__":

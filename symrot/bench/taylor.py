@@ -104,8 +104,10 @@ def _scene(name: str) -> Scene:
 def reference(name: str, scale: float = 1.0) -> Floats:
     """Return the last state of a motion: as kept in :data:`REFERENCES` for the whole span, else computed anew."""
     kept = tomllib.loads(REFERENCES.read_text(encoding="utf-8")).get(name)
-    return np.array([float(value) for value in kept]) if kept and scale == 1.0 else np.array(
-        [float(value) for value in compute_reference(name, scale)]
+    return (
+        np.array([float(value) for value in kept])
+        if kept and scale == 1.0
+        else np.array([float(value) for value in compute_reference(name, scale)])
     )
 
 

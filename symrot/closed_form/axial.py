@@ -23,7 +23,7 @@ from symrot.errors import InputError
 __all__ = ["AxialMotion", "motion"]
 
 _SPLITTER = 134217729.0  # 2^27 + 1
-_TERMS = 24              # of the series of (exp(x) - 1 - x)/x^2 for |x| <= 1
+_TERMS = 24  # of the series of (exp(x) - 1 - x)/x^2 for |x| <= 1
 
 
 def _two_product(a: Floats, b: float | Floats) -> tuple[Floats, Floats]:
@@ -62,7 +62,11 @@ class AxialMotion:
     """One motion. Times are counted from that of the initial state."""
 
     def __init__(
-        self, axis: int, axial: tuple[Fraction, Fraction, Fraction], rates: list[Fraction], lag: Fraction,
+        self,
+        axis: int,
+        axial: tuple[Fraction, Fraction, Fraction],
+        rates: list[Fraction],
+        lag: Fraction,
         attitude: Floats,
     ) -> None:
         self._axis, (self._rate, self._push, self._decay) = axis, axial

@@ -96,6 +96,8 @@ def _prepared(
     return prepared(
         "free_body",
         (moments, omega, attitude, exact, axes),
-        lambda: "a free body has three positive moments of inertia (kg m^2), a finite angular velocity (rad/s) and a "
-        f"quaternion that is not zero; got moments {moments[::2]}, omega {omega[::2]}, quaternion {attitude[::2]}",
+        lambda: (
+            "a free body has three positive moments of inertia (kg m^2), a finite angular velocity (rad/s) and a "
+            f"quaternion that is not zero; got moments {moments[::2]}, omega {omega[::2]}, quaternion {attitude[::2]}"
+        ),
     )

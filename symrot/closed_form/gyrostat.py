@@ -49,9 +49,14 @@ def motion(
     return prepared(
         "gyrostat",
         (
-            spread([moments[axis - 2], moments[axis]]), spread([momentum[axis]]), spread([rates[k] for k in named]),
-            spread(attitude), [*map(float, named), 0.0],
+            spread([moments[axis - 2], moments[axis]]),
+            spread([momentum[axis]]),
+            spread([rates[k] for k in named]),
+            spread(attitude),
+            [*map(float, named), 0.0],
         ),
-        lambda: "a gyrostat has positive moments (kg m^2), a finite angular velocity (rad/s) and a quaternion that is "
-        f"not zero, got moments {[float(x) for x in moments]}, omega {[float(x) for x in rates]}",
+        lambda: (
+            "a gyrostat has positive moments (kg m^2), a finite angular velocity (rad/s) and a quaternion that is "
+            f"not zero, got moments {[float(x) for x in moments]}, omega {[float(x) for x in rates]}"
+        ),
     )

@@ -93,6 +93,8 @@ def motion(
     return prepared(
         "heavy_top",
         (spread([across, moments[axis]]), spread([abs(pull)]), spread(rates), spread(start), space, axes),
-        lambda: "a heavy top has positive moments (kg m^2), a finite angular velocity (rad/s) and a quaternion that is "
-        f"not zero, got moments {[float(x) for x in moments]}, omega {[float(x) for x in rates]}",
+        lambda: (
+            "a heavy top has positive moments (kg m^2), a finite angular velocity (rad/s) and a quaternion that is "
+            f"not zero, got moments {[float(x) for x in moments]}, omega {[float(x) for x in rates]}"
+        ),
     )

@@ -23,10 +23,10 @@ FLAGS = (
     "-std=c99",
     "-O2",
     library.NATIVE,
-    "-ffp-contract=off",    # double-double arithmetic counts on every rounding
-    "-fno-math-errno",      # sqrt in one instruction
+    "-ffp-contract=off",  # double-double arithmetic counts on every rounding
+    "-fno-math-errno",  # sqrt in one instruction
     "-fno-tree-slp-vectorize",  # it slows long straight-line code
-    "-fno-trapping-math",   # loops with comparisons become SIMD code
+    "-fno-trapping-math",  # loops with comparisons become SIMD code
     "-fPIC",
     "-shared",
 )

@@ -52,20 +52,22 @@ def taylor_definitions(program: Program, edges: Sequence[int], scales: Sequence[
         )
     layout = lay_out(system, edges)
     blocks = [next(b for b in range(len(scales)) if states[0] < edges[b + 1]) for states in layout.states]
-    return "\n".join((
-        f"#define SYMROT_STATES {count}",
-        f"#define SYMROT_PARAMETERS {len(system.parameters)}",
-        f"#define SYMROT_ORDER {order}",
-        f"#define SYMROT_ROWS {len(layout.states)}",
-        f"#define SYMROT_ROW_STARTS {_table(str(states[0]) for states in layout.states)}",
-        f"#define SYMROT_ROW_SIZES {_table(str(len(states)) for states in layout.states)}",
-        f"#define SYMROT_ROW_BLOCKS {_table(map(str, blocks))}",
-        f"#define SYMROT_SCALES {_table(repr(float(scale)) for scale in scales)}",
-        "",
-        f"static const double symrot_inverse[] = {_table(['0.0', *(f'1.0/{n}' for n in range(1, order + 1))])};",
-        "",
-        jet_source(layout, system.parameters),
-    ))
+    return "\n".join(
+        (
+            f"#define SYMROT_STATES {count}",
+            f"#define SYMROT_PARAMETERS {len(system.parameters)}",
+            f"#define SYMROT_ORDER {order}",
+            f"#define SYMROT_ROWS {len(layout.states)}",
+            f"#define SYMROT_ROW_STARTS {_table(str(states[0]) for states in layout.states)}",
+            f"#define SYMROT_ROW_SIZES {_table(str(len(states)) for states in layout.states)}",
+            f"#define SYMROT_ROW_BLOCKS {_table(map(str, blocks))}",
+            f"#define SYMROT_SCALES {_table(repr(float(scale)) for scale in scales)}",
+            "",
+            f"static const double symrot_inverse[] = {_table(['0.0', *(f'1.0/{n}' for n in range(1, order + 1))])};",
+            "",
+            jet_source(layout, system.parameters),
+        )
+    )
 
 
 def _table(items: Iterable[str]) -> str:

@@ -17,7 +17,15 @@ from symrot.planner import Plan
 from symrot.propagation.dop853 import translation_unit
 from symrot.scene_kernel import SceneKernel
 
-__all__ = ["compiled", "error_blocks", "kernel_key", "library_source", "missing_compiler", "scene_kernel"]
+__all__ = [
+    "compiled",
+    "error_blocks",
+    "kernel_key",
+    "library_source",
+    "missing_compiler",
+    "scene_kernel",
+    "taylor_library",
+]
 
 PACKAGE = Path(__file__).parents[1]
 DERIVING = ("codegen", "dynamics", "exact", "kinematics", "expression.py", "kernel.py", "scene_kernel.py", "symbols.py")
@@ -98,6 +106,25 @@ def compiled(plan: Plan) -> tuple[SceneKernel, Path]:
     if "error" in outcome:
         raise outcome["error"]
     return kernel, outcome["path"]
+
+
+def taylor_library(plan: Plan, kernel: SceneKernel, tolerance: float) -> Path:
+    """Return the library that steps a plan by Taylor series, of the order that suits the tolerance.
+
+    Raises
+    ------
+    InputError
+        If the rates have no Taylor series, as where they hold the absolute value of what changes.
+    """
+    from symrot.propagation import taylor
+
+    order = taylor.order_for(tolerance)
+    key = f"taylor {order}\n{kernel_key(plan)}"
+    source = library.fetch(key)
+    if source is None:
+        source = taylor.translation_unit(kernel.rates, *error_blocks(plan), order)
+        library.store(key, source)
+    return library.build(source, "taylor")
 
 
 def error_blocks(plan: Plan) -> tuple[list[int], list[float]]:
