@@ -11,7 +11,7 @@ from typing import Any
 from sympy import Expr, ImmutableMatrix, Matrix, MatrixBase, MatrixExpr, Ne, S, factor, sympify
 
 from symrot.errors import SymrotError
-from symrot.exact.decide import decide, normal_form
+from symrot.exact.decide import Verdict, decide, normal_form
 from symrot.exact.ring import as_zero
 
 __all__ = ["Derivation", "Passage", "ProofError", "Section", "Step"]
@@ -60,6 +60,8 @@ class Step:
         The right side as a reader wants it (LaTeX, or a product left as it is), where that differs; None otherwise.
     source : str
         Book and page, where the step is printed elsewhere.
+    via : tuple of (str, Expr, Expr)
+        Proven equations on the way, (words, left, right), for a reader who asks for detail.
     """
 
     claim: str
@@ -72,6 +74,7 @@ class Step:
     named: str = ""
     shown: Any = None
     source: str = ""
+    via: tuple[tuple[str, Any, Any], ...] = ()
 
 
 @dataclass
@@ -133,6 +136,7 @@ class Derivation:
         named: str = "",
         shown: Any = None,
         source: str = "",
+        via: Sequence[tuple[str, Any, Any]] = (),
     ) -> Step:
         """Add ``left = right``, proven; return the step.
 
@@ -149,6 +153,8 @@ class Derivation:
         shown : str, Expr or Matrix
             To show in place of the right side: the same thing, written for a reader.
         source : str
+        via : sequence of (str, Expr, Expr)
+            Equations on the way, each proven as well, shown in detail.
 
         Raises
         ------
@@ -157,18 +163,16 @@ class Derivation:
         InputError
             For what :func:`symrot.exact.decide.decide` refuses.
         """
-        verdict = decide(left, right, relations)
-        if verdict.verdict != "true":
-            shown = f" ({verdict.counterexample})" if verdict.counterexample else ""
-            raise ProofError(
-                f"{self.name}, step {len(self.steps) + 1}, {claim!r} does not hold: left - right = "
-                f"{_short(verdict.residual)}{shown}"
-            )
+        verdict = self._proven(claim, left, right, relations)
+        for words, before, after in via:
+            self._proven(f"{claim} {words}", before, after, relations)
         hypotheses = tuple(zero for zero in map(as_zero, relations) if zero != 0)
         conditions = tuple(condition for condition in verdict.conditions if not self._is_assumed(condition))
         right = Matrix.zeros(*left.shape) if right == 0 and isinstance(left, MatrixBase) else right
         left, right = _frozen(left), _frozen(right)
-        return self._add(Step(claim, left, right, because, "=", hypotheses, conditions, named, shown, source))
+        return self._add(
+            Step(claim, left, right, because, "=", hypotheses, conditions, named, shown, source, tuple(via))
+        )
 
     def positive(self, claim: str, expression: Any, *, because: str, named: str = "") -> Step:
         """Add ``expression > 0``, which must follow from the signs of the symbols in it; return the step.
@@ -182,6 +186,17 @@ class Derivation:
         if reduced.is_positive is not True:
             raise ProofError(f"{self.name}, {claim!r}: the signs of the symbols do not make {reduced} positive")
         return self._add(Step(claim, _frozen(expression), S.Zero, because, ">", named=named, shown=reduced))
+
+    def _proven(self, claim: str, left: Any, right: Any, relations: Sequence[Any]) -> Verdict:
+        """Return the verdict on an equation that holds; ``ProofError`` for one that does not."""
+        verdict = decide(left, right, relations)
+        if verdict.verdict != "true":
+            where = f" ({verdict.counterexample})" if verdict.counterexample else ""
+            raise ProofError(
+                f"{self.name}, step {len(self.steps) + 1}, {claim!r} does not hold: left - right = "
+                f"{_short(verdict.residual)}{where}"
+            )
+        return verdict
 
     def _is_assumed(self, condition: Any) -> bool:
         if not isinstance(condition, Ne):

@@ -3,7 +3,7 @@
 from collections import Counter
 from collections.abc import Sequence
 
-from sympy import Expr, Matrix, diag, eye, factor_terms
+from sympy import Add, Expr, Matrix, diag, eye, factor_terms
 
 from symrot import symbols
 from symrot.catalogue._integral import Stage, iterated
@@ -73,6 +73,7 @@ def _shape(d: Derivation, body: Solid) -> None:
         _integral(body, ()),
         body.measure,
         because=_antiderivatives(body, ()),
+        via=_between(body, ()),
         named=rf"{letter} = {_integral_sign(body, ())}",
     )
     _moments(d, body, letter)
@@ -106,6 +107,7 @@ def _moments(d: Derivation, body: Solid, letter: str) -> None:
                 found[axes] / symbols.m,
                 body.center_of_mass[axes[0]],
                 because=_antiderivatives(body, axes),
+                via=_between(body, axes),
                 named=rf"c_{AXES[axes[0]]} = \frac{{1}}{{{letter}}} {_integral_sign(body, axes)}",
             )
         elif axes not in zero:
@@ -114,6 +116,7 @@ def _moments(d: Derivation, body: Solid, letter: str) -> None:
                 found[axes],
                 values[_quantity(axes)],
                 because=_antiderivatives(body, axes),
+                via=_between(body, axes),
                 named=rf"S_{{{''.join(AXES[i] for i in axes)}}} = \frac{{m}}{{{letter}}} {_integral_sign(body, axes)}",
             )
     _tensor(d, body, found)
@@ -157,6 +160,17 @@ def _antiderivatives(body: Solid, axes: Sequence[int]) -> str:
     if sum(map(len, shown)) > LONG:
         return f"antiderivatives, from the innermost integral outwards{before}, the last one {shown[-1]}"
     return f"the antiderivatives are {', then '.join(shown)}{before}"
+
+
+def _between(body: Solid, axes: Sequence[int]) -> list[tuple[str, Expr, Expr]]:
+    """Return each antiderivative between its limits, and its value, in words and as an equation."""
+    found = []
+    for stage in _stages(body, axes)[1]:
+        upper, lower = (stage.antiderivative.subs(stage.variable, end) for end in (stage.upper, stage.lower))
+        limits = f"from ${_latex(stage.lower)}$ to ${_latex(stage.upper)}$"
+        words = f"Over ${_latex(stage.variable)}$ {limits}, with the antiderivative ${_latex(stage.antiderivative)}$:"
+        found.append((words, upper if lower == 0 else Add(upper, -lower, evaluate=False), stage.value))
+    return found
 
 
 def _integral_sign(body: Solid, axes: Sequence[int]) -> str:

@@ -30,6 +30,13 @@ def derive() -> Derivation:
         symbols.tau_3 / symbols.C,
         because="equal moments about axes 1 and 2 cancel the gyroscopic torque on axis 3",
         named=r"\dot\omega_3",
+        via=[
+            (
+                "Euler's equation on axis 3 for three moments $A, B, C$; here $B = A$:",
+                angular_acceleration(diag(*symbols.principal), OMEGA, Matrix(symbols.torque_b))[2],
+                ((symbols.A - symbols.B) * symbols.omega_1 * symbols.omega_2 + symbols.tau_3) / symbols.C,
+            )
+        ],
     )
     d.section("Torques without a moment about the axis")
     down, radius = Matrix(symbols.vertical), Matrix(symbols.radius)

@@ -36,6 +36,13 @@ def derive() -> Derivation:
         0,
         because="equal moments about axes 1 and 2 cancel the gyroscopic torque on axis 3",
         named=r"\dot\omega_3",
+        via=[
+            (
+                "Euler's equation on axis 3 for three moments $A, B, C$; here $B = A$:",
+                angular_acceleration(diag(*symbols.principal), OMEGA, 0 * OMEGA)[2],
+                (symbols.A - symbols.B) / symbols.C * symbols.omega_1 * symbols.omega_2,
+            )
+        ],
     )
     d.step(
         "The transverse part of the angular velocity turns at a constant rate, $\\lambda$.",

@@ -50,11 +50,12 @@ def _signs(step: Step) -> list[Passage]:
 
 def _detail(step: Step) -> list[Passage]:
     found = chains(step.left, step.right, step.hypotheses)
-    passages = []
+    passages = [Passage(words, ((left, right),)) for words, left, right in step.via]
     if isinstance(step.left, MatrixBase) and (step.named or step.shown is not None):
         passages.append(Passage("The two sides as they were derived:", ((formula(step.left), formula(step.right)),)))
     if not found:
-        return [*passages, Passage("The two sides are one expression, term by term: nothing is left to show.")]
+        both = Passage("Written out, both sides are this one expression:", ((step.named or "", step.left),))
+        return [*passages, both]
     total = 1 if found[0].entry is None else len(step.left)
     if total > len(found):
         passages.append(
