@@ -139,6 +139,13 @@ def _derive(options: Namespace) -> int:
         raise InputError("derive: expected --step N with --detail (see `symrot derive --help`)")
     if options.step is not None and not options.name:
         raise InputError("derive: expected a NAME with --step N (see `symrot derive --help`)")
+    if options.format != "markdown" and options.check:
+        raise InputError("derive: expected --format with a NAME or --all; --check compares the Markdown pages")
+    if options.format != "markdown" and options.all:
+        if options.directory is None:
+            raise InputError(f"derive: expected a folder, -o DIR, for all pages as {options.format}")
+        _say(str(path) for path in catalogue.write_pages(options.directory, options.format))
+        return GOOD
     directory = options.directory or Path("derivations")
     if options.check:
         if not directory.is_dir():
@@ -266,10 +273,12 @@ def _check_textbook(options: Namespace) -> int:
     from symrot.textbook import DOCUMENTS
 
     names = DOCUMENTS if options.textbook == "all" else (options.textbook,)
+    target = Path(options.output) / "errata.md"
+    if options.all:
+        files.check_target(target, (".md",), "--output")
     found = errata.survey(names, not options.no_repair, _progress)
     _progress("")
     if options.all:
-        target = Path(options.output) / "errata.md"
         files.write(target, lambda stream: stream.write(errata.page(found).encode("utf-8")))
         _say([f"{target}: written"])
     elif options.json:
