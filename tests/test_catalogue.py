@@ -166,6 +166,17 @@ def test_all_is_printed_as_latex_with_balanced_braces(derived):
         )
 
 
+def test_all_pages_can_be_written_as_html(derived, tmp_path, capsys):
+    assert main(["derive", "--all", "--format", "html", "-o", str(tmp_path / "site")]) == 0
+    assert len(capsys.readouterr().out.split()) == len(derived)
+    assert {path.name for path in (tmp_path / "site").iterdir()} == {f"{name}.html" for name in derived}
+    for path in (tmp_path / "site").iterdir():
+        for target in re.findall(r'href="([^"#]+)"', path.read_text()):
+            assert (tmp_path / "site" / target).exists(), (path.name, target)
+    with pytest.raises(InputError, match=r"latex or html, got 'pdf'"):
+        catalogue.write_pages(tmp_path, "pdf")
+
+
 def test_links_lead_to_pages(printed):
     for name, text in printed.items():
         for target in re.findall(r"\]\(([^)#]+)\)", text):
@@ -189,6 +200,8 @@ def test_one_step_on_the_command_line(form, start, capsys):
         (["--step", "2"], "expected a NAME"),
         (["--all", "--step", "2"], "expected a NAME"),
         (["heavy_top", "--step", "two"], "invalid int"),
+        (["--all", "--format", "html"], "expected a folder, -o DIR"),
+        (["--check", "--format", "latex"], "--check compares the Markdown pages"),
     ],
 )
 def test_a_step_that_cannot_be_shown_is_refused(words, complaint, capsys):

@@ -14,7 +14,7 @@ from symrot.errors import InputError
 if TYPE_CHECKING:
     from symrot.proof import Derivation
 
-__all__ = ["READING_ORDER", "check", "derivation", "derive_all", "names", "pages"]
+__all__ = ["READING_ORDER", "check", "derivation", "derive_all", "names", "pages", "write_pages"]
 
 READING_ORDER: dict[str, tuple[str, ...]] = {
     "Attitude": (
@@ -71,6 +71,9 @@ READING_ORDER: dict[str, tuple[str, ...]] = {
 }
 """Part -> names of its derivations; a name is that of the module which derives it."""
 
+SUFFIXES = {"latex": ".tex", "html": ".html"}
+"""Form of a page, besides Markdown -> how its file ends."""
+
 
 def names() -> tuple[str, ...]:
     """Return the names of all derivations, in reading order."""
@@ -106,6 +109,33 @@ def pages() -> dict[str, str]:
         lines += [f"- [{derived[name].title}]({name}.md), {len(derived[name].steps)} steps" for name in members]
     lines += ["", "Printed by `symrot derive --all`; do not edit.", ""]
     return {"README.md": "\n".join(lines)} | {f"{name}.md": found.markdown() for name, found in derived.items()}
+
+
+def write_pages(directory: Path | str, form: str) -> list[Path]:
+    """Write every derivation as LaTeX or HTML into a directory, one file each, and return the files.
+
+    Parameters
+    ----------
+    directory : Path or str
+        Made if it is not there.
+    form : str
+        ``"latex"`` or ``"html"``.
+
+    Raises
+    ------
+    InputError
+        For another form.
+    """
+    if form not in SUFFIXES:
+        raise InputError(f"pages are written as {' or '.join(SUFFIXES)}, got {form!r}")
+    directory = Path(directory)
+    directory.mkdir(parents=True, exist_ok=True)
+    written = []
+    for name in names():
+        path = directory / f"{name}{SUFFIXES[form]}"
+        path.write_bytes(getattr(derivation(name), form)().encode())
+        written.append(path)
+    return written
 
 
 def derive_all(directory: Path | str) -> list[Path]:

@@ -27,6 +27,8 @@ def derive() -> Derivation:
             "The proof needs their derivatives and two quadratic relations, and nothing else about them."
         ),
     )
+    for one, other in ((A, B), (A, C)):
+        d.nonzero("The moments differ,", one - other, f"{one} - {other}")
     _functions(d)
     _solution(d)
     _constants(d)
