@@ -202,7 +202,9 @@ def test_what_is_not_understood_is_refused_in_one_sentence(claim, words):
     assert "\n" not in str(refusal.value)
 
 
-@pytest.mark.parametrize("source", TRUE + FALSE + ("a - (b - c) == -(a*b)/(c*d)**2*(-x)", "2**(-x) == (2**3)**4", "1/2/x == (1/2)*x"))
+@pytest.mark.parametrize(
+    "source", TRUE + FALSE + ("a - (b - c) == -(a*b)/(c*d)**2*(-x)", "2**(-x) == (2**3)**4", "1/2/x == (1/2)*x")
+)
 def test_a_tree_printed_reads_back_to_itself(source):
     relation = read_relation(source)
     assert read_relation(f"{text(relation[1])} == {text(relation[2])}") == relation

@@ -29,7 +29,10 @@ def test_generated_claims_are_repeatable_and_half_of_them_true():
 def numbers(seed):
     source = Random(seed)
     scalars = {name: source.uniform(0.3, 1.3) for name in ("A", "B", "X", "Y", "Z", "a", "b", "c", "x", "y", "z", "t")}
-    vectors = {name: read_expression(f"Matrix([{', '.join(str(source.randint(1, 9)) for _ in range(n))}])") for name, n in (("U", 3), ("V", 3), ("P", 4), ("Q", 4))}
+    vectors = {
+        name: read_expression(f"Matrix([{', '.join(str(source.randint(1, 9)) for _ in range(n))}])")
+        for name, n in (("U", 3), ("V", 3), ("P", 4), ("Q", 4))
+    }
     return Point(scalars, {"F": (0.4, 0.7, 0.9)}, vectors)
 
 
@@ -51,7 +54,10 @@ def test_the_exact_values_agree_with_fifty_digits(seed):
     for claim, _ in claims(6, seed):
         exact = random_point(source)
         mp.dps = 30
-        angles = {name: float(2 * mp.atan2(mp.mpf(s.numerator) / s.denominator, mp.mpf(c.numerator) / c.denominator)) for name, (c, s) in exact.halves.items()}
+        angles = {
+            name: float(2 * mp.atan2(mp.mpf(s.numerator) / s.denominator, mp.mpf(c.numerator) / c.denominator))
+            for name, (c, s) in exact.halves.items()
+        }
         point = Point(
             {**{n: angles[n] for n in "abc"}, **{n: float(v) for n, v in exact.values.items()}, "t": 0.0},
             {f: (angles[f], float(exact.rates[f]), 0.0) for f in exact.rates}, {},

@@ -54,7 +54,9 @@ def write(tmp_path, text):
 
 def test_a_file_of_true_claims_is_true_throughout(tmp_path):
     verdicts = symrot.check_file(write(tmp_path, GOOD))
-    assert [(v.id, v.verdict) for v in verdicts] == [(name, "true") for name in ("body-rates-zxz", "unit", "lagrange", "worked")]
+    assert [(v.id, v.verdict) for v in verdicts] == [
+        (name, "true") for name in ("body-rates-zxz", "unit", "lagrange", "worked")
+    ]
     assert verdicts[0].where == "p. 17"
     assert all(verdict.seconds < 0.5 for verdict in verdicts)
 
@@ -110,7 +112,9 @@ def test_a_fault_in_a_file_is_named_with_its_claim(tmp_path, old, new, words):
     with pytest.raises(InputError, match=words) as refusal:
         symrot.check_file(write(tmp_path, GOOD.replace(old, new)))
     assert "\n" not in str(refusal.value)
-    assert "claims.toml" in str(refusal.value) or any(name in str(refusal.value) for name in ("body-", "unit", "worked"))
+    assert "claims.toml" in str(refusal.value) or any(
+        name in str(refusal.value) for name in ("body-", "unit", "worked")
+    )
 
 
 def test_contradicting_hypotheses_prove_nothing(tmp_path):
@@ -139,7 +143,16 @@ def test_the_command_prints_json(tmp_path, capsys):
     assert main(["check", str(write(tmp_path, GOOD.replace("R*W", "W*R"))), "--json", "--no-repair"]) == 1
     found = json.loads(capsys.readouterr().out)
     assert [entry["verdict"] for entry in found] == ["false", "true", "true", "true"]
-    assert set(found[0]) >= {"id", "verdict", "entry", "conditions", "counterexample", "diagnosis", "repairs", "seconds"}
+    assert set(found[0]) >= {
+        "id",
+        "verdict",
+        "entry",
+        "conditions",
+        "counterexample",
+        "diagnosis",
+        "repairs",
+        "seconds",
+    }
     assert found[0]["entry"] == found[0]["counterexample"]["entry"]
 
 

@@ -56,7 +56,9 @@ def test_latex_is_read_as(latex, text):
 def test_no_symbol_is_dropped(latex, text):
     """Every letter of the source that is no part of a command is in the text, as often, but for signs of differentiation."""
     latex = re.sub(r"(?<=\\,)d(?=[a-z\\])|_\{?\w+\}?", " ", latex)
-    commands = re.sub(r"\\(mathrm|operatorname|text)\{?[a-z]*\}?|\\begin\{array\}\{\w*\}|\\(begin|end)\{\w*\}|\\[A-Za-z]+", " ", latex)
+    commands = re.sub(
+        r"\\(mathrm|operatorname|text)\{?[a-z]*\}?|\\begin\{array\}\{\w*\}|\\(begin|end)\{\w*\}|\\[A-Za-z]+", " ", latex
+    )
     letters = [letter for letter in re.findall(r"[A-Za-z]", commands) if letter not in "dfTte"]
     shown = re.sub(r"[a-z]{2,}|Matrix", " ", re.sub(r"_\w+", " ", text))
     for letter in set(letters):
@@ -107,7 +109,9 @@ def test_vectors_are_refused_where_they_make_no_sense(latex, words):
         read_latex(latex, "", VECTORS)
 
 
-@pytest.mark.parametrize("latex", [r"\frac{" * 3000, "a" * 30_000 + r"\theta = 1", "$", r"\[\]", "{" * 40, r"\dot" * 100 + "x=1"])
+@pytest.mark.parametrize(
+    "latex", [r"\frac{" * 3000, "a" * 30_000 + r"\theta = 1", "$", r"\[\]", "{" * 40, r"\dot" * 100 + "x=1"]
+)
 def test_hostile_latex_is_refused_at_once(latex):
     with pytest.raises(InputError):
         symrot.check(latex)

@@ -165,9 +165,7 @@ def branch_requirements(ring: FormulaRing, numerators: Sequence[PolyElement]) ->
             without, rest = _split(poly, place, generator)
             if not rest or ring.reduce(without**2 - rest**2 * square):
                 break
-            value = normal_form(
-                -without.as_expr(*ring.generators) / rest.as_expr(*ring.generators), ring.hypotheses
-            )
+            value = normal_form(-without.as_expr(*ring.generators) / rest.as_expr(*ring.generators), ring.hypotheses)
             if not surely_nonnegative(value):
                 signs[f"{value} >= 0"] = value
         else:
@@ -189,4 +187,3 @@ def surely_nonnegative(value: Expr) -> bool:
         even = value.exp.q == 1 and value.exp.p % 2 == 0
         return bool(even or value.exp.q % 2 == 0 or surely_nonnegative(value.base))
     return isinstance(value, Add | Mul) and all(map(surely_nonnegative, value.args))
-

@@ -547,5 +547,3 @@ def _same_shape(tree: Node, edited: Node, path: Sequence[int]) -> bool:
             return False
         tree, edited = tree.args[place], edited.args[place]
     return tree == edited
-
-
