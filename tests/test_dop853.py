@@ -321,7 +321,7 @@ def test_pauses_change_nothing(monkeypatch):
     """A call to C returns after so many steps; the motion goes on from there bit for bit."""
     arguments = (body(), parameters("asymmetric"), MOTIONS["asymmetric"][2], 0.0, np.linspace(0.0, 30.0, 77), 1e-9)
     whole, stats = dop853.integrate(*arguments)
-    monkeypatch.setattr(dop853, "STEPS_PER_CALL", 3)
+    monkeypatch.setattr(dop853._Stepper, "steps_per_call", 3)
     parts, others = dop853.integrate(*arguments)
     assert np.array_equal(whole, parts)
     assert stats[:3] == others[:3]
@@ -337,7 +337,7 @@ def test_a_recording_is_the_motion_itself(monkeypatch):
     assert solution(3.0).shape == (7,)
     assert solution(times[::-1].reshape(7, 43)).shape == (7, 43, 7)
     assert np.array_equal(solution(times[::-1])[::-1], solution(times))
-    monkeypatch.setattr(dop853, "ROWS_PER_CALL", 2)
+    monkeypatch.setattr(dop853._Stepper, "rows_per_call", 2)
     assert np.array_equal(dop853.record(*arguments, (-5.0, 12.0), 1e-9)(times), solution(times))
     with pytest.raises(InputError, match=r"known from -5.0 to 12.0 s, asked for 12.5 s"):
         solution([1.0, 12.5])

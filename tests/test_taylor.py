@@ -21,6 +21,7 @@ from symrot.kernel import Argument, Program, Signature
 from symrot.planner import make_plan
 from symrot.propagation import dop853, taylor
 from symrot.propagation.kernels import error_blocks, scene_kernel
+from symrot.propagation.stepping import Task
 from symrot.scene import load_scene
 from symrot.scene_kernel import bind
 from tests.test_dop853 import MOTIONS, TIMES, error, parameters, state
@@ -325,7 +326,7 @@ def test_a_recording_agrees_with_samples():
 def test_a_run_in_pieces_is_the_same_run(monkeypatch):
     t = np.linspace(0, 300, 50)
     whole, _ = spin(t)
-    monkeypatch.setattr(taylor, "STEPS_PER_CALL", 1)
+    monkeypatch.setattr(taylor._Stepper, "steps_per_call", 1)
     pieces, _ = spin(t)
     assert (whole == pieces).all()
 
@@ -411,9 +412,9 @@ def test_flags_that_kill_the_carry_are_noticed():
 
 def test_the_carry_is_alive():
     """S28: after many steps it holds what rounding took."""
-    task = taylor._Task(body(), parameters("asymmetric"), MOTIONS["asymmetric"][2], 0.0, 1e-12, math.inf, 10**6)
-    run = task._start(500.0)
-    task._advance(run, None, 0, None, None, 0)
+    task = Task(taylor._stepper, body(), parameters("asymmetric"), MOTIONS["asymmetric"][2], 0.0, 1e-12)
+    run = next(task.runs(500.0))
+    task.advance(run, None, 0, None, None, 0)
     assert all(0 < abs(carry) <= 2.0**-52 for carry in run.carry)
 
 

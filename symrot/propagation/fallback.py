@@ -12,15 +12,25 @@ from time import perf_counter
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from symrot.errors import InputError, PropagationError
-from symrot.propagation.dop853 import Stats
+from symrot.errors import InputError
+from symrot.propagation.stepping import (
+    NOT_FINITE_SENTENCE,
+    Floats,
+    Recording,
+    Stats,
+    both_sides,
+    check_longest_step,
+    check_tolerance,
+    cut_off,
+    stretches,
+)
 
 __all__ = ["METHODS", "FallbackRecording", "integrate", "method_name", "record"]
 
-Floats = NDArray[np.float64]
 Rhs = Callable[[float, Floats, Floats], ArrayLike]
+Piece = tuple[float, float, Any]  # from, to, SciPy's solution between
 
 METHODS = {"DOP853": 0.1, "RK45": 0.1, "RK23": 0.1, "Radau": 1.0, "BDF": 0.01, "LSODA": 0.05}
 """SciPy's methods, and the share of the tolerance that one step of each is given; calibrated as in dop853.py."""
@@ -81,12 +91,9 @@ def integrate(
     if times.ndim != 1 or not np.isfinite(times).all():
         raise InputError(f"sample times are a sequence of finite numbers, got {times!r}")
     task = _Task(rhs, p, y0, t0, tolerance, method, blocks, scales, breaks, max_step, max_steps)
-    order = np.argsort(times, kind="stable")
-    first_after = int(np.searchsorted(times[order], task.t0))
     states = np.empty((len(times), len(task.y0)))
-    for part in (order[first_after:], order[:first_after][::-1]):
-        if len(part):
-            states[part] = task.follow(times[part])
+    for part in both_sides(times, task.t0):
+        states[part] = task.follow(times[part])
     return states, task.stats()
 
 
@@ -110,28 +117,23 @@ def record(
     return FallbackRecording(task, min(*span, task.t0), max(*span, task.t0))
 
 
-class FallbackRecording:
-    """A motion that can be evaluated at any time of its ``span``; see :class:`symrot.propagation.dop853.Recording`."""
+class FallbackRecording(Recording):
+    """A motion that SciPy has followed; see :class:`symrot.propagation.stepping.Recording`."""
 
     def __init__(self, task: "_Task", low: float, high: float) -> None:
-        self._t0, self._y0, self.span = task.t0, task.y0, (low, high)
         self._pieces = [*task.solutions(low), *task.solutions(high)]
-        self.stats = task.stats()
+        super().__init__(task.t0, task.y0, (low, high), task.stats())
 
-    def __call__(self, t: ArrayLike) -> Floats:
-        times = np.asarray(t, dtype=np.float64)
-        flat = times.reshape(-1)
-        outside = ~((flat >= self.span[0]) & (flat <= self.span[1]))
-        if outside.any():
-            asked = float(flat[outside][0])
-            raise InputError(f"the motion is known from {self.span[0]} to {self.span[1]} s, asked for {asked} s")
-        states = np.empty((len(flat), len(self._y0)))
-        for low, high, solution in self._pieces:
-            chosen = (flat >= low) & (flat <= high)
-            if chosen.any():
-                states[chosen] = solution(flat[chosen]).T
-        states[flat == self._t0] = self._y0
-        return states.reshape(*times.shape, len(self._y0))
+    def _fill(self, times: Floats, states: Floats) -> None:
+        _evaluate(self._pieces, times, states)
+
+
+def _evaluate(pieces: list[Piece], times: Floats, states: Floats) -> None:
+    """Write the states at the times that lie in the pieces."""
+    for low, high, solution in pieces:
+        chosen = (times >= low) & (times <= high)
+        if chosen.any():
+            states[chosen] = solution(times[chosen]).T
 
 
 class _Task:
@@ -157,10 +159,8 @@ class _Task:
         self.y0, self.t0 = np.array(y0, dtype=np.float64), float(t0)
         if self.y0.ndim != 1 or not all(np.isfinite(given).all() for given in (self.t0, self.y0, self.p)):
             raise InputError(f"initial time, state and parameters are finite numbers, got {t0!r}, {y0!r}, {p!r}")
-        if not 0.0 < tolerance < 1.0:
-            raise InputError(f"the tolerance lies between 0 and 1, got {tolerance}")
-        if not max_step > 0.0:
-            raise InputError(f"the longest step is a positive number of seconds, got {max_step}")
+        check_tolerance(tolerance)
+        check_longest_step(max_step)
         self.tolerance, self.breaks = tolerance, sorted(map(float, breaks))
         self.max_step, self.max_evaluations = max_step, max_steps
         self.blocks = [
@@ -170,9 +170,7 @@ class _Task:
         ]
         self.steps = self.evaluations = self.broken = 0
         if not np.isfinite(self._derivative(self.t0, self.y0)).all():
-            raise PropagationError(
-                f"the motion cannot be followed beyond t = {self.t0!r} s: its rate of change is not finite there"
-            )
+            raise cut_off(self.t0, NOT_FINITE_SENTENCE)
 
     def stats(self) -> Stats:
         return Stats(self.steps, 0, self.evaluations, perf_counter() - self.began)
@@ -180,14 +178,11 @@ class _Task:
     def follow(self, times: Floats) -> Floats:
         """Return the states at times sorted away from t0, all on one side of it."""
         found = np.empty((len(times), len(self.y0)))
-        for low, high, solution in self.solutions(float(times[-1])):
-            chosen = (times >= low) & (times <= high)
-            if chosen.any():
-                found[chosen] = solution(times[chosen]).T
+        _evaluate(self.solutions(float(times[-1])), times, found)
         found[times == self.t0] = self.y0
         return found
 
-    def solutions(self, end: float) -> list[tuple[float, float, Any]]:
+    def solutions(self, end: float) -> list[Piece]:
         """Return (low, high, solution) for each stretch between switching times, from t0 to the end."""
         if end == self.t0:
             return []
@@ -202,17 +197,12 @@ class _Task:
             allowed[block] = share * (size if size > 0.0 else 1.0) / math.sqrt(len(self.y0))
         return self._stretches(end, SMALLEST_RTOL, allowed)
 
-    def _stretches(self, end: float, rtol: float, atol: Floats) -> list[tuple[float, float, Any]]:
+    def _stretches(self, end: float, rtol: float, atol: Floats) -> list[Piece]:
         import scipy.integrate
 
         solve: Any = scipy.integrate.solve_ivp
-        low, high = min(self.t0, end), max(self.t0, end)
-        inside = [time for time in self.breaks if low < time < high]
-        edges = [self.t0, *(inside if end >= self.t0 else reversed(inside)), end]
         y, pieces = self.y0, []
-        for start, stop in pairwise(edges):
-            first = math.nextafter(start, stop) if start in self.breaks else start
-            last = math.nextafter(stop, start) if stop in self.breaks else stop
+        for start, stop, first, last in stretches(self.t0, end, self.breaks):
             earliest, latest = min(first, last), max(first, last)
             with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
                 found = solve(
@@ -226,10 +216,7 @@ class _Task:
                     dense_output=True,
                 )
             if found.status != 0 or not np.isfinite(found.y[:, -1]).all():
-                raise PropagationError(
-                    f"the motion cannot be followed beyond t = {float(found.t[-1])!r} s on the way to {stop!r} s: "
-                    f"{found.message}"
-                )
+                raise cut_off(float(found.t[-1]), found.message, stop)
             self.steps += len(found.t) - 1
             pieces.append((min(start, stop), max(start, stop), found.sol))
             y = found.y[:, -1]
@@ -238,16 +225,12 @@ class _Task:
     def _derivative(self, t: float, y: Floats) -> Floats:
         self.evaluations += 1
         if self.evaluations > self.max_evaluations:
-            raise PropagationError(
-                f"the motion cannot be followed beyond t = {t!r} s: {self.max_evaluations} evaluations were not enough"
-            )
+            raise cut_off(t, f"{self.max_evaluations} evaluations were not enough")
         dy = np.asarray(self.rhs(t, y, self.p), dtype=np.float64)
         if dy.shape != self.y0.shape:
             raise InputError(f"the right-hand side returns {len(self.y0)} numbers, got an array of shape {dy.shape}")
         if not math.isfinite(dy.sum()):
             self.broken += 1
             if self.broken > MAX_BROKEN:
-                raise PropagationError(
-                    f"the motion cannot be followed beyond t = {t!r} s: its rate of change is not finite there"
-                )
+                raise cut_off(t, NOT_FINITE_SENTENCE)
         return dy

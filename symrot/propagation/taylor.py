@@ -9,33 +9,35 @@ Tolerance: the promise is about the trajectory, not about one step, see :func:`s
 
 import ctypes
 import math
-import os
 from collections.abc import Sequence
+from functools import cache
 from pathlib import Path
-from time import perf_counter
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from symrot.errors import CompilerError, InputError, PropagationError
+from symrot.errors import CompilerError, InputError
 from symrot.kernel import Program
-from symrot.propagation.dop853 import MAX_STEPS, Recording, Stats
+from symrot.propagation.stepping import (
+    MAX_STEPS,
+    NOT_FINITE,
+    PAUSED,
+    UNDERFLOW,
+    Floats,
+    PathLike,
+    Recording,
+    Stats,
+    Stepper,
+    Stretch,
+    Task,
+    check_tolerance,
+)
 
 __all__ = ["integrate", "order_for", "record", "refusal", "step_tail", "translation_unit"]
 
-STEPS_PER_CALL = 50_000  # some 20 ms in C, after which Python can see an interrupt
 STEPS_OF_ALL = 4.0  # a span of so many steps allows each of them the whole tolerance, see step_tail
-ROWS_PER_CALL = 64       # steps recorded per call
 ORDERS = ((1e-3, 12), (1e-6, 16), (0.0, 20))  # from which tolerance on which order is fastest, see order_for
-
-Floats = NDArray[np.float64]
-
-_DONE, _PAUSED, _FULL, _NOT_FINITE, _UNDERFLOW = range(5)
-# The fields of symrot_run in taylor.c: numbers, integers, and vectors of one number per state.
-_REALS = ("t", "t_low", "unit", "stop", "tail", "pace", "max_step")
-_INTEGERS = ("next", "accepted", "jets", "recorded")
-_VECTORS = ("y", "carry")
 
 
 def step_tail(tolerance: float) -> tuple[float, float]:
@@ -47,8 +49,7 @@ def step_tail(tolerance: float) -> tuple[float, float]:
     The constant is calibrated on free asymmetric bodies, through flips about the intermediate axis too, and on heavy
     tops, against references of 50 digits (``tests/test_taylor.py``): errors stay below 5 times the tolerance.
     """
-    if not 0.0 < tolerance < 1.0:
-        raise InputError(f"the tolerance lies between 0 and 1, got {tolerance}")
+    check_tolerance(tolerance)
     return tolerance, 1.0 / STEPS_OF_ALL
 
 
@@ -93,15 +94,17 @@ def translation_unit(
     from symrot.codegen.taylor_source import ORDER, taylor_definitions
 
     here = Path(__file__).parent
-    return "\n".join((
-        (here / "taylor.h").read_text(encoding="utf-8"),
-        taylor_definitions(program, blocks, scales, ORDER if order is None else order),
-        (here / "taylor.c").read_text(encoding="utf-8"),
-    ))
+    return "\n".join(
+        (
+            (here / "taylor.h").read_text(encoding="utf-8"),
+            taylor_definitions(program, blocks, scales, ORDER if order is None else order),
+            (here / "taylor.c").read_text(encoding="utf-8"),
+        )
+    )
 
 
 def integrate(
-    library: str | os.PathLike[str],
+    library: PathLike,
     p: ArrayLike,
     y0: ArrayLike,
     t0: float,
@@ -144,35 +147,11 @@ def integrate(
     PropagationError
         If the motion cannot be followed to the end; the sentence says how far it came.
     """
-    began = perf_counter()
-    task = _Task(library, p, y0, t0, tolerance, max_step, max_steps)
-    times = np.asarray(times, dtype=np.float64, order="C")
-    if times.ndim != 1:
-        raise InputError(f"sample times are a sequence of numbers, got an array of shape {times.shape}")
-    count = len(times)
-    states = np.empty((count, task.stepper.states))
-    if count == 0:
-        return states, task.stats(began)
-    low, high = float(times[0]), float(times[-1])
-    if low >= task.t0 and (count == 1 or bool((times[1:] >= times[:-1]).all())):
-        if not math.isfinite(high):
-            raise InputError(f"sample times must be finite, got {high}")
-        task.follow(times, states)
-        return states, task.stats(began)
-    if not bool(np.isfinite(times).all()):
-        raise InputError(f"sample times must be finite, got {times[~np.isfinite(times)][0]}")
-    order = np.argsort(times, kind="stable")
-    first_after = int(np.searchsorted(times[order], task.t0))
-    for part in (order[first_after:], order[:first_after][::-1]):
-        if len(part):
-            found = np.empty((len(part), task.stepper.states))
-            task.follow(times[part], found)
-            states[part] = found
-    return states, task.stats(began)
+    return Task(_stepper, library, p, y0, t0, tolerance, max_step, max_steps).sample(times)
 
 
 def record(
-    library: str | os.PathLike[str],
+    library: PathLike,
     p: ArrayLike,
     y0: ArrayLike,
     t0: float,
@@ -187,49 +166,45 @@ def record(
     The same steps are taken as by :func:`integrate` to the ends of the span, so the two agree where they overlap. One
     step takes 21 N + 4 numbers of memory.
     """
-    began = perf_counter()
-    task = _Task(library, p, y0, t0, tolerance, max_step, max_steps)
-    low, high = min(span), max(span)
-    if not (math.isfinite(low) and math.isfinite(high)):
-        raise InputError(f"a span runs between two finite times, got {span}")
-    rows = [np.concatenate(task.keep(end)) for end in (min(low, task.t0), max(high, task.t0))]
-    return Recording(task.stepper, task.t0, task.y0, rows[0], rows[1], task.stats(began))  # type: ignore[arg-type]
+    return Task(_stepper, library, p, y0, t0, tolerance, max_step, max_steps).record(span)
 
 
-class _Stepper:
-    """The functions of one loaded library."""
+class _Stepper(Stepper):
+    """A library of :func:`translation_unit`."""
+
+    name = "taylor"
+    reals = ("t", "t_low", "unit", "stop", "tail", "pace", "max_step")
+    integers = ("next", "accepted", "jets", "recorded")
+    vectors = ("y", "carry")
+    steps_per_call, rows_per_call = 50_000, 64
+    reasons: ClassVar = {
+        NOT_FINITE: "its derivatives are not finite there",
+        UNDERFLOW: "the step shrank to nothing, as it does before a singularity",
+        PAUSED: "{steps} steps were not enough",
+    }
+    allowance = staticmethod(step_tail)
 
     def __init__(self, path: str) -> None:
-        try:
-            library = ctypes.CDLL(path)
-            self.run, self._dense = library.symrot_taylor, library.symrot_taylor_dense
-            self._jet = library.symrot_taylor_jet
-            sizes, carry = library.symrot_taylor_sizes, library.symrot_taylor_carry
-        except (OSError, AttributeError) as error:
-            raise CompilerError(f"the compiled kernel {path} cannot be loaded: {error}") from error
+        super().__init__(path)
         pointer, integer, real = ctypes.c_void_p, ctypes.c_int64, ctypes.c_double
-        self.run.argtypes = (pointer, pointer, pointer, integer, pointer, pointer, integer, integer)
-        self.run.restype = ctypes.c_int
-        self._dense.argtypes = (pointer, integer, pointer, integer, pointer)
-        self._jet.argtypes = (real, pointer, pointer, real, integer, pointer)
-        self._dense.restype = self._jet.restype = sizes.restype = None
-        carry.argtypes, carry.restype = (real, real), real
-        if carry(1.0, 2.0**-60) != 2.0**-60:
+        self._jet = self._function("_jet", None, real, pointer, pointer, real, integer, pointer)
+        if self._function("_carry", real, real, real)(1.0, 2.0**-60) != 2.0**-60:
             raise CompilerError(f"the compiled kernel {path} loses the carry of its sums: compile without -ffast-math")
-        found = (ctypes.c_int64 * 3)()
-        sizes(found)
-        self.states, self.parameters, self.order = found[0], found[1], found[2]
-        self.row = 4 + (self.order + 1) * self.states
-        vector = real * self.states
-        kinds = ((_REALS, real), (_INTEGERS, integer), (_VECTORS, vector))
-        fields = [(name, kind) for names, kind in kinds for name in names]
-        self.new_run: Any = type("Run", (ctypes.Structure,), {"_fields_": fields})
-        self.new_parameters: Any = real * self.parameters
 
-    def dense(self, rows: Floats, times: Floats) -> Floats:
-        states = np.empty((len(times), self.states))
-        self._dense(rows.ctypes.data, len(rows), times.ctypes.data, len(times), states.ctypes.data)
-        return states
+    def row_length(self) -> int:
+        return 4 + (self.order + 1) * self.states
+
+    def enter(self, run: Any, stretch: Stretch, allowed: float) -> None:
+        run.unit, run.tail = 0.0, allowed
+
+    @staticmethod
+    def tried(run: Any) -> int:
+        found: int = run.accepted
+        return found
+
+    @staticmethod
+    def cost(run: Any) -> tuple[int, int, int]:
+        return run.accepted, run.jets - run.accepted, run.jets
 
     def jet(self, t: float, y: ArrayLike, p: ArrayLike, unit: float = 1.0) -> Floats:
         """Return the Taylor coefficients of the states at t, shape (order + 1, N), in powers of ``unit``."""
@@ -239,89 +214,4 @@ class _Stepper:
         return found
 
 
-_loaded: dict[str, _Stepper] = {}
-
-
-def _stepper(library: str | os.PathLike[str]) -> _Stepper:
-    path = os.fspath(library)
-    if path not in _loaded:
-        _loaded[path] = _Stepper(path)
-    return _loaded[path]
-
-
-class _Task:
-    """One motion to follow: checked input, and the counts of all calls made for it."""
-
-    def __init__(
-        self, library: str | os.PathLike[str], p: ArrayLike, y0: ArrayLike, t0: float, tolerance: float,
-        max_step: float, max_steps: int,
-    ) -> None:  # fmt: skip
-        self.stepper = _stepper(library)
-        self.p = self.stepper.new_parameters(*_numbers("parameters", p, self.stepper.parameters))
-        self.y0 = _numbers("states", y0, self.stepper.states)
-        self.t0, self.max_step, self.max_steps = float(t0), float(max_step), max_steps
-        if not math.isfinite(self.t0):
-            raise InputError(f"the initial time must be finite, got {t0}")
-        if not self.max_step > 0.0:
-            raise InputError(f"the longest step is a positive number of seconds, got {max_step}")
-        self.tail, self.pace = step_tail(tolerance)
-        self.accepted = self.jets = 0
-
-    def stats(self, began: float) -> Stats:
-        return Stats(self.accepted, self.jets - self.accepted, self.jets, perf_counter() - began)
-
-    def follow(self, times: Floats, states: Floats) -> None:
-        """Write the states at times sorted away from t0, all on one side of it."""
-        run = self._start(float(times[-1]))
-        while self._advance(run, times.ctypes.data, len(times), states.ctypes.data, None, 0) != _DONE:
-            pass
-        self._count(run)
-
-    def keep(self, end: float) -> list[Floats]:
-        """Return the recorded steps from t0 to an end, in pieces."""
-        pieces = [np.empty((0, self.stepper.row))]
-        run = self._start(end)
-        while run.t != run.stop:
-            rows = np.empty((ROWS_PER_CALL, self.stepper.row))
-            self._advance(run, None, 0, None, rows.ctypes.data, ROWS_PER_CALL)
-            pieces.append(rows[: run.recorded])
-        self._count(run)
-        return pieces
-
-    def _start(self, end: float) -> Any:
-        run = self.stepper.new_run(
-            t=self.t0, stop=end, tail=self.tail, pace=abs(end - self.t0) * self.pace, max_step=self.max_step
-        )
-        run.y[:] = self.y0
-        return run
-
-    def _count(self, run: Any) -> None:
-        self.accepted += run.accepted
-        self.jets += run.jets
-
-    def _advance(self, run: Any, times: int | None, count: int, states: int | None, rows: int | None, room: int) -> int:
-        """Call the stepper once; raise where it cannot go on."""
-        attempts = min(STEPS_PER_CALL, self.max_steps - run.accepted)
-        status: int = self.stepper.run(
-            ctypes.addressof(run), ctypes.addressof(self.p), times, count, states, rows, room, attempts
-        )
-        if status == _DONE:
-            return status
-        reached = f"the motion cannot be followed beyond t = {run.t!r} s on the way to {run.stop!r} s"
-        if status == _NOT_FINITE:
-            raise PropagationError(f"{reached}: its derivatives are not finite there")
-        if status == _UNDERFLOW:
-            raise PropagationError(f"{reached}: the step shrank to nothing, as it does before a singularity")
-        if run.accepted >= self.max_steps:
-            raise PropagationError(f"{reached}: {self.max_steps} steps were not enough")
-        return status
-
-
-def _numbers(what: str, values: ArrayLike, length: int) -> list[float]:
-    array = np.asarray(values, dtype=np.float64)
-    if array.shape != (length,):
-        raise InputError(f"this kernel takes {length} {what}, got an array of shape {array.shape}")
-    numbers: list[float] = array.tolist()
-    if not math.isfinite(sum(numbers)) and not all(map(math.isfinite, numbers)):
-        raise InputError(f"the {what} must be finite numbers, got {numbers}")
-    return numbers
+_stepper = cache(_Stepper)

@@ -1,0 +1,372 @@
+"""What the steppers share: a loaded library, a motion followed through sample times or recorded, and the sentences.
+
+:mod:`symrot.propagation.dop853` and :mod:`symrot.propagation.taylor` each say what is their own in a :class:`Stepper`;
+:mod:`symrot.propagation.fallback` takes the order of times, the switching times and the sentences from here.
+"""
+
+import ctypes
+import math
+import os
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator, Sequence
+from itertools import pairwise
+from time import perf_counter
+from typing import Any, ClassVar, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from symrot.errors import CompilerError, InputError, PropagationError
+
+__all__ = [
+    "DONE",
+    "MAX_STEPS",
+    "NOT_FINITE",
+    "NOT_FINITE_SENTENCE",
+    "PAUSED",
+    "UNDERFLOW",
+    "Floats",
+    "PathLike",
+    "Recording",
+    "Stats",
+    "SteppedRecording",
+    "Stepper",
+    "Stretch",
+    "Task",
+    "both_sides",
+    "check_longest_step",
+    "check_tolerance",
+    "cut_off",
+    "stretches",
+]
+
+MAX_STEPS = 1_000_000_000
+
+Floats = NDArray[np.float64]
+PathLike = str | os.PathLike[str]
+
+DONE, PAUSED, FULL, NOT_FINITE, UNDERFLOW = range(5)  # what a stepper in C returns
+NOT_FINITE_SENTENCE = "its rate of change is not finite there"
+
+
+class Stats(NamedTuple):
+    """What a propagation cost: steps kept and tried again, evaluations of the kernel, seconds in all."""
+
+    accepted: int
+    rejected: int
+    evaluations: int
+    seconds: float
+
+
+# ------------------------------------------------------------------------------------------------ checks and sentences
+
+
+def check_tolerance(tolerance: float) -> None:
+    """Refuse a tolerance that is not between 0 and 1."""
+    if not 0.0 < tolerance < 1.0:
+        raise InputError(f"the tolerance lies between 0 and 1, got {tolerance}")
+
+
+def check_longest_step(max_step: float) -> None:
+    """Refuse a longest step, s, that is not positive; infinity is none."""
+    if not max_step > 0.0:
+        raise InputError(f"the longest step is a positive number of seconds, got {max_step}")
+
+
+def cut_off(t: float, reason: str, stop: float | None = None) -> PropagationError:
+    """Return the error of a motion that ends at t, s, on the way to ``stop``."""
+    way = "" if stop is None else f" on the way to {stop!r} s"
+    return PropagationError(f"the motion cannot be followed beyond t = {t!r} s{way}: {reason}")
+
+
+def _numbers(what: str, values: ArrayLike, length: int) -> list[float]:
+    array = np.asarray(values, dtype=np.float64)
+    if array.shape != (length,):
+        raise InputError(f"this kernel takes {length} {what}, got an array of shape {array.shape}")
+    numbers: list[float] = array.tolist()
+    if not math.isfinite(sum(numbers)) and not all(map(math.isfinite, numbers)):
+        raise InputError(f"the {what} must be finite numbers, got {numbers}")
+    return numbers
+
+
+# ------------------------------------------------------------------------------------------------ times
+
+
+class Stretch(NamedTuple):
+    """A part of a span without switching times inside, from start to stop, s.
+
+    ``first`` and ``last`` are the times given to the kernel at the two ends: just inside where it switches there.
+    """
+
+    start: float
+    stop: float
+    first: float
+    last: float
+
+
+def stretches(t0: float, end: float, breaks: Sequence[float]) -> list[Stretch]:
+    """Cut the span from t0 to an end on either side of it at the switching times, which are sorted."""
+    if not breaks:
+        return [Stretch(t0, end, t0, end)]
+    low, high = min(t0, end), max(t0, end)
+    inside = [time for time in breaks if low < time < high]
+    edges = [t0, *(inside if end >= t0 else reversed(inside)), end]
+    return [
+        Stretch(
+            start,
+            stop,
+            math.nextafter(start, stop) if start in breaks else start,
+            math.nextafter(stop, start) if stop in breaks else stop,
+        )
+        for start, stop in pairwise(edges)
+    ]
+
+
+def both_sides(times: Floats, t0: float) -> Iterator[NDArray[np.intp]]:
+    """Yield the indices of the times from t0 on, then of those before it, each sorted away from t0; none empty."""
+    order = np.argsort(times, kind="stable")
+    first_after = int(np.searchsorted(times[order], t0))
+    for part in (order[first_after:], order[:first_after][::-1]):
+        if len(part):
+            yield part
+
+
+# ------------------------------------------------------------------------------------------------ a motion at any time
+
+
+class Recording(ABC):
+    """A motion that can be evaluated at any time of its span: ``recording(t)``.
+
+    ``recording(t)`` returns the states at a time or an array of times, shape (N,) or (n, N); a time outside ``span`` is
+    an InputError. ``stats`` says what the recording cost.
+    """
+
+    def __init__(self, t0: float, y0: Sequence[float] | Floats, span: tuple[float, float], stats: Stats) -> None:
+        self._t0, self._y0, self.span, self.stats = t0, y0, span, stats
+
+    @abstractmethod
+    def _fill(self, times: Floats, states: Floats) -> None:
+        """Write the states at times of the span other than t0."""
+
+    def __call__(self, t: ArrayLike) -> Floats:
+        times = np.asarray(t, dtype=np.float64)
+        flat = np.ascontiguousarray(times).reshape(-1)
+        outside = ~((flat >= self.span[0]) & (flat <= self.span[1]))
+        if outside.any():
+            asked = float(flat[outside][0])
+            raise InputError(f"the motion is known from {self.span[0]} to {self.span[1]} s, asked for {asked} s")
+        states = np.empty((len(flat), len(self._y0)))
+        self._fill(flat, states)
+        states[flat == self._t0] = self._y0
+        return states.reshape(*times.shape, len(self._y0))
+
+
+class SteppedRecording(Recording):
+    """A recording made of the steps of a stepper in C."""
+
+    def __init__(self, task: "Task", backward: Floats, forward: Floats) -> None:
+        ends = [float(rows[-1, 0] + rows[-1, 1]) if len(rows) else task.t0 for rows in (backward, forward)]
+        super().__init__(task.t0, task.y0, (ends[0], ends[1]), task.stats())
+        self._dense, self._backward, self._forward = task.stepper.dense, backward, forward
+
+    def _fill(self, times: Floats, states: Floats) -> None:
+        for rows, chosen in ((self._backward, times < self._t0), (self._forward, times > self._t0)):
+            if chosen.any():
+                states[chosen] = self._dense(rows, times[chosen])
+
+
+# ------------------------------------------------------------------------------------------------ the steppers in C
+
+
+class Stepper(ABC):
+    """The functions of one loaded library; what is its method's own stands in a subclass.
+
+    The library exports ``symrot_NAME``, ``symrot_NAME_dense`` and ``symrot_NAME_sizes``.
+    """
+
+    name: ClassVar[str]
+    # The fields of symrot_run in C: numbers, integers, and vectors of one number per state.
+    reals: ClassVar[tuple[str, ...]]
+    integers: ClassVar[tuple[str, ...]]
+    vectors: ClassVar[tuple[str, ...]]
+    steps_per_call: ClassVar[int]  # some 20 ms in C, after which Python can see an interrupt
+    rows_per_call: ClassVar[int]  # steps recorded per call
+    reasons: ClassVar[dict[int, str]]  # why a motion cannot be followed, per status; PAUSED: not in so many steps
+
+    def __init__(self, path: str) -> None:
+        try:
+            self._library = ctypes.CDLL(path)
+        except OSError as error:
+            raise _no_stepper(path, error) from error
+        self.path = path
+        pointer, integer = ctypes.c_void_p, ctypes.c_int64
+        self.run = self._function(
+            "", ctypes.c_int, pointer, pointer, pointer, integer, pointer, pointer, integer, integer
+        )
+        self._dense = self._function("_dense", None, pointer, integer, pointer, integer, pointer)
+        sizes = (integer * 3)()
+        self._function("_sizes", None, pointer)(sizes)
+        self.states, self.parameters, self.order = sizes
+        self.row = self.row_length()
+        kinds = ((self.reals, ctypes.c_double), (self.integers, integer), (self.vectors, ctypes.c_double * self.states))
+        fields = [(name, kind) for names, kind in kinds for name in names]
+        self.new_run: Any = type("Run", (ctypes.Structure,), {"_fields_": fields})
+        self.new_parameters: Any = ctypes.c_double * self.parameters
+
+    def _function(self, ending: str, result: Any, *arguments: Any) -> Callable[..., Any]:
+        """Return a function of the library by the end of its name."""
+        try:
+            function = getattr(self._library, f"symrot_{self.name}{ending}")
+        except AttributeError as error:
+            raise _no_stepper(self.path, error) from error
+        function.restype, function.argtypes = result, arguments
+        found: Callable[..., Any] = function
+        return found
+
+    @abstractmethod
+    def row_length(self) -> int:
+        """Return how many numbers record one step."""
+
+    @staticmethod
+    @abstractmethod
+    def allowance(tolerance: float) -> tuple[float, float]:
+        """Return what one step is allowed for a tolerance, and the fraction of the span that earns a step all of it."""
+
+    @abstractmethod
+    def enter(self, run: Any, stretch: Stretch, allowed: float) -> None:
+        """Set the fields of a run that are the method's own for a stretch ahead."""
+
+    @staticmethod
+    @abstractmethod
+    def tried(run: Any) -> int:
+        """Return the steps of a run that count against the most allowed."""
+
+    @staticmethod
+    @abstractmethod
+    def cost(run: Any) -> tuple[int, int, int]:
+        """Return steps accepted, steps rejected and evaluations of a run."""
+
+    def dense(self, rows: Floats, times: Floats) -> Floats:
+        """Return the states at times inside recorded steps, all on one side of t0."""
+        states = np.empty((len(times), self.states))
+        self._dense(rows.ctypes.data, len(rows), times.ctypes.data, len(times), states.ctypes.data)
+        return states
+
+
+def _no_stepper(path: str, error: Exception) -> CompilerError:
+    return CompilerError(f"the compiled kernel {path} cannot be loaded: {error}")
+
+
+class Task:
+    """One motion to follow: checked input, and the counts of all calls made for it.
+
+    ``load`` returns the stepper of a library's path; the rest as :func:`symrot.propagation.dop853.integrate` takes it.
+    """
+
+    def __init__(
+        self,
+        load: Callable[[str], Stepper],
+        library: PathLike,
+        p: ArrayLike,
+        y0: ArrayLike,
+        t0: float,
+        tolerance: float,
+        max_step: float = math.inf,
+        max_steps: int = MAX_STEPS,
+        breaks: Sequence[float] = (),
+    ) -> None:
+        self.began = perf_counter()
+        self.stepper = stepper = load(os.fspath(library))
+        self.p = stepper.new_parameters(*_numbers("parameters", p, stepper.parameters))
+        self.y0 = _numbers("states", y0, stepper.states)
+        self.t0, self.max_step, self.max_steps = float(t0), float(max_step), max_steps
+        self.breaks = sorted(map(float, breaks)) if len(breaks) else ()
+        if not math.isfinite(self.t0):
+            raise InputError(f"the initial time must be finite, got {t0}")
+        check_longest_step(self.max_step)
+        self.allowed, self.pace = stepper.allowance(tolerance)
+        self.accepted = self.rejected = self.evaluations = 0
+
+    def stats(self) -> Stats:
+        """Return what all was spent since the task was set."""
+        return Stats(self.accepted, self.rejected, self.evaluations, perf_counter() - self.began)
+
+    def sample(self, times: ArrayLike) -> tuple[Floats, Stats]:
+        """Return the states at sample times in any order, shape (n, N), and what they cost."""
+        times = np.asarray(times, dtype=np.float64, order="C")
+        if times.ndim != 1:
+            raise InputError(f"sample times are a sequence of numbers, got an array of shape {times.shape}")
+        count = len(times)
+        states = np.empty((count, self.stepper.states))
+        if count == 0:
+            return states, self.stats()
+        low, high = float(times[0]), float(times[-1])
+        if low >= self.t0 and (count == 1 or bool((times[1:] >= times[:-1]).all())):
+            if not math.isfinite(high):
+                raise InputError(f"sample times must be finite, got {high}")
+            self.follow(times, states)
+            return states, self.stats()
+        if not bool(np.isfinite(times).all()):
+            raise InputError(f"sample times must be finite, got {times[~np.isfinite(times)][0]}")
+        for part in both_sides(times, self.t0):
+            found = np.empty((len(part), self.stepper.states))
+            self.follow(times[part], found)
+            states[part] = found
+        return states, self.stats()
+
+    def record(self, span: tuple[float, float]) -> SteppedRecording:
+        """Return the motion over a span, and over all between it and t0."""
+        low, high = min(span), max(span)
+        if not (math.isfinite(low) and math.isfinite(high)):
+            raise InputError(f"a span runs between two finite times, got {span}")
+        backward, forward = (np.concatenate(self.keep(end)) for end in (min(low, self.t0), max(high, self.t0)))
+        return SteppedRecording(self, backward, forward)
+
+    def follow(self, times: Floats, states: Floats) -> None:
+        """Write the states at times sorted away from t0, all on one side of it."""
+        count, done, first, out = len(times), 0, times.ctypes.data, states.ctypes.data
+        row = 8 * self.stepper.states
+        for run in self.runs(float(times[-1])):
+            while self.advance(run, first + 8 * done, count - done, out + row * done, None, 0) != DONE:
+                pass
+            done += run.next
+
+    def keep(self, end: float) -> list[Floats]:
+        """Return the recorded steps from t0 to an end, in pieces."""
+        room = self.stepper.rows_per_call
+        pieces = [np.empty((0, self.stepper.row))]
+        for run in self.runs(end):
+            while run.t != run.stop:
+                rows = np.empty((room, self.stepper.row))
+                self.advance(run, None, 0, None, rows.ctypes.data, room)
+                pieces.append(rows[: run.recorded])
+        return pieces
+
+    def runs(self, end: float) -> Iterator[Any]:
+        """Yield the C side's run, set up for each stretch between switching times, and count what it cost."""
+        stepper = self.stepper
+        run = stepper.new_run(t=self.t0, pace=abs(end - self.t0) * self.pace, max_step=self.max_step)
+        run.y[:] = self.y0
+        for stretch in stretches(self.t0, end, self.breaks):
+            run.stop, run.next = stretch.stop, 0
+            stepper.enter(run, stretch, self.allowed)
+            yield run
+        accepted, rejected, evaluations = stepper.cost(run)
+        self.accepted += accepted
+        self.rejected += rejected
+        self.evaluations += evaluations
+
+    def advance(self, run: Any, times: int | None, count: int, states: int | None, rows: int | None, room: int) -> int:
+        """Call the stepper once; raise where it cannot go on."""
+        stepper = self.stepper
+        attempts = min(stepper.steps_per_call, self.max_steps - stepper.tried(run))
+        status: int = stepper.run(
+            ctypes.addressof(run), ctypes.addressof(self.p), times, count, states, rows, room, attempts
+        )
+        if status == DONE:
+            return status
+        if status in (NOT_FINITE, UNDERFLOW):
+            raise cut_off(run.t, stepper.reasons[status], run.stop)
+        if stepper.tried(run) >= self.max_steps:
+            raise cut_off(run.t, stepper.reasons[PAUSED].format(steps=self.max_steps, run=run), run.stop)
+        return status
