@@ -114,38 +114,23 @@ def integrate(
     max_step: float = math.inf,
     max_steps: int = MAX_STEPS,
 ) -> tuple[Floats, Stats]:
-    """Return the states at the sample times, and what it cost.
+    """Return the states at the sample times, shape (n, N), and what it cost.
+
+    As :func:`symrot.propagation.dop853.integrate`, but for these:
 
     Parameters
     ----------
     library : path
         Built from :func:`translation_unit`.
-    p, y0 : arrays, shapes (parameters,) and (N,)
-        Parameters of the kernel; state at ``t0``.
-    t0 : float
-        Initial time, s.
-    times : array, shape (n,)
-        Sample times, s, in any order, before or after ``t0``, repeated or not. The steps depend on the first and last
-        of them only.
     tolerance : float
         Aim for the error of the whole trajectory, see :func:`step_tail`.
-    max_step : float
-        Longest step, s.
     max_steps : int
         Most steps to take before giving up.
 
     Returns
     -------
-    states : array, shape (n, N), C layout
     stats : Stats
         ``evaluations`` counts jets: all coefficients of one step.
-
-    Raises
-    ------
-    InputError
-        If a shape, a time or the tolerance cannot be used.
-    PropagationError
-        If the motion cannot be followed to the end; the sentence says how far it came.
     """
     return Task(_stepper, library, p, y0, t0, tolerance, max_step, max_steps).sample(times)
 
@@ -161,10 +146,9 @@ def record(
     max_step: float = math.inf,
     max_steps: int = MAX_STEPS,
 ) -> Recording:
-    """Return the motion over ``span`` as a function of time; arguments as :func:`integrate`.
+    """Return the motion over ``span`` as a function of time; see :func:`symrot.propagation.dop853.record`.
 
-    The same steps are taken as by :func:`integrate` to the ends of the span, so the two agree where they overlap. One
-    step takes 21 N + 4 numbers of memory.
+    One step takes 21 N + 4 numbers of memory.
     """
     return Task(_stepper, library, p, y0, t0, tolerance, max_step, max_steps).record(span)
 
