@@ -71,21 +71,6 @@ static void renaming(const canonical_motion *c, dd q[4])
     normalise(q);
 }
 
-/* From the principal axes to those in which omega and the attitude are given: v_given = matrix*v_principal. */
-typedef struct {
-    dd matrix[3][3], quaternion[4];
-} body_axes;
-
-static void take_axes(const double *given, body_axes *axes)
-{
-    for (int i = 0; i < 3; ++i) {
-        for (int k = 0; k < 3; ++k)
-            axes->matrix[i][k] = given ? dd_pair(given[6*i + 2*k], given[6*i + 2*k + 1]) : dd_of(i == k);
-    }
-    for (int i = 0; i < 4; ++i)
-        axes->quaternion[i] = given ? dd_pair(given[18 + 2*i], given[19 + 2*i]) : dd_of(i == 0);
-}
-
 /* f->attitude, column j = left*e_i*right*conj(axes). */
 static void store_column(const dd left[4], int i, const dd right[4], const body_axes *axes, int j, free_body *f)
 {
@@ -605,15 +590,6 @@ ALWAYS_INLINE void at_steady(
         }
     }
 }
-
-/* One copy of each loop for each thing asked for, so that nothing is decided inside. */
-#define BY_REQUEST(loop, ...) \
-    if (omega != NULL && quaternion != NULL) \
-        loop(f, count, times, omega, quaternion, 1, 1 __VA_ARGS__); \
-    else if (quaternion != NULL) \
-        loop(f, count, times, omega, quaternion, 0, 1 __VA_ARGS__); \
-    else if (omega != NULL) \
-        loop(f, count, times, omega, quaternion, 1, 0 __VA_ARGS__)
 
 /*
  * The motion at times counted from that of the initial state, s, in any order, before it too.

@@ -313,20 +313,6 @@ static void multiples(int odd, double sign, dd c1, dd s1, dd c[TERMS], dd s[TERM
     }
 }
 
-typedef struct {
-    dd matrix[3][3], quaternion[4];
-} body_axes;
-
-static void take_axes(const double *given, body_axes *axes)
-{
-    for (int i = 0; i < 3; ++i) {
-        for (int k = 0; k < 3; ++k)
-            axes->matrix[i][k] = given ? dd_pair(given[6*i + 2*k], given[6*i + 2*k + 1]) : dd_of(i == k);
-    }
-    for (int i = 0; i < 4; ++i)
-        axes->quaternion[i] = given ? dd_pair(given[18 + 2*i], given[19 + 2*i]) : dd_of(i == 0);
-}
-
 /* Column j of the map to q: space*x*conj(axes). */
 static void store_column(const dd space[4], const dd x[4], const body_axes *axes, int j, heavy_top *t)
 {
@@ -668,15 +654,6 @@ ALWAYS_INLINE void at_steady(
         put_motion(&g, a, b, none, none, turn_a, turn_b, omega + 3*i, q + 4*i, want_omega, want_q);
     }
 }
-
-/* One copy of each loop for each thing asked for, so that nothing is decided inside. */
-#define BY_REQUEST(loop, ...) \
-    if (omega != NULL && quaternion != NULL) \
-        loop(f, count, times, omega, quaternion, 1, 1 __VA_ARGS__); \
-    else if (quaternion != NULL) \
-        loop(f, count, times, omega, quaternion, 0, 1 __VA_ARGS__); \
-    else if (omega != NULL) \
-        loop(f, count, times, omega, quaternion, 1, 0 __VA_ARGS__)
 
 /* The motion at times counted from that of the initial state; arguments as symrot_free_body_at. */
 void symrot_heavy_top_at(const heavy_top *f, ptrdiff_t count, const double *times, double *omega, double *quaternion)

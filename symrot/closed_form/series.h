@@ -38,6 +38,22 @@ ONE_COPY void normalise(dd q[4])
         q[i] = dd_div(q[i], norm);
 }
 
+/* From the principal axes to those in which omega and the attitude are given: v_given = matrix*v_principal. */
+typedef struct {
+    dd matrix[3][3], quaternion[4];
+} body_axes;
+
+/* Read the matrix, row by row, and the quaternion, each number as hi, lo; NULL for the principal axes themselves. */
+ONE_COPY void take_axes(const double *given, body_axes *axes)
+{
+    for (int i = 0; i < 3; ++i) {
+        for (int k = 0; k < 3; ++k)
+            axes->matrix[i][k] = given ? dd_pair(given[6*i + 2*k], given[6*i + 2*k + 1]) : dd_of(i == k);
+    }
+    for (int i = 0; i < 4; ++i)
+        axes->quaternion[i] = given ? dd_pair(given[18 + 2*i], given[19 + 2*i]) : dd_of(i == 0);
+}
+
 static inline void store(dd x, double to[2])
 {
     to[0] = x.hi;
@@ -107,5 +123,14 @@ ALWAYS_INLINE double clamped(double x, double limit)
     x = x > limit ? limit : x;
     return x < -limit ? -limit : x;
 }
+
+/* One copy of a loop over f, count, times, omega, quaternion for each thing asked for: nothing is decided inside. */
+#define BY_REQUEST(loop, ...) \
+    if (omega != NULL && quaternion != NULL) \
+        loop(f, count, times, omega, quaternion, 1, 1 __VA_ARGS__); \
+    else if (quaternion != NULL) \
+        loop(f, count, times, omega, quaternion, 0, 1 __VA_ARGS__); \
+    else if (omega != NULL) \
+        loop(f, count, times, omega, quaternion, 1, 0 __VA_ARGS__)
 
 #endif
