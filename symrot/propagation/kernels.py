@@ -28,15 +28,9 @@ __all__ = [
 ]
 
 PACKAGE = Path(__file__).parents[1]
-DERIVING = (
-    *("codegen", "dynamics", "exact", "kinematics"),
-    *("expression.py", "kernel.py", "scene_kernel.py", "symbols.py"),
-    *(
-        "propagation/taylor.py",
-        "propagation/taylor.h",
-        "propagation/taylor.c",
-    ),  # whose text is kept with the recurrences
-)
+TAYLOR = tuple(f"propagation/taylor.{suffix}" for suffix in ("py", "h", "c"))  # kept together with the recurrences
+MODULES = ("expression.py", "kernel.py", "scene_kernel.py", "symbols.py")
+DERIVING = ("codegen", "dynamics", "exact", "kinematics", *MODULES, *TAYLOR)
 ATTITUDE_SCALE = 1.0  # a quaternion has unit norm; an error of an angle counts in rad
 RATE_SCALE = 0.0  # an error of omega counts relative to omega
 
