@@ -27,9 +27,17 @@ def derive() -> Derivation:
     d.define("Rodrigues' formula, from the eigenvalues $0, \\pm i a$ of the skew matrix; with", "a", size)
     d.step("The powers of a skew matrix repeat.", v**3, -(size**2) * v, because="Cayley and Hamilton",
            named=r"[v]_\times^3", shown=r"-a^2\,[v]_\times")  # fmt: skip
-    d.step("The exponential is a rotation.", dcm_sb * dcm_sb.T, eye(3), because=r"$[v]_\times$ is skew",
-           named=r"R R^{\mathsf T},\quad R = 1 + \frac{\sin a}{a}[v]_\times + \frac{1 - \cos a}{a^2}[v]_\times^2:\quad "
-           r"R R^{\mathsf T}")  # fmt: skip
+    d.given(
+        "Summed by the powers, the exponential series is",
+        ("R", r"1 + \frac{\sin a}{a}[v]_\times + \frac{1 - \cos a}{a^2}[v]_\times^2"),
+    )
+    d.step(
+        "The exponential is a rotation.",
+        dcm_sb * dcm_sb.T,
+        eye(3),
+        because=r"$[v]_\times$ is skew",
+        named=r"R R^{\mathsf T}",
+    )
     d.step("The axis stays where it is.", dcm_sb * V, V, because=r"$v \times v = 0$", named="R v", shown="v")
     d.step(
         "It is the rotation of the quaternion with half the angle.",
