@@ -164,7 +164,7 @@ def _stepper(integrate: Callable[..., Any], path: Any, problem: _Problem, tolera
 
 def _heyoka(problem: _Problem, tolerance: float, settings: dict[str, bool]) -> Task:
     """Return a run of heyoka over the same right-hand side, its parameters compiled in as numbers."""
-    import heyoka  # type: ignore[import-untyped]
+    import heyoka
 
     names = [name for name, *_ in problem.kernel.rates.signature.argument("y").components]
     variables = dict(zip(names, heyoka.make_vars(*names), strict=True))
