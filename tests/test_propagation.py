@@ -294,7 +294,7 @@ def test_exact_motions_are_right_to_the_last_digits(name):
     assert np.array_equal(trajectory.sol(t)[:3].T, trajectory.omega)
 
 
-WITH_CLOSED_FORM = [name for name in SCENES if exact_form(load_scene(name), attitude=True)]
+WITH_CLOSED_FORM = [name for name in SCENES if exact_form(load_scene(name))]
 
 
 def test_free_bodies_tops_and_axial_motions_have_closed_forms():

@@ -26,7 +26,7 @@ class Form(NamedTuple):
     """A class of motions in closed form: what it is, which scenes have it, and how to make it."""
 
     name: str
-    fits: Callable[[Scene, bool], bool]  # of the scene, and whether the attitude is wanted
+    fits: Callable[[Scene], bool]
     motion: Callable[[Scene], Exact]
 
 
@@ -50,7 +50,7 @@ def _only_axis(vector: tuple[Fraction, ...]) -> int | None:
     return along[0] if len(along) == 1 else None
 
 
-def _is_free(scene: Scene, attitude: bool) -> bool:
+def _is_free(scene: Scene) -> bool:
     return not scene.torques
 
 
@@ -60,7 +60,7 @@ def _free_body(scene: Scene) -> Exact:
     return free_body.motion_of_tensor(scene.body.inertia, scene.initial.omega_b, scene.initial.quaternion)
 
 
-def _is_symmetric_top(scene: Scene, attitude: bool) -> bool:
+def _is_symmetric_top(scene: Scene) -> bool:
     if _torques(scene) != ["gravity"]:
         return False
     axis = _only_axis(scene.torques[0].values["center_of_mass"])
@@ -76,7 +76,7 @@ def _heavy_top(scene: Scene) -> Exact:
     )
 
 
-def _is_symmetric_gyrostat(scene: Scene, attitude: bool) -> bool:
+def _is_symmetric_gyrostat(scene: Scene) -> bool:
     if _torques(scene) != ["rotor"]:
         return False
     axis = _only_axis(scene.torques[0].values["angular_momentum"])
@@ -92,7 +92,7 @@ def _gyrostat(scene: Scene) -> Exact:
     )
 
 
-def _driven_axis(scene: Scene, attitude: bool) -> int | None:
+def _driven_axis(scene: Scene) -> int | None:
     """Return the principal axis that constant torques and linear damping keep a rotation to."""
     if not scene.torques or not set(_torques(scene)) <= {"constant_body", "damping"}:
         return None
@@ -111,7 +111,7 @@ def _driven_axis(scene: Scene, attitude: bool) -> int | None:
 def _axial(scene: Scene) -> Exact:
     from symrot.closed_form import axial
 
-    axis = _driven_axis(scene, True)
+    axis = _driven_axis(scene)
     assert axis is not None
     push = sum((t.values["torque"][axis] for t in scene.torques if t.kind == "constant_body"), Fraction(0))
     drag = sum((t.values["linear"][axis] for t in scene.torques if t.kind == "damping"), Fraction(0))
@@ -123,11 +123,11 @@ FORMS = (
     Form("free body, theta functions", _is_free, _free_body),
     Form("symmetric heavy top, theta functions", _is_symmetric_top, _heavy_top),
     Form("symmetric gyrostat, two steady rotations", _is_symmetric_gyrostat, _gyrostat),
-    Form("rotation about one axis", lambda scene, attitude: _driven_axis(scene, attitude) is not None, _axial),
+    Form("rotation about one axis", lambda scene: _driven_axis(scene) is not None, _axial),
 )
 """The motions in closed form, in the order in which they are looked for."""
 
 
-def exact_form(scene: Scene, attitude: bool) -> Form | None:
+def exact_form(scene: Scene) -> Form | None:
     """Return the form of a scene's exact motion, or None if it has none here."""
-    return next((form for form in FORMS if form.fits(scene, attitude)), None)
+    return next((form for form in FORMS if form.fits(scene)), None)

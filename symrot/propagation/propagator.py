@@ -68,7 +68,7 @@ def choose_method(plan: Plan, method: str = "auto") -> Choice:
     if method == "auto":
         return next(Choice(name, reason) for name, condition in AUTO if (reason := condition(plan)))
     if method == "exact":
-        form = exact_form(plan.scene, plan.structure["attitude"])
+        form = exact_form(plan.scene)
         if form is None:
             raise InputError(
                 f"method: expected a motion with a closed form ({', '.join(form.name for form in FORMS)}) for 'exact', "
@@ -126,7 +126,7 @@ class Motion:
     def _initial(self) -> tuple[Floats, Floats]:
         return np.array([self.start]), np.array([self.plan.initial_state]).reshape(1, -1)
 
-    def initial_quantity(self, name: str, values: Floats) -> float:
+    def initial_quantity(self, name: str) -> float:
         """Return a conserved quantity at the start."""
         if name == "quaternion norm":
             return 1.0
@@ -148,10 +148,9 @@ class Motion:
     @cached_property
     def exact(self) -> Exact:
         """The motion in closed form."""
-        scene = self.plan.scene
-        form = exact_form(scene, self.plan.structure["attitude"])
+        form = exact_form(self.plan.scene)
         assert form is not None
-        return form.motion(scene)
+        return form.motion(self.plan.scene)
 
     def solution(self, trajectory: Trajectory) -> Callable[[ArrayLike], Floats]:
         """Return omega and quaternion as a function of time over the trajectory's span."""

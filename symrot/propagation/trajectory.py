@@ -1,6 +1,6 @@
 """A motion at its sample times: states, and every quantity computed from them when it is asked for."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -198,7 +198,7 @@ class Trajectory:
         return found
 
     def _invariant(self, name: str, unit: str, reason: str, values: Floats, scale: float) -> Invariant:
-        start = self._motion.initial_quantity(name, values)
+        start = self._motion.initial_quantity(name)
         change = float(np.max(np.abs(values - start), initial=0.0))
         return Invariant(name, unit, reason, values, scale, change / scale if scale > 0 else change)
 
@@ -216,7 +216,11 @@ class Trajectory:
 
         Without attitude the shape is (3, m). A single time gives shape (7,). Steps are recorded on the first call.
         """
-        return self._motion.solution(self)(t)
+        return self._solution(t)
+
+    @cached_property
+    def _solution(self) -> Callable[[ArrayLike], Floats]:
+        return self._motion.solution(self)
 
     def quantity(self, name: str) -> Floats:
         """Return a quantity by the name that scenes use for it (``output.quantities``)."""
