@@ -26,7 +26,6 @@ __all__ = [
     "EXTRINSIC_SEQUENCES",
     "INTRINSIC_SEQUENCES",
     "SEQUENCES",
-    "UNITS",
     "parse_sequence",
 ]
 
@@ -39,19 +38,6 @@ AXES = "XYZ"
 INTRINSIC_SEQUENCES: tuple[str, ...] = tuple(a + b + c for a, b, c in product(AXES, repeat=3) if a != b != c)
 EXTRINSIC_SEQUENCES: tuple[str, ...] = tuple(name.lower() for name in INTRINSIC_SEQUENCES)
 SEQUENCES: tuple[str, ...] = INTRINSIC_SEQUENCES + EXTRINSIC_SEQUENCES
-
-UNITS = {
-    "time": "s",
-    "omega": "rad/s",
-    "quaternion": "1",
-    "angle": "rad",
-    "moment_of_inertia": "kg m^2",
-    "torque": "N m",
-    "energy": "J",
-    "angular_momentum": "kg m^2/s",
-    "length": "m",
-    "mass": "kg",
-}
 
 
 def parse_sequence(name: str) -> tuple[tuple[int, int, int], bool]:

@@ -1,7 +1,5 @@
 """Every SymPy symbol of symrot, made once, with its assumptions and its unit (see :mod:`symrot.conventions`)."""
 
-from collections.abc import Iterable
-
 from sympy import Symbol
 
 UNIT: dict[Symbol, str] = {}
@@ -12,11 +10,6 @@ def _make(names: str, unit: str, **assumptions: bool) -> tuple[Symbol, ...]:
     made = tuple(Symbol(name, **assumptions) for name in names.split())
     UNIT.update(dict.fromkeys(made, unit))
     return made
-
-
-def unit_of(symbols: Iterable[Symbol]) -> dict[Symbol, str]:
-    """Return the unit of each symbol, ``"1"`` for one without dimension; ``KeyError`` for one not made here."""
-    return {symbol: UNIT[symbol] for symbol in symbols}
 
 
 def constant(name: str) -> Symbol:
