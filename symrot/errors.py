@@ -4,7 +4,7 @@ Every one of them carries one sentence: where, what was expected, what arrived. 
 sentence and exits with code 2; nothing else of symrot's own may reach a user.
 """
 
-__all__ = ["CompilerError", "InputError", "PropagationError", "SymrotError"]
+__all__ = ["CertificateError", "CompilerError", "InputError", "PropagationError", "SymrotError"]
 
 
 class SymrotError(ValueError):
@@ -21,3 +21,7 @@ class CompilerError(SymrotError):
 
 class PropagationError(SymrotError):
     """A motion that could not be followed to the end of its span."""
+
+
+class CertificateError(SymrotError):
+    """A kernel, an object file or a certificate that is not what it claims to be."""

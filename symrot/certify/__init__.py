@@ -1,0 +1,1 @@
+"""Certificates of emitted kernels: read back, bounded, compared with the object code, and re-checked."""

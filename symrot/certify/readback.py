@@ -1,0 +1,493 @@
+"""Read emitted C back as the operations it computes; refuse whatever is not understood.
+
+The subset: functions of ``double`` or ``float``; ``const`` temporaries that are assigned once; ``+ - * /``, unary
+minus, ``a < b ? x : y``; calls of the C library and of ``static inline`` functions of the same file; each element of an
+output array assigned once; in a batch, one loop over samples. Nothing here is shared with the emitter.
+"""
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+from struct import pack, unpack
+
+from symrot.certify.operations import RELATIONS, Builder, Operations
+from symrot.errors import CertificateError
+
+__all__ = ["LIBRARY", "Function", "functions_of", "read_batch", "read_kernel"]
+
+LIBRARY: dict[str, int] = {  # functions of <math.h> that kernels call, without the f of their float forms
+    "sin": 1, "cos": 1, "tan": 1, "asin": 1, "acos": 1, "atan": 1, "atan2": 2, "exp": 1, "log": 1,
+    "sinh": 1, "cosh": 1, "tanh": 1,
+}  # fmt: skip
+ROUNDED = {"sqrt": ("sqrt", 1), "fabs": ("abs", 1), "copysign": ("copysign", 2)}  # exact, or rounded correctly
+DEEPEST = 200  # nested levels of an expression
+
+_TOKEN = re.compile(
+    r"(?P<space>\s+)|(?P<number>(?:0[xX][0-9a-fA-F]+\.?[0-9a-fA-F]*[pP][+-]?\d+|(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)f?)"
+    r"|(?P<name>[A-Za-z_]\w*)|(?P<mark>\+\+|<=|>=|==|!=|[-+*/()\[\]{},;=<>?:])",
+    re.ASCII,
+)
+_COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)
+_DIRECTIVE = re.compile(r'\s*#\s*(?:include\s*(?:<(?:math|stddef)\.h>|"\w+\.h")|pragma\s+STDC\s+FP_CONTRACT\s+OFF)\s*')
+
+
+@dataclass(frozen=True)
+class _Token:
+    kind: str
+    text: str
+    line: int
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A parameter of a C function: ``size`` is 0 for a scalar, -1 for a pointer without a size."""
+
+    name: str
+    type: str
+    size: int
+    is_const: bool
+
+
+@dataclass(frozen=True)
+class Function:
+    """A C function as tokens: what it takes and its body, read when it is called or asked for."""
+
+    name: str
+    returns: str
+    parameters: tuple[Parameter, ...]
+    body: tuple[_Token, ...]
+    line: int
+
+
+def _tokens(text: str, where: str) -> list[_Token]:
+    if "??" in text or "\\" in text:  # trigraphs, spliced lines: never emitted, and a reader may be led astray by them
+        raise CertificateError(f"{where}: expected C as symrot emits it, got a backslash or a trigraph")
+    bare = _COMMENT.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
+    lines = bare.split("\n")
+    for number, line in enumerate(lines, 1):
+        if "#" in line:
+            if not _DIRECTIVE.fullmatch(line):
+                raise CertificateError(
+                    f"{where}, line {number}: expected an #include that symrot emits, got {line.strip()!r}"
+                )
+            lines[number - 1] = ""
+    found: list[_Token] = []
+    for number, line in enumerate(lines, 1):
+        position = 0
+        while position < len(line):
+            match = _TOKEN.match(line, position)
+            if match is None:
+                raise CertificateError(
+                    f"{where}, line {number}: expected C of the emitted subset, got {line[position]!r}"
+                )
+            position = match.end()
+            if match.lastgroup != "space":
+                found.append(_Token(str(match.lastgroup), match[0], number))
+    return found
+
+
+class _Cursor:
+    """Tokens of one file or one body, taken from left to right."""
+
+    def __init__(self, tokens: list[_Token] | tuple[_Token, ...], where: str) -> None:
+        self.tokens, self.where, self.index = tokens, where, 0
+
+    def peek(self, ahead: int = 0) -> str:
+        index = self.index + ahead
+        return self.tokens[index].text if index < len(self.tokens) else ""
+
+    def next(self) -> _Token:
+        if self.index >= len(self.tokens):
+            raise self.fail("more text")
+        self.index += 1
+        return self.tokens[self.index - 1]
+
+    def fail(self, expected: str) -> CertificateError:
+        """Return the error for the token at hand."""
+        at = min(self.index, len(self.tokens) - 1)
+        found = repr(self.tokens[at].text) if 0 <= self.index < len(self.tokens) else "the end"
+        line = self.tokens[at].line if self.tokens else 1
+        return CertificateError(f"{self.where}, line {line}: expected {expected}, got {found}")
+
+    def expect(self, *marks: str) -> None:
+        for mark in marks:
+            if self.peek() != mark:
+                raise self.fail(f"'{mark}'")
+            self.index += 1
+
+    def name(self) -> str:
+        if self.index >= len(self.tokens) or self.tokens[self.index].kind != "name":
+            raise self.fail("a name")
+        return self.next().text
+
+    def integer(self) -> int:
+        if not self.peek().isdigit():
+            raise self.fail("an index")
+        return int(self.next().text)
+
+    def block(self) -> tuple[_Token, ...]:
+        """Return the tokens between the brace at hand and the one that closes it."""
+        self.expect("{")
+        start, depth = self.index, 1
+        while depth:
+            depth += {"{": 1, "}": -1}.get(self.next().text, 0)
+        return tuple(self.tokens[start : self.index - 1])
+
+
+def functions_of(text: str, where: str = "kernel") -> dict[str, Function]:
+    """Return the functions that a C file defines, by name.
+
+    Raises
+    ------
+    CertificateError
+        For anything that is not of the emitted subset, with its line.
+    """
+    cursor, found = _Cursor(_tokens(text, where), where), {}
+    while cursor.index < len(cursor.tokens):
+        function = _function(cursor)
+        if function is None:
+            continue
+        if function.name in found:
+            raise CertificateError(
+                f"{where}, line {function.line}: expected one definition of {function.name}, got two"
+            )
+        found[function.name] = function
+    return found
+
+
+def _function(cursor: _Cursor) -> Function | None:
+    while cursor.peek() in ("static", "inline"):
+        cursor.next()
+    line = cursor.tokens[cursor.index].line if cursor.index < len(cursor.tokens) else 0
+    returns = cursor.name()
+    if returns not in ("void", "double", "float"):
+        raise cursor.fail("a function of double or float")
+    name = cursor.name()
+    cursor.expect("(")
+    parameters = [_parameter(cursor)]
+    while cursor.peek() == ",":
+        cursor.next()
+        parameters.append(_parameter(cursor))
+    cursor.expect(")")
+    if len({parameter.name for parameter in parameters}) != len(parameters):
+        raise cursor.fail(f"different names for the parameters of {name}")
+    if cursor.peek() == ";":
+        cursor.next()
+        return None
+    return Function(name, returns, tuple(parameters), cursor.block(), line)
+
+
+def _parameter(cursor: _Cursor) -> Parameter:
+    is_const = cursor.peek() == "const"
+    if is_const:
+        cursor.next()
+    kind = cursor.name()
+    if kind not in ("double", "float", "size_t"):
+        raise cursor.fail("a parameter of double or float")
+    if cursor.peek() == "*":
+        cursor.next()
+        if cursor.peek() in ("SYMROT_RESTRICT", "restrict"):
+            cursor.next()
+        return Parameter(cursor.name(), kind, -1, is_const)
+    name, size = cursor.name(), 0
+    if cursor.peek() == "[":
+        cursor.next()
+        size = cursor.integer()
+        cursor.expect("]")
+    return Parameter(name, kind, size, is_const)
+
+
+@dataclass
+class _Scope:
+    """Names while one function is read: values, arrays, and what has been written."""
+
+    values: dict[str, int] = field(default_factory=dict)
+    arrays: dict[str, Parameter] = field(default_factory=dict)
+    written: dict[tuple[str, int], int] = field(default_factory=dict)
+    loop: str = ""  # name of the index of the sample, in a batch
+    count: str = ""  # name of the number of samples
+
+
+class _Reader:
+    """Reads the body of one function into a graph, the functions it calls in their place."""
+
+    def __init__(self, functions: Mapping[str, Function], where: str, real: str) -> None:
+        self.functions, self.where, self.real = functions, where, real
+        self.builder = Builder()
+        self.inputs: dict[str, int] = {}  # place -> its node
+        self.calls: list[str] = []
+        self.depth = 0
+
+    def input(self, place: str) -> int:
+        return self.inputs.setdefault(place, self.builder.add("in", place))
+
+    def statements(self, cursor: _Cursor, scope: _Scope) -> int | None:
+        """Read statements to the end of a body; return the node of ``return``, if there is one."""
+        while cursor.peek():
+            if cursor.peek() == "(":
+                cursor.expect("(", "void", ")")
+                self._known(cursor, scope, cursor.name())
+                cursor.expect(";")
+            elif cursor.peek() == "return":
+                cursor.next()
+                value = self.expression(cursor, scope)
+                cursor.expect(";")
+                if cursor.peek():
+                    raise cursor.fail("the end of the function after return")
+                return value
+            elif cursor.peek() == "const":
+                cursor.expect("const", self.real)
+                name = cursor.name()
+                if name in scope.values or name in scope.arrays or name in (scope.loop, scope.count):
+                    raise cursor.fail(f"a new name instead of {name}")
+                cursor.expect("=")
+                scope.values[name] = self.expression(cursor, scope)
+                cursor.expect(";")
+            else:
+                self._assignment(cursor, scope)
+        return None
+
+    def _known(self, cursor: _Cursor, scope: _Scope, name: str) -> None:
+        if name not in scope.values and name not in scope.arrays:
+            raise cursor.fail(f"the name of a parameter instead of {name}")
+
+    def _assignment(self, cursor: _Cursor, scope: _Scope) -> None:
+        name = cursor.name()
+        array = scope.arrays.get(name)
+        if array is None or array.is_const:
+            raise cursor.fail(f"an output array instead of {name}")
+        index = self._index(cursor, scope, array)
+        cursor.expect("=")
+        value = self.expression(cursor, scope)
+        cursor.expect(";")
+        if (name, index) in scope.written:
+            raise cursor.fail(f"one assignment to {name}[{index}], and here is a second; before")
+        scope.written[name, index] = value
+
+    def _index(self, cursor: _Cursor, scope: _Scope, array: Parameter) -> int:
+        """Read ``[i]`` of an array with a size, ``[i*n + k]`` of one in a batch."""
+        cursor.expect("[")
+        if array.size > 0:
+            index = cursor.integer()
+            if index >= array.size:
+                raise cursor.fail(f"an index below {array.size} for {array.name}")
+        else:
+            if not scope.loop:
+                raise cursor.fail(f"an array with a size instead of {array.name}")
+            index = cursor.integer()
+            cursor.expect("*", scope.count, "+", scope.loop)
+        cursor.expect("]")
+        return index
+
+    def expression(self, cursor: _Cursor, scope: _Scope) -> int:
+        self.depth += 1
+        if self.depth > DEEPEST:
+            raise cursor.fail(f"at most {DEEPEST} nested levels")
+        value = self.sum(cursor, scope)
+        relation = cursor.peek()
+        if relation in RELATIONS:
+            cursor.next()
+            other = self.sum(cursor, scope)
+            cursor.expect("?")
+            first = self.expression(cursor, scope)
+            cursor.expect(":")
+            value = self.builder.add("select", relation, value, other, first, self.expression(cursor, scope))
+        self.depth -= 1
+        return value
+
+    def sum(self, cursor: _Cursor, scope: _Scope) -> int:
+        value = self.product(cursor, scope)
+        while cursor.peek() in ("+", "-"):
+            kind = "add" if cursor.next().text == "+" else "sub"
+            value = self.builder.add(kind, value, self.product(cursor, scope))
+        return value
+
+    def product(self, cursor: _Cursor, scope: _Scope) -> int:
+        value = self.factor(cursor, scope)
+        while cursor.peek() in ("*", "/"):
+            kind = "mul" if cursor.next().text == "*" else "div"
+            value = self.builder.add(kind, value, self.factor(cursor, scope))
+        return value
+
+    def factor(self, cursor: _Cursor, scope: _Scope) -> int:
+        if cursor.peek() == "-":
+            cursor.next()
+            value = self.factor(cursor, scope)
+            node = self.builder.nodes[value]
+            return self.builder.add("const", -node[1]) if node[0] == "const" else self.builder.add("neg", value)
+        if cursor.peek() == "(":
+            cursor.next()
+            value = self.expression(cursor, scope)
+            cursor.expect(")")
+            return value
+        if cursor.index < len(cursor.tokens) and cursor.tokens[cursor.index].kind == "number":
+            return self._literal(cursor)
+        name = cursor.name()
+        if cursor.peek() == "(":
+            return self._call(cursor, scope, name)
+        if cursor.peek() == "[":
+            return self._element(cursor, scope, name)
+        if name not in scope.values:
+            raise cursor.fail(f"a name that has a value instead of {name}, before")
+        return scope.values[name]
+
+    def _literal(self, cursor: _Cursor) -> int:
+        text = cursor.peek()
+        is_float = text.endswith("f")  # a hexadecimal literal has a decimal exponent, so that its f is a suffix too
+        if is_float != (self.real == "float") or text.isdigit():
+            raise cursor.fail(f"a literal of type {self.real}")
+        cursor.next()
+        digits = text.removesuffix("f") if is_float else text
+        value = float.fromhex(digits) if digits.lower().startswith("0x") else float(digits)
+        if self.real == "float":
+            value = _nearest_float(digits, value)
+        return self.builder.add("const", Fraction(value))
+
+    def _element(self, cursor: _Cursor, scope: _Scope, name: str) -> int:
+        array = scope.arrays.get(name)
+        if array is None or not array.is_const:
+            raise cursor.fail(f"an input array instead of {name}, before")
+        if scope.loop and cursor.peek(1) == scope.loop:  # a scalar of one sample, t[k]
+            cursor.expect("[", scope.loop, "]")
+            return self.input(name)
+        return self.input(f"{name}[{self._index(cursor, scope, array)}]")
+
+    def _call(self, cursor: _Cursor, scope: _Scope, name: str) -> int:
+        cursor.expect("(")
+        taken = [self.expression(cursor, scope)]
+        while cursor.peek() == ",":
+            cursor.next()
+            taken.append(self.expression(cursor, scope))
+        cursor.expect(")")
+        if name in self.functions:
+            return self._inlined(cursor, self.functions[name], taken)
+        bare = name.removesuffix("f") if self.real == "float" else name
+        if self.real == "float" and bare == name:
+            raise cursor.fail(f"the float form of {name}, before")
+        if bare in ROUNDED and ROUNDED[bare][1] == len(taken):
+            return self.builder.add(ROUNDED[bare][0], *taken)
+        if LIBRARY.get(bare) != len(taken):
+            raise cursor.fail(f"a function of <math.h> that kernels use instead of {name}, before")
+        return self.builder.add("call", bare, tuple(taken))
+
+    def _inlined(self, cursor: _Cursor, function: Function, taken: list[int]) -> int:
+        wanted = function.parameters
+        if function.returns != self.real or any(p.size or p.type != self.real for p in wanted):
+            raise cursor.fail(f"a function of {self.real} instead of {function.name}, before")
+        if len(wanted) != len(taken):
+            raise cursor.fail(f"{len(wanted)} arguments for {function.name} instead of {len(taken)}, before")
+        if function.name in self.calls:
+            raise cursor.fail(f"no recursion, as in {function.name}, before")
+        self.calls.append(function.name)
+        scope = _Scope(values={p.name: value for p, value in zip(wanted, taken, strict=True)})
+        value = self.statements(_Cursor(function.body, self.where), scope)
+        self.calls.pop()
+        if value is None:
+            raise cursor.fail(f"a return in {function.name}, before")
+        return value
+
+
+def _nearest_float(digits: str, value: float) -> float:
+    """Return the float nearest to decimal text, without the double rounding through a double."""
+    if digits.lower().startswith("0x"):
+        return float(unpack("f", pack("f", value))[0])
+    exact, rounded = Fraction(digits), float(unpack("f", pack("f", value))[0])
+    bits = unpack("I", pack("f", rounded))[0]
+    near = [float(unpack("f", pack("I", bits + step))[0]) for step in (-1, 0, 1) if 0 <= bits + step < 0x7F800000]
+    closest = min(abs(Fraction(item) - exact) for item in near)
+    ties = [item for item in near if abs(Fraction(item) - exact) == closest]
+    return min(ties, key=lambda item: unpack("I", pack("f", item))[0] & 1)
+
+
+def _defined(functions: Mapping[str, Function], name: str, where: str) -> Function:
+    if name not in functions:
+        raise CertificateError(f"{where}: expected a definition of {name}, got {', '.join(functions) or 'no function'}")
+    return functions[name]
+
+
+def _real_of(function: Function, where: str) -> str:
+    types = {p.type for p in function.parameters} - {"size_t"}
+    if function.returns != "void" or len(types) != 1:
+        raise CertificateError(f"{where}, line {function.line}: expected a kernel of one type, double or float")
+    return types.pop()
+
+
+PRECISION = {"double": "binary64", "float": "binary32"}
+
+
+def read_kernel(text: str, name: str, where: str = "kernel") -> Operations:
+    """Return the operations of the one-sample function of that name.
+
+    Parameters
+    ----------
+    text : str
+        A C file as symrot emits it.
+    name : str
+        The function.
+    where : str
+        The file's name, for errors.
+
+    Raises
+    ------
+    CertificateError
+        For anything that is not of the emitted subset: an unknown call, a name without value, an output that is not
+        assigned or twice, an index beyond its array.
+    """
+    functions = functions_of(text, where)
+    function = _defined(functions, name, where)
+    real = _real_of(function, where)
+    reader, scope = _Reader(functions, where, real), _Scope()
+    for parameter in function.parameters:
+        if parameter.size == 0:
+            scope.values[parameter.name] = reader.input(parameter.name)
+        else:
+            scope.arrays[parameter.name] = parameter
+            if parameter.is_const:
+                for index in range(parameter.size):
+                    reader.input(f"{parameter.name}[{index}]")
+    reader.statements(_Cursor(function.body, where), scope)
+    places = [(p.name, i) for p in function.parameters if p.size > 0 and not p.is_const for i in range(p.size)]
+    return _finished(reader, scope, function, places, where)
+
+
+def read_batch(text: str, name: str, where: str = "kernel") -> Operations:
+    """Return the operations of one sample of the batch function ``name``; places are those of the one-sample function.
+
+    Raises
+    ------
+    CertificateError
+        As :func:`read_kernel`, and for a loop that is not the one over all samples.
+    """
+    functions = functions_of(text, where)
+    function = _defined(functions, name, where)
+    real = _real_of(function, where)
+    counts = [p.name for p in function.parameters if p.type == "size_t"]
+    if len(counts) != 1:
+        raise CertificateError(f"{where}, line {function.line}: expected one number of samples for {name}")
+    reader, scope = _Reader(functions, where, real), _Scope(count=counts[0])
+    scope.arrays = {p.name: p for p in function.parameters if p.type != "size_t"}
+    cursor = _Cursor(function.body, where)
+    while cursor.peek() == "(":
+        cursor.expect("(", "void", ")")
+        reader._known(cursor, scope, cursor.name())
+        cursor.expect(";")
+    cursor.expect("for", "(", "size_t")
+    scope.loop = cursor.name()
+    cursor.expect("=", "0", ";", scope.loop, "<", scope.count, ";", "++", scope.loop, ")")
+    body = cursor.block()
+    if cursor.peek():
+        raise cursor.fail("the end of the function after the loop over samples")
+    reader.statements(_Cursor(body, where), scope)
+    return _finished(reader, scope, function, sorted(scope.written), where)
+
+
+def _finished(
+    reader: _Reader, scope: _Scope, function: Function, places: list[tuple[str, int]], where: str
+) -> Operations:
+    missing = [f"{name}[{index}]" for name, index in places if (name, index) not in scope.written]
+    if missing or not places:
+        raise CertificateError(f"{where}: expected {function.name} to assign {', '.join(missing) or 'an output'}")
+    outputs = [(f"{name}[{index}]", scope.written[name, index]) for name, index in places]
+    precision = PRECISION[reader.real]
+    return reader.builder.finish(function.name, precision, tuple(reader.inputs), outputs)
