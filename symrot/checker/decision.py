@@ -45,6 +45,7 @@ class Decision:
     requires: tuple[Requirement, ...] = ()
     counterexample: Counterexample | None = None
     reason: str = ""
+    notes: tuple[str, ...] = ()
 
 
 class _Printer(StrPrinter):  # type: ignore[misc]

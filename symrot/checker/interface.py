@@ -96,6 +96,7 @@ def _verdict(decision: Any, text: str, start: float) -> Verdict:
         requires=tuple(requirement.text for requirement in decision.requires),
         counterexample=decision.counterexample,
         reason=decision.reason,
+        notes=decision.notes,
         text=text,
         seconds=perf_counter() - start,
     )

@@ -1,9 +1,9 @@
 """The answer to a claim: what is known, under which conditions, the evidence, and what would be true instead."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
-__all__ = ["Counterexample", "Diagnosis", "Repair", "Verdict"]
+__all__ = ["Counterexample", "Diagnosis", "Dimensions", "Repair", "Verdict"]
 
 
 @dataclass(frozen=True)
@@ -40,6 +40,18 @@ class Repair:
 
 
 @dataclass(frozen=True)
+class Dimensions:
+    """Whether the units fit: ``"consistent"``, ``"inconsistent"`` (``text`` says where) or ``"unknown"``.
+
+    ``units`` holds what follows for names that came without a unit.
+    """
+
+    status: str = "unknown"
+    text: str = ""
+    units: dict[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
 class Verdict:
     """What is known about a claim.
 
@@ -57,6 +69,10 @@ class Verdict:
         At most three, nearest first.
     reason : str
         Why a claim is undecided; otherwise empty.
+    dimension : Dimensions
+        Whether the units fit, which has no part in ``verdict``.
+    notes : tuple of str
+        What a reader should know beside the verdict: that no point is known at which the hypotheses hold.
     id, where, text : str
         The claim.
     seconds : float
@@ -69,6 +85,7 @@ class Verdict:
     diagnosis: Diagnosis = Diagnosis("none", "")
     repairs: tuple[Repair, ...] = ()
     reason: str = ""
+    notes: tuple[str, ...] = ()
     id: str = ""
     where: str = ""
     text: str = ""
@@ -95,6 +112,8 @@ class Verdict:
             ("where", ", ".join(defined)),
             ("counterexample", str(self.counterexample or "")),
             ("because", self.reason),
+            ("units", self.dimension.text),
+            *(("note", note) for note in self.notes),
             ("diagnosis", f"{self.diagnosis.text} [{self.diagnosis.code}]" if wrong else ""),
             *(("true instead", f"{repair.text}  [{repair.code}]") for repair in self.repairs),
         ]
@@ -105,12 +124,9 @@ class Verdict:
         shown = self.counterexample
         return {
             "id": self.id,
-            "where": self.where,
-            "claim": self.text,
             "verdict": self.verdict,
             "entry": list(self.entry) if self.entry else None,
             "conditions": list(self.conditions),
-            "requires": list(self.requires),
             "counterexample": shown and {
                 "values": shown.values, "lhs": shown.lhs, "rhs": shown.rhs,
                 "entry": list(shown.entry) if shown.entry else None,
@@ -119,6 +135,13 @@ class Verdict:
             "repairs": [
                 {"text": r.text, "code": r.code, "cost": r.cost, "proven": r.proven} for r in self.repairs
             ],
-            "reason": self.reason,
             "seconds": round(self.seconds, 4),
+            "where": self.where,
+            "claim": self.text,
+            "requires": list(self.requires),
+            "reason": self.reason,
+            "dimension": {
+                "status": self.dimension.status, "text": self.dimension.text, "units": self.dimension.units,
+            },
+            "notes": list(self.notes),
         }  # fmt: skip

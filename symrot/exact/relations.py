@@ -10,8 +10,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from sympy.polys.domains import ZZ
-from sympy.polys.groebnertools import groebner
 from sympy.polys.rings import PolyElement
+
+from symrot.exact.buchberger import groebner_basis
 
 __all__ = ["Relations", "Rule", "relate"]
 
@@ -63,7 +64,7 @@ def relate(rules: Sequence[Rule], hypotheses: Sequence[PolyElement]) -> Relation
             return None
         else:
             everything = [*(rule.polynomial for rule in rules), *(p for p in hypotheses if p)]
-            return Relations(basis=tuple(groebner(everything, poly.ring)))
+            return Relations(basis=groebner_basis(everything, poly.ring))
     return known
 
 
