@@ -85,6 +85,7 @@ class Verdict:
     diagnosis: Diagnosis = Diagnosis("none", "")
     repairs: tuple[Repair, ...] = ()
     reason: str = ""
+    dimension: Dimensions = Dimensions()
     notes: tuple[str, ...] = ()
     id: str = ""
     where: str = ""
