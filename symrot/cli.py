@@ -174,7 +174,7 @@ def _check(options: Namespace) -> int:
         raise InputError("--all: expected --textbook all beside it, since the page holds every document")
     if options.textbook:
         return _check_textbook(options)
-    found = verdicts.check(options.claim, options.given, not options.no_repair, _progress)
+    found = verdicts.check(options.claim, options.given, options.unit, not options.no_repair, _progress)
     _progress("")
     if options.json:
         _say_json([verdict.to_json() for verdict in found])
@@ -264,6 +264,8 @@ def _check_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("-o", "--output", metavar="DIR", default="generated", help="folder of --all (./generated)")
     parser.add_argument("--given", metavar="HYPOTHESIS", action="append", default=[],
                         help="'a == b', 'x > 0' or 'x != 0', with a claim as text; may be repeated")  # fmt: skip
+    parser.add_argument("--unit", metavar="NAME=UNIT", action="append", default=[],
+                        help="unit of a symbol, with a claim as text: 'F=kg m/s^2'; may be repeated")  # fmt: skip
     parser.add_argument("--no-repair", action="store_true", help="do not look for true formulas near a false one")
     _json_option(parser)
 

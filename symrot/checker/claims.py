@@ -14,7 +14,8 @@ from symrot.checker.decision import Problem
 from symrot.checker.latex import Names, read_latex
 from symrot.checker.meaning import BUILT_IN, CONSTANTS, Meaning, is_matrix, time
 from symrot.checker.reader import Relation, read_expression, read_relation
-from symrot.checker.tree import Node, text
+from symrot.checker.tree import Node, text, walk
+from symrot.checker.units import read_unit
 from symrot.errors import InputError
 
 __all__ = ["Claim", "claim_of_text", "read_claims"]
@@ -40,6 +41,7 @@ class Claim:
     alternatives: tuple[Relation, ...] = ()
     implied: bool = False
     sources: Mapping[str, str] = field(default_factory=dict)
+    units: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def text(self) -> str:
@@ -134,7 +136,7 @@ def _hypothesis(source: str, where: str) -> Relation:
     raise InputError(f"{where}: expected a hypothesis like a == b, a != b, or x > 0 for a symbol x, got {source!r}")
 
 
-def claim_of_text(source: str, given: Sequence[str] = ()) -> Claim:
+def claim_of_text(source: str, given: Sequence[str] = (), units: Mapping[str, str] | None = None) -> Claim:
     """Return the claim of a text ``left == right`` or of LaTeX, which is text with a backslash or a dollar sign.
 
     Its names are real symbols, or functions of time where they are written ``f(t)``.
@@ -146,7 +148,14 @@ def claim_of_text(source: str, given: Sequence[str] = ()) -> Claim:
         raise InputError(f"expected a claim with '==', got '{relation[0]}' in {source[:60]!r}")
     hypotheses = tuple(_hypothesis(text, "given") for text in given)
     sources = {"claim": source.strip(), **{f"given.{n}": text for n, text in enumerate(given)}}
-    return Claim(relation=relation, given=hypotheses, implied=True, sources=sources)
+    used = {str(node.value) for side in relation[1:] for _, node in walk(side) if node.kind in ("name", "call")}
+    return Claim(
+        relation=relation,
+        given=hypotheses,
+        implied=True,
+        sources=sources,
+        units=_units(dict(units or {}), used, "claim"),
+    )
 
 
 # -- TOML -------------------------------------------------------------------------------------------------------------
@@ -205,7 +214,7 @@ def _claim(entry: dict[str, Any], number: int, label: str) -> Claim:
     sources |= {f"given.{n}": text for n, text in enumerate(entry.get("given", ()))}
     made = {
         "id": name, "where": entry.get("where", ""), "symbols": symbols, "functions": functions,
-        "define": tuple(define), "given": given,
+        "define": tuple(define), "given": given, "units": _units(entry.get("units", {}), known, place),
     }  # fmt: skip
     kinds = [key for key in ("claim", "latex", "value") if key in entry]
     if len(kinds) != 1:
@@ -224,6 +233,17 @@ def _claim(entry: dict[str, Any], number: int, label: str) -> Claim:
     relation = _equation(entry["claim"], f"{place}: claim")
     alternatives = tuple(_equation(text, f"{place}: alternatives") for text in entry.get("alternatives", ()))
     return Claim(**made, relation=relation, alternatives=alternatives, sources=sources)
+
+
+def _units(given: dict[str, str], known: set[str], place: str) -> dict[str, str]:
+    """Return the units of a claim, each of a declared name and of a unit that is known."""
+    for name, unit in given.items():
+        if name not in known:
+            raise InputError(f"{place}: units: expected units of names that the claim has, got {str(name)[:40]!r}")
+        if not isinstance(unit, str):
+            raise InputError(f"{place}: units: expected the unit of {name} as text, got {unit!r}")
+        read_unit(unit, f"{place}: units: {name}")
+    return given
 
 
 def _names_for_latex(claim: Claim) -> Names:

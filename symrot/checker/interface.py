@@ -1,6 +1,6 @@
 """``check`` and ``check_file``: a claim in, a verdict out."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from time import perf_counter
@@ -8,14 +8,22 @@ from typing import Any
 
 from symrot.checker.claims import Claim, claim_of_text, read_claims
 from symrot.checker.decision import Problem, decide_problem, shown
+from symrot.checker.dimensions import check_dimensions, dimensions_of_formulas
 from symrot.checker.values import decide_value
-from symrot.checker.verdict import Verdict
+from symrot.checker.verdict import Diagnosis, Verdict
 from symrot.errors import InputError
 
 __all__ = ["check", "check_claim", "check_file"]
 
 
-def check(left: Any, right: Any = None, *, assume: Sequence[Any] = (), repair: bool = True) -> Verdict:
+def check(
+    left: Any,
+    right: Any = None,
+    *,
+    assume: Sequence[Any] = (),
+    units: Mapping[str, str] | None = None,
+    repair: bool = True,
+) -> Verdict:
     """Return the verdict on an equation.
 
     Parameters
@@ -28,13 +36,17 @@ def check(left: Any, right: Any = None, *, assume: Sequence[Any] = (), repair: b
     assume : sequence
         Hypotheses: texts ``"a == b"``, ``"x > 0"``, ``"x != 0"`` for a text; equations, or expressions that are zero,
         for SymPy.
+    units : mapping of str to str, optional
+        Units by the name of a symbol, ``{"x": "m"}``; others are those of custom (``I1``, ``omega_1``, ``g``, ``t``,
+        ``phi``), of the symbols of symrot, or inferred. They bear on ``.dimension`` alone.
     repair : bool
         Whether to look for what went wrong with a claim that is not true, and for true formulas near it.
 
     Returns
     -------
     Verdict
-        ``.verdict`` is ``"true"``, ``"false"``, ``"conditional"`` or ``"undecided"``.
+        ``.verdict`` is ``"true"``, ``"false"``, ``"conditional"`` or ``"undecided"``; ``.dimension`` says beside it
+        whether the units fit.
 
     Raises
     ------
@@ -52,12 +64,13 @@ def check(left: Any, right: Any = None, *, assume: Sequence[Any] = (), repair: b
             raise InputError("expected the whole claim 'left == right' as one text, got two arguments")
         if isinstance(assume, str) or not all(isinstance(hypothesis, str) for hypothesis in assume):
             raise InputError("assume: expected a list of texts like 'a == b' beside a claim as text")
-        return check_claim(claim_of_text(left, assume), repair)
+        return check_claim(claim_of_text(left, assume, units or {}), repair)
     if right is None:
         raise InputError("expected two sides, or one text 'left == right'")
     start = perf_counter()
     decision = decide_problem(Problem(left, right, tuple(assume)))
-    return _verdict(decision, f"{shown(left)} == {shown(right)}", start)
+    verdict = _verdict(decision, f"{shown(left)} == {shown(right)}", start)
+    return replace(verdict, dimension=dimensions_of_formulas(left, right, units))
 
 
 def check_file(path: str | Path, *, repair: bool = True) -> list[Verdict]:
@@ -81,10 +94,17 @@ def check_claim(claim: Claim, repair: bool = True) -> Verdict:
             raise
         raise InputError(f"{claim.id}: {reason}") from None
     verdict = _verdict(decision, claim.text, start)
+    if claim.relation is not None:
+        hypotheses = [relation[1:] for relation in claim.given]
+        verdict = replace(
+            verdict, dimension=check_dimensions(claim.relation[1:], claim.define, hypotheses, claim.units)
+        )
     if repair and claim.relation is not None and decision.verdict in ("false", "conditional"):
         from symrot.checker.diagnose import diagnose
 
         diagnosis, repairs = diagnose(claim, decision)
+        if diagnosis.code == "none" and verdict.dimension.status == "inconsistent":
+            diagnosis = Diagnosis("dimension", f"the units do not fit: {verdict.dimension.text}")
         verdict = replace(verdict, diagnosis=diagnosis, repairs=repairs)
     return replace(verdict, id=claim.id, where=claim.where, seconds=perf_counter() - start)
 

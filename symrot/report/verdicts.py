@@ -13,7 +13,11 @@ __all__ = ["check", "lines"]
 
 
 def check(
-    source: str, given: Sequence[str], repair: bool, progress: Callable[[str], None] = lambda text: None
+    source: str,
+    given: Sequence[str],
+    units: Sequence[str],
+    repair: bool,
+    progress: Callable[[str], None] = lambda text: None,
 ) -> list[Verdict]:
     """Return the verdicts on a claim as text or LaTeX, or on the claims of a file.
 
@@ -27,9 +31,11 @@ def check(
     from symrot.checker.interface import check_claim
 
     if not _is_file(source):
-        return [check_text(source, assume=given, repair=repair)]
+        return [check_text(source, assume=given, units=_units(units), repair=repair)]
     if not source.endswith(".toml") and not Path(source).is_file():
         raise InputError(f"expected a claim 'left == right' or the path of a file of claims, got {source[:60]!r}")
+    if units:
+        raise InputError("--unit: expected a claim as text beside it; a file states its own units")
     if given:
         raise InputError("--given: expected a claim as text beside it; a file states its own hypotheses")
     found = []
@@ -37,6 +43,15 @@ def check(
         progress(f"checking {claim.id} ..")
         found.append(check_claim(claim, repair))
     return found
+
+
+def _units(words: Sequence[str]) -> dict[str, str]:
+    """Return the units of words like ``F=kg m/s^2``."""
+    pairs = [word.partition("=") for word in words]
+    for word, (name, sign, unit) in zip(words, pairs, strict=True):
+        if not (name.strip() and sign and unit.strip()):
+            raise InputError(f"--unit: expected NAME=UNIT like 'F=kg m/s^2', got {word[:60]!r}")
+    return {name.strip(): unit for name, _, unit in pairs}
 
 
 def _is_file(source: str) -> bool:

@@ -1,0 +1,163 @@
+"""Units as products of powers, read and printed, and equations between them, solved over the rationals.
+
+A dimension is a mapping of bases (kg, m, s, A, K, mol, cd) and of symbols of unknown unit to rational exponents; an
+angle has none. Scales do not count: mm and m are the same here.
+"""
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+from symrot.errors import InputError
+
+__all__ = ["NOTHING", "Dimension", "UnitSystem", "customary", "over", "raised", "read_unit", "shown_unit", "times"]
+
+Dimension = Mapping[str, Fraction]
+"""Exponents that are not zero: of bases, written ``"[m]"``, and of symbols of unknown unit, by name."""
+
+NOTHING: Dimension = {}
+BASES = ("kg", "m", "s", "A", "K", "mol", "cd")
+DERIVED = {
+    "": ("rad", "sr", "deg", "rev", "1"),
+    "s^-1": ("Hz", "rpm"),
+    "kg m s^-2": ("N", "kN", "lbf"),
+    "kg m^2 s^-2": ("J", "kJ"),
+    "kg m^2 s^-3": ("W", "kW"),
+    "kg m^-1 s^-2": ("Pa", "kPa", "MPa"),
+    "kg": ("kg", "g", "mg", "slug", "lbm"),
+    "m": ("m", "mm", "cm", "km", "um", "in", "ft"),
+    "s": ("s", "ms", "us", "min", "h", "d"),
+    "A s": ("C",),
+    "kg s^-2 A^-1": ("T",),
+    "A": ("A",), "K": ("K",), "mol": ("mol",), "cd": ("cd",),
+}  # fmt: skip
+"""Dimension -> the units of it that a reader may write."""
+
+_PIECE = re.compile(r"\s*(?P<divide>[/*·])?\s*(?P<name>[A-Za-z]+|1)(?:(?:\^|\*\*)\(?(?P<power>-?\d+(?:/\d+)?)\)?)?")
+_BRACKET = re.compile(r"\s*/\s*\((?P<inside>[^()]+)\)")
+
+CUSTOM = (
+    (r"t", "s"),
+    (r"m|m_?[1-9]|m[ab]", "kg"),
+    (r"g", "m/s^2"),
+    (r"phi|theta|psi", "rad"),
+    (r"d(phi|theta|psi)|(phi|theta|psi)(dot|d)|ph[d]|th[d]|ps[d]", "rad/s"),
+    (r"dd(phi|theta|psi)|(phi|theta|psi)dd", "rad/s^2"),
+    (r"omega(_?[xyz0-9])?|Omega|w_?[1-3]|w[xyz]", "rad/s"),
+    (r"d(omega(_?[xyz1-3])?|w_?[1-3]|w[xyz])", "rad/s^2"),
+    (r"I(_?[0-3xyz]|_?([1-3]{2}|[xyz]{2}))?", "kg m^2"),
+    (r"tau(_?[xyz1-3])?", "N m"),
+)
+"""Names that nearly every book uses for one quantity -> its unit. All others are inferred."""
+
+
+def times(first: Dimension, second: Dimension) -> Dimension:
+    """Return the dimension of a product."""
+    found = dict(first)
+    for name, power in second.items():
+        found[name] = found.get(name, Fraction(0)) + power
+    return {name: power for name, power in found.items() if power}
+
+
+def raised(base: Dimension, exponent: Fraction) -> Dimension:
+    """Return the dimension of a power."""
+    return {name: power * exponent for name, power in base.items() if exponent}
+
+
+def over(first: Dimension, second: Dimension) -> Dimension:
+    """Return the dimension of a quotient."""
+    return times(first, raised(second, Fraction(-1)))
+
+
+def customary(name: str) -> str | None:
+    """Return the unit that books give a quantity of this name, or None where they differ."""
+    return next((unit for pattern, unit in CUSTOM if re.fullmatch(pattern, name)), None)
+
+
+def read_unit(text: str, where: str = "") -> Dimension:
+    """Return the dimension of a unit such as ``kg m^2/s``, ``N m s/rad``, ``1/s`` or ``m^(1/2)``.
+
+    A slash divides by the one unit after it, or by those in brackets.
+
+    Raises
+    ------
+    InputError
+        Naming the unit that is not known.
+    """
+    place = f"{where}: " if where else ""
+    found: Dimension = NOTHING
+    position = 0
+    while position < len(text.rstrip()):
+        bracket = _BRACKET.match(text, position)
+        if bracket:
+            found = over(found, read_unit(bracket["inside"], where))
+            position = bracket.end()
+            continue
+        match = _PIECE.match(text, position)
+        name = match["name"] if match else text[position:].strip()[:20]
+        if match is None or name not in _KNOWN or (not position and match["divide"]):
+            raise InputError(f"{place}expected a unit like kg m^2/s, N m or 1/s, got {text[:40]!r} with {name!r}")
+        power = Fraction(match["power"] or 1)
+        found = times(found, raised(_KNOWN[name], -power if match["divide"] == "/" else power))
+        position = match.end()
+    if not text.strip():
+        raise InputError(f"{place}expected a unit like kg m^2/s, or 1, got empty text")
+    return found
+
+
+def shown_unit(dimension: Dimension) -> str:
+    """Return a dimension as text: ``kg m^2/s^2``; ``1`` for none; an unknown unit as ``[x]``."""
+    order = [*(f"[{base}]" for base in BASES), *sorted(dimension)]
+    names = [name for name in dict.fromkeys(order) if name in dimension]
+    above = [_shown_power(name, dimension[name]) for name in names if dimension[name] > 0]
+    below = [_shown_power(name, -dimension[name]) for name in names if dimension[name] < 0]
+    divisor = "" if not below else f"/{below[0]}" if len(below) == 1 else f"/({' '.join(below)})"
+    return (" ".join(above) or "1") + divisor
+
+
+def _shown_power(name: str, power: Fraction) -> str:
+    base = name[1:-1] if name[1:-1] in BASES else f"[{name}]"
+    if power == 1:
+        return base
+    return f"{base}^{power}" if power.denominator == 1 else f"{base}^({power})"
+
+
+def _plain(text: str) -> Dimension:
+    """Return the dimension of a text of bases and whole powers."""
+    pairs = [(piece.partition("^")[0], piece.partition("^")[2] or "1") for piece in text.split()]
+    return {f"[{base}]": Fraction(power) for base, power in pairs}
+
+
+_KNOWN = {name: _plain(text) for text, names in DERIVED.items() for name in names}
+
+
+@dataclass
+class UnitSystem:
+    """Equations between dimensions, in the exponents of unknown units; what follows from them so far."""
+
+    solved: dict[str, Dimension] = field(default_factory=dict)
+
+    def reduced(self, dimension: Dimension) -> Dimension:
+        """Return a dimension with everything put in that is known of its symbols."""
+        found: Dimension = NOTHING
+        for name, power in dimension.items():
+            found = times(found, raised(self.solved.get(name, {name: Fraction(1)}), power))
+        return found
+
+    def equate(self, first: Dimension, second: Dimension) -> bool:
+        """Demand that two dimensions are equal; return False, changing nothing, if they cannot be."""
+        quotient = self.reduced(over(first, second))
+        unknown = [name for name in quotient if not name.startswith("[")]
+        if not unknown:
+            return not quotient
+        name = unknown[-1]
+        rest = {other: power for other, power in quotient.items() if other != name}
+        value = raised(rest, -1 / quotient[name])
+        for other, held in self.solved.items():
+            if name in held:
+                power = held[name]
+                without = {n: p for n, p in held.items() if n != name}
+                self.solved[other] = times(without, raised(value, power))
+        self.solved[name] = value
+        return True
