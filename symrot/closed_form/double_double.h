@@ -9,30 +9,7 @@
 #ifndef SYMROT_DOUBLE_DOUBLE_H
 #define SYMROT_DOUBLE_DOUBLE_H
 
-/* At -O2 gcc compiles half as long as at -O3; of what -O3 adds, the loops over samples need this alone. */
-#if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC optimize("tree-loop-vectorize", "vect-cost-model=dynamic")
-#endif
-
-#include <math.h>
-
-#if defined(__FAST_MATH__)
-#error "error-free arithmetic is compiled without -ffast-math"
-#endif
-
-/* One rounding where the processor does it in one instruction; for series, where either result will do. */
-#ifdef FP_FAST_FMA
-#define MUL_ADD(a, b, c) fma((a), (b), (c))
-#else
-#define MUL_ADD(a, b, c) ((a)*(b) + (c))
-#endif
-
-/* Loops over samples turn into SIMD code only where everything in them is inlined. */
-#if defined(__GNUC__)
-#define ALWAYS_INLINE static inline __attribute__((always_inline))
-#else
-#define ALWAYS_INLINE static inline
-#endif
+#include "error_free.h"
 
 /* What is long and used often while constants are found: one copy each, or compiling takes several times as long. */
 #if defined(__GNUC__)
@@ -41,10 +18,6 @@
 #define ONE_COPY static
 #endif
 
-typedef struct {
-    double hi, lo;
-} dd;
-
 #define DD_PI {0x1.921fb54442d18p+1, 0x1.1a62633145c07p-53}
 #define DD_LN2 {0x1.62e42fefa39efp-1, 0x1.abc9e3b39803fp-56}
 
@@ -52,46 +25,6 @@ static inline dd dd_of(double x)
 {
     const dd r = {x, 0.0};
     return r;
-}
-
-static inline dd dd_pair(double hi, double lo)
-{
-    const dd r = {hi, lo};
-    return r;
-}
-
-/* a + b exactly. */
-static inline dd two_sum(double a, double b)
-{
-    const double s = a + b;
-    const double t = s - a;
-    return dd_pair(s, (a - (s - t)) + (b - t));
-}
-
-/* a + b exactly, for |a| >= |b| or a = 0. */
-static inline dd quick_two_sum(double a, double b)
-{
-    const double s = a + b;
-    return dd_pair(s, b - (s - a));
-}
-
-/* The rounding error of p = a*b. Without a fused instruction the factors are split into halves of 26 bits. */
-static inline double product_error(double a, double b, double p)
-{
-#ifdef FP_FAST_FMA
-    return fma(a, b, -p);
-#else
-    const double wide_a = 134217729.0*a, wide_b = 134217729.0*b; /* 2^27 + 1 */
-    const double high_a = wide_a - (wide_a - a), high_b = wide_b - (wide_b - b);
-    const double low_a = a - high_a, low_b = b - high_b;
-    return ((high_a*high_b - p) + high_a*low_b + low_a*high_b) + low_a*low_b;
-#endif
-}
-
-static inline dd two_product(double a, double b)
-{
-    const double p = a*b;
-    return dd_pair(p, product_error(a, b, p));
 }
 
 static inline dd dd_add(dd a, dd b)

@@ -1,21 +1,6 @@
-/*
- * A symmetric body with a rotor of constant angular momentum h along its axis, free: two steady rotations.
- *
- * With L = (A w1, A w2, C w3 + h), of constant length, omega = L/A + e3 (w3 - (C w3 + h)/A), so
- *     q(t) = exp(n |L| t/2A) q(0) exp(e3 sigma t/2),  n = L in space/|L|,  sigma = w3 - (C w3 + h)/A,
- * and the transverse part of omega turns at -sigma in the body. Landau & Lifshitz, Mechanics, 3rd ed., section 33, for
- * h = 0. Compile with -ffp-contract=off.
- */
+/* The constants of a gyrostat's motion, once: everything in double-double arithmetic. The formulas: gyrostat.h. */
+#include "gyrostat.h"
 #include "series.h"
-
-typedef struct {
-    double regime;         /* 0 */
-    double time_scale;     /* a power of two; times are multiplied by it */
-    double precession[4];  /* the phase |L| t/2A */
-    double spin[4];        /* the phase sigma t/2 */
-    double omega[3][3];    /* from cos sigma t, sin sigma t, 1 to omega, rad/s */
-    double attitude[4][4]; /* from the products of cosines and sines of both phases to q */
-} gyrostat;
 
 /*
  * Find the constants of a motion.
@@ -110,48 +95,6 @@ int symrot_gyrostat_prepare(
         for (int i = 0; i < 4; ++i)
             g->attitude[i][j] = columns[j][i].hi;
     return 0;
-}
-
-ALWAYS_INLINE void at_both(
-    const gyrostat *restrict f, ptrdiff_t count, const double *restrict times, double *restrict omega,
-    double *restrict q, int want_omega, int want_q)
-{
-    const gyrostat g = *f;
-    const phase precession = phase_of(g.precession), spin = phase_of(g.spin);
-    for (ptrdiff_t i = 0; i < count; ++i) {
-        const double t = times[i]*g.time_scale;
-        double taken, s, c;
-        const double rest = phase_rest(&spin, t, 4.0, 0.0, &taken);
-        sincos_quarters(rest, taken, &s, &c);
-        if (want_omega) {
-            const double c2 = (c - s)*(c + s), s2 = 2.0*s*c;
-            omega[3*i] = MUL_ADD(g.omega[0][0], c2, MUL_ADD(g.omega[0][1], s2, g.omega[0][2]));
-            omega[3*i + 1] = MUL_ADD(g.omega[1][0], c2, MUL_ADD(g.omega[1][1], s2, g.omega[1][2]));
-            omega[3*i + 2] = MUL_ADD(g.omega[2][0], c2, MUL_ADD(g.omega[2][1], s2, g.omega[2][2]));
-        }
-        if (want_q) {
-            double sine, cosine;
-            const double turn = phase_rest(&precession, t, 4.0, 0.0, &taken);
-            sincos_quarters(turn, taken, &sine, &cosine);
-            const double x0 = cosine*c, x1 = cosine*s, x2 = sine*c, x3 = sine*s;
-            const double (*map)[4] = g.attitude;
-            q[4*i] = MUL_ADD(map[0][0], x0, MUL_ADD(map[0][1], x1, MUL_ADD(map[0][2], x2, map[0][3]*x3)));
-            q[4*i + 1] = MUL_ADD(map[1][0], x0, MUL_ADD(map[1][1], x1, MUL_ADD(map[1][2], x2, map[1][3]*x3)));
-            q[4*i + 2] = MUL_ADD(map[2][0], x0, MUL_ADD(map[2][1], x1, MUL_ADD(map[2][2], x2, map[2][3]*x3)));
-            q[4*i + 3] = MUL_ADD(map[3][0], x0, MUL_ADD(map[3][1], x1, MUL_ADD(map[3][2], x2, map[3][3]*x3)));
-        }
-    }
-}
-
-/* The motion at times counted from that of the initial state; arguments as symrot_free_body_at. */
-void symrot_gyrostat_at(const gyrostat *g, ptrdiff_t count, const double *times, double *omega, double *quaternion)
-{
-    if (omega != NULL && quaternion != NULL)
-        at_both(g, count, times, omega, quaternion, 1, 1);
-    else if (quaternion != NULL)
-        at_both(g, count, times, omega, quaternion, 0, 1);
-    else if (omega != NULL)
-        at_both(g, count, times, omega, quaternion, 1, 0);
 }
 
 /* The length of the constants in doubles, for callers that lay them out themselves. */

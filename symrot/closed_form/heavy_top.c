@@ -1,36 +1,6 @@
-/*
- * The symmetric heavy top (Lagrange's) at any time, without stepping; spherical and physical pendulums are among them.
- *
- * A body with moments A, A, C and its centre of mass on its axis e3, held at a point of that axis: V = M cos theta, M > 0,
- * theta from the upward vertical to e3. Divided by A below, so A = 1. With s = 1 - cos theta, l = C omega_3,
- *     (ds/dt)^2 = 2 (E - M + M s) s (2 - s) - (D + l s)^2,  D = L_z - l,
- * has roots S3 <= 0 <= S2 <= s <= S1 <= 2, and s = S1 - (S1 - S2) sn^2 u, u = lambda t + u0. The Cayley-Klein parameters
- *     alpha = q0 + i q3 = cos(theta/2) exp(i (phi + psi)/2) = Ca exp(i ka t) theta1(z + i sa ya)/theta4(z),
- *     beta = q1 + i q2 = sin(theta/2) exp(i (phi - psi)/2) = Cb exp(i kb t) theta2(z + i sb yb)/theta4(z),  z = pi u/2K,
- * have no singularity at the vertical, and omega_1 + i omega_2 = 2 (conj(alpha) beta' - beta conj(alpha')). What vanishes
- * with the distance from the vertical is found from products of what else vanishes, never as a difference.
- * Jacobi's imaginary transformation takes the place of the series where m >= 0.7; it holds to m = 1.
- *
- * Sources: Klein & Sommerfeld, Theory of the Top, vol. 2, chapter 6; Whittaker, Analytical Dynamics, section 72.
- * Compile with -ffp-contract=off.
- */
+/* The constants of a symmetric heavy top's motion, once: everything in double-double arithmetic. The formulas: heavy_top.h. */
+#include "heavy_top.h"
 #include "series.h"
-
-enum { STEADY, CIRCULAR, HYPERBOLIC, SEPARATRIX };
-
-/* Everything is a double, so that other languages see one array. */
-typedef struct {
-    double regime;
-    double time_scale;               /* a power of two; times are multiplied by it */
-    double axial[4];                 /* the phase of u: turns of 4K; on the separatrix of v itself */
-    double turning[2][4];            /* the phases of ka t and kb t */
-    double slope[2];                 /* turns per 2K of u in the imaginary transformation */
-    double stretch;                  /* v per 2K of u */
-    double value[2][2][SERIES];      /* alpha, beta but for a common factor: real, imaginary part */
-    double derivative[2][2][SERIES]; /* their rates, with that factor held */
-    double omega[3][3];              /* from omega_1, omega_2 in turning axes and 1 to omega, rad/s */
-    double attitude[4][4];           /* from the parts of alpha, beta to q */
-} heavy_top;
 
 typedef struct {
     dd re, im;
@@ -345,6 +315,13 @@ static void store_maps(
     }
 }
 
+/* The phase of beta against alpha, from the phases of both, which start at zero. */
+static void store_between(heavy_top *t)
+{
+    const dd a = dd_pair(t->turning[0][0], t->turning[0][1]), b = dd_pair(t->turning[1][0], t->turning[1][1]);
+    store_phase(dd_sub(b, a), dd_of(0.0), t->between);
+}
+
 static dd in_turns(dd rate)
 {
     static const dd pi = DD_PI;
@@ -423,6 +400,7 @@ int symrot_heavy_top_prepare(
         t->regime = STEADY;
         store_phase(in_turns(half), dd_of(0.0), t->turning[0]);
         store_phase(dd_negative(in_turns(half)), dd_of(0.0), t->turning[1]);
+        store_between(t);
         t->value[0][0][0] = upright ? 1.0 : 0.0;
         t->value[1][0][0] = upright ? 0.0 : 1.0;
         store_maps(upright ? alpha : unit, upright ? unit : beta, w[2], up, &frame, scale, t);
@@ -540,130 +518,9 @@ int symrot_heavy_top_prepare(
     const dd total = dd_sqrt(dd_add(dd_square(sizes[0]), dd_square(sizes[1])));
     for (int i = 0; i < 2; ++i)
         store_numerator(&numerators[i], sign, kappas[i], rate, dd_div(sizes[i], total), i, t);
+    store_between(t);
     store_maps(constants[0], constants[1], w[2], up, &frame, scale, t);
     return 0;
-}
-
-/* ------------------------------------------------------------------------------------------------ at any time */
-
-/* From alpha, beta, their rates (re, im) and the turning of both to what is asked for. */
-ALWAYS_INLINE void put_motion(
-    const heavy_top *t, const double a[2], const double b[2], const double a_rate[2], const double b_rate[2],
-    const double turn_a[2], const double turn_b[2], double *restrict omega, double *restrict q, int want_omega, int want_q)
-{
-    const double size = 1.0/(MUL_ADD(a[0], a[0], a[1]*a[1]) + MUL_ADD(b[0], b[0], b[1]*b[1]));
-    if (want_omega) { /* 2 (conj(a) b' - b conj(a')) */
-        const double re = MUL_ADD(a[0], b_rate[0], a[1]*b_rate[1]) - MUL_ADD(b[0], a_rate[0], b[1]*a_rate[1]);
-        const double im = MUL_ADD(a[0], b_rate[1], -a[1]*b_rate[0]) - MUL_ADD(b[1], a_rate[0], -b[0]*a_rate[1]);
-        const double c = MUL_ADD(turn_a[0], turn_b[0], turn_a[1]*turn_b[1])*(2.0*size);
-        const double s = MUL_ADD(turn_a[0], turn_b[1], -turn_a[1]*turn_b[0])*(2.0*size);
-        const double x = MUL_ADD(re, c, -im*s), y = MUL_ADD(re, s, im*c);
-        omega[0] = MUL_ADD(t->omega[0][0], x, MUL_ADD(t->omega[0][1], y, t->omega[0][2]));
-        omega[1] = MUL_ADD(t->omega[1][0], x, MUL_ADD(t->omega[1][1], y, t->omega[1][2]));
-        omega[2] = MUL_ADD(t->omega[2][0], x, MUL_ADD(t->omega[2][1], y, t->omega[2][2]));
-    }
-    if (want_q) {
-        const double (*map)[4] = t->attitude;
-        const double unit = sqrt(size);
-        const double x0 = MUL_ADD(a[0], turn_a[0], -a[1]*turn_a[1])*unit;
-        const double x1 = MUL_ADD(a[0], turn_a[1], a[1]*turn_a[0])*unit;
-        const double x2 = MUL_ADD(b[0], turn_b[0], -b[1]*turn_b[1])*unit;
-        const double x3 = MUL_ADD(b[0], turn_b[1], b[1]*turn_b[0])*unit;
-        q[0] = MUL_ADD(map[0][0], x0, MUL_ADD(map[0][1], x1, MUL_ADD(map[0][2], x2, map[0][3]*x3)));
-        q[1] = MUL_ADD(map[1][0], x0, MUL_ADD(map[1][1], x1, MUL_ADD(map[1][2], x2, map[1][3]*x3)));
-        q[2] = MUL_ADD(map[2][0], x0, MUL_ADD(map[2][1], x1, MUL_ADD(map[2][2], x2, map[2][3]*x3)));
-        q[3] = MUL_ADD(map[3][0], x0, MUL_ADD(map[3][1], x1, MUL_ADD(map[3][2], x2, map[3][3]*x3)));
-    }
-}
-
-ALWAYS_INLINE void turning_at(const double v[4], double t, double lead, double turn[2])
-{
-    const phase p = phase_of(v);
-    double taken;
-    const double rest = phase_rest(&p, t, 4.0, lead, &taken);
-    sincos_quarters(rest, taken, &turn[1], &turn[0]);
-}
-
-ALWAYS_INLINE void at_circular(
-    const heavy_top *restrict f, ptrdiff_t count, const double *restrict times, double *restrict omega,
-    double *restrict q, int want_omega, int want_q)
-{
-    const heavy_top g = *f;
-    const phase axial = phase_of(g.axial);
-    for (ptrdiff_t i = 0; i < count; ++i) {
-        const double t = times[i]*g.time_scale;
-        double taken, s, c, turn_a[2], turn_b[2];
-        const double rest = phase_rest(&axial, t, 4.0, 0.0, &taken);
-        sincos_quarters(rest, taken, &s, &c);
-        const double x = (c - s)*(c + s); /* cos 2z */
-        const double a[2] = {s*cubic(g.value[0][0], x), c*cubic(g.value[0][1], x)};
-        const double b[2] = {c*cubic(g.value[1][0], x), s*cubic(g.value[1][1], x)};
-        const double a_rate[2] = {c*cubic(g.derivative[0][0], x), s*cubic(g.derivative[0][1], x)};
-        const double b_rate[2] = {s*cubic(g.derivative[1][0], x), c*cubic(g.derivative[1][1], x)};
-        turning_at(g.turning[0], t, 0.0, turn_a);
-        turning_at(g.turning[1], t, 0.0, turn_b);
-        put_motion(&g, a, b, a_rate, b_rate, turn_a, turn_b, omega + 3*i, q + 4*i, want_omega, want_q);
-    }
-}
-
-ALWAYS_INLINE void at_hyperbolic(
-    const heavy_top *restrict f, ptrdiff_t count, const double *restrict times, double *restrict omega,
-    double *restrict q, int want_omega, int want_q, int endless)
-{
-    const heavy_top g = *f;
-    const phase axial = phase_of(g.axial);
-    for (ptrdiff_t i = 0; i < count; ++i) {
-        const double t = times[i]*g.time_scale;
-        double taken, v, flip = 1.0, lead_a = 0.0, lead_b = 0.0, turn_a[2], turn_b[2];
-        if (endless) {
-            v = phase_whole(&axial, t);
-        } else {
-            const double whole = 2.0*phase_rest(&axial, t, 2.0, 0.0, &taken); /* of 2K, -1/2 to 1/2 */
-            const double odd = taken - 2.0*rint(0.5*taken);
-            flip = 1.0 - 2.0*odd*odd; /* alpha and beta change sign with every 2K */
-            v = g.stretch*whole;
-            lead_a = g.slope[0]*whole;
-            lead_b = g.slope[1]*whole;
-        }
-        v = clamped(v, 80.0);
-        const double up = exp_moderate(v), down = 1.0/up;
-        const double c = 0.5*(up + down)*flip, s = 0.5*(up - down)*flip;
-        const double s2 = 2.0*s*c, x = MUL_ADD(s, 2.0*s, 1.0); /* of 2v */
-        const double e2 = s2*flip, e0 = flip;
-        const double a[2] = {c*cubic(g.value[0][0], x), s*cubic(g.value[0][1], x)};
-        const double b[2] = {e0*cubic(g.value[1][0], x), e2*cubic(g.value[1][1], x)};
-        const double a_rate[2] = {s*cubic(g.derivative[0][0], x), c*cubic(g.derivative[0][1], x)};
-        const double b_rate[2] = {e2*cubic(g.derivative[1][0], x), e0*cubic(g.derivative[1][1], x)};
-        turning_at(g.turning[0], t, lead_a, turn_a);
-        turning_at(g.turning[1], t, lead_b, turn_b);
-        put_motion(&g, a, b, a_rate, b_rate, turn_a, turn_b, omega + 3*i, q + 4*i, want_omega, want_q);
-    }
-}
-
-ALWAYS_INLINE void at_steady(
-    const heavy_top *restrict f, ptrdiff_t count, const double *restrict times, double *restrict omega,
-    double *restrict q, int want_omega, int want_q)
-{
-    const heavy_top g = *f;
-    for (ptrdiff_t i = 0; i < count; ++i) {
-        const double t = times[i]*g.time_scale, none[2] = {0.0, 0.0};
-        const double a[2] = {g.value[0][0][0], 0.0}, b[2] = {g.value[1][0][0], 0.0};
-        double turn_a[2], turn_b[2];
-        turning_at(g.turning[0], t, 0.0, turn_a);
-        turning_at(g.turning[1], t, 0.0, turn_b);
-        put_motion(&g, a, b, none, none, turn_a, turn_b, omega + 3*i, q + 4*i, want_omega, want_q);
-    }
-}
-
-/* The motion at times counted from that of the initial state; arguments as symrot_free_body_at. */
-void symrot_heavy_top_at(const heavy_top *f, ptrdiff_t count, const double *times, double *omega, double *quaternion)
-{
-    switch ((int)f->regime) {
-    case CIRCULAR: BY_REQUEST(at_circular, ); break;
-    case HYPERBOLIC: BY_REQUEST(at_hyperbolic, , 0); break;
-    case SEPARATRIX: BY_REQUEST(at_hyperbolic, , 1); break;
-    default: BY_REQUEST(at_steady, ); break;
-    }
 }
 
 /* The length of the constants in doubles, for callers that lay them out themselves. */

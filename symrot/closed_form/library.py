@@ -1,7 +1,9 @@
-"""Compile the closed forms: one C file with the headers it includes, once, and load it.
+"""Compile the closed forms, once per machine, and load them: all scenes share them, only their constants differ.
 
-Error-free arithmetic needs every rounding as written: contraction is off, and each prepared motion first asks the
-compiled code whether that is so.
+A closed form is two C files, compiled side by side: ``name.c`` finds the constants of a motion, once, and is compiled
+at -O1, a third faster than at -O2 to the same speed; ``name_at.c`` holds the loops over samples. Error-free arithmetic
+needs every rounding as written: contraction is off, and each prepared motion first asks the compiled code whether that
+is so.
 """
 
 import ctypes
@@ -15,13 +17,12 @@ from numpy.typing import ArrayLike, NDArray
 from symrot.codegen import library
 from symrot.errors import CompilerError, InputError
 
-__all__ = ["FLAGS", "Floats", "address", "load", "source", "times_of"]
+__all__ = ["FLAGS", "PARTS", "Floats", "address", "begin", "load", "source", "times_of"]
 
 Floats = NDArray[np.float64]
 
 FLAGS = (
     "-std=c99",
-    "-O2",
     library.NATIVE,
     "-ffp-contract=off",  # double-double arithmetic counts on every rounding
     "-fno-math-errno",  # sqrt in one instruction
@@ -31,7 +32,11 @@ FLAGS = (
     "-shared",
 )
 
-_loaded: dict[str, Any] = {}
+PARTS = {"": (*FLAGS, "-O1"), "_at": (*FLAGS, "-O2")}
+"""The two files of a closed form, by what follows its name, with their flags."""
+
+_begun: dict[str, list[library.Building]] = {}
+_loaded: dict[str, tuple[Any, ...]] = {}
 
 
 def source(name: str) -> str:
@@ -50,20 +55,37 @@ def source(name: str) -> str:
     return text(f"{name}.c") + "\n"
 
 
-def load(name: str) -> Any:
-    """Return the loaded library of ``name.c``.
+def begin(name: str) -> list[library.Building]:
+    """Return the libraries of a closed form, one for each of :data:`PARTS`, from the cache or while they are compiled.
 
     Raises
     ------
     CompilerError
-        If there is no C compiler, or the library cannot be loaded.
+        If there is no C compiler.
+    """
+    if name not in _begun:
+        _begun[name] = [
+            library.Building(source(f"{name}{part}"), f"closed_form_{name}{part}", flags)
+            for part, flags in PARTS.items()
+        ]
+    return _begun[name]
+
+
+def load(name: str) -> tuple[Any, ...]:
+    """Return the loaded libraries of a closed form: that of its constants, that of its samples.
+
+    Raises
+    ------
+    CompilerError
+        If there is no C compiler, it refuses them, or one cannot be loaded.
     """
     if name not in _loaded:
-        path = library.build(source(name), f"closed_form_{name}", FLAGS)
+        parts = begin(name)
+        del _begun[name]
         try:
-            _loaded[name] = ctypes.CDLL(str(path))
+            _loaded[name] = tuple(ctypes.CDLL(str(part.path())) for part in parts)
         except OSError as error:
-            raise CompilerError(f"the compiled library {path} cannot be loaded: {error}") from error
+            raise CompilerError(f"the compiled closed form {name!r} cannot be loaded: {error}") from error
     return _loaded[name]
 
 

@@ -65,8 +65,9 @@ class ExactMotion:
 
 def _functions(name: str, arguments: int) -> _Functions:
     if name not in _bound:
-        library = load(name)
-        prepare, evaluate, length = (getattr(library, f"symrot_{name}_{part}") for part in ("prepare", "at", "length"))
+        constants, samples = load(name)
+        prepare, length = (getattr(constants, f"symrot_{name}_{part}") for part in ("prepare", "length"))
+        evaluate = getattr(samples, f"symrot_{name}_at")
         pointer, size = ctypes.c_void_p, ctypes.c_ssize_t
         prepare.argtypes, prepare.restype = (pointer,) * (arguments + 1), ctypes.c_int
         evaluate.argtypes, evaluate.restype = (pointer, size, pointer, pointer, pointer), None

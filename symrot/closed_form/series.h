@@ -1,20 +1,11 @@
 /*
- * What the exact motions share: how constants are kept, theta series as polynomials, quaternions to 31 digits.
+ * What the constants of all exact motions take: how they are kept, theta series as polynomials, quaternions to 31 digits.
  */
 #ifndef SYMROT_SERIES_H
 #define SYMROT_SERIES_H
 
-#include <stddef.h>
-
-#include "circular.h"
-
-enum { SERIES = 5 }; /* terms of a series, coefficients of a polynomial */
-
-static inline phase phase_of(const double v[4])
-{
-    const phase p = {{v[0], v[1]}, {v[2], v[3]}};
-    return p;
-}
+#include "double_double.h"
+#include "regimes.h"
 
 ONE_COPY void quaternion_product(const dd a[4], const dd b[4], dd c[4])
 {
@@ -107,30 +98,5 @@ static inline double near_power(const double *values, int count)
     exponent = exponent > 1000 ? 1000 : exponent < -1000 ? -1000 : exponent;
     return ldexp(1.0, exponent);
 }
-
-ALWAYS_INLINE double polynomial(const double c[SERIES], double x)
-{
-    return MUL_ADD(MUL_ADD(MUL_ADD(MUL_ADD(c[4], x, c[3]), x, c[2]), x, c[1]), x, c[0]);
-}
-
-ALWAYS_INLINE double cubic(const double c[SERIES], double x)
-{
-    return MUL_ADD(MUL_ADD(MUL_ADD(c[3], x, c[2]), x, c[1]), x, c[0]);
-}
-
-ALWAYS_INLINE double clamped(double x, double limit)
-{
-    x = x > limit ? limit : x;
-    return x < -limit ? -limit : x;
-}
-
-/* One copy of a loop over f, count, times, omega, quaternion for each thing asked for: nothing is decided inside. */
-#define BY_REQUEST(loop, ...) \
-    if (omega != NULL && quaternion != NULL) \
-        loop(f, count, times, omega, quaternion, 1, 1 __VA_ARGS__); \
-    else if (quaternion != NULL) \
-        loop(f, count, times, omega, quaternion, 0, 1 __VA_ARGS__); \
-    else if (omega != NULL) \
-        loop(f, count, times, omega, quaternion, 1, 0 __VA_ARGS__)
 
 #endif

@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 from symrot.errors import CompilerError
 
-__all__ = ["FLAGS", "Cache", "Compiler", "build", "cache", "clear", "compiler", "fetch", "store"]
+__all__ = ["FLAGS", "Building", "Cache", "Compiler", "build", "built", "cache", "clear", "compiler", "fetch", "store"]
 
 NATIVE = "-march=native"
 FLAGS = (
@@ -99,13 +99,61 @@ def build(source: str, name: str, flags: tuple[str, ...] = FLAGS) -> Path:
         If there is no compiler, or it refuses the source: its first complaint is quoted.
     """
     tool = compiler()
-    processor = _processor() if NATIVE in flags else ""
-    key = _digest("\0".join((source, tool.identity, *flags, processor, sys.platform)))
-    entry = f"{name}-{key}.index"
+    found = built(source, name, flags)
+    return _compile(tool, source, name, _entry(tool, source, name, flags), flags) if found is None else found
+
+
+def built(source: str, name: str, flags: tuple[str, ...] = FLAGS) -> Path | None:
+    """Return the library that :func:`build` would return without compiling, or None where it would have to compile."""
+    entry = _entry(compiler(), source, name, flags)
     for directory in _rooms():
         if (found := _sound_library(directory, entry, name)) is not None:
             return found
-    return _compile(tool, source, name, entry, flags)
+    return None
+
+
+class Building:
+    """A library that is compiled while its caller does something else; arguments as :func:`build`."""
+
+    def __init__(self, source: str, name: str, flags: tuple[str, ...] = FLAGS) -> None:
+        from threading import Thread
+
+        self._path: Path | None = built(source, name, flags)
+        self._error: Exception | None = None
+        self._thread = Thread(target=self._work, args=(source, name, flags))
+        if self._path is None:
+            self._thread.start()
+
+    def _work(self, source: str, name: str, flags: tuple[str, ...]) -> None:
+        try:
+            self._path = build(source, name, flags)
+        except Exception as error:  # carried over to the thread that asks
+            self._error = error
+
+    def wait(self) -> None:
+        """Return when the compiler is done, well or not."""
+        if self._thread.ident is not None:
+            self._thread.join()
+
+    def path(self) -> Path:
+        """Return the library when it is there.
+
+        Raises
+        ------
+        CompilerError
+            As :func:`build`.
+        """
+        self.wait()
+        if self._error is not None:
+            raise self._error
+        assert self._path is not None
+        return self._path
+
+
+def _entry(tool: Compiler, source: str, name: str, flags: tuple[str, ...]) -> str:
+    processor = _processor() if NATIVE in flags else ""
+    key = _digest("\0".join((source, tool.identity, *flags, processor, sys.platform)))
+    return f"{name}-{key}.index"
 
 
 def store(key: str, text: str) -> None:

@@ -1,0 +1,60 @@
+/*
+ * Sums and products without an error: what rounding takes off is kept (Dekker 1971; Ogita, Rump & Oishi 2005).
+ *
+ * They hold only where the compiler keeps each rounding as written: compile with -ffp-contract=off, never with -ffast-math.
+ */
+#ifndef SYMROT_ERROR_FREE_H
+#define SYMROT_ERROR_FREE_H
+
+#include <math.h>
+
+#if defined(__FAST_MATH__)
+#error "error-free arithmetic is compiled without -ffast-math"
+#endif
+
+/* An unevaluated sum, |lo| <= ulp(hi)/2. */
+typedef struct {
+    double hi, lo;
+} dd;
+
+static inline dd dd_pair(double hi, double lo)
+{
+    const dd r = {hi, lo};
+    return r;
+}
+
+/* a + b exactly. */
+static inline dd two_sum(double a, double b)
+{
+    const double s = a + b;
+    const double t = s - a;
+    return dd_pair(s, (a - (s - t)) + (b - t));
+}
+
+/* a + b exactly, for |a| >= |b| or a = 0. */
+static inline dd quick_two_sum(double a, double b)
+{
+    const double s = a + b;
+    return dd_pair(s, b - (s - a));
+}
+
+/* The rounding error of p = a*b. Without a fused instruction the factors are split into halves of 26 bits. */
+static inline double product_error(double a, double b, double p)
+{
+#ifdef FP_FAST_FMA
+    return fma(a, b, -p);
+#else
+    const double wide_a = 134217729.0*a, wide_b = 134217729.0*b; /* 2^27 + 1 */
+    const double high_a = wide_a - (wide_a - a), high_b = wide_b - (wide_b - b);
+    const double low_a = a - high_a, low_b = b - high_b;
+    return ((high_a*high_b - p) + high_a*low_b + low_a*high_b) + low_a*low_b;
+#endif
+}
+
+static inline dd two_product(double a, double b)
+{
+    const double p = a*b;
+    return dd_pair(p, product_error(a, b, p));
+}
+
+#endif
