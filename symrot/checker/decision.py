@@ -8,6 +8,8 @@ from sympy import Derivative, Expr, Mul, Pow, zeros
 from sympy.printing.str import StrPrinter
 
 from symrot.checker.conditions import Requirement, branch_requirements, requirements, surely_nonnegative
+from symrot.checker.grounds import Grounds
+from symrot.checker.real_points import ATTEMPTS
 from symrot.checker.verdict import Counterexample
 from symrot.errors import InputError
 from symrot.exact.counterexample import Counterexample as Witness
@@ -96,15 +98,23 @@ def _decided(
     for divisor in problem.divisors:
         ring.ratios.invert(ring.ratio(divisor), divisor)
     conditions = _conditions(ring, granted, problem.radicands)
+    grounds = Grounds(ring, shown)
     if not wrong:
-        return Decision("true", conditions)
+        return Decision("true", conditions, notes=grounds.notes())
     numerators = [ring.reduce(residuals[place].numerator) for place in wrong]
-    witness = _witness([rational_witness, closed_form_witness], ring, lefts, rights, wrong[:4], shape)
+    witness = _witness([rational_witness, grounds.near_witness], ring, lefts, rights, wrong[:4], shape)
+    if not witness:
+        if grounds.imply(numerators):
+            return Decision("true", conditions, notes=grounds.notes())
+        grounds.refuse_if_empty()
+        rest = [grounds.witness, grounds.checked(closed_form_witness)]
+        witness = _witness(rest, ring, lefts, rights, wrong[:4], shape)
     needed = requirements(ring, numerators, [(lefts[n], rights[n]) for n in wrong], len(lefts))
+    needed = [requirement for requirement in needed if grounds.allow(requirement.zeros)]
     if not needed and ring.roots:
         branches = branch_requirements(ring, numerators)
         if branches == []:
-            return Decision("true", conditions)
+            return Decision("true", conditions, notes=grounds.notes())
         needed = branches or []
     counterexample = _as_text(witness) if witness else None
     if needed:
@@ -214,5 +224,5 @@ def _stopped_by(ring: FormulaRing) -> str:
         roots = ", ".join(shown(root.expression) for root in list(ring.roots)[:3])
         return f"the sides agree or differ with the sign of {roots}, and no point was found where they provably differ"
     if ring.hypotheses:
-        return "no rational point was found that obeys the hypotheses and at which the sides differ"
+        return f"none of {ATTEMPTS} points drawn obeys the hypotheses and shows a difference; no proof was found either"
     return "no rational point was found at which the sides differ, since an angle is tied to other symbols"

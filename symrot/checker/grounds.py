@@ -1,0 +1,231 @@
+"""Whether what a claim takes for granted holds anywhere, what follows from it, and where it leaves the claim false.
+
+A claim that follows from hypotheses which nothing obeys is true of nothing: such hypotheses are refused where that can
+be proven, and a verdict "true" says so where no point is known at which they hold.
+"""
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import replace
+from functools import cached_property
+
+from sympy import CRootOf, Expr, Rational, Symbol, pi, preorder_traversal
+from sympy import cos as cosine_of
+from sympy import sin as sine_of
+from sympy.core.function import AppliedUndef
+from sympy.polys.rings import PolyElement
+
+from symrot.checker.constraints import Constraints, constraints_of, occurring
+from symrot.checker.emptiness import Emptiness, vanishes_on, why_empty
+from symrot.checker.real_points import ATTEMPTS, RealPoint, real_points, value_at
+from symrot.errors import InputError
+from symrot.exact.angles import base_angle
+from symrot.exact.counterexample import Counterexample as Witness
+from symrot.exact.counterexample import enclosure
+from symrot.exact.ring import FormulaRing
+
+__all__ = ["Grounds"]
+
+Search = Callable[[FormulaRing, Expr, Expr, tuple[int, int] | None], Witness | None]
+
+FEW = 24
+"""Points drawn before proofs are tried, which cost more."""
+
+CANDIDATES = 8
+"""Points where the sides differ among which the one that reads best is shown."""
+
+OTHER_VALUES = tuple(Rational(n, d) for n, d in ((1, 1), (2, 1), (1, 2), (-1, 1), (3, 1), (-1, 3), (5, 7), (-3, 2)))
+
+
+class Grounds:
+    """The hypotheses of one decision.
+
+    Parameters
+    ----------
+    ring : FormulaRing
+        Into which everything was read that the claim divides by.
+    text : function
+        From an expression to text.
+    """
+
+    def __init__(self, ring: FormulaRing, text: Callable[[Expr], str]) -> None:
+        self.ring, self.text = ring, text
+        self._drawn: list[RealPoint | None] = []
+
+    @cached_property
+    def constraints(self) -> Constraints:
+        """What is taken for granted, as polynomials."""
+        return constraints_of(self.ring)
+
+    @cached_property
+    def matter(self) -> bool:
+        """Whether there are hypotheses, or symbols with a sign, at all."""
+        signs = self.constraints
+        return bool(self.ring.hypotheses or signs.positive or signs.negative or signs.nonnegative or signs.whole)
+
+    @cached_property
+    def _source(self) -> Iterator[RealPoint | None]:
+        return real_points(self.constraints)
+
+    def points(self, attempts: int = ATTEMPTS) -> Iterator[RealPoint]:
+        """Yield the points among the first so many drawn that obey all constraints; all are drawn once."""
+        number = 0
+        while number < attempts:
+            if number == len(self._drawn):
+                self._drawn.append(next(self._source, None))
+            point = self._drawn[number]
+            number += 1
+            if point is not None:
+                yield point
+
+    def notes(self) -> tuple[str, ...]:
+        """Return what must be said beside a verdict "true": nothing where a point of the hypotheses is known.
+
+        Raises
+        ------
+        InputError
+            If the hypotheses hold at no real point.
+        """
+        if not self.ring.hypotheses:
+            return ()
+        for attempts in (FEW, ATTEMPTS):
+            if self.constraints.complete and next(self.points(attempts), None) is not None:
+                return ()
+            self.refuse_if_empty()
+        return (f"no real point is known at which the hypotheses hold: none was found among {ATTEMPTS} drawn",)
+
+    @cached_property
+    def _empty(self) -> Emptiness | None:
+        return why_empty(self.constraints) if self.matter else None
+
+    def refuse_if_empty(self) -> None:
+        """Raise ``InputError`` where the hypotheses are proven to hold at no real point."""
+        empty = self._empty
+        if empty is None:
+            return
+        generators = self.ring.generators
+        reason, poly = empty.reason, empty.polynomial
+        if poly is not None and not occurring([poly]) - set(range(len(generators))):
+            formula = poly.as_expr(*generators, *[Symbol("inverse")] * (poly.ring.ngens - len(generators)))
+            reason = f"{self.text(formula)} would have to be zero and cannot be"
+        divisors = " where both sides are defined" if self.constraints.nonzero else ""
+        raise InputError(f"the hypotheses hold at no real point{divisors}: {reason}")
+
+    def imply(self, numerators: Iterable[PolyElement]) -> bool:
+        """Return whether polynomials are proven to vanish at all real points of the constraints."""
+        target = self.constraints.ring
+        return self.matter and all(vanishes_on(self.constraints, poly.set_ring(target)) for poly in numerators)
+
+    def allow(self, zeros: Sequence[Expr]) -> bool:
+        """Return whether expressions may vanish together: False where that is proven impossible."""
+        if not self.matter or not zeros:
+            return True
+        target = self.constraints.ring
+        added = [self.ring.ratio(zero).numerator.set_ring(target) for zero in zeros]
+        return why_empty(replace(self.constraints, zeros=(*self.constraints.zeros, *added))) is None
+
+    def checked(self, search: Search) -> Search:
+        """Return a search for witnesses less those at which something is zero that must not be."""
+
+        def searched(ring: FormulaRing, left: Expr, right: Expr, entry: tuple[int, int] | None) -> Witness | None:
+            found = search(ring, left, right, entry)
+            return found if found is not None and self._nowhere_zero(dict(found.values)) else None
+
+        return searched
+
+    # -- witnesses ----------------------------------------------------------------------------------------------------
+
+    def near_witness(self, ring: FormulaRing, left: Expr, right: Expr, entry: tuple[int, int] | None) -> Witness | None:
+        """As :meth:`witness`, among the first few points."""
+        return self.witness(ring, left, right, entry, FEW)
+
+    def witness(
+        self, ring: FormulaRing, left: Expr, right: Expr, entry: tuple[int, int] | None, attempts: int = ATTEMPTS
+    ) -> Witness | None:
+        """Return an exact point of the constraints where two sides differ, or None if none was found."""
+        if not self.matter or not self.constraints.real or not self.constraints.complete:
+            return None
+        residual = ring.difference(left, right).numerator.set_ring(self.constraints.ring)
+        if not occurring([residual]) <= self.constraints.free:
+            return self._by_enclosures(left, right, entry, attempts)
+        found = []
+        for point in self.points(attempts):
+            if value_at(residual, point):
+                found.append(point)
+            if len(found) == CANDIDATES:
+                break
+        return self._shown(min(found, key=lambda point: point.size), left, right, entry) if found else None
+
+    def _shown(self, point: RealPoint, left: Expr, right: Expr, entry: tuple[int, int] | None) -> Witness:
+        used = set().union(*(preorder_traversal(formula) for formula in (left, right, *self.ring.hypotheses)))
+        pairs = list(self._named(point, used))
+        sides = [self._value(side, point) for side in (left, right)]
+        roots = sorted({root for value in (*sides, *(v for _, v in pairs)) for root in value.atoms(CRootOf)}, key=str)
+        names = {root: Symbol("root" + "_" * number) for number, root in enumerate(roots, start=0)}
+        values = [(name, value.xreplace(names)) for name, value in pairs] + [(n, root) for root, n in names.items()]
+        return Witness(tuple(values), entry, *(side.xreplace(names) for side in sides))
+
+    def _value(self, side: Expr, point: RealPoint) -> Expr:
+        ratio, target = self.ring.ratio(side), self.constraints.ring
+        above = value_at(ratio.numerator.set_ring(target), point)
+        below = value_at(self.ring.ratios.denominator(ratio).set_ring(target), point)
+        return point.number(above / below)
+
+    def _named(self, point: RealPoint, used: set[Expr]) -> Iterator[tuple[Expr, Expr]]:
+        """Yield symbols and angles in use with their values; quarter turns as angles, others as cosine and sine."""
+        quarters = {(0, 1): 0, (1, 0): 1, (0, -1): 2, (-1, 0): 3}
+        for leaf, place in self.ring.symbols.items():
+            if leaf in used and place in point.values:
+                yield leaf, point.number(point.values[place])
+        for atom, place in self.ring.sines.items():
+            if not atom.atoms(Symbol, AppliedUndef) & used:
+                continue
+            sine, cosine = (point.number(point.values[n]) for n in (place, self.ring.cosines[atom]))
+            base = base_angle(atom, self.ring.bases[atom])
+            if (sine, cosine) in quarters:
+                yield atom, quarters[sine, cosine] * pi / 2 * atom / base
+            else:
+                yield cosine_of(base), cosine
+                yield sine_of(base), sine
+
+    def _by_enclosures(self, left: Expr, right: Expr, entry: tuple[int, int] | None, attempts: int) -> Witness | None:
+        """Return a point of the symbols where 50-digit intervals of the sides are disjoint."""
+        leaves = {place: leaf for leaf, place in self.ring.symbols.items()}
+        involved = occurring([*self.constraints.zeros, *self.constraints.products])
+        if not involved <= leaves.keys():
+            return None
+        others = sorted(_variables([left, right]) - set(leaves.values()), key=str)
+        for point in self.points(attempts):
+            values = {leaves[n]: point.number(value) for n, value in point.values.items() if n in leaves}
+            values |= {name: OTHER_VALUES[n % len(OTHER_VALUES)] for n, name in enumerate(others)}
+            if not self._defined(values):
+                continue
+            sides = left.xreplace(values), right.xreplace(values)
+            held = [enclosure(side) for side in sides]
+            if None not in held and 0 not in held[0] - held[1]:
+                used = _variables([left, right, *self.ring.hypotheses])
+                shown = sorted(((name, value) for name, value in values.items() if name in used), key=str)
+                return Witness(tuple(shown), entry, *sides)
+        return None
+
+    def _nowhere_zero(self, values: dict[Expr, Expr]) -> bool:
+        factors = [factor.as_expr(*self.ring.generators).xreplace(values) for factor in self.ring.ratios.factors]
+        return all(held is not None and 0 not in held for held in map(enclosure, factors))
+
+    def _defined(self, values: dict[Expr, Expr]) -> bool:
+        if not self._nowhere_zero(values):
+            return False
+        roots = [enclosure(found.base.xreplace(values)) for found in self.ring.radicals.values()]
+        return all(held is not None and held.a >= 0 for held in roots)
+
+
+def _variables(formulas: Iterable[Expr]) -> set[Expr]:
+    """Return symbols, functions of time and their derivatives, the outermost of each."""
+    found: set[Expr] = set()
+    stack = list(formulas)
+    while stack:
+        node = stack.pop()
+        if node.is_Symbol or isinstance(node, AppliedUndef) or node.is_Derivative:
+            found.add(node)
+        else:
+            stack.extend(node.args)
+    return found

@@ -1,0 +1,86 @@
+"""Rational points of quadrics: one found among simple points, all others by lines through it."""
+
+from collections.abc import Sequence
+from math import isqrt
+from random import Random
+from typing import Any
+
+from sympy.polys.domains import QQ
+from sympy.polys.rings import PolyElement
+
+__all__ = ["SIMPLE", "point_of_quadric", "rational_square_root"]
+
+SIMPLE = tuple(
+    QQ(above, below)
+    for above, below in (
+        (0, 1), (1, 1), (-1, 1), (3, 5), (4, 5), (2, 1), (1, 2), (-3, 5), (-4, 5), (1, 3), (2, 3), (3, 1), (-2, 1),
+        (-1, 2), (-2, 3), (4, 1), (5, 1), (5, 13), (12, 13),
+    )
+)  # fmt: skip
+"""Values tried for coordinates, the simplest first."""
+
+TRIES = 60
+"""Simple points tried on one quadric, and lines tried through one point of it."""
+
+
+def rational_square_root(value: Any) -> Any:
+    """Return the square root of a rational if that is rational, else None."""
+    if value < 0:
+        return None
+    above, below = isqrt(int(value.numerator)), isqrt(int(value.denominator))
+    return QQ(above, below) if above**2 == value.numerator and below**2 == value.denominator else None
+
+
+def point_of_quadric(poly: PolyElement, places: Sequence[int], source: Random) -> dict[int, Any] | None:
+    """Return a rational point of a quadric, any of them with some chance; None if no simple one was found.
+
+    Parameters
+    ----------
+    poly : PolyElement
+        Of degree 2, over the rationals.
+    places : sequence of int
+        The generators that occur in it, at least two.
+    source : Random
+    """
+    base = _simple_point(poly, places, source)
+    if base is None or source.random() < 0.3:
+        return base
+    slopes = {n: _at(poly.diff(n), base) for n in places}
+    leading = poly.new({mono: c for mono, c in poly.items() if sum(mono) == 2})
+    for _ in range(TRIES):
+        line = {n: QQ(source.randint(-5, 5)) for n in places}
+        along, curved = sum((slopes[n] * line[n] for n in places), QQ(0)), _at(leading, line)
+        if along and curved:  # the line leaves the point and meets the quadric once more
+            return {n: base[n] - along / curved * line[n] for n in places}
+    return base
+
+
+def _simple_point(poly: PolyElement, places: Sequence[int], source: Random) -> dict[int, Any] | None:
+    """Return a point with all coordinates but one simple."""
+    for attempt in range(TRIES):
+        last = source.choice(places)
+        pool = SIMPLE[: 3 + attempt // 4]
+        point = {n: source.choice(pool) for n in places if n != last}
+        rest = poly.subs(list(point.items()))
+        a, b, c = (rest.coeff(poly.ring.gens[last] ** power if power else 1) for power in (2, 1, 0))
+        if a:
+            root = rational_square_root(b * b - 4 * a * c)
+            if root is None:
+                continue
+            point[last] = (-b + source.choice((1, -1)) * root) / (2 * a)
+        elif b:
+            point[last] = -c / b
+        else:
+            continue
+        return point
+    return None
+
+
+def _at(poly: PolyElement, values: dict[int, Any]) -> Any:
+    total = QQ(0)
+    for mono, coefficient in poly.items():
+        for place, power in enumerate(mono):
+            if power:
+                coefficient = coefficient * values[place] ** power
+        total += coefficient
+    return total
