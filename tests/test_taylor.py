@@ -181,9 +181,11 @@ def test_long_motions_keep_the_promise(name):
     """184 revolutions of a free body, 200 s of heavy tops; the last bits are lost to rounding alone."""
     problem, exact = bench._Problem(name, 1.0), bench.reference(name)
     for tolerance in (1e-4, 1e-7, 1e-10, 1e-12):
-        states, _ = taylor.integrate(problem.taylor_library(), problem.p, problem.y0, 0.0, [problem.stop], tolerance)
+        states, _ = taylor.integrate(
+            problem.taylor_library(), problem.taylor_p, problem.y0, 0.0, [problem.stop], tolerance
+        )
         assert problem.error(states[0], exact) < 5 * tolerance
-    states, _ = taylor.integrate(problem.taylor_library(), problem.p, problem.y0, 0.0, [problem.stop], 1e-15)
+    states, _ = taylor.integrate(problem.taylor_library(), problem.taylor_p, problem.y0, 0.0, [problem.stop], 1e-15)
     assert problem.error(states[0], exact) < 2e-12
 
 
@@ -191,7 +193,7 @@ def test_the_kept_references_are_those_computed(tmp_path, monkeypatch):
     """A short span both ways: 40-digit series against the stepper near round-off, and a wrong state is far off."""
     exact = bench.reference("heavy symmetric", 0.01)
     problem = bench._Problem("heavy symmetric", 0.01)
-    states, _ = taylor.integrate(problem.taylor_library(), problem.p, problem.y0, 0.0, [problem.stop], 1e-15)
+    states, _ = taylor.integrate(problem.taylor_library(), problem.taylor_p, problem.y0, 0.0, [problem.stop], 1e-15)
     assert problem.error(states[0], exact) < 3e-15
     assert problem.error(states[0] + 1e-9, exact) > 1e-10
 

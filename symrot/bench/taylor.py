@@ -23,10 +23,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from symrot.bench.peers import heyoka_integrator
 from symrot.codegen import library
 from symrot.codegen.recurrences import coefficients, recurrences
 from symrot.planner import Plan, make_plan
 from symrot.propagation import dop853, taylor
+from symrot.propagation.invariants import invariant_parameters, invariant_source
 from symrot.propagation.kernels import error_blocks, library_source, scene_kernel
 from symrot.scene import Scene
 from symrot.scene_kernel import SceneKernel, bind
@@ -50,6 +52,17 @@ MOTIONS: dict[str, dict[str, Any]] = {
         "body": {"principal": [1, "3/2", "7/10"], "about": "fixed_point"},
         "initial": {"omega": ["1/2", "3/10", 4], "attitude": TILTED},
         "torque": [{**GRAVITY, "center_of_mass": ["1/10", "1/5", "9/10"]}], "span": {"t": [0, 200]},
+    },
+    "gravity gradient": {
+        "body": {"principal": [4, 5, 3]}, "initial": {"omega": ["1/10", "-1/5", 3], "attitude": TILTED},
+        "torque": [{"kind": "gravity_gradient", "mean_motion": 1}], "span": {"t": [0, 100]},
+    },
+    "damped and driven": {
+        "body": {"principal": [1, "3/2", 2]}, "initial": {"omega": ["1/2", 1, "1/4"], "attitude": TILTED},
+        "torque": [
+            {"kind": "damping", "linear": "1/100"},
+            {"kind": "expression", "torque": ["sin(3*t/2)/4", "cos(t)/5", "sin(t/2)/8"]},
+        ], "span": {"t": [0, 200]},
     },
 }  # fmt: skip
 SETTINGS: dict[str, dict[str, bool]] = {
@@ -83,8 +96,14 @@ class _Problem:
         self.stop = float(self.plan.scene.span.stop) * scale
         self.blocks, self.scales = error_blocks(self.plan)
 
-    def taylor_library(self, order: int | None = None) -> Any:
-        return library.build(taylor.translation_unit(self.kernel.rates, self.blocks, self.scales, order), "taylor")
+    def taylor_library(self, order: int | None = None, project: bool = True) -> Any:
+        invariants = invariant_source(self.kernel, self.plan.states) if project else ""
+        source = taylor.translation_unit(self.kernel.rates, self.blocks, self.scales, order, invariants)
+        return library.build(source, "taylor")
+
+    @property
+    def taylor_p(self) -> list[float]:
+        return [*self.p, *invariant_parameters(self.kernel, self.plan)]
 
     def error(self, state: Iterable[Any], exact: Floats) -> float:
         """Return the largest error of a state, rates relative to the largest rate."""
@@ -157,30 +176,25 @@ Outcome = tuple[int, Iterable[Any]]  # steps, last state
 Task = Callable[[], Outcome]
 
 
-def _stepper(integrate: Callable[..., Any], path: Any, problem: _Problem, tolerance: float) -> Outcome:
-    states, stats = integrate(path, problem.p, problem.y0, 0.0, [problem.stop], tolerance)
+def _stepper(
+    integrate: Callable[..., Any], path: Any, p: Sequence[float], problem: _Problem, tolerance: float
+) -> Outcome:
+    states, stats = integrate(path, p, problem.y0, 0.0, [problem.stop], tolerance)
     return stats.accepted, states[0]
 
 
-def _heyoka(problem: _Problem, tolerance: float, settings: dict[str, bool]) -> Task:
+def _heyoka(problem: _Problem, tolerance: float, settings: dict[str, bool]) -> Task | None:
     """Return a run of heyoka over the same right-hand side, its parameters compiled in as numbers."""
-    import heyoka
-
-    names = [name for name, *_ in problem.kernel.rates.signature.argument("y").components]
-    variables = dict(zip(names, heyoka.make_vars(*names), strict=True))
     parameters = dict(zip((name for name, _ in problem.kernel.rate_parameters), problem.p, strict=True))
-    functions = {name: getattr(heyoka, name) for name in ("sqrt", "sin", "cos", "exp")}
-    rates = problem.kernel.rates.evaluate({**variables, **parameters, "t": heyoka.time}, functions, float)
-    system = [(variables[name], rates[f"d{name}"]) for name in names]
-    integrator = heyoka.taylor_adaptive(system, problem.y0, tol=tolerance, **settings)
+    run = heyoka_integrator(problem.kernel.rates, parameters, problem.y0, tolerance, settings)
+    if run is None:
+        return None
 
-    def run() -> Outcome:
-        integrator.time = 0.0
-        integrator.state[:] = problem.y0
-        steps = integrator.propagate_until(problem.stop)[3]
-        return int(steps), integrator.state
+    def task() -> Outcome:
+        state, steps = run(problem.stop)
+        return steps, state
 
-    return run
+    return task
 
 
 def _contestants(problem: _Problem, settings: bool) -> list[tuple[str, float, Task]]:
@@ -189,14 +203,17 @@ def _contestants(problem: _Problem, settings: bool) -> list[tuple[str, float, Ta
     hairer = library.build(library_source(problem.plan, problem.kernel.source, len(problem.p)), "motion")
     tasks: list[tuple[str, float, Task]] = []
     tasks += [
-        ("taylor", e, partial(_stepper, taylor.integrate, ours[taylor.order_for(e)], problem, e)) for e in tolerances
+        ("taylor", e, partial(_stepper, taylor.integrate, ours[taylor.order_for(e)], problem.taylor_p, problem, e))
+        for e in tolerances
     ]
-    tasks += [("dop853", e, partial(_stepper, dop853.integrate, hairer, problem, e)) for e in tolerances[:-4]]
+    p = problem.p
+    tasks += [("dop853", e, partial(_stepper, dop853.integrate, hairer, p, problem, e)) for e in tolerances[:-4]]
     for name, how in SETTINGS.items() if settings else list(SETTINGS.items())[:1]:
-        try:
-            tasks += [(name, e, _heyoka(problem, e, how)) for e in (*tolerances[2:], 1e-15, 1e-16)]
-        except ImportError:
-            return tasks
+        for e in (*tolerances[2:], 1e-15, 1e-16):
+            task = _heyoka(problem, e, how)
+            if task is None:
+                return tasks
+            tasks.append((name, e, task))
     return tasks
 
 
@@ -266,7 +283,7 @@ def _print_orders(name: str, rounds: int) -> None:
     problem, exact = _Problem(name, 1.0), reference(name)
     paths = {f"{order}": problem.taylor_library(order) for order in ORDERS}
     tasks: list[tuple[str, float, Task]] = [
-        (order, 10.0**-k, partial(_stepper, taylor.integrate, path, problem, 10.0**-k))
+        (order, 10.0**-k, partial(_stepper, taylor.integrate, path, problem.taylor_p, problem, 10.0**-k))
         for k in range(2, 15) for order, path in paths.items()
     ]  # fmt: skip
     runs = _raced(problem, exact, tasks, rounds)

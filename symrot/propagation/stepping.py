@@ -189,6 +189,7 @@ class Stepper(ABC):
     reals: ClassVar[tuple[str, ...]]
     integers: ClassVar[tuple[str, ...]]
     vectors: ClassVar[tuple[str, ...]]
+    tail: ClassVar[tuple[str, ...]] = ()  # a vector at the end, of a length that the library says
     steps_per_call: ClassVar[int]  # some 20 ms in C, after which Python can see an interrupt
     rows_per_call: ClassVar[int]  # steps recorded per call
     reasons: ClassVar[dict[int, str]]  # why a motion cannot be followed, per status; PAUSED: not in so many steps
@@ -204,11 +205,14 @@ class Stepper(ABC):
             "", ctypes.c_int, pointer, pointer, pointer, integer, pointer, pointer, integer, integer
         )
         self._dense = self._function("_dense", None, pointer, integer, pointer, integer, pointer)
-        sizes = (integer * 3)()
+        sizes = (integer * 4)()
         self._function("_sizes", None, pointer)(sizes)
-        self.states, self.parameters, self.order = sizes
+        self.states, self.parameters, self.order, rest = sizes
         self.row = self.row_length()
-        kinds = ((self.reals, ctypes.c_double), (self.integers, integer), (self.vectors, ctypes.c_double * self.states))
+        real = ctypes.c_double
+        kinds = (
+            (self.reals, real), (self.integers, integer), (self.vectors, real * self.states), (self.tail, real * rest)
+        )  # fmt: skip
         fields = [(name, kind) for names, kind in kinds for name in names]
         self.new_run: Any = type("Run", (ctypes.Structure,), {"_fields_": fields})
         self.new_parameters: Any = ctypes.c_double * self.parameters
@@ -286,6 +290,7 @@ class Task:
         check_longest_step(self.max_step)
         self.allowed, self.pace = stepper.allowance(tolerance)
         self.accepted = self.rejected = self.evaluations = 0
+        self.fields: dict[str, int] = {}  # of the run in C: what a method sets beside the rest
 
     def stats(self) -> Stats:
         """Return what all was spent since the task was set."""
@@ -345,7 +350,7 @@ class Task:
     def runs(self, end: float) -> Iterator[Any]:
         """Yield the C side's run, set up for each stretch between switching times, and count what it cost."""
         stepper = self.stepper
-        run = stepper.new_run(t=self.t0, pace=abs(end - self.t0) * self.pace, max_step=self.max_step)
+        run = stepper.new_run(t=self.t0, pace=abs(end - self.t0) * self.pace, max_step=self.max_step, **self.fields)
         run.y[:] = self.y0
         for stretch in stretches(self.t0, end, self.breaks):
             run.stop, run.next = stretch.stop, 0

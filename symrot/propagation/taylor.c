@@ -9,6 +9,8 @@
  *     SYMROT_SCALES                      per block: 0 judges its error against the block's own size (a rate),
  *                                        a positive number against that number (an attitude of unit norm: 1)
  *     SYMROT_CONSTANTS, symrot_constants, symrot_jet           constants from parameters; coefficients of the states
+ *     SYMROT_INVARIANTS                  number of invariants; if not 0, their text comes before, see projection.c,
+ *     SYMROT_INVARIANT_PARAMETERS        and the numbers of their parameters, which follow those of the system
  * C99 that is also valid C++; no malloc, no globals, no input or output, reentrant.
  *
  * Coefficients are those of the series in (time)/(unit), where the unit is a power of two near the last step: nothing
@@ -39,7 +41,9 @@ typedef struct {
     double max_step;     /* positive */
     int64_t next;        /* first sample not yet written */
     int64_t accepted, jets, recorded;
+    int64_t every, since, projected;  /* steps from one projection to the next or 0 for none, since the last; how many */
     double y[SYMROT_STATES], carry[SYMROT_STATES];
+    double kept[2*SYMROT_INVARIANTS + 1];  /* the invariants, in pairs, and whether they are known */
 } symrot_run;
 
 static const int symrot_starts[] = SYMROT_ROW_STARTS, symrot_sizes[] = SYMROT_ROW_SIZES;
@@ -187,12 +191,13 @@ static inline void symrot_write(const symrot_v4 *rows, double *out)
     EACH_ROW(r) memcpy(out + symrot_starts[r], &rows[r], (size_t)symrot_sizes[r]*sizeof(double));
 }
 
-/* Tell the caller the numbers of states and parameters and the order that this library was built for. */
-SYMROT_EXPORT void symrot_taylor_sizes(int64_t sizes[3])
+/* Tell the caller the numbers of states and parameters, the order, and the numbers in run->kept. */
+SYMROT_EXPORT void symrot_taylor_sizes(int64_t sizes[4])
 {
     sizes[0] = SYMROT_STATES;
-    sizes[1] = SYMROT_PARAMETERS;
+    sizes[1] = SYMROT_PARAMETERS + SYMROT_INVARIANT_PARAMETERS;
     sizes[2] = SYMROT_ORDER;
+    sizes[3] = 2*SYMROT_INVARIANTS + 1;
 }
 
 /* Return what rounding takes from a + b as the steps of this library keep it: b for a big a, unless it was compiled away. */
@@ -240,6 +245,8 @@ SYMROT_EXPORT void symrot_taylor_dense(const double *record, int64_t steps, cons
     }
 }
 
+/* PROJECTION */
+
 static SYMROT_APART void symrot_record(double *row, double t, double h, double t_low, double unit,
     symrot_v4 (*x)[SYMROT_ORDER + 1])
 {
@@ -274,6 +281,12 @@ SYMROT_EXPORT int symrot_taylor(symrot_run *run, const double *p, const double *
     int64_t next = run->next, accepted = 0, jets = 0, recorded = 0;
     int status = SYMROT_PAUSED, halvings = 0;
 
+#if SYMROT_INVARIANTS
+    if (run->every > 0 && run->kept[2*SYMROT_INVARIANTS] == 0.0) {
+        symrot_remember(run, p + SYMROT_PARAMETERS);
+        run->kept[2*SYMROT_INVARIANTS] = 1.0;
+    }
+#endif
     symrot_constants(p, c);
     EACH_ROW(r) {
         x[r][0] = carry[r] = V_ALL(0.0);
@@ -339,6 +352,9 @@ SYMROT_EXPORT int symrot_taylor(symrot_run *run, const double *p, const double *
         t = t1;
         t_low = low1;
         if (at_stop) status = SYMROT_DONE;
+#if SYMROT_INVARIANTS
+        if (run->every > 0 && ++run->since >= run->every) symrot_keep(run, p + SYMROT_PARAMETERS, t, t_low, x, carry);
+#endif
         if (logarithm > 0.6 || logarithm < -0.6) {
             unit *= symrot_exp2((double)(int)(logarithm + (logarithm > 0.0 ? 0.5 : -0.5)));
             symrot_set_unit(unit, step);

@@ -37,6 +37,11 @@ from symrot.propagation.stepping import (
 __all__ = ["integrate", "order_for", "record", "refusal", "step_tail", "translation_unit"]
 
 STEPS_OF_ALL = 4.0  # a span of so many steps allows each of them the whole tolerance, see step_tail
+FILES = ("taylor.h", "pairs.h", "projection.c", "taylor.c")
+PROJECTION = "/* PROJECTION */\n"  # where taylor.c takes projection.c
+NO_INVARIANTS = "#define SYMROT_INVARIANTS 0\n#define SYMROT_INVARIANT_PARAMETERS 0\n"
+PROJECTED_EVERY = 16  # steps: by measurement, seldom enough to cost a few percent and often enough to lose nothing
+PROJECTED_FROM = 1e-11  # of the tolerance down: looser motions leave their invariants by more than is put right
 ORDERS = ((1e-3, 12), (1e-6, 16), (0.0, 20))  # from which tolerance on which order is fastest, see order_for
 
 
@@ -73,7 +78,11 @@ def refusal(program: Program) -> str:
 
 
 def translation_unit(
-    program: Program, blocks: Sequence[int] = (0, 3, 7), scales: Sequence[float] = (0.0, 1.0), order: int | None = None
+    program: Program,
+    blocks: Sequence[int] = (0, 3, 7),
+    scales: Sequence[float] = (0.0, 1.0),
+    order: int | None = None,
+    invariants: str = "",
 ) -> str:
     """Return the C source of a library: the jet of a right-hand side and the stepper around it.
 
@@ -85,6 +94,9 @@ def translation_unit(
         As :func:`symrot.propagation.dop853.translation_unit` takes them.
     order : int, optional
         Of the series, even; default: 20. See :func:`order_for`.
+    invariants : str
+        What :func:`symrot.codegen.invariant_source.invariant_definitions` prints: the motion is projected onto them.
+        Their parameters follow those of the program.
 
     Raises
     ------
@@ -93,14 +105,14 @@ def translation_unit(
     """
     from symrot.codegen.taylor_source import ORDER, taylor_definitions
 
-    here = Path(__file__).parent
-    return "\n".join(
-        (
-            (here / "taylor.h").read_text(encoding="utf-8"),
-            taylor_definitions(program, blocks, scales, ORDER if order is None else order),
-            (here / "taylor.c").read_text(encoding="utf-8"),
-        )
-    )
+    own = {name: (Path(__file__).parent / name).read_text(encoding="utf-8") for name in FILES}
+    definitions = taylor_definitions(program, blocks, scales, ORDER if order is None else order)
+    if not invariants:
+        parts = [own["taylor.h"], definitions, NO_INVARIANTS, own["taylor.c"].replace(PROJECTION, "")]
+    else:
+        stepper = own["taylor.c"].replace(PROJECTION, own["projection.c"])
+        parts = [own["taylor.h"], own["pairs.h"], definitions, invariants, stepper]
+    return "\n".join(parts)
 
 
 def integrate(
@@ -113,6 +125,7 @@ def integrate(
     *,
     max_step: float = math.inf,
     max_steps: int = MAX_STEPS,
+    project: bool = True,
 ) -> tuple[Floats, Stats]:
     """Return the states at the sample times, shape (n, N), and what it cost.
 
@@ -126,13 +139,15 @@ def integrate(
         Aim for the error of the whole trajectory, see :func:`step_tail`.
     max_steps : int
         Most steps to take before giving up.
+    project : bool
+        Whether to hold the motion on its invariants, where the library knows some and the tolerance is tight.
 
     Returns
     -------
     stats : Stats
         ``evaluations`` counts jets: all coefficients of one step.
     """
-    return Task(_stepper, library, p, y0, t0, tolerance, max_step, max_steps).sample(times)
+    return _task(library, p, y0, t0, tolerance, max_step, max_steps, project).sample(times)
 
 
 def record(
@@ -145,12 +160,28 @@ def record(
     *,
     max_step: float = math.inf,
     max_steps: int = MAX_STEPS,
+    project: bool = True,
 ) -> Recording:
     """Return the motion over ``span`` as a function of time; see :func:`symrot.propagation.dop853.record`.
 
     One step takes 21 N + 4 numbers of memory.
     """
-    return Task(_stepper, library, p, y0, t0, tolerance, max_step, max_steps).record(span)
+    return _task(library, p, y0, t0, tolerance, max_step, max_steps, project).record(span)
+
+
+def _task(
+    library: PathLike,
+    p: ArrayLike,
+    y0: ArrayLike,
+    t0: float,
+    tolerance: float,
+    max_step: float,
+    max_steps: int,
+    project: bool,
+) -> Task:
+    task = Task(_stepper, library, p, y0, t0, tolerance, max_step, max_steps)
+    task.fields["every"] = PROJECTED_EVERY if project and tolerance <= PROJECTED_FROM else 0
+    return task
 
 
 class _Stepper(Stepper):
@@ -158,8 +189,9 @@ class _Stepper(Stepper):
 
     name = "taylor"
     reals = ("t", "t_low", "unit", "stop", "tail", "pace", "max_step")
-    integers = ("next", "accepted", "jets", "recorded")
+    integers = ("next", "accepted", "jets", "recorded", "every", "since", "projected")
     vectors = ("y", "carry")
+    tail = ("kept",)
     steps_per_call, rows_per_call = 50_000, 64
     reasons: ClassVar = {
         NOT_FINITE: "its derivatives are not finite there",

@@ -1,0 +1,105 @@
+"""Follow a free asymmetric body for many revolutions by stepping, against its exact motion and heyoka.
+
+    python -m symrot.bench.long [--revolutions 1e6] [--states 4]
+
+The Taylor stepper with and without the projection of its carry, and heyoka at its tightest, where it is installed. The
+errors at the end are those against the exact motion: of the kinetic energy, relative, and of the attitude, in rad;
+medians over the initial states. The runs follow one another state by state, so that all meet the same machine.
+
+heyoka is no requirement: ``pip install heyoka``.
+"""
+
+import argparse
+import math
+from collections.abc import Callable, Sequence
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symrot.bench.peers import heyoka_integrator
+from symrot.codegen import library
+from symrot.planner import make_plan
+from symrot.propagation import taylor
+from symrot.propagation.invariants import invariant_parameters, invariant_source
+from symrot.propagation.kernels import error_blocks, scene_kernel
+from symrot.propagation.propagator import propagator
+from symrot.scene import Scene
+from symrot.scene_kernel import bind
+
+__all__ = ["STATES", "main", "measure"]
+
+Floats = NDArray[np.float64]
+
+MOMENTS = (2, 3, 4)
+STATES = (("3/8", 1, "1/2"), (1, "1/4", "1/8"), ("1/4", "3/8", 1), ("5/8", "3/4", "-1/2"))  # rad/s, exact in doubles
+
+
+def _scene(omega: Sequence[Any]) -> Scene:
+    return Scene.from_dict(
+        {
+            "schema": 1,
+            "title": "free asymmetric body",
+            "body": {"principal": list(MOMENTS)},
+            "initial": {"omega": list(omega)},
+            "span": {"t": [0, 1], "samples": 2},
+            "output": {"quantities": ["omega", "quaternion"]},
+        },
+        "long",
+    )
+
+
+def measure(omega: Sequence[Any], revolutions: float) -> dict[str, tuple[float, float, float, int]]:
+    """Return, for each contestant, the relative error of the energy, that of the attitude in rad, seconds and steps."""
+    scene = _scene(omega)
+    plan = make_plan(scene)
+    kernel = scene_kernel(plan)
+    source = taylor.translation_unit(kernel.rates, *error_blocks(plan), 20, invariant_source(kernel, plan.states))
+    path, p = library.build(source, "taylor"), bind(kernel.rate_parameters, plan.constants)
+    start = np.array([float(value) for value in plan.initial_state])
+    stop = revolutions * 2.0 * math.pi / float(np.linalg.norm(start[:3]))
+    exact = propagator(scene, method="exact")([stop])
+
+    def stepped(project: bool) -> tuple[Floats, int]:
+        parameters = [*p, *invariant_parameters(kernel, plan)]
+        states, stats = taylor.integrate(path, parameters, start, 0.0, [stop], 1e-15, project=project)
+        return states[0], stats.accepted
+
+    contestants: dict[str, Callable[[], tuple[Floats, int]]] = {
+        "taylor, projected": lambda: stepped(True),
+        "taylor, plain": lambda: stepped(False),
+    }
+    parameters = dict(zip((name for name, _ in kernel.rate_parameters), p, strict=True))
+    peer = heyoka_integrator(kernel.rates, parameters, [float(value) for value in start], 2.0**-52, {})
+    if peer is not None:
+        contestants["heyoka, tol = eps"] = lambda: peer(stop)
+    found = {}
+    for name, run in contestants.items():
+        began = perf_counter()
+        state, steps = run()
+        seconds = perf_counter() - began
+        energies = [float(np.dot(MOMENTS, np.square(each[:3]))) for each in (state, start)]
+        q, r = state[3:] / np.linalg.norm(state[3:]), exact.quaternion[0]
+        attitude = 4.0 * math.asin(min(float(np.linalg.norm(q - r)), float(np.linalg.norm(q + r))) / 2.0)
+        found[name] = (abs(energies[0] / energies[1] - 1.0), attitude, seconds, steps)
+    return found
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(prog="python -m symrot.bench.long", description=(__doc__ or "").split("\n")[0])
+    parser.add_argument("--revolutions", type=float, default=1e6)
+    parser.add_argument("--states", type=int, default=len(STATES), help="how many of the initial states")
+    options = parser.parse_args(arguments)
+    runs = [measure(omega, options.revolutions) for omega in STATES[: options.states]]
+    print(f"free body, moments {MOMENTS}, {options.revolutions:.0e} revolutions, {len(runs)} initial states: medians")
+    print(f"{'':20}{'energy':>10}{'attitude rad':>14}{'seconds':>10}{'ns/step':>10}")
+    for name in runs[0]:
+        rows = [(*run[name][:3], run[name][2] / run[name][3] * 1e9) for run in runs]
+        energy, attitude, seconds, pace = np.median(rows, axis=0)
+        print(f"{name:20}{energy:10.1e}{attitude:14.1e}{seconds:10.2f}{pace:10.0f}")
+
+
+if __name__ == "__main__":
+    main()

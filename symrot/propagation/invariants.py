@@ -1,0 +1,32 @@
+"""What a scene's motion keeps, for the Taylor stepper: the C text of its invariants, and their parameters as numbers.
+
+Which quantities are kept is proven when the kernel is derived; the norm of the quaternion is added.
+"""
+
+from collections.abc import Sequence
+from fractions import Fraction
+
+from symrot import number
+from symrot.expression import evaluate
+from symrot.planner import Plan
+from symrot.scene_kernel import EXACT_FUNCTIONS, SceneKernel
+
+__all__ = ["invariant_parameters", "invariant_source"]
+
+
+def invariant_source(kernel: SceneKernel, states: Sequence[str]) -> str:
+    """Return what :func:`symrot.propagation.taylor.translation_unit` takes as ``invariants``."""
+    from symrot.codegen.invariant_source import invariant_definitions
+
+    kept = [item.output for item in kernel.conserved if item.kept]
+    return invariant_definitions(kernel.quantities, kept, states, [name for name, _ in kernel.quantity_parameters])
+
+
+def invariant_parameters(kernel: SceneKernel, plan: Plan) -> list[float]:
+    """Return the parameters of the invariants: for each its double, and what rounding to it left out."""
+    values = {"pi": number.PI, **plan.constants}
+    found: list[float] = []
+    for _, node in kernel.quantity_parameters:
+        exact = Fraction(evaluate(node, values, EXACT_FUNCTIONS))
+        found += [float(exact), float(exact - Fraction(float(exact)))]
+    return found
