@@ -74,7 +74,7 @@ def check_dimensions(
 def dimensions_of_formulas(left: Any, right: Any, units: Mapping[str, str] | None = None) -> Dimensions:
     """Return whether the units of an equation between SymPy values fit; symbols of symrot bring their own units."""
     symbols = {symbol for side in (left, right) for symbol in getattr(side, "free_symbols", ())}
-    own = {symbol.name: UNIT[symbol] for symbol in symbols if symbol in UNIT} | dict(units or {})
+    own = {symbol.name: UNIT[symbol] for symbol in symbols if UNIT.get(symbol)} | dict(units or {})
     try:
         sides = read_expression(shown(left)), read_expression(shown(right))
     except InputError:
