@@ -9,7 +9,7 @@ from fractions import Fraction
 from random import Random
 from typing import Any
 
-from symrot.checker.points import Dual
+from symrot.checker.dual import Dual
 from symrot.checker.tree import Node, walk
 
 __all__ = ["ANGLES", "FUNCTIONS", "SYMBOLS", "RationalPoint", "Undefined", "random_point", "truth"]

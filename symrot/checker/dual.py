@@ -1,0 +1,120 @@
+"""Dual numbers, and elementary functions of numbers, arrays and dual numbers.
+
+To differentiate is to evaluate again with every value lifted to ``x + x' e``, where ``e^2 = 0``.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+__all__ = [
+    "Dual", "Meaningless", "absolute", "arctangent", "as_dual", "cosine", "inverse", "minus", "plain", "power", "sine",
+    "square_root",
+]  # fmt: skip
+
+
+class Meaningless(ValueError):
+    """A tree without a value at a point: shapes that do not fit, a root of a negative number, an unknown name."""
+
+
+@dataclass(frozen=True, slots=True)
+class Dual:
+    """``value + slope e`` with ``e^2 = 0``; both parts may be dual again."""
+
+    value: Any
+    slope: Any
+
+    def __add__(self, other: Any) -> "Dual":
+        other = as_dual(other)
+        return Dual(self.value + other.value, self.slope + other.slope)
+
+    def __neg__(self) -> "Dual":
+        return Dual(-self.value, -self.slope)
+
+    def __mul__(self, other: Any) -> "Dual":
+        other = as_dual(other)
+        return Dual(self.value * other.value, self.value * other.slope + self.slope * other.value)
+
+    __radd__, __rmul__ = __add__, __mul__
+    __array_ufunc__ = None  # an array leaves sums and products with a dual number to this class
+
+
+def as_dual(value: Any) -> Dual:
+    """Return a number as a dual number without slope."""
+    return value if isinstance(value, Dual) else Dual(value, 0)
+
+
+def inverse(x: Any) -> Any:
+    """Return 1/x."""
+    if isinstance(x, Dual):
+        below = inverse(x.value)
+        return Dual(below, -(below * below) * x.slope)
+    return 1.0 / x
+
+
+def minus(x: Any) -> Any:
+    """Return -x."""
+    return -x
+
+
+def _plainly(function: Any, x: Any) -> Any:
+    """Return a function of a number, or of the numbers of a grid."""
+    return function(x) if isinstance(x, np.ndarray) else getattr(math, function.__name__)(x)
+
+
+def sine(x: Any) -> Any:
+    """Return sin x, x in rad."""
+    return Dual(sine(x.value), cosine(x.value) * x.slope) if isinstance(x, Dual) else _plainly(np.sin, x)
+
+
+def cosine(x: Any) -> Any:
+    """Return cos x, x in rad."""
+    return Dual(cosine(x.value), -sine(x.value) * x.slope) if isinstance(x, Dual) else _plainly(np.cos, x)
+
+
+def square_root(x: Any) -> Any:
+    """Return the root of a number that is not negative."""
+    if isinstance(x, Dual):
+        root = square_root(x.value)
+        return Dual(root, inverse(2.0 * root) * x.slope)
+    return _plainly(np.sqrt, x)
+
+
+def absolute(x: Any) -> Any:
+    """Return the absolute value."""
+    if isinstance(x, np.ndarray):
+        return np.abs(x)
+    return -x if plain(x) < 0 else x
+
+
+def plain(x: Any) -> float:
+    """Return the value of a number, however often it was lifted."""
+    while isinstance(x, Dual):
+        x = x.value
+    return float(x)
+
+
+def arctangent(y: Any, x: Any) -> Any:
+    """Return atan2(y, x), rad."""
+    if isinstance(y, Dual) or isinstance(x, Dual):
+        y, x = as_dual(y), as_dual(x)
+        below = inverse(x.value * x.value + y.value * y.value)
+        return Dual(arctangent(y.value, x.value), (x.value * y.slope + -(y.value * x.slope)) * below)
+    return math.atan2(y, x)
+
+
+def power(x: Any, exponent: float) -> Any:
+    """Return x to a rational power; ``Meaningless`` for a fractional power of a negative number."""
+    if exponent == int(exponent) and abs(exponent) <= 64:
+        whole = int(exponent)
+        result: Any = 1.0
+        for _ in range(abs(whole)):
+            result = result * x
+        return result if whole >= 0 else inverse(result)
+    if isinstance(x, Dual):
+        return Dual(power(x.value, exponent), exponent * power(x.value, exponent - 1) * x.slope)
+    if np.any(x < 0):
+        raise Meaningless("a fractional power of a negative number")
+    return x**exponent
