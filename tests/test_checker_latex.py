@@ -5,7 +5,7 @@ import re
 import pytest
 
 import symrot
-from symrot.checker.latex import Names, read_latex
+from symrot.checker.latex import Names, read_latex, read_latex_formula
 from symrot.checker.latex_tokens import tokens
 from symrot.errors import InputError
 
@@ -107,6 +107,59 @@ def test_what_is_not_understood_is_refused_with_its_place(latex, position):
 def test_vectors_are_refused_where_they_make_no_sense(latex, words):
     with pytest.raises(InputError, match=words):
         read_latex(latex, "", VECTORS)
+
+
+PAPERS = (  # as they stand in books and papers on rotating bodies
+    (r"I_1\dot\omega_1 - (I_2-I_3)\omega_2\omega_3 = N_1", "I_1*diff(omega_1(t), t) - (I_2 - I_3)*omega_2*omega_3 == N_1"),
+    (r"\omega_x = \dot\phi \sin\theta\sin\psi + \dot\theta\cos\psi", "omega_x == diff(phi(t), t)*sin(theta(t))*sin(psi) + diff(theta(t), t)*cos(psi)"),
+    (r"T = \tfrac12 I_1(\dot\phi^2\sin^2\theta + \dot\theta^2)", "T == 1/2*I_1*(diff(phi(t), t)**2*sin(theta(t))**2 + diff(theta(t), t)**2)"),
+    (r"\frac{d}{dt}\left(\frac{\partial L}{\partial\dot\theta}\right) = \frac{\partial L}{\partial\theta}", "diff(diff(L, diff(theta(t), t)), t) == diff(L, theta(t))"),
+    (r"\frac{\mathrm{d}^2\theta}{\mathrm{d}t^2} = -\frac{g}{l}\sin\theta", "diff(theta(t), t, t) == -g/l*sin(theta(t))"),
+    (r"\dot{\theta}\left(t\right) = \omega", "diff(theta(t), t) == omega"), (r"\theta''(t) = -\sin\theta(t)", "diff(theta(t), t, t) == -sin(theta(t))"),
+    (r"\cos 2\theta = 1 - 2\sin^2\theta", "cos(2*theta) == 1 - 2*sin(theta)**2"), (r"\tan\frac\theta2 = \frac{\sin\theta}{1+\cos\theta}", "tan(theta/2) == sin(theta)/(1 + cos(theta))"),
+    (r"I_{xy} = -\int_0^a\!\int_0^b \rho x y \,dx\,dy", "I_xy == -integrate(rho*x*y, (x, 0, b), (y, 0, a))"), (r"\omega^2_x = \omega_{\rm body}", "omega_x**2 == omega_body"),
+    (r"x_{1,2} = x_{12}", "x_1_2 == x_12"), (r"\mathcal{L} = T - V", "L_cal == T - V"), (r"\cfrac{1}{2}\,m\,\dot x^2 = E", "1/2*m*diff(x(t), t)**2 == E"),
+    (r"\left[\begin{array}{cc}c_\theta&-s_\theta\\s_\theta&c_\theta\end{array}\right] = R", "Matrix([[c_theta, -s_theta], [s_theta, c_theta]]) == R"),
+    (r"\det\begin{bmatrix}a&b\\c&d\end{bmatrix} = ad-bc", "det(Matrix([[a, b], [c, d]])) == a*d - b*c"), (r"2\pi r = \frac{2\pi}{\omega}", "2*pi*r == 2*pi/omega"),
+)  # fmt: skip
+VECTOR_PAPERS = (
+    (r"\mathbf I\,\dot{\boldsymbol{\omega}} + \boldsymbol\omega\times\mathbf I\boldsymbol\omega = \boldsymbol\tau", "I*diff(omega, t) + cross(omega, I*omega) == tau"),
+    (r"\dot{\mathbf{H}}_G = \boldsymbol\tau", "diff(H_G, t) == tau"), (r"\hat{\mathbf n}\cdot\hat n = 1", "dot(n, n) == 1"), (r"\mathbf r^2 = \|\mathbf r\|^2", "dot(r, r) == sqrt(dot(r, r))**2"),
+    (r"[\boldsymbol\omega]_\times\mathbf r = \omega^{\times}\mathbf r", "skew(omega)*r == skew(omega)*r"), (r"\vec{\boldsymbol\omega} = \dot\phi\,\hat n", "omega == diff(phi(t), t)*n"),
+    (r"T = \tfrac12\,\boldsymbol\omega^{\mathsf T}\mathbf I\boldsymbol\omega", "T == 1/2*omega.T*I*omega"), (r"\vec n\cdot(\vec r\times\vec\tau) = 0", "dot(n, cross(r, tau)) == 0"),
+)  # fmt: skip
+WIDER = Names(
+    symbols={"m", "t"}, functions={"phi"}, matrices={"omega", "r", "n", "I", "tau", "H_G"}, columns={"omega", "r", "n", "tau", "H_G"}, others={"T"},
+    implied=False,
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(("latex", "text"), PAPERS, ids=[latex[:30] for latex, _ in PAPERS])
+def test_formulas_of_papers(latex, text):
+    assert read_latex(latex).text == text
+
+
+@pytest.mark.parametrize(("latex", "text"), VECTOR_PAPERS, ids=[latex[:30] for latex, _ in VECTOR_PAPERS])
+def test_vector_formulas_of_papers(latex, text):
+    assert read_latex(latex, "", WIDER).text == text
+
+
+@pytest.mark.parametrize(("latex", "words"), [
+    (r"\begin{aligned} a &= b \\ c &= d\end{aligned}", "one equation instead of the lines of aligned"), (r"\begin{align*}a&=b\end{align*}", "lines of align"),
+    (r"a &= b", "at position 3"), (r"a = b \\ c = d", "at position 7"), (r"a = b \tag{3.5}", "at position 7"), (r"\Delta\theta = \omega", "for a change"),
+    (r"\sin\theta^2 = 1", "brackets around the argument"), (r"f(x) = 1", "a function that is declared"), (r"\theta(0) = 1", "a function that is declared"),
+    (r"x^{(2)} = 1", "a power without brackets"), (r"a \pm b = c", "at position 3"), (r"\left(\frac{dL}{dt}\right)_{space} = N", "operator or '='"), (r"{}^B\omega = 1", "at position 2"),
+])  # fmt: skip
+def test_what_reads_in_two_ways_in_papers_is_refused(latex, words):
+    with pytest.raises(InputError) as refusal:
+        read_latex(latex)
+    assert words in str(refusal.value) and "position" in str(refusal.value)
+
+
+def test_a_formula_without_equals_sign():
+    assert read_latex_formula(r"\frac{\dot\theta}{2}") == "diff(theta(t), t)/2"
+    with pytest.raises(InputError, match="one formula without '='"):
+        read_latex_formula("a = b")
 
 
 @pytest.mark.parametrize(

@@ -181,8 +181,17 @@ class _Reader(MatricesPart):
             for _ in range(group + upright):
                 self.take("}")
             return Node("transpose", None, (node,))
+        if not upright and self.take("\\times"):
+            for _ in range(group):
+                self.expect("}")
+            return Node("call", "skew", (node,))
         self.index = start
-        return Node("power", None, (node, self.argument()))
+        if [self.peek(n).text for n in range(2)] == ["{", "("] and self.peek(3).text == ")":
+            raise self.fail("a power without brackets of its own")
+        exponent = self.argument()
+        if exponent == number(2) and self.is_column(node):
+            return Node("call", "dot", (node, node))
+        return Node("power", None, (node, exponent))
 
     def argument(self) -> Node:
         """Read a group in braces, or one token."""
@@ -218,6 +227,13 @@ class _Reader(MatricesPart):
         inner = self.expression()
         self.expect(CLOSING[token.text])
         self.open_bars = bars
+        if token.text == "[" and self.at("_") and "\\times" in (self.peek(1).text, self.peek(2).text):
+            self.next()
+            group = self.take("{")
+            self.expect("\\times")
+            if group:
+                self.expect("}")
+            return Node("call", "skew", (inner,))
         return inner
 
 

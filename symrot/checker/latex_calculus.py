@@ -8,6 +8,7 @@ from symrot.checker.tree import Node, number, product, walk
 __all__ = ["DOTS", "FUNCTIONS", "CalculusPart"]
 
 FUNCTIONS = {f"\\{name}": name for name in ("sin", "cos", "tan", "cot", "sec", "csc")}
+
 DOTS = {"\\dot": 1, "\\ddot": 2, "\\dddot": 3}
 
 
@@ -32,7 +33,7 @@ class CalculusPart(NamesPart):
     def loose_argument(self, function: Token) -> Node:
         """Read ``2\\theta``, ``\\omega t`` or ``\\frac{\\theta}{2}`` after a sine, nothing that reads in two ways."""
         factors = [self.factor()] if not self.at("-") else []
-        if not factors:
+        if not factors or factors[0].kind == "power":
             raise self.fail(f"brackets around the argument of {function.text}")
         if factors[0].kind == "number" or (factors[0].kind == "product" and not any(
             piece.kind in ("name", "call") for _, piece in walk(factors[0]))):  # fmt: skip
@@ -133,7 +134,10 @@ class CalculusPart(NamesPart):
         node = self.argument() if self.at("{") else self.base(script=False)
         if node.kind == "name" and self.at("_", "'"):
             node = self.named(str(node.value), start)
-        return self.derivative(node, DOTS[token.text], token)
+        found = self.derivative(node, DOTS[token.text], token)
+        if self.called_with_time() and node.kind == "name":
+            self.index += 3
+        return found
 
     def derivative(self, node: Node, times: int, token: Token) -> Node:
         """Return a derivative in time; a name by itself becomes a function of time."""

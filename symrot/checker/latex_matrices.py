@@ -7,6 +7,18 @@ from symrot.checker.tree import Node
 __all__ = ["MATRIX_CALLS", "MatricesPart"]
 
 MATRICES = {"matrix": "", "pmatrix": "", "bmatrix": "", "Bmatrix": "", "smallmatrix": "", "array": "", "vmatrix": "det"}
+SEVERAL_LINES = (
+    "align",
+    "aligned",
+    "alignat",
+    "gather",
+    "gathered",
+    "eqnarray",
+    "split",
+    "multline",
+    "cases",
+    "flalign",
+)
 MATRIX_CALLS = ("Matrix", "cross", "skew", "vee", "Rx", "Ry", "Rz", "inverse", "transpose", "eye", "diag", "qmul",
                 "dcm_of", "hstack")  # fmt: skip
 
@@ -26,6 +38,8 @@ class MatricesPart(CalculusPart):
 
     def environment(self, token: Token) -> Node:
         name = self.environment_name()
+        if name.rstrip("*") in SEVERAL_LINES:
+            raise self.fail(f"one equation instead of the lines of {name}", token)
         if name not in MATRICES:
             raise self.fail(f"one of the environments {', '.join(MATRICES)}", token)
         if name == "array":
@@ -55,7 +69,7 @@ class MatricesPart(CalculusPart):
     def environment_name(self) -> str:
         self.expect("{")
         name = ""
-        while self.peek().kind == "letter":
+        while self.peek().kind == "letter" or self.at("*"):
             name += self.next().text
         self.expect("}")
         return name

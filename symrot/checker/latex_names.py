@@ -10,7 +10,7 @@ __all__ = ["NAME_MARKS", "OPERATORS", "VECTOR_MARKS", "NamesPart"]
 OPERATORS = {"\\det": "det", "\\tr": "trace", "\\diag": "diag"}
 SPELLED = {"tr": "trace", "trace": "trace", "Tr": "trace"} | {name: name for name in BUILT_IN}
 VECTOR_MARKS = ("\\vec", "\\mathbf", "\\hat", "\\overrightarrow", "\\underline")
-NAME_MARKS = {"\\bar": "_bar", "\\tilde": "_tilde", "\\overline": "_bar", "\\widetilde": "_tilde"}
+NAME_MARKS = {"\\bar": "_bar", "\\tilde": "_tilde", "\\overline": "_bar", "\\widetilde": "_tilde", "\\mathcal": "_cal"}
 
 
 class NamesPart(Cursor):
@@ -20,6 +20,12 @@ class NamesPart(Cursor):
         """Read the rest of a name, its subscript, primes and ``(t)``; return its node."""
         primes = 0
         subscript = ""
+        if name in ("Delta", "delta") and script and name not in self.names and not self.at("_", "'"):
+            follower = self.peek()
+            if follower.kind == "letter" or follower.text[1:] in GREEK:
+                raise self.fail(f"\\{name}_{{..}} for a change, or \\cdot for a product,", follower)
+        if script and self.at("^") and self.peek(1).kind == "number" and self.peek(2).text == "_":  # x^2_1 is x_1^2
+            self.subscript_first()
         while script and self.at("_", "'"):
             if self.take("'"):
                 primes += 1
@@ -38,7 +44,24 @@ class NamesPart(Cursor):
         if primes:
             known = self.resolved(known + "_prime" * primes, "", (known + "p" * primes,))
         self.take_time_call(known)
+        self.refuse_call()
         return Node("name", known)
+
+    def subscript_first(self) -> None:
+        """Put the power of one digit, which stands here before a subscript, behind it."""
+        end = self.index + 4
+        if self.peek(3).text == "{":
+            while self.tokens[end - 1].text not in ("}", ""):
+                end += 1
+        power = self.tokens[self.index : self.index + 2]
+        self.tokens[self.index : end] = [*self.tokens[self.index + 2 : end], *power]
+
+    def refuse_call(self) -> None:
+        """Refuse ``f(x)`` and ``f(0)``, which may be a product or a value of a function."""
+        inner = self.peek(1)
+        alone = inner.kind in ("letter", "number") or inner.text[1:] in GREEK
+        if self.at("(") and alone and self.peek(2).text == ")":
+            raise self.fail("a function that is declared, or \\cdot before the bracket of a product,")
 
     def primes_raised(self) -> int:
         """Return how many primes stand in ``^'`` or ``^{''}``."""
@@ -56,7 +79,9 @@ class NamesPart(Cursor):
             pieces = []
             while not self.at("}"):
                 piece = self.next()
-                if piece.text in ("\\mathrm", "\\text", "{", ","):
+                if piece.text == ",":
+                    piece = piece._replace(text="_", kind="letter")
+                elif piece.text in ("\\mathrm", "\\text", "\\rm", "{"):
                     continue
                 if (piece.kind not in ("letter", "number") and piece.text[1:] not in GREEK) or "." in piece.text:
                     raise self.fail("letters and digits in a subscript", piece)
@@ -101,13 +126,23 @@ class NamesPart(Cursor):
         """Read ``\\vec{r}``, ``\\mathbf R``, ``\\hat n``: names of vectors and matrices, which must be defined."""
         opened = self.take("{")
         inner = self.next()
+        if inner.text in VECTOR_MARKS:  # \\hat{\\mathbf n}
+            node = self.marked(inner)
+            if opened:
+                self.expect("}")
+            return self.marked_name(self.named(str(node.value), inner) if self.at("_", "'") else node, token)
         if inner.kind == "number" and token.text == "\\mathbf":
             raise self.fail("eye(n) among the definitions for a unit matrix", inner)
         node = self.named(inner.text.removeprefix("\\"), inner, script=opened)
         if opened:
             self.expect("}")
-        if self.at("_") or self.at("'"):
+        if self.at("_", "'"):
             node = self.named(str(node.value), inner)
+        self.refuse_call()
+        return self.marked_name(node, token)
+
+    def marked_name(self, node: Node, token: Token) -> Node:
+        """Return a name that is marked as a vector or matrix, if it is defined as one."""
         if node.value not in self.names.matrices:
             raise self.fail(f"a vector or matrix that is defined under the name {node.value!r}", token)
         return node

@@ -15,7 +15,8 @@ GREEK = frozenset(_LETTERS.split())
 SPACES = frozenset(["quad", "qquad", "displaystyle", "textstyle", "limits", "nolimits", "nonumber", "notag"])
 SIZES = frozenset(["left", "right", "big", "Big", "bigl", "bigr", "Bigl", "Bigr", "biggl", "biggr", "middle"])
 SYNONYMS = {
-    "\\dfrac": "\\frac", "\\tfrac": "\\frac", "\\top": "\\T", "\\intercal": "\\T", "\\lbrace": "\\{", "\\rbrace": "\\}",
+    "\\dfrac": "\\frac", "\\tfrac": "\\frac", "\\cfrac": "\\frac",
+    "\\top": "\\T", "\\intercal": "\\T", "\\lbrace": "\\{", "\\rbrace": "\\}",
     "\\lbrack": "[", "\\rbrack": "]", "\\vert": "|", "\\lvert": "|", "\\rvert": "|", "\\Vert": "\\|", "\\lVert": "\\|",
     "\\rVert": "\\|", "\\equiv": "=", "\\ast": "*", "\\bm": "\\mathbf", "\\boldsymbol": "\\mathbf", "\\prime": "'",
     "\\mathit": "\\mathrm", "\\mathsf": "\\mathrm", "\\textrm": "\\mathrm", "\\cr": "\\\\",
