@@ -23,6 +23,7 @@ _HOMES = {
     "checker": ("check", "check_file"),
     "scene": ("Scene", "load_scene", "shipped_scenes"),
     "planner": ("Plan",),
+    "ensemble.ensemble": ("Ensemble", "propagate_ensemble"),
     "interface": ("emit", "plan"),
     "propagation.propagator": ("Propagator", "propagate", "propagator"),
     "propagation.trajectory": ("Trajectory",),

@@ -11,7 +11,7 @@ from fractions import Fraction
 
 from symrot.checker.tree import Node, Path, negated, number, product, replaced, sum_of, walk
 
-__all__ = ["TEXTS", "Edit", "neat", "single_edits"]
+__all__ = ["OPPOSITE", "TEXTS", "Edit", "neat", "neighbours", "single_edits"]
 
 TEXTS = {
     "none": "",
@@ -81,9 +81,14 @@ def neighbours(name: str, names: Collection[str]) -> list[str]:
 
 
 def single_edits(
-    tree: Node, names: Collection[str], functions: Collection[str], matrices: Callable[[Node], bool], moving: bool
+    tree: Node,
+    names: Collection[str],
+    functions: Collection[str],
+    matrices: Callable[[Node], bool],
+    moving: bool,
+    opened: Callable[[Path], bool] = lambda path: True,
 ) -> Iterator[Edit]:
-    """Yield every single edit of a tree.
+    """Yield every single edit of a tree, those of many pieces at once first.
 
     Parameters
     ----------
@@ -94,14 +99,34 @@ def single_edits(
         Whether a piece is a matrix.
     moving : bool
         Whether the claim differentiates: an exchanged order is then one of frames.
+    opened : function
+        Whether the piece at a path may be changed.
     """
+    yield from _everywhere(tree, matrices)
     order = "frame_body_space" if moving else "commutator_order"
     entries = {id(member) for _, node in walk(tree) if node.kind == "list" for member in node.args}
     for path, node in walk(tree):
+        if not opened(path):
+            continue
         for code, made, extra in _changes(node, path, names, functions, matrices, order, id(node) in entries):
-            edited = replaced(tree, path, lambda _, made=made: made)  # type: ignore[misc]
-            yield Edit(code, COST[code] + extra, path, neat(edited) if code == "factor" else edited)
-    yield from _everywhere(tree, matrices)
+            yield Edit(code, COST[code] + extra, path, _put(tree, path, made))
+
+
+def _put(tree: Node, path: Path, made: Node) -> Node:
+    """Return a tree with another piece: a sign comes in front of a product, terms join the sum that holds them."""
+    if path and made.kind in ("neg", "sum", "product"):
+        *above, place = path
+        return replaced(tree, tuple(above), lambda node: _regrouped(node, place, made))
+    return replaced(tree, path, lambda _: made)
+
+
+def _regrouped(node: Node, place: int, made: Node) -> Node:
+    args = [*node.args[:place], made, *node.args[place + 1 :]]
+    if node.kind == made.kind == "sum":
+        return sum_of(args, node.span)
+    if node.kind == made.kind == "product":
+        return product(args, node.span)
+    return replace(node, args=tuple(args))
 
 
 Change = tuple[str, Node, float]
@@ -129,6 +154,8 @@ def _changes(
         yield "factor", node.args[0], 0.15
     elif node.kind == "transpose":
         yield "active_passive_transpose", node.args[0], 0.0
+    if node.kind == "call" and node.value == "Matrix" and node.args[0].kind == "list":
+        yield from _of_rows(node)
     if node.kind == "list" and len(node.args) == 4:
         yield from _of_quaternion(node)
     if (node.kind == "list" and node.value == ("[", "]")) or (node.kind == "call" and node.value in ("skew", "diag")):
@@ -140,6 +167,16 @@ def _changes(
         yield "active_passive_transpose", Node("transpose", None, (node,)), 0.02
     if node.kind != "number" and node.kind != "list" and (not path or node.kind == "neg"):
         yield "overall_sign" if not path else "sign_of_term", negated(node), 0.0
+
+
+def _of_rows(node: Node) -> Iterator[Change]:
+    """Yield a square matrix that is written out with its rows as columns."""
+    (written,) = node.args
+    size = len(written.args)
+    if size > 1 and all(row.kind == "list" and len(row.args) == size for row in written.args):
+        columns = zip(*(row.args for row in written.args), strict=True)
+        turned = [replace(row, args=tuple(column)) for row, column in zip(written.args, columns, strict=True)]
+        yield "active_passive_transpose", replace(node, args=(replace(written, args=tuple(turned)),)), 0.01
 
 
 def _is_own_transpose(node: Node) -> bool:

@@ -1,0 +1,393 @@
+"""Print the recurrences of a system as C with one trajectory in each lane: the jet of an ensemble.
+
+Nothing is moved between lanes: a series is an array of vectors, and each operation is done for all trajectories at
+once. Convolutions that enter all sums with one weight share an accumulator. Two orders are taken together: loops over
+the coefficients that are known already serve both and read each number once, then come order n and order n + 1 with the
+terms that hold the newest coefficients. Nothing is unrolled over the order.
+
+The text stands between :file:`lanes.h` and :file:`lanes.c` of :mod:`symrot.ensemble`.
+"""
+
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+from symrot.codegen.c_source import c_expression
+from symrot.codegen.recurrences import Recurrences, Series, recurrences, split_sign
+from symrot.errors import InputError
+from symrot.expression import Node, names, rename
+from symrot.kernel import Program
+
+__all__ = ["lane_definitions", "multiplications"]
+
+ONE: Node = ("number", 1)
+SLOTS_PER_LOOP = 4  # two accumulators each, so that they and their factors stay in 16 registers
+
+
+class Convolution(NamedTuple):
+    """``sum(a[k] b[n-k])`` and which of its two ends belong to it: both, that with the newest of a (last), or none."""
+
+    a: int
+    b: int
+    ends: str
+
+    @property
+    def square(self) -> bool:
+        return self.a == self.b
+
+
+class Slot(NamedTuple):
+    """Convolutions that are added up, each with its sign, in one accumulator."""
+
+    terms: tuple[tuple[int, Convolution], ...]
+
+    @property
+    def square(self) -> bool:
+        return self.terms[0][1].square
+
+
+CONVOLUTIONS = {  # rule -> operands a and b of its convolution (-1: the series itself), and its ends
+    "product": (0, 1, "both"),
+    "quotient": (-2, -1, "last"),
+    "root": (-1, -1, "none"),
+    "driven": (0, 1, "last"),
+    "primitive": (1, 2, "none"),
+}
+
+
+def lane_definitions(program: Program, edges: Sequence[int], scales: Sequence[float], order: int) -> str:
+    """Return the C text of a system for :file:`lanes.c`: sizes, blocks, constants and the jet.
+
+    Arguments as :func:`symrot.codegen.taylor_source.taylor_definitions` takes them.
+
+    Raises
+    ------
+    InputError
+        For an operation without a Taylor series, or an order or blocks that cannot be used.
+    """
+    if order < 4 or order % 2:
+        raise InputError(f"order of the Taylor method: expected an even number from 4 on, got {order}")
+    system = recurrences(program)
+    count = len(system.states)
+    if [*edges[:1], *edges[-1:]] != [0, count] or list(edges) != sorted(set(edges)) or len(scales) != len(edges) - 1:
+        raise InputError(
+            f"blocks of {count} states rise from 0 to {count} and have one scale each; got blocks {list(edges)} and "
+            f"scales {list(scales)}"
+        )
+    inverses = ", ".join(["0.0", *(f"1.0/{n}" for n in range(1, order + 1))])
+    return "\n".join(
+        (
+            f"#define SYMROT_STATES {count}",
+            f"#define SYMROT_PARAMETERS {len(system.parameters)}",
+            f"#define SYMROT_ORDER {order}",
+            f"#define SYMROT_BLOCKS {len(scales)}",
+            f"#define SYMROT_EDGES {{{', '.join(map(str, edges))}}}",
+            f"#define SYMROT_SCALES {{{', '.join(repr(float(scale)) for scale in scales)}}}",
+            "",
+            f"static const double symrot_inverse[] = {{{inverses}}};",
+            "",
+            _Jet(system).text(),
+        )
+    )
+
+
+def multiplications(program: Program, order: int) -> int:
+    """Return the products that the loops of one jet take for each trajectory."""
+    jet = _Jet(recurrences(program))
+    shares = [(0.5 if slot.square else 1.0) * len(slot.terms) for slot in jet.slots]
+    return int(sum(shares) * order * (order + 1) / 2)
+
+
+class _Jet:
+    """Writes one system. ``v{i}`` is the newest coefficient of series i, ``u{i}`` (or ``x[i]``) holds all of them."""
+
+    def __init__(self, system: Recurrences) -> None:
+        self.system, self.series = system, system.series
+        self.state = {i: s.number for i, s in enumerate(self.series) if s.rule == "state"}
+        self.constants: dict[Node, int] = {}
+        self.slots: list[Slot] = []
+        self.slot_of: dict[int, tuple[int, int]] = {}  # series -> its sign in its slot, the number of the slot
+        self.shared: set[int] = set()  # products that have no value of their own
+        self._make_slots()
+        self.stored = {
+            operand for slot in self.slots for _, c in slot.terms for operand in (c.a, c.b) if operand not in self.state
+        }
+        self.divided = [i for i, s in enumerate(self.series) if s.rule in ("quotient", "root", "primitive")]
+
+    def _make_slots(self) -> None:
+        """Give each convolution an accumulator; products with the same weights in the same sums share one."""
+        uses: dict[int, list[tuple[int, Node, int]]] = {}
+        own: set[int] = set()
+        for place, s in enumerate((*self.series, *self.system.rates)):
+            if s.rule == "sum":
+                for operand, weight in zip(s.operands, s.weights, strict=False):
+                    assert weight is not None
+                    sign, size = split_sign(weight)
+                    uses.setdefault(operand, []).append((place, size, sign))
+            else:
+                own |= set(s.operands)
+        found: dict[object, list[tuple[int, Convolution, int]]] = {}
+        for i, s in enumerate(self.series):
+            if s.rule not in CONVOLUTIONS:
+                continue
+            c, sign = self._convolution(i, s), 1
+            key: object = i
+            if s.rule == "product" and i not in own and i in uses:
+                sign = uses[i][0][2]
+                key = (c.square, tuple((place, size, sign * other) for place, size, other in uses[i]))
+                self.shared.add(i)
+            found.setdefault(key, []).append((sign, c, i))
+        for members in sorted(found.values(), key=lambda one: (one[0][1].square, -len(one))):
+            lead = members[0][0]
+            self.slot_of |= {i: (sign * lead, len(self.slots)) for sign, _, i in members}
+            self.slots.append(Slot(tuple((sign * lead, c) for sign, c, _ in members)))
+
+    def _convolution(self, i: int, s: Series) -> Convolution:
+        a, b, ends = CONVOLUTIONS[s.rule]
+        places = {-1: i, -2: s.operands[-1], **dict(enumerate(s.operands))}
+        return Convolution(places[a], places[b], ends)
+
+    # -------------------------------------------------------------------------------------------- expressions
+
+    def at(self, series: int, n: str) -> str:
+        return f"x[{self.state[series]}][{n}]" if series in self.state else f"u{series}[{n}]"
+
+    def weight(self, node: Node) -> str:
+        """Return a positive constant: a number as it stands, what holds parameters from its place in each lane."""
+        if not names(node) and node[0] == "number":
+            return f"V_ALL({c_expression(node)})"
+        return f"c[{self.constants.setdefault(node, len(self.constants))}]"
+
+    def slot(self, number: int, phase: str, sums: str) -> str:
+        """Return coefficient n of a slot; of two chains of sums, so that neither waits for all the newest."""
+        older = f"{sums}{number}" if phase == "later" else ""
+        newer = ""
+        for sign, (a, b, ends) in self.slots[number].terms:
+            if phase == "first":
+                older = _plus(older, sign, f"{self.at(a, '0')}, {self.at(b, '0')}") if ends == "both" else older
+            elif a == b and ends == "both":
+                older = _plus(older, sign, f"V_ADD({self.at(a, '0')}, {self.at(a, '0')}), v{a}")
+            elif ends != "none":
+                older = _plus(older, sign, f"v{a}, {self.at(b, '0')}")
+                if ends == "both":
+                    newer = _plus(newer, sign, f"{self.at(a, '0')}, v{b}")
+        return f"V_ADD({older}, {newer})" if older and newer else older or newer
+
+    def sum(self, s: Series, first: bool, factor: str = "") -> str:
+        """Return a sum, times a factor. The terms that come last to hand are added last."""
+        value = ""
+        *weights, constant = s.weights
+        if first and constant is not None and constant != ("number", 0):
+            sign, size = split_sign(constant)
+            value = f"V_MUL({self.weight(size)}, {factor})" if factor else self.weight(size)
+            value = value if sign > 0 else f"V_SUB(V_ALL(0.0), {value})"
+        done: set[int] = set()
+        parts = []
+        for operand, weight in zip(s.operands, weights, strict=True):
+            assert weight is not None
+            sign, size = split_sign(weight)
+            name = f"v{operand}"
+            if operand in self.shared:
+                own, slot = self.slot_of[operand]
+                if slot in done:
+                    continue
+                done.add(slot)
+                sign, name = sign * own, f"s{slot}"
+            parts.append((operand in self.shared, sign, size, name))
+        for _, sign, size, name in sorted(parts, key=lambda part: part[0]):
+            scale = "" if size == ONE else self.weight(size)
+            scale = f"V_MUL({scale}, {factor})" if scale and factor else scale or factor
+            if scale:
+                value = _plus(value, sign, f"{name}, {scale}")
+            elif value:
+                value = f"V_{'ADD' if sign > 0 else 'SUB'}({value}, {name})"
+            else:
+                value = name if sign > 0 else f"V_SUB(V_ALL(0.0), {name})"
+        return value or "V_ALL(0.0)"
+
+    # -------------------------------------------------------------------------------------------- series
+
+    def coefficient(self, i: int, n: str, phase: str, sums: str) -> list[str]:
+        """Return the statements that set ``v{i}`` to coefficient n of a series."""
+        s, name = self.series[i], f"v{i}"
+        if s.rule == "sum":
+            return [f"{name} = {self.sum(s, phase == 'first')};"]
+        if s.rule == "time":
+            value = {"first": "t", "second": "unit"}.get(phase, "V_ALL(0.0)")
+            return [f"{name} = {value};"]
+        if s.rule == "theta":
+            factor = {"first": "0.0", "second": "1.0"}.get(phase, f"(double)({n})")
+            return [f"{name} = V_MUL(v{s.operands[0]}, V_ALL({factor}));"]
+        if s.rule == "clock":
+            return self._clock(s, name, n, phase)
+        total = self.slot(self.slot_of[i][1], phase, sums)
+        if s.rule == "product":
+            return [f"{name} = {total};"]
+        if s.rule == "quotient":
+            divisor = s.operands[-1]
+            if phase == "first":
+                upper = f"v{s.operands[0]}" if len(s.operands) > 1 else "V_ALL(1.0)"
+                return [f"d{i} = v{divisor};", f"{name} = V_DIV({upper}, d{i});"]
+            upper = f"v{s.operands[0]}" if len(s.operands) > 1 else "V_ALL(0.0)"
+            return [f"{name} = V_DIV(V_SUB({upper}, {total}), d{i});"]
+        if s.rule == "driven":
+            if phase == "first":
+                return [f"{name} = {_called(s, 2)};"]
+            sign = "" if s.sign > 0 else "-"
+            return [f"{name} = V_MUL({total}, V_ALL({sign}symrot_inverse[{n}]));"]
+        if s.rule == "root":
+            if phase == "first":
+                return [f"{name} = {_called(s, 0)};", f"d{i} = V_ADD({name}, {name});"]
+            upper = f"V_SUB(v{s.operands[0]}, {total})" if total else f"v{s.operands[0]}"
+            return [f"{name} = V_DIV({upper}, d{i});"]
+        if phase == "first":  # primitive
+            return [f"{name} = {_called(s, 3)};", f"d{i} = v{s.operands[2]};"]
+        upper = f"V_SUB(v{s.operands[0]}, {total})" if total else f"v{s.operands[0]}"
+        return [f"{name} = V_DIV({upper}, V_MUL(d{i}, V_ALL((double)({n}))));"]
+
+    def _clock(self, s: Series, name: str, n: str, phase: str) -> list[str]:
+        rate, offset = s.weights
+        assert rate is not None
+        sign, size = split_sign(rate)
+        if phase != "first":
+            sign *= s.sign
+            step = f"V_MUL(unit, V_ALL(symrot_inverse[{n}]))"
+            step = step if size == ONE else f"V_MUL({self.weight(size)}, {step})"
+            previous = f"p{s.operands[0]}"
+            return [f"{name} = V_MUL({previous}, {step if sign > 0 else f'V_SUB(V_ALL(0.0), {step})'});"]
+        turned = f"V_MUL({self.weight(size)}, t)" if size != ONE else "t"
+        turned = turned if sign > 0 else f"V_SUB(V_ALL(0.0), {turned})"
+        if offset is not None and offset != ("number", 0):
+            other, constant = split_sign(offset)
+            turned = f"V_{'ADD' if other > 0 else 'SUB'}({turned}, {self.weight(constant)})"
+        return [f"{name} = V_CALL({s.function}, {turned});"]
+
+    # -------------------------------------------------------------------------------------------- orders
+
+    def order(self, n: str, phase: str, sums: str) -> list[str]:
+        """Return the statements of one order: series as they come to hand, then the next of the states."""
+        lines: list[str] = []
+        made: set[int] = set()
+
+        def slots_of(s: Series) -> Iterable[str]:
+            for operand in s.operands if s.rule == "sum" else ():
+                if operand in self.shared and (slot := self.slot_of[operand][1]) not in made:
+                    made.add(slot)
+                    yield f"const symrot_v s{slot} = {self.slot(slot, phase, sums)};"
+
+        if phase != "first":
+            lines += [f"const symrot_v p{i} = v{i};" for i in self._partners()]
+        for i, s in enumerate(self.series):
+            if s.rule == "state" or i in self.shared:
+                continue
+            lines += slots_of(s)
+            lines += self.coefficient(i, n, phase, sums)
+            if i in self.stored:
+                lines.append(f"u{i}[{n}] = v{i};")
+        following = {"0": "1", "1": "2", "n": "n + 1", "m": "m + 1"}[n]
+        lines.append(f"const symrot_v step = V_MUL(unit, V_ALL(symrot_inverse[{following}]));")
+        for s in self.system.rates:
+            lines += slots_of(s)
+        rates = self.system.rates
+        lines += [f"const symrot_v y{i} = {self.sum(s, phase == 'first', 'step')};" for i, s in enumerate(rates)]
+        lines += [f"x[{i}][{following}] = y{i};" for i in range(len(rates))]
+        lines += [f"v{series} = y{i};" for series, i in self.state.items()]
+        return lines
+
+    def _partners(self) -> list[int]:
+        """Return the series whose coefficient of one order before is needed."""
+        return sorted({s.operands[0] for s in self.series if s.rule == "clock"})
+
+    def loops(self) -> list[str]:
+        """Return the sums over what is known for orders n (even) and m = n + 1: a over k + j = n, b over k + j = m."""
+        lines: list[str] = []
+        for square in (False, True):
+            chosen = [i for i, slot in enumerate(self.slots) if slot.square == square]
+            for start in range(0, len(chosen), SLOTS_PER_LOOP):
+                lines += self._loop(chosen[start : start + SLOTS_PER_LOOP], square)
+        return lines
+
+    def _loop(self, group: Sequence[int], square: bool) -> list[str]:
+        terms = [(i, sign, c) for i in group for sign, c in self.slots[i].terms]
+        left, right = sorted({c.a for _, _, c in terms}), sorted({c.b for _, _, c in terms})
+        lines = [f"symrot_v a{i} = V_ALL(0.0), b{i} = a{i};" for i in group]
+        lines.append(f"for (int64_t k = 1; k < {'n/2' if square else 'n - 1'}; ++k) {{")
+        lines += [f"    const symrot_v h{i} = {self.at(i, 'n - k')};" for i in right]
+        lines += [f"    const symrot_v f{i} = {self.at(i, 'k')}, g{i} = {self.at(i, 'k + 1')};" for i in left]
+        for i, sign, (a, b, _) in terms:
+            lines.append(f"    a{i} = V_{'FMA' if sign > 0 else 'FNMA'}(f{a}, h{b}, a{i});")
+            lines.append(f"    b{i} = V_{'FMA' if sign > 0 else 'FNMA'}(g{a}, h{b}, b{i});")
+        lines.append("}")
+        if square:
+            lines += [f"a{i} = V_ADD(a{i}, a{i}); b{i} = V_ADD(b{i}, b{i});" for i in group]
+        at = "n/2" if square else "n - 1"
+        for i, sign, (a, b, _) in terms:
+            other = at if square else "1"
+            kind = "FMA" if sign > 0 else "FNMA"
+            lines.append(f"a{i} = V_{kind}({self.at(a, at)}, {self.at(b, other)}, a{i});")
+        return lines
+
+    def between(self) -> list[str]:
+        """Return the terms of order m that hold coefficient n, which has just been computed."""
+        lines: list[str] = []
+        for i, slot in enumerate(self.slots):
+            for sign, (a, b, _) in slot.terms:
+                kind = "FMA" if sign > 0 else "FNMA"
+                if a == b:
+                    one = self.at(a, "1")
+                    lines.append(f"b{i} = V_{kind}(V_ADD({one}, {one}), {self.at(a, 'n')}, b{i});")
+                else:
+                    lines.append(f"b{i} = V_{kind}({self.at(a, '1')}, {self.at(b, 'n')}, b{i});")
+                    lines.append(f"b{i} = V_{kind}({self.at(a, 'n')}, {self.at(b, '1')}, b{i});")
+        return lines
+
+    def text(self) -> str:
+        own = [i for i in range(len(self.series)) if i not in self.shared]
+        orders = {"0": self.order("0", "first", ""), "1": self.order("1", "second", ""),
+                  "n": self.order("n", "later", "a"), "m": self.order("m", "later", "b")}  # fmt: skip
+        body = [
+            "(void)c;",
+            "(void)t;",
+            *(f"symrot_v u{i}[SYMROT_ORDER + 1];" for i in sorted(self.stored)),
+            *(f"symrot_v v{i} = {self.at(i, '0')};" if i in self.state else f"symrot_v v{i};" for i in own),
+            *(f"symrot_v d{i};" for i in self.divided),
+            "{", *_indented(orders["0"]), "}",
+            "{", *_indented(orders["1"]), "}",
+            "for (int64_t n = 2; n < order; n += 2) {",
+            *_indented(["const int64_t m = n + 1;", *self.loops(), "{", *_indented(orders["n"]), "}",
+                        *self.between(), "{", *_indented(orders["m"]), "}"]),
+            "}",
+        ]  # fmt: skip
+        places = {name: f"p[{i}]" for i, name in enumerate(self.system.parameters)}
+        values = [f"c[{i}] = {c_expression(rename(node, places))};" for node, i in self.constants.items()]
+        return "\n".join([
+            f"#define SYMROT_CONSTANTS {max(1, len(self.constants))}",
+            "",
+            "static void symrot_constants(const double *p, double *c)",
+            "{",
+            *_indented(["(void)p;", "c[0] = 0.0;" if not values else "", *values]),
+            "}",
+            "",
+            "/* Fill x[i][1] to x[i][order], order even, from x[i][0], in powers of the unit of time of each lane. */",
+            "static SYMROT_APART void symrot_jet(const symrot_v *SYMROT_RESTRICT c, symrot_v t, symrot_v unit,",
+            "    int64_t order, symrot_v (*SYMROT_RESTRICT x)[SYMROT_ORDER + 1])",
+            "{",
+            *_indented(body),
+            "}",
+        ]) + "\n"  # fmt: skip
+
+
+def _plus(value: str, sign: int, factors: str) -> str:
+    """Return a value plus or minus a product; an empty value is zero."""
+    if value:
+        return f"V_{'FMA' if sign > 0 else 'FNMA'}({factors}, {value})"
+    return f"V_MUL({factors})" if sign > 0 else f"V_SUB(V_ALL(0.0), V_MUL({factors}))"
+
+
+def _called(s: Series, first: int) -> str:
+    """Return coefficient 0 of a function of series."""
+    arguments = [f"v{operand}" for operand in s.operands[first:]]
+    return f"V_CALL{'' if len(arguments) == 1 else len(arguments)}({s.function}, {', '.join(arguments)})"
+
+
+def _indented(lines: Iterable[str]) -> list[str]:
+    return [f"    {line}" if line else "" for line in lines]

@@ -1,0 +1,150 @@
+"""Propagate a scene from many initial states and with many values of its constants, all at once."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from time import perf_counter
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from symrot import number
+from symrot.ensemble.motions import Followed, Problem, follow
+from symrot.ensemble.variation import read_times, read_variation
+from symrot.errors import InputError
+from symrot.propagation.propagator import Propagator
+from symrot.propagation.stepping import Floats
+from symrot.scene import TOLERANCES, Scene, load_scene
+
+__all__ = ["Ensemble", "EnsembleStats", "propagate_ensemble"]
+
+MOST_WORKERS = 1024
+
+
+class EnsembleStats(NamedTuple):
+    """What the motions cost: steps and evaluations of each (of a series: all its coefficients), seconds in all."""
+
+    steps: NDArray[np.int64]
+    evaluations: NDArray[np.int64]
+    seconds: float
+
+
+class Ensemble:
+    """n motions of one scene; made by :func:`propagate_ensemble`. Conventions: :mod:`symrot.conventions`.
+
+    Attributes
+    ----------
+    t : array, shape (m,) or (n, m)
+        Sample times, s, as they were asked for.
+    omega : array, shape (n, m, 3)
+        Angular velocity, body components, rad/s; not-a-number where a motion was not followed so far.
+    status : array, shape (n,)
+        0 for a motion that reached its last time, -1 for one that broke off (as solve_ivp's).
+    messages : n texts
+        Why a motion broke off, and when; empty for one that did not.
+    methods : n texts
+        How each was propagated.
+    stats : EnsembleStats
+    """
+
+    def __init__(self, scene: Scene, t: Floats, followed: Followed, seconds: float) -> None:
+        self.scene, self.t, self.omega, self._quaternion = scene, t, followed.omega, followed.quaternion
+        self.methods, self.messages = followed.methods, followed.messages
+        self.status = np.array([-1 if message else 0 for message in followed.messages], dtype=np.int64)
+        self.stats = EnsembleStats(followed.steps, followed.evaluations, seconds)
+
+    def __len__(self) -> int:
+        return len(self.omega)
+
+    def __repr__(self) -> str:
+        broken = int((self.status != 0).sum())
+        said = f", {broken} broken off" if broken else ""
+        kinds = "/".join(dict.fromkeys(self.methods))
+        return f"<Ensemble of {self.scene.name}: {len(self)} trajectories, {self.t.shape[-1]} samples, {kinds}{said}>"
+
+    @property
+    def quaternion(self) -> Floats:
+        """Attitude, unit, scalar first, body to space, shape (n, m, 4)."""
+        if self._quaternion is None:
+            raise InputError(
+                "the attitude was not computed, since neither a torque nor the output of the scene asks for it: "
+                'expected "quaternion" among output.quantities'
+            )
+        return self._quaternion
+
+    @property
+    def success(self) -> bool:
+        """Whether every motion reached its last time."""
+        return not self.status.any()
+
+
+def propagate_ensemble(
+    scene: Scene | Propagator | str | Path,
+    *,
+    omega: ArrayLike | None = None,
+    quaternion: ArrayLike | None = None,
+    parameters: Mapping[str, ArrayLike] | None = None,
+    t: ArrayLike | None = None,
+    method: str = "auto",
+    tolerance: float | None = None,
+    workers: int = 1,
+) -> Ensemble:
+    """Return n motions of a scene that differ in their initial states and in constants of the scene.
+
+    Each is found as :func:`symrot.propagate` would find it alone, and comes out bit by bit the same whatever the
+    others are, in whatever order and number, and on how many threads: in closed form where there is one, else by
+    Taylor series with one trajectory in each SIMD lane. A motion that cannot be followed to its last time does not
+    disturb the others: its ``status`` and message say so.
+
+    Parameters
+    ----------
+    scene : Scene, Propagator, str or Path
+        A scene, the name of a shipped one, the path of a scene file, or a propagator (whose tolerance is taken).
+    omega : array, shape (n, 3), optional
+        Initial angular velocities, body components, rad/s; default: the scene's own for all.
+    quaternion : array, shape (n, 4), optional
+        Initial attitudes, scalar first; they are normalised.
+    parameters : dict of arrays, optional
+        Constants of the scene, in SI units: ``principal`` (n, 3), the moments along given principal axes, or
+        ``I_xx`` to ``I_yz`` (n,); fields of a torque by their names in the scene, such as ``weight`` (n,) or
+        ``center_of_mass`` (n, 3), or one component, ``center_of_mass_3`` (n,); parameters of an expression (n,).
+        Where two torques have a name in common, those of the second are called ``torque2_weight``.
+    t : array, shape (m,) or (n, m), optional
+        Sample times, s, of all or of each, in any order, before or after the initial time; default: the scene's own.
+    method : str
+        ``auto``, or one of :data:`symrot.propagation.propagator.METHODS` for all.
+    tolerance : float, optional
+        Error of each trajectory to aim for; default: the scene's own.
+    workers : int
+        Threads that step.
+
+    Raises
+    ------
+    InputError
+        For a scene, an array or a name that cannot be used.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> rates = np.array([[0, 0.01, 1.0], [0, 0.02, 1.0]])
+    >>> propagate_ensemble("tumbling_prism", omega=rates, t=[0.0, 10.0]).omega.shape
+    (2, 2, 3)
+    """
+    began = perf_counter()
+    given = scene if isinstance(scene, Scene) else scene.scene if isinstance(scene, Propagator) else load_scene(scene)
+    own = scene.tolerance if isinstance(scene, Propagator) else float(given.tolerance)
+    variation = read_variation(given, omega, quaternion, parameters)
+    times = read_times(t, given, len(variation))
+    if isinstance(workers, bool) or not isinstance(workers, int) or not 1 <= workers <= MOST_WORKERS:
+        raise InputError(f"workers: expected a whole number from 1 to {MOST_WORKERS}, got {number.show(workers)}")
+    aim = own if tolerance is None else _tolerance(tolerance)
+    problem = Problem(variation, variation.plan(), float(given.span.start), times, aim, workers)
+    return Ensemble(given, times, follow(problem, method), perf_counter() - began)
+
+
+def _tolerance(tolerance: float) -> float:
+    low, high = TOLERANCES
+    found = number.read(tolerance, "tolerance")
+    if not low <= found <= high:
+        raise InputError(f"tolerance: expected a number from {float(low):g} to {float(high):g}, got {tolerance}")
+    return float(found)

@@ -1,0 +1,106 @@
+/*
+ * SYMROT_LANES numbers at once: GNU vectors where the compiler has them, else one number and plain C.
+ *
+ * Included before an emitted jet and lanes.c. Every operation acts on each lane for itself and rounds it alike, so a
+ * lane's bits depend on nothing beside it. Define SYMROT_LANES to choose their number, SYMROT_PLAIN for plain C.
+ */
+#include <float.h>
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+#if defined(__FAST_MATH__)
+#error "compensated sums do not survive -ffast-math: compile the lanes without it"
+#endif
+
+#if defined(__cplusplus)
+#define SYMROT_RESTRICT __restrict
+#else
+#define SYMROT_RESTRICT restrict
+#endif
+#if defined(__GNUC__) && !defined(SYMROT_PLAIN)
+#define SYMROT_APART __attribute__((noinline))  /* code of its own: registers are given out for its loops alone */
+#if !defined(SYMROT_LANES)
+#if defined(__AVX512F__)
+#define SYMROT_LANES 8
+#else
+#define SYMROT_LANES 4
+#endif
+#endif
+#else
+#define SYMROT_APART
+#undef SYMROT_LANES
+#define SYMROT_LANES 1
+#endif
+
+#if SYMROT_LANES > 1
+typedef double symrot_v __attribute__((vector_size(8*SYMROT_LANES)));
+typedef int64_t symrot_bits __attribute__((vector_size(8*SYMROT_LANES)));  /* a mask has all bits of a lane, or none */
+#define V_ALL(s) ((double)(s) - (symrot_v){0.0})
+#define V_LANE(v, i) ((v)[i])
+#define V_SELECT(m, a, b) ((symrot_v)(((symrot_bits)(a) & (m)) | ((symrot_bits)(b) & ~(m))))
+#define V_LESS(a, b) ((symrot_bits)((a) < (b)))
+#define V_EQUAL(a, b) ((symrot_bits)((a) == (b)))
+#define V_TO_BITS(v) ((symrot_bits)(v))
+#define V_FROM_BITS(b) ((symrot_v)(b))
+#define V_NO_BITS ((symrot_bits){0})
+#else
+typedef double symrot_v;
+typedef int64_t symrot_bits;
+#define V_ALL(s) ((double)(s))
+#define V_LANE(v, i) ((&(v))[i])
+#define V_SELECT(m, a, b) ((m) ? (a) : (b))
+#define V_LESS(a, b) (-(symrot_bits)((a) < (b)))
+#define V_EQUAL(a, b) (-(symrot_bits)((a) == (b)))
+#define V_TO_BITS(v) symrot_to_bits(v)
+#define V_FROM_BITS(b) symrot_from_bits(b)
+#define V_NO_BITS ((symrot_bits)0)
+static inline symrot_bits symrot_to_bits(double v)
+{
+    symrot_bits b;
+    memcpy(&b, &v, sizeof b);
+    return b;
+}
+static inline double symrot_from_bits(symrot_bits b)
+{
+    double v;
+    memcpy(&v, &b, sizeof v);
+    return v;
+}
+#endif
+
+#define V_ADD(a, b) ((a) + (b))
+#define V_SUB(a, b) ((a) - (b))
+#define V_MUL(a, b) ((a)*(b))
+#define V_DIV(a, b) ((a)/(b))
+#define V_FMA(a, b, c) ((a)*(b) + (c))
+#define V_FNMA(a, b, c) ((c) - (a)*(b))
+
+#define EACH_LANE(l) for (int l = 0; l < SYMROT_LANES; ++l)
+#define V_CALL(function, v) symrot_call(function, v)
+#define V_CALL2(function, v, u) symrot_call2(function, v, u)
+
+/* Return a function of each lane, one after the other. */
+static inline symrot_v symrot_call(double (*function)(double), symrot_v v)
+{
+    EACH_LANE(l) V_LANE(v, l) = function(V_LANE(v, l));
+    return v;
+}
+
+static inline symrot_v symrot_call2(double (*function)(double, double), symrot_v v, symrot_v u)
+{
+    EACH_LANE(l) V_LANE(v, l) = function(V_LANE(v, l), V_LANE(u, l));
+    return v;
+}
+
+static inline int symrot_any(symrot_bits mask)
+{
+    int64_t bits = 0;
+    EACH_LANE(l) bits |= V_LANE(mask, l);
+    return bits != 0;
+}
+
+static inline symrot_v symrot_size_of(symrot_v v)
+{
+    return V_FROM_BITS(V_TO_BITS(v) & INT64_MAX);
+}

@@ -1,0 +1,252 @@
+"""Taylor series with one trajectory in each SIMD lane: the C of :file:`lanes.c` driven from Python.
+
+The counterpart of :mod:`symrot.propagation.taylor` for many motions: the same series, step rule and compensated states,
+four or eight motions to one instruction, each with a step of its own. A lane whose motion ends takes the next. Lanes
+do not touch each other: a motion comes out bit by bit the same whatever its neighbours, its lane and the number of
+threads, and one that breaks off leaves the rest alone.
+"""
+
+import ctypes
+import os
+from collections.abc import Sequence
+from functools import cache
+from itertools import pairwise
+from pathlib import Path
+from threading import Event
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symrot.errors import CompilerError
+from symrot.kernel import Program
+from symrot.propagation.stepping import DONE, NOT_FINITE, UNDERFLOW, Floats, PathLike, cut_off
+from symrot.propagation.taylor import step_tail
+
+__all__ = ["Lanes", "Outcome", "around", "follow", "lanes", "order_for", "translation_unit"]
+
+Integers = NDArray[np.int64]
+
+MAX_STEPS = 1_000_000_000
+STEPS_PER_CALL = 20_000  # of all lanes at once: some 20 ms, after which Python can see an interrupt
+TOO_MANY = 5
+REASONS = {
+    NOT_FINITE: "its derivatives are not finite there",
+    UNDERFLOW: "the step shrank to nothing, as it does before a singularity",
+    TOO_MANY: "{steps} steps were not enough",
+}
+ORDERS = ((1e-3, 12), (1e-6, 16), (0.0, 20))  # from which tolerance on which order is fastest, see order_for
+
+
+def order_for(tolerance: float) -> int:
+    """Return the order that is fastest for a tolerance; measured by ``python -m symrot.bench.ensemble --orders``."""
+    return next(order for least, order in ORDERS if tolerance >= least)
+
+
+def translation_unit(
+    program: Program, blocks: Sequence[int], scales: Sequence[float], order: int, width: int | None = None
+) -> str:
+    """Return the C source of a library: the jet of a right-hand side and the stepper of lanes around it.
+
+    Parameters
+    ----------
+    program, blocks, scales, order
+        As :func:`symrot.propagation.taylor.translation_unit` takes them.
+    width : int, optional
+        Number of lanes: 1 (plain C), 4 or 8; default: 8 where the processor has registers for them, else 4.
+
+    Raises
+    ------
+    InputError
+        For a right-hand side that is not smooth (abs).
+    """
+    from symrot.codegen.ensemble_source import lane_definitions
+
+    return around(lane_definitions(program, blocks, scales, order), width)
+
+
+def around(definitions: str, width: int | None = None) -> str:
+    """Return the C source of a library from the text of its system; see :func:`translation_unit`."""
+    here = Path(__file__).parent
+    head = "" if width is None else "#define SYMROT_PLAIN\n" if width == 1 else f"#define SYMROT_LANES {width}\n"
+    texts = [(here / name).read_text(encoding="utf-8") for name in ("lanes.h", "lanes.c")]
+    return head + "\n".join((texts[0], definitions, texts[1]))
+
+
+_POINTERS = (
+    "motion", "first", "count", "row", "y", "p", "times", "states", "reached", "steps", "evaluations", "status"
+)  # fmt: skip
+
+
+class _Job(ctypes.Structure):
+    """``symrot_job`` of lanes.c."""
+
+    _fields_ = (
+        ("legs", ctypes.c_int64),
+        *((name, ctypes.c_double) for name in ("t0", "tail", "pace", "max_steps")),
+        *((name, ctypes.c_void_p) for name in _POINTERS),
+        ("next", ctypes.c_int64),
+    )
+
+
+class Outcome(NamedTuple):
+    """What came of n motions: states (n, m, N), not-a-number where one was not followed so far; one entry per motion.
+
+    ``messages`` says why a motion broke off, and is empty for one that did not.
+    """
+
+    states: Floats
+    steps: Integers
+    evaluations: Integers
+    messages: tuple[str, ...]
+
+
+class Lanes:
+    """A library of :func:`translation_unit`."""
+
+    def __init__(self, path: str) -> None:
+        self.path = path
+        try:
+            self._library = ctypes.CDLL(path)
+            sizes = (ctypes.c_int64 * 5)()
+            self._library.symrot_lanes_sizes(sizes)
+            carry, self._run = self._library.symrot_lanes_carry, self._library.symrot_lanes_run
+        except (OSError, AttributeError) as error:
+            raise CompilerError(f"the compiled kernel {path} cannot be loaded: {error}") from error
+        self.states, self.parameters, self.order, self.width, self._memory = sizes
+        self._run.argtypes, self._run.restype = (ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int64), ctypes.c_int
+        carry.argtypes, carry.restype = (ctypes.c_double, ctypes.c_double), ctypes.c_double
+        if carry(1.0, 2.0**-60) != 2.0**-60:
+            raise CompilerError(f"the compiled kernel {path} loses the carry of its sums: compile without -ffast-math")
+
+    def jet(self, t: float, y: Sequence[float], p: Sequence[float], unit: float = 1.0) -> Floats:
+        """Return the Taylor coefficients of the states at t, shape (order + 1, N), in powers of ``unit``."""
+        state, values = np.array(y, dtype=np.float64), np.array(p, dtype=np.float64)
+        found = np.empty((self.order + 1, self.states))
+        jet = self._library.symrot_lanes_jet
+        pointer, real = ctypes.c_void_p, ctypes.c_double
+        jet.argtypes, jet.restype = (real, pointer, pointer, real, ctypes.c_int64, pointer), None
+        jet(t, state.ctypes.data, values.ctypes.data, unit, self.order, found.ctypes.data)
+        return found
+
+    def work(self, job: _Job, interrupted: Event) -> None:
+        """Follow the legs of a job to their ends, or until interrupted."""
+        memory = ctypes.create_string_buffer(self._memory)
+        self._library.symrot_lanes_clear(memory)
+        while not interrupted.is_set() and self._run(memory, ctypes.addressof(job), STEPS_PER_CALL) != DONE:
+            pass
+
+
+@cache
+def lanes(path: str) -> Lanes:
+    """Return the loaded library at a path."""
+    return Lanes(path)
+
+
+class _Legs(NamedTuple):
+    """The motions cut at t0: sample times of each leg sorted away from it. See ``symrot_job``."""
+
+    table: Floats
+    motion: Integers
+    first: Integers
+    samples: Integers
+    row: Integers
+    order: Integers  # (m,) or (n, m): the sample that each sorted one is
+
+
+def _legs(t0: float, times: Floats, n: int) -> _Legs:
+    forward = times >= t0
+    order = np.lexsort((np.where(forward, times, -times), forward), axis=-1)
+    table = np.take_along_axis(times, order, axis=-1)
+    backward = np.broadcast_to((~forward).sum(axis=-1), (n,))
+    samples, motion = times.shape[-1], np.arange(n)
+    base = motion * (samples if times.ndim == 2 else 0)
+    sides = [(backward, 0 * backward), (samples - backward, backward)]
+    motions, firsts, counts, rows = (
+        np.concatenate(parts).astype(np.int64)
+        for parts in zip(
+            *((motion, base + offset, count, motion * samples + offset) for count, offset in sides), strict=True
+        )
+    )
+    kept = counts > 0
+    return _Legs(table.ravel(), motions[kept], firsts[kept], counts[kept], rows[kept], order)
+
+
+def follow(
+    path: PathLike,
+    p: Floats,
+    y: Floats,
+    t0: float,
+    times: Floats,
+    tolerance: float,
+    *,
+    max_steps: int = MAX_STEPS,
+    workers: int = 1,
+) -> Outcome:
+    """Follow n motions through their sample times.
+
+    Parameters
+    ----------
+    path : path
+        A library built from :func:`translation_unit`.
+    p, y : arrays, shapes (n, P) and (n, N)
+        Parameters and initial states.
+    t0 : float
+        Initial time, s.
+    times : array, shape (m,) or (n, m)
+        Sample times, s, of all or of each; in any order, on both sides of t0.
+    tolerance : float
+        Error of each trajectory to aim for, see :func:`symrot.propagation.taylor.step_tail`.
+    max_steps : int
+        Most steps of one motion.
+    workers : int
+        Threads; each steps its share in lanes of its own.
+    """
+    library, n = lanes(os.fspath(path)), len(y)
+    p, y, times = (np.ascontiguousarray(array, dtype=np.float64) for array in (p, y, times))
+    tail, pace = step_tail(tolerance)
+    legs = _legs(t0, times, n)
+    states = np.full((n * times.shape[-1], library.states), np.nan)
+    total = len(legs.motion)
+    reached, steps, evaluations = np.zeros(total), np.zeros(total), np.zeros(total)
+    status = np.full(total, TOO_MANY, dtype=np.int64)
+    shared = {"y": y, "p": p, "times": legs.table, "states": states}
+    own = {
+        "motion": legs.motion, "first": legs.first, "count": legs.samples, "row": legs.row,
+        "reached": reached, "steps": steps, "evaluations": evaluations, "status": status,
+    }  # fmt: skip
+
+    def job(start: int, stop: int) -> _Job:
+        places = {name: array.ctypes.data for name, array in shared.items()}
+        places |= {name: array.ctypes.data + 8 * start for name, array in own.items()}
+        return _Job(legs=stop - start, t0=t0, tail=tail, pace=pace, max_steps=float(max_steps), **places)
+
+    edges = np.linspace(0, total, max(1, min(workers, total)) + 1).astype(int).tolist()
+    _share(library, [job(start, stop) for start, stop in pairwise(edges)])
+    grid = states.reshape(n, times.shape[-1], library.states)
+    if not np.array_equal(legs.order, np.broadcast_to(np.arange(times.shape[-1]), legs.order.shape)):
+        sorted_grid, grid = grid, np.empty_like(grid)
+        np.put_along_axis(grid, np.broadcast_to(legs.order, grid.shape[:2])[..., None], sorted_grid, axis=1)
+    messages = [""] * n
+    for leg in np.flatnonzero(status != DONE).tolist():
+        stop = float(legs.table[legs.first[leg] + legs.samples[leg] - 1])
+        reason = REASONS[int(status[leg])].format(steps=max_steps)
+        messages[int(legs.motion[leg])] = str(cut_off(float(reached[leg]), reason, stop))
+    counted = [np.bincount(legs.motion, weights, n).astype(np.int64) for weights in (steps, evaluations)]
+    return Outcome(grid, counted[0], counted[1], tuple(messages))
+
+
+def _share(library: Lanes, jobs: list[Any]) -> None:
+    """Do the jobs, each in a thread; an interrupt stops them all."""
+    interrupted = Event()
+    if len(jobs) == 1:
+        library.work(jobs[0], interrupted)
+        return
+    from concurrent.futures import ThreadPoolExecutor
+
+    with ThreadPoolExecutor(len(jobs)) as pool:
+        try:
+            for done in [pool.submit(library.work, job, interrupted) for job in jobs]:
+                done.result()
+        finally:
+            interrupted.set()

@@ -1,0 +1,284 @@
+"""What differs between the trajectories of an ensemble, read and checked, and the least structure that covers all."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from symrot import number
+from symrot.dynamics.torque_kinds import TORQUE_KINDS
+from symrot.errors import InputError
+from symrot.inertia.principal import principal_axes, require_admissible, why_not_propagable
+from symrot.planner import Plan, general_structure, make_plan
+from symrot.propagation.stepping import Floats
+from symrot.scene import Initial, Scene
+
+__all__ = ["Variation", "read_times", "read_variation"]
+
+PLACES = {"I_xx": (0, 0), "I_yy": (1, 1), "I_zz": (2, 2), "I_xy": (0, 1), "I_xz": (0, 2), "I_yz": (1, 2)}
+PRINCIPAL = ("I_xx", "I_yy", "I_zz")
+FIXED = {"direction": "turn the initial quaternions instead", "attitude": "turn the initial quaternions instead"}
+SIGNS = {  # what a field's sign asks of its values, of each trajectory: shape (n, k) -> (n,)
+    "positive": lambda values: (values > 0).all(axis=1),
+    "nonnegative": lambda values: (values >= 0).all(axis=1),
+    "nonzero": lambda values: (values != 0).any(axis=1),
+}
+GENERAL_START = Initial(  # with no component that any rule of the planner could drop
+    (Fraction(3, 7), Fraction(5, 11), Fraction(7, 13)),
+    (Fraction(1, 5), Fraction(2, 5), Fraction(4, 5), Fraction(2, 5)),
+)
+DISTINCT = (Fraction(4), Fraction(5), Fraction(6))  # admissible moments of a body of any class
+
+
+class _Place(NamedTuple):
+    """Where a constant stands in a scene: in the inertia tensor, or in a field of a torque."""
+
+    torque: int  # -1: the inertia
+    field: str
+    entry: int | str | None  # of a vector, of the parameters by name; None: the field is a number
+
+
+@dataclass(frozen=True)
+class Variation:
+    """n trajectories of one scene: initial states, and columns of the constants that vary, by the planner's names."""
+
+    scene: Scene
+    omega: Floats  # (n, 3), rad/s, body components
+    quaternion: Floats | None  # (n, 4), of any norm but zero; None: the scene's own
+    columns: dict[str, Floats]  # (n,) each
+    places: dict[str, _Place]
+
+    def __len__(self) -> int:
+        return len(self.omega)
+
+    @cached_property
+    def scenes(self) -> list[Scene]:
+        """The scene of each trajectory, its numbers those of the arrays, exactly."""
+        columns = {name: column.tolist() for name, column in self.columns.items()}
+        return [
+            self._with(start, {name: Fraction(column[i]) for name, column in columns.items()})
+            for i, start in enumerate(self._starts())
+        ]
+
+    def _starts(self) -> Iterator[Initial]:
+        own = self.scene.initial.quaternion
+        rows = [None] * len(self) if self.quaternion is None else self.quaternion.tolist()
+        for omega, row in zip(self.omega.tolist(), rows, strict=True):
+            x, y, z = map(Fraction, omega)
+            yield Initial((x, y, z), own if row is None else _unit(row))
+
+    def _with(self, start: Initial, values: Mapping[str, Fraction]) -> Scene:
+        if not values:
+            return replace(self.scene, initial=start)
+        body, torques = self.scene.body, list(self.scene.torques)
+        tensor = [list(row) for row in body.inertia]
+        for name, value in values.items():
+            torque, field, entry = self.places[name]
+            if torque < 0:
+                i, j = PLACES[name]
+                tensor[i][j] = tensor[j][i] = value
+                continue
+            fields = dict(torques[torque].values)
+            fields[field] = _changed(fields[field], entry, value)
+            torques[torque] = torques[torque]._replace(values=fields)
+        if not PLACES.keys().isdisjoint(values):
+            (xx, xy, xz), (_, yy, yz), (_, _, zz) = tensor
+            body = body._replace(inertia=((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)), principal=principal_axes(tensor))
+        return replace(self.scene, initial=start, body=body, torques=tuple(torques))
+
+    def plan(self) -> Plan:
+        """Return a plan that covers all trajectories: a constant is special in it if it is so in each of them."""
+        values = {name: _representative(column) for name, column in self.columns.items()}
+        if not PLACES.keys().isdisjoint(values):
+            values |= self._representative_inertia()
+        return make_plan(self._with(GENERAL_START, values))
+
+    def _representative_inertia(self) -> dict[str, Fraction]:
+        """Return a tensor with the equalities and zeros that hold in every trajectory, and no others."""
+        inertia = self.scene.body.inertia
+        found: dict[str, Fraction] = {}
+        for k, name in enumerate(PRINCIPAL):
+            same = next((j for j in range(k) if self._agree(PRINCIPAL[j], name)), k)
+            found[name] = found[PRINCIPAL[same]] if same < k else DISTINCT[k]
+        for k, name in enumerate(name for name in PLACES if name not in PRINCIPAL):
+            i, j = PLACES[name]
+            present = self.columns[name].any() if name in self.columns else inertia[i][j] != 0
+            found[name] = Fraction(k + 1, 10) if present else Fraction(0)
+        return found
+
+    def _agree(self, one: str, other: str) -> bool:
+        """Whether two moments are equal in every trajectory."""
+        own = [self.scene.body.inertia[PLACES[name][0]][PLACES[name][1]] for name in (one, other)]
+        if one not in self.columns and other not in self.columns:
+            return number.equal(*own)
+        left, right = (self.columns.get(name, float(value)) for name, value in zip((one, other), own, strict=True))
+        return bool(np.all(left == right))
+
+
+def _changed(old: Any, entry: int | str | None, value: Fraction) -> Any:
+    """Return a field of a torque with one number replaced."""
+    if entry is None:
+        return value
+    if isinstance(entry, str):
+        return {**old, entry: value}
+    return tuple(value if k == entry else kept for k, kept in enumerate(old))
+
+
+def _unit(row: list[float]) -> tuple[Fraction, Fraction, Fraction, Fraction]:
+    """Return a quaternion divided by its norm."""
+    q = [Fraction(value) for value in row]
+    norm = number.sqrt(sum((value * value for value in q), start=Fraction(0)))
+    return q[0] / norm, q[1] / norm, q[2] / norm, q[3] / norm
+
+
+def _representative(column: Floats) -> Fraction:
+    """Return a value that is zero if all are zero."""
+    return Fraction(float(column[np.argmax(column != 0)]))
+
+
+# ------------------------------------------------------------------------------------------------ reading
+
+
+def read_variation(
+    scene: Scene, omega: ArrayLike | None, quaternion: ArrayLike | None, parameters: Mapping[str, ArrayLike] | None
+) -> Variation:
+    """Return the trajectories asked for; what is not given is the scene's own.
+
+    Raises
+    ------
+    InputError
+        For arrays of other shapes, values that are not finite, quaternions of zero, names that the scene does not
+        have, bodies that cannot exist.
+    """
+    if parameters is not None and not isinstance(parameters, Mapping):
+        raise InputError(f"parameters: expected a dict of arrays by name, got {number.show(parameters)}")
+    places = _places(scene)
+    arrays: dict[str, Floats] = {}
+    if omega is not None:
+        arrays["omega"] = _array(omega, (3,), "omega", "rad/s")
+    if quaternion is not None:
+        arrays["quaternion"] = _array(quaternion, (4,), "quaternion", "1")
+    columns: dict[str, Floats] = {}
+    for name, values in (parameters or {}).items():
+        found = _columns(scene, places, name, values)
+        twice = next((other for other in found if other in columns), None)
+        if twice is not None:
+            raise InputError(f"parameters: expected each constant once, got {twice} a second time, in {name!r}")
+        columns |= found
+        arrays[name] = next(iter(found.values()))
+    counts = {name: len(array) for name, array in arrays.items()}
+    if len(set(counts.values())) > 1:
+        listed = ", ".join(f"{count} of {name}" for name, count in counts.items())
+        raise InputError(f"ensemble: expected the same number of trajectories in every array, got {listed}")
+    n = next(iter(counts.values()), 1)
+    if n == 0:
+        raise InputError("ensemble: expected at least one trajectory, got arrays of length 0")
+    own = np.tile(np.array([float(x) for x in scene.initial.omega_b]), (n, 1))
+    attitudes = arrays.get("quaternion")
+    if attitudes is not None and not attitudes.any(axis=1).all():
+        at = int(np.argmin(attitudes.any(axis=1)))
+        raise InputError(f"quaternion: expected quaternions that are not zero, got zero in trajectory {at}")
+    variation = Variation(scene, arrays.get("omega", own), attitudes, columns, places)
+    if not PLACES.keys().isdisjoint(columns):
+        _check_bodies(variation.scenes)
+    return variation
+
+
+def _check_bodies(scenes: Sequence[Scene]) -> None:
+    """Refuse moments of inertia that no body has, or that leave its motion undetermined."""
+    for i, scene in enumerate(scenes):
+        require_admissible(scene.body.principal, f"parameters, trajectory {i}")
+        if reason := why_not_propagable(scene.body.principal):
+            raise InputError(f"parameters, trajectory {i}: {reason}")
+
+
+def read_times(t: ArrayLike | None, scene: Scene, n: int) -> Floats:
+    """Return the sample times, shape (m,) for all trajectories or (n, m)."""
+    if t is None:
+        span = scene.span
+        return np.linspace(float(span.start), float(span.stop), span.samples)
+    try:
+        times = np.array(t, dtype=np.float64, ndmin=1)
+    except (TypeError, ValueError):
+        raise InputError(f"t: expected times in s, got {number.show(t)}") from None
+    if times.ndim > 2 or (times.ndim == 2 and len(times) != n):
+        raise InputError(
+            f"t: expected times in s, shape (m,) for all trajectories or ({n}, m) for each, got shape {times.shape}"
+        )
+    if not np.isfinite(times).all():
+        raise InputError(f"t: expected finite times in s, got {times[~np.isfinite(times)][0]}")
+    return times
+
+
+def _array(values: ArrayLike, shape: tuple[int, ...], name: str, unit: str) -> Floats:
+    wanted = "(" + ", ".join(["n", *map(str, shape)]) + ("," if not shape else "") + ")"
+    try:
+        array = np.array(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise InputError(f"{name}: expected an array of shape {wanted} in {unit}, got {number.show(values)}") from None
+    if array.ndim != 1 + len(shape) or array.shape[1:] != shape:
+        raise InputError(f"{name}: expected an array of shape {wanted} in {unit}, got shape {array.shape}")
+    if not np.isfinite(array).all():
+        place = np.argwhere(~np.isfinite(array))[0]
+        raise InputError(
+            f"{name}: expected finite numbers in {unit}, got {array[tuple(place)]} in trajectory {place[0]}"
+        )
+    return array
+
+
+def _places(scene: Scene) -> dict[str, _Place]:
+    """Return every constant of a scene that may vary, by the planner's name."""
+    found = {name: _Place(-1, "inertia", None) for name in PLACES}
+    for index, torque in enumerate(general_structure(scene)["torques"]):
+        prefix = torque["prefix"]
+        for name in torque.get("parameters", ()):
+            found[f"{prefix}{name}"] = _Place(index, "parameters", name)
+        for field, pattern in torque.get("fields", {}).items():
+            if isinstance(pattern, str):
+                found[f"{prefix}{field}"] = _Place(index, field, None)
+                continue
+            first = 0 if len(pattern) == 4 else 1  # as the planner numbers them
+            found |= {f"{prefix}{field}_{first + k}": _Place(index, field, k) for k, _ in enumerate(pattern)}
+    return found
+
+
+def _columns(scene: Scene, places: dict[str, _Place], name: str, values: ArrayLike) -> dict[str, Floats]:
+    """Return a parameter as columns of constants."""
+    if name == "principal":
+        if not scene.body.principal.given_axes:
+            raise InputError(
+                "principal: expected a body given along its principal axes, got one with products of inertia; vary "
+                f"{', '.join(PLACES)}"
+            )
+        return dict(zip(PRINCIPAL, _array(values, (3,), name, "kg m^2").T, strict=True))
+    components = [key for key, place in places.items() if _field(key, place) == name != key]
+    chosen = [name] if name in places else components
+    if not chosen:
+        known = ["principal", *dict.fromkeys(_field(key, place) for key, place in places.items())]
+        raise InputError(f"parameters: expected names among {', '.join(known)}, got {number.show(name)}")
+    place = places[chosen[0]]
+    if place.torque < 0:
+        return {name: _array(values, (), name, "kg m^2")}
+    kind = TORQUE_KINDS[scene.torques[place.torque].kind]
+    field = next(field for field in kind.fields if field.name == place.field)
+    if field.name in FIXED:
+        raise InputError(f"parameters: {name} is the same for all trajectories; {FIXED[field.name]}")
+    array = _array(values, () if name in places else (len(chosen),), name, field.unit)
+    rows = array.reshape(len(array), -1)
+    if field.sign in SIGNS and (field.sign != "nonzero" or name not in places):
+        good = SIGNS[field.sign](rows)
+        if not good.all():
+            at = int(np.argmin(good))
+            raise InputError(
+                f"{name}: expected {field.sign} values in {field.unit}, got {array[at]} in trajectory {at}"
+            )
+    return dict(zip(chosen, rows.T, strict=True))
+
+
+def _field(key: str, place: _Place) -> str:
+    """Return the name of the field that holds a constant, as a scene spells it; of a number, its own name."""
+    return key.rpartition("_")[0] if isinstance(place.entry, int) else key
