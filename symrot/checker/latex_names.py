@@ -143,7 +143,8 @@ class NamesPart(Cursor):
 
     def marked_name(self, node: Node, token: Token) -> Node:
         """Return a name that is marked as a vector or matrix, if it is defined as one."""
-        if node.value not in self.names.matrices:
+        subscript_follows = self.at("}") and self.peek(1).text == "_"  # \\dot{\\mathbf{H}}_G
+        if node.value not in self.names.matrices and (self.names.implied or not subscript_follows):
             raise self.fail(f"a vector or matrix that is defined under the name {node.value!r}", token)
         return node
 
