@@ -70,6 +70,7 @@ def _run(options: Namespace) -> int:
     _progress("preparing the kernel ..")
     start = perf_counter()
     propagator = symrot.propagator(scene, method=options.method, tolerance=options.tolerance)
+    propagator.prepare()
     preparation = perf_counter() - start
     _progress("propagating ..")
     trajectory = propagator()
@@ -180,7 +181,9 @@ def _check(options: Namespace) -> int:
         _say_json([verdict.to_json() for verdict in found])
     else:
         _say(verdicts.lines(found, options.claim))
-    return GOOD if all(found) else FAILED
+    refused = [verdict for verdict in found if verdict.verdict == "refused"]
+    sys.stderr.write("".join(f"symrot: {one_line(verdict.reason)}\n" for verdict in refused))
+    return BAD if refused else GOOD if all(found) else FAILED
 
 
 def _scenes(options: Namespace) -> int:
@@ -222,7 +225,7 @@ def _json_option(parser: ArgumentParser) -> None:
 
 def _run_arguments(parser: ArgumentParser) -> None:
     _scene_argument(parser)
-    parser.add_argument("--method", default="auto", metavar="NAME", help="auto (default), dop853, scipy or scipy:NAME")
+    parser.add_argument("--method", default="auto", metavar="NAME", help="auto (default), exact, taylor, dop853, scipy:NAME")
     parser.add_argument("--tolerance", metavar="X", help="error to aim for, 1e-15 to 1e-2 (default: the scene's own)")
     parser.add_argument("--out", type=Path, metavar="FILE", help="write the quantities asked for: FILE.npz or FILE.csv")
     parser.add_argument("--plot", type=Path, metavar="FILE", help="draw the motion on one page: FILE.png, .pdf or .svg")

@@ -55,7 +55,7 @@ def symmetric_motion(scene, t):
 @pytest.mark.parametrize("tolerance", TOLERANCES)
 @pytest.mark.parametrize("name", ["chen_cylinder", "axisymmetric_satellite", "axisymmetric_satellite_oblate"])
 def test_free_symmetric_bodies_return_their_closed_form(name, tolerance):
-    trajectory = propagate(name, tolerance=tolerance)
+    trajectory = propagate(name, method="dop853", tolerance=tolerance)
     omega, dcm = symmetric_motion(trajectory.scene, trajectory.t)
     assert rate_error(trajectory.omega, omega) <= PROMISE * tolerance
     assert attitude_error(trajectory.dcm, dcm) <= PROMISE * tolerance
@@ -73,7 +73,7 @@ def reference(name):
 def test_error_stays_within_the_promise_of_the_tolerance(name, tolerance):
     """Against 50 digits; invariants drift no more than the promise either."""
     t, omega, dcm = reference(name)
-    trajectory = propagator(name, tolerance=tolerance)(t)
+    trajectory = propagator(name, method="dop853", tolerance=tolerance)(t)
     assert rate_error(trajectory.omega, omega) <= PROMISE * tolerance
     assert attitude_error(trajectory.dcm, dcm) <= PROMISE * tolerance
     assert max(item.drift for item in trajectory.invariants) <= PROMISE * tolerance
@@ -82,7 +82,7 @@ def test_error_stays_within_the_promise_of_the_tolerance(name, tolerance):
 def test_an_unstable_motion_is_as_good_as_its_conditioning():
     """The T-handle passes its intermediate axis five times: each pass multiplies rounding, 1e-16, by up to 1e3."""
     t, omega, dcm = reference("t_handle")
-    trajectory = propagator("t_handle", tolerance=1e-8)(t)
+    trajectory = propagator("t_handle", method="dop853", tolerance=1e-8)(t)
     assert rate_error(trajectory.omega, omega) <= PROMISE * 1e-8
     assert attitude_error(trajectory.dcm, dcm) <= PROMISE * 1e-8
 
@@ -113,7 +113,7 @@ def test_every_simplification_leaves_the_motion_alone(name):
 
 def propagator_of(plan, structure, tolerance):
     """Return a propagator for a plan with another of its structures."""
-    made = propagator(plan.scene, tolerance=tolerance)
+    made = propagator(plan.scene, method="dop853", tolerance=tolerance)
     made._motion = Motion(Plan(plan.scene, structure, plan.rows), Choice("dop853", "for the test"), tolerance)
     return made
 
@@ -141,10 +141,9 @@ def test_angles_cost_nothing_at_their_singularity():
         "initial": {"omega": [0, 0.4, 1], "attitude": {"sequence": "ZYX", "angles": [10, 90, 0], "degrees": True}},
         "span": {"t": [0, 20]},
     }  # fmt: skip
-    plain = propagate(Scene.from_dict({**content, "output": {"quantities": ["omega", "quaternion"]}}))
-    asked = propagate(
-        Scene.from_dict({**content, "output": {"quantities": ["omega", "quaternion", "euler"], "sequence": "ZYX"}})
-    )
+    outputs = ({"quantities": ["omega", "quaternion"]},
+               {"quantities": ["omega", "quaternion", "euler"], "sequence": "ZYX"})  # fmt: skip
+    plain, asked = (propagate(Scene.from_dict({**content, "output": output}), method="dop853") for output in outputs)
     assert asked.stats[:3] == plain.stats[:3]
     assert asked.gimbal_lock("ZYX")[0]
     for sequence in ("ZYX", "ZXZ", "xyx"):
@@ -153,7 +152,7 @@ def test_angles_cost_nothing_at_their_singularity():
 
 
 def test_times_in_any_order_and_before_the_start():
-    made = propagator("tumbling_prism")
+    made = propagator("tumbling_prism", method="dop853")
     t = np.array([3.0, -2.0, 0.0, 20.0, 3.0, 1e-9])
     shuffled, ordered = made(t), made(np.sort(t))
     assert np.abs(shuffled.quaternion[np.argsort(t, kind="stable")] - ordered.quaternion).max() < 1e-12
@@ -164,7 +163,7 @@ def test_times_in_any_order_and_before_the_start():
 
 
 def test_dense_output_agrees_with_samples():
-    trajectory = propagate("heavy_top_loops")
+    trajectory = propagate("heavy_top_loops", method="dop853")
     values = trajectory.sol(trajectory.t)
     assert np.abs(values[:3].T - trajectory.omega).max() < 1e-9 * 200
     assert np.abs(values[3:].T - trajectory.quaternion).max() < 1e-9
@@ -177,7 +176,7 @@ def test_another_initial_state_uses_a_kernel_that_fits_it():
     scene = Scene.from_dict({
         "schema": 1, "title": "spin", "body": {"principal": [1, 2, 3]}, "initial": {"omega": [0, 0, 1]}, "span": {"t": [0, 9]},
     })  # fmt: skip
-    made = propagator(scene)
+    made = propagator(scene, method="dop853")
     assert made.plan.states == ("theta",)
     steady = made()
     assert np.array_equal(steady.omega, np.tile([0.0, 0.0, 1.0], (1001, 1)))
@@ -253,10 +252,11 @@ def test_a_cached_scene_propagates_without_sympy_or_scipy():
 def test_a_second_scene_of_the_same_structure_compiles_nothing(monkeypatch):
     from symrot.codegen import library
 
-    propagate("tumbling_prism")
+    for method in ("dop853", "taylor"):
+        propagate("tumbling_prism", method=method)
     monkeypatch.setattr(library, "_compile", lambda *a, **k: pytest.fail("compiled again"))
     scene = load_scene("tumbling_prism_largest")
-    assert propagate(scene).success
+    assert propagate(scene, method="dop853").success and propagate(scene, method="taylor").success
 
 
 @pytest.mark.parametrize(
@@ -292,6 +292,64 @@ def test_exact_motions_are_right_to_the_last_digits(name):
     assert rate_error(trajectory.omega, omega) < 1e-15
     assert attitude_error(trajectory.dcm, dcm) < 2e-15
     assert np.array_equal(trajectory.sol(t)[:3].T, trajectory.omega)
+
+
+def torque(kind, **fields):
+    """A scene of an asymmetric body under one torque."""
+    return Scene.from_dict({
+        "schema": 1, "title": kind, "body": {"principal": [1, 2, 2.5]}, "span": {"t": [0, 5]},
+        "initial": {"omega": [0.2, 1, 0.3]}, "torque": [{"kind": kind, **fields}],
+    })  # fmt: skip
+
+
+CHOICES = {
+    "a form": ("exact", lambda: load_scene("t_handle")),
+    "a top": ("exact", lambda: load_scene("heavy_top_loops")),
+    "a tide": ("taylor", lambda: load_scene("gravity_gradient_satellite")),
+    "linear drag": ("taylor", lambda: torque("damping", linear=0.1)),
+    "formulas": ("taylor", lambda: torque("expression", torque=["sin(t)/(2 + omega_1)", "sqrt(k)*q1", "exp(-t)"],
+                                          parameters={"k": 2})),
+    "drag at rest": ("dop853", lambda: torque("damping", quadratic=0.1)),
+    "a size": ("dop853", lambda: torque("expression", torque=["0", "0", "-abs(omega_3)"])),
+    "a root": ("dop853", lambda: torque("expression", torque=["0", "0", "sqrt(omega_1**2 + omega_2**2)"])),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", CHOICES)
+def test_auto_steps_no_motion_that_it_can_solve(name):
+    """Exact where there is a form, series where the torque is smooth, Dormand and Prince's method otherwise."""
+    method, scene = CHOICES[name]
+    made = propagator(scene())
+    assert made.method == method
+    assert made([0.0, 0.5]).success
+
+
+def test_an_exact_motion_derives_nothing_for_omega_and_attitude():
+    """SymPy is imported when something that it derives is asked for."""
+    code = (
+        "import sys, os, tempfile; os.environ['SYMROT_CACHE'] = tempfile.mkdtemp();"
+        "from symrot.propagation.propagator import propagate;"
+        "t = propagate('tumbling_prism'); t.omega; t.euler('ZYX'); t.omega_space; t.sol(1.0);"
+        "print('sympy' in sys.modules); t.energy; print('sympy' in sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["False", "True"]
+
+
+def test_the_plan_of_an_exact_motion_skips_the_stepping():
+    plan = propagator("axisymmetric_satellite").plan
+    assert [row.item for row in plan.rows if row.skipped] == [
+        "products of inertia", "unequal moments", "torque terms", "stepping",
+    ]  # fmt: skip
+    row = plan.rows[-1]
+    assert row.item == "stepping" and "closed form" in row.why and row.derivation
+
+
+def test_every_motion_starts_at_its_initial_state_to_the_last_bit():
+    for name in WITH_CLOSED_FORM:
+        made = propagator(name)
+        found = made([made.scene.span.start])
+        assert np.array_equal(found.y[:, 0], made.plan.initial_state), name
 
 
 WITH_CLOSED_FORM = [name for name in SCENES if exact_form(load_scene(name))]

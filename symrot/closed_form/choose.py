@@ -28,6 +28,15 @@ class Form(NamedTuple):
     name: str
     fits: Callable[[Scene], bool]
     motion: Callable[[Scene], Exact]
+    library: str  # what it evaluates, see symrot.closed_form.library; "" for none
+    derivation: str  # what proves it
+
+    def begin(self) -> None:
+        """Start what compiles the form, if it must be compiled; other work can be done meanwhile."""
+        from symrot.closed_form.library import begin
+
+        if self.library:
+            begin(self.library)
 
 
 def _torques(scene: Scene) -> list[str]:
@@ -120,10 +129,16 @@ def _axial(scene: Scene) -> Exact:
 
 
 FORMS = (
-    Form("free body, theta functions", _is_free, _free_body),
-    Form("symmetric heavy top, theta functions", _is_symmetric_top, _heavy_top),
-    Form("symmetric gyrostat, two steady rotations", _is_symmetric_gyrostat, _gyrostat),
-    Form("rotation about one axis", lambda scene: _driven_axis(scene) is not None, _axial),
+    Form("free body, theta functions", _is_free, _free_body, "free_body", "free_asymmetric_body"),
+    Form("symmetric heavy top, theta functions", _is_symmetric_top, _heavy_top, "heavy_top", "heavy_top"),
+    Form(
+        "symmetric gyrostat, two steady rotations",
+        _is_symmetric_gyrostat,
+        _gyrostat,
+        "gyrostat",
+        "gyrostat_invariants",
+    ),
+    Form("rotation about one axis", lambda scene: _driven_axis(scene) is not None, _axial, "", "planar_motion"),
 )
 """The motions in closed form, in the order in which they are looked for."""
 

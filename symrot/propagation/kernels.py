@@ -8,8 +8,6 @@ import json
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
-from threading import Thread
-from typing import Any
 
 from symrot.codegen import library
 from symrot.errors import CompilerError
@@ -28,7 +26,9 @@ __all__ = [
 ]
 
 PACKAGE = Path(__file__).parents[1]
-TAYLOR = tuple(f"propagation/taylor.{suffix}" for suffix in ("py", "h", "c"))  # kept together with the recurrences
+TAYLOR = tuple(
+    f"propagation/{name}" for name in ("taylor.py", "taylor.h", "taylor.c", "pairs.h", "projection.c", "invariants.py")
+)  # kept together with the recurrences
 MODULES = ("expression.py", "kernel.py", "scene_kernel.py", "symbols.py")
 DERIVING = ("codegen", "dynamics", "exact", "kinematics", *MODULES, *TAYLOR)
 ATTITUDE_SCALE = 1.0  # a quaternion has unit norm; an error of an angle counts in rad
@@ -86,28 +86,17 @@ def compiled(plan: Plan) -> tuple[SceneKernel, Path]:
     CompilerError
         If the compiler refuses the source.
     """
-    outcome: dict[str, Any] = {}
-
-    def build(source: str, parameters: int) -> None:
-        try:
-            outcome["path"] = library.build(library_source(plan, source, parameters), "motion")
-        except Exception as error:  # carried over to the thread that asked
-            outcome["error"] = error
-
-    workers: list[Thread] = []
+    started: list[library.Building] = []
 
     def start(source: str, parameters: int) -> None:
-        workers.append(Thread(target=build, args=(source, parameters)))
-        workers[0].start()
+        started.append(library.Building(library_source(plan, source, parameters), "motion"))
 
     try:
         kernel = scene_kernel(plan, start)
     finally:
-        for worker in workers:
-            worker.join()
-    if "error" in outcome:
-        raise outcome["error"]
-    return kernel, outcome["path"]
+        for building in started:
+            building.wait()
+    return kernel, started[0].path()
 
 
 def taylor_library(plan: Plan, kernel: SceneKernel, tolerance: float) -> Path:
@@ -119,12 +108,14 @@ def taylor_library(plan: Plan, kernel: SceneKernel, tolerance: float) -> Path:
         If the rates have no Taylor series, as where they hold the absolute value of what changes.
     """
     from symrot.propagation import taylor
+    from symrot.propagation.invariants import invariant_source
 
     order = taylor.order_for(tolerance)
     key = f"taylor {order}\n{kernel_key(plan)}"
     source = library.fetch(key)
     if source is None:
-        source = taylor.translation_unit(kernel.rates, *error_blocks(plan), order)
+        invariants = invariant_source(kernel, plan.states)
+        source = taylor.translation_unit(kernel.rates, *error_blocks(plan), order, invariants)
         library.store(key, source)
     return library.build(source, "taylor")
 

@@ -11,12 +11,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from symrot import number
-from symrot.closed_form.choose import FORMS, Exact, exact_form
+from symrot.closed_form.choose import FORMS, Exact, Form, exact_form
 from symrot.errors import InputError, PropagationError
-from symrot.planner import Plan, make_plan
+from symrot.planner import Plan, Row, general_structure, make_plan
 from symrot.propagation import dop853, taylor
 from symrot.propagation.dop853 import Stats
+from symrot.propagation.invariants import invariant_parameters
 from symrot.propagation.kernels import compiled, error_blocks, missing_compiler, scene_kernel, taylor_library
+from symrot.propagation.smoothness import roughness
 from symrot.propagation.trajectory import ARRAY_FUNCTIONS, Trajectory
 from symrot.scene import Initial, Scene, load_scene
 from symrot.scene_kernel import SceneKernel, bind
@@ -49,9 +51,20 @@ class Choice(NamedTuple):
     reason: str
 
 
+def _closed_form(plan: Plan) -> str:
+    form = exact_form(plan.scene)
+    return form.name if form else ""
+
+
+def _series(plan: Plan) -> str:
+    return "" if missing_compiler() or roughness(plan) else "the torque is smooth, and a C compiler is there"
+
+
 AUTO: tuple[tuple[str, Callable[[Plan], str]], ...] = (
     ("constant", lambda plan: "" if plan.states else "the plan leaves no state to integrate"),
-    ("dop853", lambda plan: "" if missing_compiler() else "a C compiler is there"),
+    ("exact", _closed_form),
+    ("taylor", _series),
+    ("dop853", lambda plan: "" if missing_compiler() else f"{roughness(plan)}, and a C compiler is there"),
     ("scipy", lambda plan: missing_compiler()),
 )
 """What ``auto`` tries, in order: (method, condition); a condition returns the reason to take it, or nothing."""
@@ -86,6 +99,18 @@ def choose_method(plan: Plan, method: str = "auto") -> Choice:
     return Choice(method, "asked for") if plan.states else choose_method(plan)
 
 
+def unreduced(plan: Plan, form: Form) -> Plan:
+    """Return the plan of a motion in closed form, which has all its components and skips the stepping."""
+    rows, before = [], general_structure(plan.scene)
+    for row in plan.rows:
+        if all(row.structure[key] == before[key] for key in UNREDUCED):
+            rows.append(row)
+        before = row.structure
+    structure = plan.structure | UNREDUCED
+    why = f"the motion has a closed form: {form.name}"
+    return replace(plan, structure=structure, rows=(*rows, Row("stepping", True, why, form.derivation, structure)))
+
+
 class Motion:
     """A plan with its kernel, bound to numbers."""
 
@@ -93,20 +118,30 @@ class Motion:
         self.plan, self.choice, self.tolerance = plan, choice, tolerance
         self.library: Path | None = None
         if choice.method == "exact":
-            self.plan = replace(plan, structure=plan.structure | UNREDUCED)
-            plan = self.plan
-        if choice.method == "dop853":
+            form = exact_form(plan.scene)
+            assert form is not None
+            form.begin()
+            self.plan = unreduced(plan, form)
+        elif choice.method == "dop853":
             self.kernel, self.library = compiled(plan)
         elif choice.method == "taylor":
             self.kernel = scene_kernel(plan)
             self.library = taylor_library(plan, self.kernel, tolerance)
-        else:
-            self.kernel = scene_kernel(plan)
         self.start = float(plan.scene.span.start)
+
+    @cached_property
+    def kernel(self) -> SceneKernel:
+        """The derived kernels; of an exact motion, only when something other than omega and attitude is asked for."""
+        return scene_kernel(self.plan)
 
     @cached_property
     def rate_parameters(self) -> list[float]:
         return bind(self.kernel.rate_parameters, self.plan.constants)
+
+    @cached_property
+    def taylor_parameters(self) -> list[float]:
+        """Those of the rates, then those of the invariants."""
+        return [*self.rate_parameters, *invariant_parameters(self.kernel, self.plan)]
 
     @cached_property
     def _quantity_values(self) -> dict[str, float]:
@@ -115,6 +150,9 @@ class Motion:
 
     def evaluate(self, t: Floats, states: Floats, names: Sequence[str]) -> Floats:
         """Return quantities of the kernel at states of shape (n, N), as an array of shape (n, len(names))."""
+        columns = [name.removesuffix(" of t") for name in names]
+        if set(columns) <= set(self.plan.states):  # what is asked for is what was integrated
+            return states[:, [self.plan.states.index(name) for name in columns]]
         values: dict[str, Any] = {"t": t, **dict(zip(self.plan.states, states.T, strict=True)), **self._quantity_values}
         found = self.kernel.quantities.evaluate(values, ARRAY_FUNCTIONS, float, names)
         result = np.empty((len(t), len(names)))
@@ -181,7 +219,7 @@ class Motion:
         start = (self.rate_parameters, self.plan.initial_state, self.start)
         if self.library is not None:
             if self.choice.method == "taylor":
-                return taylor.record(self.library, *start, span, self.tolerance)
+                return taylor.record(self.library, self.taylor_parameters, *start[1:], span, self.tolerance)
             return dop853.record(self.library, *start, span, self.tolerance)
         from symrot.propagation import fallback
 
@@ -208,15 +246,16 @@ def _dop853(motion: Motion, times: Floats) -> tuple[Floats, Stats]:
 
 def _taylor(motion: Motion, times: Floats) -> tuple[Floats, Stats]:
     assert motion.library is not None
-    start = (motion.rate_parameters, motion.plan.initial_state, motion.start)
+    start = (motion.taylor_parameters, motion.plan.initial_state, motion.start)
     return taylor.integrate(motion.library, *start, times, motion.tolerance)
 
 
 def _exact(motion: Motion, times: Floats) -> tuple[Floats, Stats]:
+    attitude, exact = motion.plan.structure["attitude"], motion.exact
     began = perf_counter()
-    attitude = motion.plan.structure["attitude"]
-    omega, quaternion = motion.exact.evaluate(times - motion.start, quaternion=attitude)
+    omega, quaternion = exact.evaluate(times - motion.start, quaternion=attitude)
     states = np.hstack([part for part in (omega, quaternion) if part is not None])
+    states[times == motion.start] = motion.plan.initial_state  # to the last bit, as every method has it
     return states, Stats(0, 0, 0, perf_counter() - began)
 
 
@@ -268,6 +307,12 @@ class Propagator:
     def kernel(self) -> SceneKernel:
         """The derived kernels."""
         return self._motion.kernel
+
+    def prepare(self) -> None:
+        """Do now what otherwise waits for the first use: derive what an exact motion keeps while its form compiles."""
+        self._motion.kernel  # noqa: B018
+        if self.method == "exact":
+            self._motion.exact  # noqa: B018
 
     @cached_property
     def sample_times(self) -> Floats:

@@ -46,18 +46,20 @@ def _ladder(plan: Plan) -> list[dict[str, Any]]:
 
 def _others(plan: Plan) -> list[dict[str, Any]]:
     """Return the rows that no rule of the plan decides: states, motion, outputs, derivation."""
+    from symrot.closed_form.choose import exact_form
     from symrot.codegen import library
     from symrot.propagation.kernels import kernel_key
     from symrot.propagation.propagator import choose_method
 
     choice, asked = choose_method(plan), plan.scene.output.quantities
     missing = [name for name in QUANTITIES if name not in asked]
-    stepped = f"{choice.method}: {choice.reason}"
+    form = exact_form(plan.scene) if choice.method == "exact" else None
+    stepped = f"the motion has a closed form: {form.name}" if form else f"{choice.method}: {choice.reason}"
     known = library.fetch(kernel_key(plan)) is not None
     kernel = "this structure is in the cache" if known else "the first run derives and compiles, later ones load"
     return [
         _row("states", not plan.states, f"{', '.join(plan.states) or 'none changes'}"),
-        _row("stepping", not plan.states, stepped),
+        _row("stepping", form is not None or not plan.states, stepped, form.derivation if form else ""),
         _row("outputs asked for", False, ", ".join(asked)),
         *([_row("other outputs", True, f"not asked for: {', '.join(missing)}")] if missing else []),
         _row("deriving the kernel", known, kernel),

@@ -94,7 +94,9 @@ def _states(names: list[str]) -> str:
     return ", ".join(names).replace("omega_1, omega_2, omega_3", "omega_1..3").replace("q0, q1, q2, q3", "q0..q3")
 
 
-def _steps(cost: dict[str, Any]) -> str:
+def _steps(cost: dict[str, Any], exact: bool) -> str:
+    if exact:
+        return f"no steps, {duration(cost['seconds'])}; ready in {duration(cost['preparation_seconds'])}"
     again = f" ({cost['rejected']} tried again)" if cost["rejected"] else ""
     return (
         f"{cost['steps']} steps{again}, {cost['evaluations']} evaluations in {duration(cost['seconds'])}; "
@@ -108,6 +110,7 @@ def _settings(found: dict[str, Any]) -> list[tuple[str, str]]:
 
     meaning = METHODS[method["name"].partition(":")[0]]
     torques = ", ".join(kind.replace("_", " ") for kind in found["torques"]) or "none"
+    exact = method["name"] == "exact"
     return [
         ("body", _body(found["body"])),
         ("torque", torques),
@@ -115,8 +118,8 @@ def _settings(found: dict[str, Any]) -> list[tuple[str, str]]:
         ("span", f"{shown(_value(span['start']))} to {shown(_value(span['stop']))} s, {span['samples']} samples"),
         ("method", f"{method['name']} ({meaning}); {method['reason']}"),
         ("tolerance", f"{method['tolerance']:g}"),
-        ("states", _states(found["states"]) or "none to integrate"),
-        ("cost", _steps(found["cost"])),
+        ("states", (not exact and _states(found["states"])) or "none to integrate"),
+        ("cost", _steps(found["cost"], exact)),
     ]  # fmt: skip
 
 
