@@ -18,7 +18,7 @@ from symrot.checker.tree import Node, text, walk
 from symrot.checker.units import read_unit
 from symrot.errors import InputError
 
-__all__ = ["Claim", "claim_of_text", "read_claims"]
+__all__ = ["Claim", "Refusal", "claim_of_text", "read_claims", "read_entries", "shown_relation"]
 
 
 @dataclass(frozen=True)
@@ -141,7 +141,7 @@ def claim_of_text(source: str, given: Sequence[str] = (), units: Mapping[str, st
 
     Its names are real symbols, or functions of time where they are written ``f(t)``.
     """
-    if isinstance(source, str) and ("\\" in source or "$" in source):
+    if isinstance(source, str) and _is_latex(source):
         source = read_latex(source).text
     relation = read_relation(source)
     if relation[0] != "==":
@@ -165,14 +165,43 @@ LISTS = ("symbols", "functions", "given", "alternatives", "lost")
 OTHERS = ("define", "units")
 """Keys of a claim by the shape of their value."""
 
+MOST_CLAIMS = 2000
+MOST_NAMES = 500
+"""Claims of a file, and names that one claim may declare or define."""
+
+
+@dataclass(frozen=True)
+class Refusal:
+    """An entry of a file that is no claim: its id, place and text as given, and the sentence that says why."""
+
+    id: str
+    where: str
+    text: str
+    reason: str
+
 
 def read_claims(path: str | Path) -> list[Claim]:
-    """Return the claims of a TOML file.
+    """Return the claims of a TOML file, all of which must be good.
 
     Raises
     ------
     InputError
         Naming the file, the claim, the key, and what is expected there.
+    """
+    found = read_entries(path)
+    for entry in found:
+        if isinstance(entry, Refusal):
+            raise InputError(entry.reason)
+    return [entry for entry in found if isinstance(entry, Claim)]
+
+
+def read_entries(path: str | Path) -> list[Claim | Refusal]:
+    """Return the claims of a TOML file; where one cannot be read, why.
+
+    Raises
+    ------
+    InputError
+        If the file as a whole is not one of claims.
     """
     from symrot.scene_file import read_toml
 
@@ -180,15 +209,29 @@ def read_claims(path: str | Path) -> list[Claim]:
     table = read_toml(Path(path), label, "claim")
     if table.get("schema") != 1:
         raise InputError(f"{label}: expected schema = 1, got {table.get('schema')!r}")
+    unknown = next((key for key in table if key not in ("schema", "claim")), None)
+    if unknown is not None:
+        raise InputError(f"{label}: expected schema and [[claim]] tables, got the key {unknown[:40]!r}")
     found = table.get("claim")
     if not isinstance(found, list) or not found or not all(isinstance(entry, dict) for entry in found):
         raise InputError(f"{label}: expected [[claim]] tables, got {'none' if not found else 'something else'}")
-    claims = [_claim(entry, number, label) for number, entry in enumerate(found, start=1)]
-    names = [claim.id for claim in claims]
-    twice = next((name for name in names if names.count(name) > 1), None)
-    if twice is not None:
-        raise InputError(f"{label}: expected every id once, got {twice!r} twice")
-    return claims
+    if len(found) > MOST_CLAIMS:
+        raise InputError(f"{label}: expected at most {MOST_CLAIMS} claims in a file, got {len(found)}")
+    entries: list[Claim | Refusal] = []
+    names: set[str] = set()
+    for number, entry in enumerate(found, start=1):
+        try:
+            claim = _claim(entry, number, label)
+            if claim.id in names:
+                raise InputError(f"{label}: expected every id once, got {claim.id!r} twice")
+            names.add(claim.id)
+            entries.append(claim)
+        except InputError as reason:
+            name, where, shown = (str(entry.get(key, other))[:80] for key, other in (
+                ("id", f"claim-{number}"), ("where", ""), ("claim", entry.get("latex", "")),
+            ))  # fmt: skip
+            entries.append(Refusal(name, where, shown, str(reason)))
+    return entries
 
 
 def _claim(entry: dict[str, Any], number: int, label: str) -> Claim:
@@ -203,6 +246,8 @@ def _claim(entry: dict[str, Any], number: int, label: str) -> Claim:
     known = {*symbols, *functions}
     if len(known) < len(symbols) + len(functions):
         raise InputError(f"{place}: expected every symbol and function to be declared once")
+    if len(known) + len(entry.get("define", ())) > MOST_NAMES:
+        raise InputError(f"{place}: expected at most {MOST_NAMES} names in a claim, got {len(known)} and more")
     for place_of, (defined, formula) in enumerate(entry.get("define", ())):
         _check_name(defined, "define", place)
         if defined in known:
@@ -216,23 +261,36 @@ def _claim(entry: dict[str, Any], number: int, label: str) -> Claim:
         "id": name, "where": entry.get("where", ""), "symbols": symbols, "functions": functions,
         "define": tuple(define), "given": given, "units": _units(entry.get("units", {}), known, place),
     }  # fmt: skip
+    others = list(entry.get("alternatives", ()))
     kinds = [key for key in ("claim", "latex", "value") if key in entry]
+    if not kinds and others:
+        entry, kinds = {**entry, "claim": others.pop(0)}, ["claim"]
     if len(kinds) != 1:
         raise InputError(f"{place}: expected exactly one of claim, latex and value, got {', '.join(kinds) or 'none'}")
     if kinds == ["value"]:
         if "printed_value" not in entry:
             raise InputError(f"{place}: expected printed_value beside value, the key is missing")
+        if others:
+            raise InputError(f"{place}: alternatives: expected other readings of a claim, got them beside a value")
         sources["value"] = entry["value"]
         value = read_expression(entry["value"], f"{place}: value")
         return Claim(**made, value=value, printed=entry["printed_value"], sources=sources)
-    if kinds == ["latex"]:
-        names = _names_for_latex(Claim(**made, sources=sources))
-        reading = read_latex(entry["latex"], f"{place}: latex", names)
-        return Claim(**made, relation=reading.relation, sources=sources | {"claim": reading.text})
-    sources["claim"] = entry["claim"]
-    relation = _equation(entry["claim"], f"{place}: claim")
-    alternatives = tuple(_equation(text, f"{place}: alternatives") for text in entry.get("alternatives", ()))
-    return Claim(**made, relation=relation, alternatives=alternatives, sources=sources)
+    (key,) = kinds
+    names = None
+    readings = []
+    for number_of, (source, at) in enumerate([(entry[key], key), *((other, "alternatives") for other in others)]):
+        if _is_latex(source) or (number_of == 0 and key == "latex"):
+            names = names or _names_for_latex(Claim(**made, sources=sources))
+            reading = read_latex(source, f"{place}: {at}", names)
+            readings.append((reading.relation, reading.text))
+        else:
+            readings.append((_equation(source, f"{place}: {at}"), source))
+    (relation, sources["claim"]), *rest = readings
+    return Claim(**made, relation=relation, alternatives=tuple(found for found, _ in rest), sources=sources)
+
+
+def _is_latex(source: str) -> bool:
+    return "\\" in source or "$" in source
 
 
 def _units(given: dict[str, str], known: set[str], place: str) -> dict[str, str]:
@@ -286,7 +344,8 @@ def _names(entry: dict[str, Any], key: str, place: str) -> tuple[str, ...]:
     for name in names:
         _check_name(name, key, place)
     if len(set(names)) < len(names):
-        raise InputError(f"{place}: {key}: expected every name once, got {', '.join(names)}")
+        twice = next(name for number, name in enumerate(names) if name in names[:number])
+        raise InputError(f"{place}: {key}: expected every name once, got {twice!r} twice")
     return tuple(names)
 
 

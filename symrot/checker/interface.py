@@ -1,19 +1,28 @@
 """``check`` and ``check_file``: a claim in, a verdict out."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-from symrot.checker.claims import Claim, claim_of_text, read_claims
-from symrot.checker.decision import Problem, decide_problem, shown
+from symrot.checker.claims import Claim, Refusal, claim_of_text, read_entries, shown_relation
+from symrot.checker.decision import Decision, Problem, decide_problem, shown
 from symrot.checker.dimensions import check_dimensions, dimensions_of_formulas
 from symrot.checker.values import decide_value
 from symrot.checker.verdict import Diagnosis, Verdict
 from symrot.errors import InputError
 
-__all__ = ["check", "check_claim", "check_file"]
+__all__ = ["RefusedClaims", "check", "check_claim", "check_file", "check_readings", "verdicts_of_file"]
+
+
+class RefusedClaims(InputError):
+    """Claims of a file that cannot be read; ``verdicts`` holds those on all claims, ``"refused"`` on the bad ones."""
+
+    def __init__(self, verdicts: Sequence[Verdict]) -> None:
+        self.verdicts = list(verdicts)
+        first, *others = (verdict.reason for verdict in verdicts if verdict.verdict == "refused")
+        super().__init__(first + (f" (and {len(others)} more claims of the file are refused)" if others else ""))
 
 
 def check(
@@ -79,13 +88,62 @@ def check_file(path: str | Path, *, repair: bool = True) -> list[Verdict]:
     Raises
     ------
     InputError
-        As :func:`check`, naming the file and the claim; the whole file is read before anything is decided.
+        For a file that cannot be read as claims.
+    RefusedClaims
+        Where some claims are refused, after all others were decided; names the file and the first such claim, and has
+        the verdicts as ``.verdicts``.
     """
-    return [check_claim(claim, repair) for claim in read_claims(path)]
+    found = list(verdicts_of_file(path, repair))
+    if any(verdict.verdict == "refused" for verdict in found):
+        raise RefusedClaims(found)
+    return found
+
+
+def verdicts_of_file(
+    path: str | Path, repair: bool = True, progress: Callable[[str], None] = lambda text: None
+) -> Iterator[Verdict]:
+    """Yield the verdicts on the claims of a file; on a claim that cannot be read it is ``"refused"``, with a reason."""
+    for entry in read_entries(path):
+        if isinstance(entry, Refusal):
+            yield Verdict("refused", reason=entry.reason, id=entry.id, where=entry.where, text=entry.text)
+            continue
+        progress(f"checking {entry.id} ..")
+        try:
+            yield check_claim(entry, repair)
+        except InputError as reason:
+            sentence = str(reason) if str(path) in str(reason) else f"{path}: {reason}"
+            yield Verdict("refused", reason=sentence, id=entry.id, where=entry.where, text=entry.text)
 
 
 def check_claim(claim: Claim, repair: bool = True) -> Verdict:
-    """Return the verdict on a claim that has been read."""
+    """Return the verdict on a claim that has been read: on its first reading, or on another one that is true."""
+    verdict, other = check_readings(claim, repair)
+    if other is None:
+        return verdict
+    note = f"this is another reading of the claim; the first, {verdict.text}, is {verdict.verdict}"
+    return replace(other, notes=(*other.notes, note), seconds=verdict.seconds + other.seconds)
+
+
+def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict | None]:
+    """Return the verdict on a claim as it is read first, and that on the first alternative that is true, if any.
+
+    What went wrong is looked for where no reading is true.
+    """
+    start = perf_counter()
+    decision, verdict = _decide(claim)
+    if not verdict:
+        for relation in claim.alternatives:
+            source = shown_relation(relation)
+            other = replace(claim, relation=relation, alternatives=(), sources={**claim.sources, "claim": source})
+            _, found = _decide(other)
+            if found:
+                return verdict, found
+    if repair and claim.relation is not None and decision.verdict in ("false", "conditional"):
+        verdict = _diagnosed(claim, decision, verdict)
+    return replace(verdict, seconds=perf_counter() - start), None
+
+
+def _decide(claim: Claim) -> tuple[Decision, Verdict]:
     start = perf_counter()
     try:
         decision = decide_value(claim) if claim.relation is None else decide_problem(claim.problem())
@@ -96,17 +154,18 @@ def check_claim(claim: Claim, repair: bool = True) -> Verdict:
     verdict = _verdict(decision, claim.text, start)
     if claim.relation is not None:
         hypotheses = [relation[1:] for relation in claim.given]
-        verdict = replace(
-            verdict, dimension=check_dimensions(claim.relation[1:], claim.define, hypotheses, claim.units)
-        )
-    if repair and claim.relation is not None and decision.verdict in ("false", "conditional"):
-        from symrot.checker.diagnose import diagnose
+        found = check_dimensions(claim.relation[1:], claim.define, hypotheses, claim.units)
+        verdict = replace(verdict, dimension=found)
+    return decision, replace(verdict, id=claim.id, where=claim.where, seconds=perf_counter() - start)
 
-        diagnosis, repairs = diagnose(claim, decision)
-        if diagnosis.code == "none" and verdict.dimension.status == "inconsistent":
-            diagnosis = Diagnosis("dimension", f"the units do not fit: {verdict.dimension.text}")
-        verdict = replace(verdict, diagnosis=diagnosis, repairs=repairs)
-    return replace(verdict, id=claim.id, where=claim.where, seconds=perf_counter() - start)
+
+def _diagnosed(claim: Claim, decision: Decision, verdict: Verdict) -> Verdict:
+    from symrot.checker.diagnose import diagnose
+
+    diagnosis, repairs = diagnose(claim, decision)
+    if diagnosis.code == "none" and verdict.dimension.status == "inconsistent":
+        diagnosis = Diagnosis("dimension", f"the units do not fit: {verdict.dimension.text}")
+    return replace(verdict, diagnosis=diagnosis, repairs=repairs)
 
 
 def _verdict(decision: Any, text: str, start: float) -> Verdict:

@@ -1,11 +1,11 @@
 """Verdicts on what a document says, with the doubt that a lossy extraction leaves."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
-from symrot.checker.claims import Claim, read_claims, shown_relation
-from symrot.checker.interface import check_claim
+from symrot.checker.claims import Claim, read_claims
+from symrot.checker.interface import check_readings
 from symrot.checker.tree import text
 from symrot.checker.verdict import Verdict
 from symrot.textbook import Document
@@ -61,16 +61,11 @@ def findings(
 
 
 def _finding(data: dict[str, Any], claim: Claim, repair: bool) -> Finding:
-    verdict = check_claim(claim, False)
+    verdict, other = check_readings(claim, repair)
     if verdict:
         return Finding(data, verdict, "holds", "", "")
-    for relation in claim.alternatives:
-        source = shown_relation(relation)
-        other = replace(claim, relation=relation, sources={**claim.sources, "claim": source})
-        if check_claim(other, False):
-            return Finding(data, verdict, "other reading", source, source)
-    if repair:
-        verdict = check_claim(claim, True)
+    if other is not None:
+        return Finding(data, verdict, "other reading", other.text, other.text)
     outcome = {"conditional": "conditional", "undecided": "undecided"}.get(verdict.verdict, "fails")
     if outcome == "fails" and any(verdict.diagnosis.code in EXPLAINS.get(what, ()) for what in data.get("lost", [])):
         outcome = "fails or lost"

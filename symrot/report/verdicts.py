@@ -19,16 +19,15 @@ def check(
     repair: bool,
     progress: Callable[[str], None] = lambda text: None,
 ) -> list[Verdict]:
-    """Return the verdicts on a claim as text or LaTeX, or on the claims of a file.
+    """Return the verdicts on a claim as text or LaTeX, or on the claims of a file, ``"refused"`` on the bad ones.
 
     Raises
     ------
     InputError
-        For what :func:`symrot.check` and :func:`symrot.check_file` refuse, and hypotheses beside a file.
+        For a text that :func:`symrot.check` refuses, a file that is not one of claims, and hypotheses beside a file.
     """
-    from symrot.checker.claims import read_claims
     from symrot.checker.interface import check as check_text
-    from symrot.checker.interface import check_claim
+    from symrot.checker.interface import verdicts_of_file
 
     if not _is_file(source):
         return [check_text(source, assume=given, units=_units(units), repair=repair)]
@@ -38,11 +37,7 @@ def check(
         raise InputError("--unit: expected a claim as text beside it; a file states its own units")
     if given:
         raise InputError("--given: expected a claim as text beside it; a file states its own hypotheses")
-    found = []
-    for claim in read_claims(source):
-        progress(f"checking {claim.id} ..")
-        found.append(check_claim(claim, repair))
-    return found
+    return list(verdicts_of_file(source, repair, progress))
 
 
 def _units(words: Sequence[str]) -> dict[str, str]:
@@ -70,7 +65,7 @@ def lines(found: Sequence[Verdict], source: str) -> list[str]:
         shown += [name] if verdict else _full(verdict, name)
     counts = Counter(verdict.verdict for verdict in found)
     total = ", ".join(
-        f"{counts[name]} {name}" for name in ("true", "false", "conditional", "undecided") if counts[name]
+        f"{counts[name]} {name}" for name in ("true", "false", "conditional", "undecided", "refused") if counts[name]
     )
     seconds = duration(sum(verdict.seconds for verdict in found))
     return [*shown, "", f"{len(found)} claim{'s' if len(found) != 1 else ''}: {total}, in {seconds}"]
