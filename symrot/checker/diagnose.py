@@ -86,7 +86,7 @@ class _Search:
         found: list[Repair] = []
         for cost, code, changes in self.alike:
             now = self.written(changes)
-            if now in written or code == "missing_term":
+            if now in written:
                 continue
             written.add(now)
             self.seen.discard(self.sieve.fingerprint(changes))

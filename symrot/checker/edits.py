@@ -49,6 +49,9 @@ COST = {
 
 MOST_NEIGHBOURS = 12
 
+FEW = 3
+"""Occurrences of an angle that are as easily wrong together as one of them alone."""
+
 OPPOSITE = {"sin": "cos", "cos": "sin", "tan": "cot", "cot": "tan", "sec": "csc", "csc": "sec"}
 ROTATIONS = ("Rx", "Ry", "Rz")
 FAMILIES = (("A", "B", "C"), ("phi", "theta", "psi"), ("x", "y", "z"), ("alpha", "beta", "gamma"), ("a", "b", "c"))
@@ -295,7 +298,8 @@ def _everywhere(tree: Node, matrices: Callable[[Node], bool]) -> Iterator[Edit]:
             ("half_angle", product([angle, Node("inv", None, (number(2),))])),
             ("double_half_angle", product([number(2), angle])),
         ):
-            yield Edit(code, 0.9, (), _substituted(tree, angle, made, inside=OPPOSITE))
+            cost = 0.9 if arguments.count(angle) <= FEW else 1.07
+            yield Edit(code, cost, (), _substituted(tree, angle, made, inside=OPPOSITE))
         swapped = _swapped_functions(tree, angle)
         yield Edit("sin_cos_swap", 0.95, (), swapped)
     names = sorted({node.value for node in found if node.kind == "name"})

@@ -17,7 +17,7 @@ from time import perf_counter
 from symrot.checker.claims import Claim
 from symrot.checker.decision import Decision, decide_problem
 from symrot.checker.diagnose import diagnose
-from symrot.checker.latex import MATRIX_CALLS
+from symrot.checker.latex_matrices import MATRIX_CALLS
 from symrot.checker.mutations import MUTATIONS, IsMatrix, mutated, places
 from symrot.checker.reader import read_expression, read_relation
 from symrot.checker.repair_claims import catalogue_claims
@@ -178,10 +178,14 @@ def _same(original: Claim, found: Claim) -> bool:
 # -- the command ------------------------------------------------------------------------------------------------------
 
 
+WIDTHS = (7, 7, 7, 7, 12, 10, 11)
+
+
 def table(outcomes: Sequence[Outcome]) -> list[str]:
     """Return the lines of a report: by code, how often the original came first, among the first three, not at all."""
+    heads = ("faults", "first", "in 3", "%", "as written", "named so", "no repair")
     lines = [
-        f"{'code of the fault':<26}{'faults':>7}{'first':>7}{'in 3':>7}{'%':>7}{'as written':>12}{'named so':>10}{'no repair':>11}"
+        f"{'code of the fault':<26}" + "".join(f"{head:>{width}}" for head, width in zip(heads, WIDTHS, strict=True))
     ]
     groups = [(code, [o for o in outcomes if o.fault.codes[0] == code]) for code in MUTATIONS]
     for code, group in (*groups, ("all", list(outcomes))):
@@ -189,7 +193,7 @@ def table(outcomes: Sequence[Outcome]) -> list[str]:
             first, three = sum(o.rank == 1 for o in group), sum(o.rank > 0 for o in group)
             named, none = sum(o.code == o.fault.codes[0] for o in group), sum(not o.repairs for o in group)
             share, words = f"{100 * three / len(group):.1f}", sum(o.same_text for o in group)
-            lines.append(f"{code:<26}{len(group):>7}{first:>7}{three:>7}{share:>7}{words:>12}{named:>10}{none:>11}")
+            lines.append(_row(code, (len(group), first, three, share, words, named, none)))
     seconds = sorted(outcome.seconds for outcome in outcomes)
     marks = quantiles(seconds, n=20, method="inclusive") if len(seconds) > 1 else seconds * 19
     slow = sum(second >= 5 for second in seconds)
@@ -206,15 +210,17 @@ def table(outcomes: Sequence[Outcome]) -> list[str]:
     return lines
 
 
+def _row(label: str, cells: Sequence[object]) -> str:
+    return f"{label:<26}" + "".join(f"{cell:>{width}}" for cell, width in zip(cells, WIDTHS, strict=True))
+
+
 def main(argv: Sequence[str] | None = None) -> int:
     """Run a campaign; exit code 1 when a repair is not true, or the original is too rarely among the first three."""
     parser = ArgumentParser(prog="python -m symrot.checker.repair_campaign", description=__doc__.splitlines()[0])
     parser.add_argument("--count", type=int, default=150, help="faults (default: 150)")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--faults", type=int, default=1, choices=(1, 2), help="faults in one claim (default: 1)")
-    parser.add_argument(
-        "--missed", action="store_true", help="show the claims whose original was not offered as written"
-    )
+    parser.add_argument("--missed", action="store_true", help="show claims whose original was not offered so")
     options = parser.parse_args(argv)
     show = _shown_progress if sys.stderr.isatty() else lambda done: None
     outcomes = campaign(options.count, options.seed, options.faults, show)

@@ -12,7 +12,7 @@ from fractions import Fraction
 from itertools import combinations_with_replacement
 
 from symrot.checker.edits import OPPOSITE, Edit, neat, neighbours
-from symrot.checker.latex import TIME
+from symrot.checker.latex_cursor import TIME
 from symrot.checker.points import Meaningless, Point, entries_of
 from symrot.checker.sieve import SIDES, Change, Found, Sieve, speaks
 from symrot.checker.tree import Node, Path, negated, number, product, replaced, sum_of, walk
@@ -27,6 +27,7 @@ MOST_ATOMS = 24
 MOST_PRODUCTS = 4000
 MOST_SUMS = 24
 MOST_MATRICES = 40
+MOST_COLUMNS = 5
 LARGEST_RATIO = 60
 """Largest numerator and denominator of a rational factor."""
 
@@ -84,6 +85,8 @@ class Vocabulary:
                 found.append(node)
                 if node.value in ("sin", "cos"):
                     found.append(Node("call", OPPOSITE[node.value], node.args))
+        columns = [Node("name", name) for name in sorted(sieve.matrix_names)]
+        found += [Node("call", "dot", pair) for pair in combinations_with_replacement(columns[:MOST_COLUMNS], 2)]
         scalars = dict.fromkeys(node for node in found if not sieve.is_matrix(node) and node != HOLE)
         return self._valued(scalars, MOST_ATOMS)
 
@@ -173,8 +176,22 @@ def solved(sieve: Sieve) -> list[Found]:
             if values and needed:
                 for made, edit in _readings(sieve, vocabulary, piece, values, needed, term):
                     found.append(_found(sieve, place, path, made, edit))
-    kept = [item for item in found if sieve.sensible(item[2][0].place, item[2][0].edit.tree)]
-    return sorted(kept, key=lambda item: item[0])
+    return [item for item in sorted(found, key=lambda item: item[0]) if _means(sieve, item[2][0])]
+
+
+def _means(sieve: Sieve, change: Change) -> bool:
+    """Return whether a change says something: it holds, and neither a side nor a definition has become zero."""
+    if not sieve.sensible(change.place, change.edit.tree):
+        return False
+    if change.place not in SIDES:
+        point = sieve.points[0]
+        try:
+            was, now = (any(entries_of(point.value(tree))) for tree in (sieve.tree_at(change.place), change.edit.tree))
+        except Meaningless:
+            return False
+        if was and not now:
+            return False
+    return sieve.holds([change])
 
 
 def _pieces(tree: Node, path: Path = (), term: bool = False) -> Iterator[tuple[Path, Node, bool]]:
@@ -276,17 +293,18 @@ def _readings(
                 yield entry.node, _exchanged(sieve, piece, entry.factors[0])
     elif piece.kind == "number" and constant is not None:
         yield number(constant), ("factor", 1.25)
-    if plain is None:
+    if plain is None and constant is None:
+        bare = 0.5 if piece.kind == "number" else 0.0
         for factors, upward in ((ratios, True), (tuple(1 / ratio for ratio in ratios if ratio), False)):
             if len(factors) == len(ratios):
                 for entry, ratio in vocabulary.find(factors):
-                    yield _multiplied(piece, entry, ratio, upward), ("factor", _weight(1.15, entry, ratio))
+                    yield _multiplied(piece, entry, ratio, upward), ("factor", _weight(1.15 + bare, entry, ratio))
                     break
     lacking = tuple(b - a for a, b in zip(values, needed, strict=True))
     if not term and piece.kind != "neg" and not (plain and not speaks(piece)):
         for entry, ratio in vocabulary.find(lacking):
             made = sum_of([piece, _scaled(entry.node, ratio)])
-            yield made, ("missing_term", _weight(1.5, entry, ratio))
+            yield made, ("missing_term", _weight(1.5 if piece.kind == "sum" else 1.65, entry, ratio))
             break
 
 
@@ -300,7 +318,7 @@ def _exchanged(sieve: Sieve, piece: Node, other: Node) -> tuple[str, float]:
 def _weight(least: float, entry: Entry, ratio: Fraction) -> float:
     """Return a cost that grows with what is added: its factors, and a rational in front."""
     size = sum(1 + sum(1 for _ in walk(factor)) // 3 for factor in entry.factors)
-    return least + 0.04 * size + (0.0 if abs(ratio) == 1 else 0.08)
+    return least + 0.02 * size + (0.0 if abs(ratio) == 1 else 0.04)
 
 
 def _multiplied(piece: Node, entry: Entry, ratio: Fraction, upward: bool) -> Node:

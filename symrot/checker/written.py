@@ -1,4 +1,4 @@
-"""One way of writing for formulas that differ only in the order of terms and scalar factors, and in where numbers stand."""
+"""One way of writing for formulas that differ only in the order of terms and factors, and in where numbers stand."""
 
 from collections.abc import Callable
 from fractions import Fraction
