@@ -100,3 +100,17 @@ amplitudes = a_1, a_3 = _make("a_1 a_3", "rad/s", positive=True)
 (mu_f,) = _make("mu_f", "1", positive=True)  # coefficient of friction
 gear_rates = omega_S, omega_R, omega_C, omega_P = _make("omega_S omega_R omega_C omega_P", "rad/s")
 teeth = Z_S, Z_R, Z_P = _make("Z_S Z_R Z_P", "1", positive=True)
+
+# exact motions, for derivations
+elliptic_w = sn_w, cn_w, dn_w = _make("sn_w cn_w dn_w", "1")  # at a fixed argument w
+(zeta,) = _make("zeta", "1")  # Jacobi's zeta function
+(sigma,) = _make("sigma", "1")  # a sign, +1 or -1
+momentum_b = L_1, L_2, L_3 = _make("L_1 L_2 L_3", "kg m^2/s")  # angular momentum, body components
+momentum_amplitudes = ell_1, ell_2, ell_3 = _make("ell_1 ell_2 ell_3", "kg m^2/s", positive=True)
+heights = u_1, u_2, u_3 = _make("u_1 u_2 u_3", "1")  # zeros of the cubic of a heavy top, in cos(theta)
+
+# outputs of kernels
+jacobian_entries = _make(" ".join(f"B_{i}{j}" for i in "123" for j in "123"), "1")
+product_quaternion = _make("pq0 pq1 pq2 pq3", "1")
+vector = _make("vector_1 vector_2 vector_3", "")  # any vector: its unit is that of what it stands for
+turned_vector = _make("turned_1 turned_2 turned_3", "")

@@ -63,6 +63,16 @@ READING_ORDER: dict[str, tuple[str, ...]] = {
         "gyrostat_invariants",
         "gravity_gradient",
     ),
+    "Exact motions": (
+        "elliptic_functions",
+        "free_body_attitude",
+        "free_body_separatrix",
+        "heavy_top_motion",
+        "pendulum",
+        "sleeping_top",
+        "symmetric_gyrostat",
+        "driven_rotation",
+    ),
     "Constraints": (
         "rolling",
         "gear_trains",

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from sympy import Expr, MatrixBase, Mul, Symbol
+from sympy import Expr, MatrixBase, Symbol, preorder_traversal
 from sympy.printing.latex import LatexPrinter
 
 from symrot.symbols import UNIT
@@ -11,6 +11,7 @@ __all__ = ["formula"]
 
 MADE = {str(symbol): symbol for symbol in UNIT}
 RATES = {"dd": "ddot", "d": "dot"}
+COMMANDS = {"sech": r"\mathrm{sech}"}
 ROMAN = ("sn", "cn", "dn")
 
 
@@ -19,8 +20,9 @@ class PagePrinter(LatexPrinter):  # type: ignore[misc]
 
     def _print_Symbol(self, symbol: Symbol, style: str = "plain") -> str:
         name = symbol.name
-        if name in ROMAN:
-            return rf"\mathrm{{{name}}}"
+        base, _, index = name.partition("_")
+        if base in ROMAN:
+            return rf"\mathrm{{{base}}}" + (f"_{{{index}}}" if index else "")
         for rate, dot in RATES.items():
             if name.startswith(rate) and name[len(rate) :] in MADE:
                 letter, _, index = self._print_Symbol(MADE[name[len(rate) :]]).partition("_")
@@ -33,9 +35,11 @@ class PagePrinter(LatexPrinter):  # type: ignore[misc]
         inside = self._print(argument)
         if not argument.is_Symbol:
             inside = rf"\left({inside}\right)"
-        return rf"\{type(function).__name__}{power} {inside}"
+        name = type(function).__name__
+        return COMMANDS.get(name, rf"\{name}") + f"{power} {inside}"
 
     _print_sin = _print_cos = _print_tan = _print_cot = _print_sec = _print_csc = _print_of_angle
+    _print_tanh = _print_sech = _print_of_angle
 
     def _print_MatrixBase(self, matrix: MatrixBase) -> str:
         """Print zero as 0, the unit matrix as 1, and a common denominator of all entries in front."""
@@ -66,12 +70,16 @@ class PagePrinter(LatexPrinter):  # type: ignore[misc]
 
 
 def _common_scale(matrix: MatrixBase) -> Any:
-    """Return 1/D when every nonzero entry has the same denominator D, else 1."""
+    """Return 1/D when every nonzero entry has the same denominator D and, times it, holds no fraction; else 1."""
     denominators = {entry.as_numer_denom()[1] for entry in matrix if entry != 0}
     if len(denominators) != 1 or len(matrix) < 2:
         return 1
     (denominator,) = denominators
-    return Mul(1, 1 / denominator) if denominator != 1 else 1
+    scale = 1 / denominator
+    clean = not any(
+        part.is_Pow and part.exp.is_negative for entry in matrix for part in preorder_traversal(entry / scale)
+    )
+    return scale if clean else 1
 
 
 _PRINTER = PagePrinter({"mat_delim": "[", "mat_str": "matrix", "fold_short_frac": False, "ln_notation": True})

@@ -1,0 +1,41 @@
+"""Jacobi's elliptic functions as symbols: their derivatives, their quadratic relations, their sums of arguments."""
+
+from sympy import Expr, S, Symbol
+
+from symrot import symbols
+
+__all__ = ["CN", "DN", "MU", "SN", "W_VALUES", "I", "derivatives", "imaginary", "shifted", "squares"]
+
+SN, CN, DN = symbols.elliptic
+W_VALUES = symbols.elliptic_w
+MU = symbols.mu
+I = Symbol("i")  # noqa: E741
+"""The imaginary unit, as a symbol: a step that uses it is given :func:`imaginary`."""
+
+
+def imaginary() -> Expr:
+    """Return the hypothesis i^2 = -1."""
+    return I**2 + 1
+
+
+def derivatives(speed: Expr = S.One, parameter: Expr = MU) -> dict[Symbol, Expr]:
+    """Return sn, cn, dn -> their derivatives, for an argument that grows at a speed."""
+    return {SN: speed * CN * DN, CN: -speed * SN * DN, DN: -speed * parameter * SN * CN}
+
+
+def squares(parameter: Expr = MU, fixed: bool = False) -> list[Expr]:
+    """Return the two quadratic relations, each an expression that is zero; of the values at w if ``fixed``."""
+    s, c, d = W_VALUES if fixed else (SN, CN, DN)
+    return [c**2 - 1 + s**2, d**2 - 1 + parameter * s**2]
+
+
+def shifted(sign: int = 1, at: tuple[Expr, Expr, Expr] = W_VALUES, parameter: Expr = MU) -> tuple[Expr, Expr, Expr]:
+    """Return sn, cn, dn of u + w, or of u - w, by the addition theorems, from the values at w."""
+    s, c, d = at
+    s = sign * s
+    below = 1 - parameter * SN**2 * s**2
+    return (
+        (SN * c * d + s * CN * DN) / below,
+        (CN * c - SN * DN * s * d) / below,
+        (DN * d - parameter * SN * CN * s * c) / below,
+    )
