@@ -110,8 +110,12 @@ def _explain(options: Namespace) -> int:
 def _emit(options: Namespace) -> int:
     from symrot.report import kernels
 
-    if sum(map(bool, (options.scene, options.all, options.check))) != 1:
-        raise InputError("emit: expected exactly one of a SCENE, --all and --check (see `symrot emit --help`)")
+    if sum(map(bool, (options.kernel, options.all, options.check, options.list))) != 1:
+        raise InputError("emit: expected exactly one of a KERNEL or SCENE, --all, --check and --list "
+                         "(see `symrot emit --help`)")  # fmt: skip
+    if options.list:
+        _say(kernels.kernel_lines())
+        return GOOD
     targets = (options.target,) if options.target else TARGETS
     if options.check:
         different = kernels.stale(options.directory or Path("generated"), targets, _progress)
@@ -121,7 +125,7 @@ def _emit(options: Namespace) -> int:
     if options.all:
         written = kernels.write_all(options.directory or Path("generated"), targets, _progress)
     else:
-        found = kernels.scene_files(options.scene, options.target or "c")
+        found = kernels.kernel_files(options.kernel, options.target or "c")
         if options.directory is None:
             sys.stdout.write("\n".join(found.values()))
             return GOOD
@@ -186,6 +190,17 @@ def _check(options: Namespace) -> int:
     return BAD if refused else GOOD if all(found) else FAILED
 
 
+def _identify(options: Namespace) -> int:
+    found = symrot.identify(options.formula)
+    if options.json:
+        _say_json([identification.to_json() for identification in found])
+    else:
+        _say(f"{identification}\n  {identification.source}" for identification in found)
+        if not found:
+            _say(["nothing that symrot derives is equal to it"])
+    return GOOD if found else FAILED
+
+
 def _scenes(options: Namespace) -> int:
     from symrot.report.layout import columns
 
@@ -238,12 +253,13 @@ def _explain_arguments(parser: ArgumentParser) -> None:
 
 
 def _emit_arguments(parser: ArgumentParser) -> None:
-    _scene_argument(parser, nargs="?")
-    parser.add_argument("--all", action="store_true", help="write the kernels of all shipped scenes")
+    parser.add_argument("kernel", metavar="KERNEL", nargs="?", help="a kernel of the library, a scene, or its file")
+    parser.add_argument("--list", action="store_true", help="list the kernels of the library")
+    parser.add_argument("--all", action="store_true", help="write the library and the kernels of all shipped scenes")
     parser.add_argument("--check", action="store_true", help="compare the written kernels; exit 1 with a diff if stale")
-    parser.add_argument("--target", choices=TARGETS, help="language (default: c for a scene, both for --all, --check)")
+    parser.add_argument("--target", choices=TARGETS, help="language (default: c for a kernel, both for --all, --check)")
     parser.add_argument("-o", type=Path, metavar="DIR", dest="directory",
-                        help="folder (default: standard output for a scene, ./generated otherwise)")  # fmt: skip
+                        help="folder (default: standard output for a kernel, ./generated otherwise)")  # fmt: skip
 
 
 def _derive_arguments(parser: ArgumentParser) -> None:
@@ -270,6 +286,11 @@ def _check_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--unit", metavar="NAME=UNIT", action="append", default=[],
                         help="unit of a symbol, with a claim as text: 'F=kg m/s^2'; may be repeated")  # fmt: skip
     parser.add_argument("--no-repair", action="store_true", help="do not look for true formulas near a false one")
+    _json_option(parser)
+
+
+def _identify_arguments(parser: ArgumentParser) -> None:
+    parser.add_argument("formula", metavar="FORMULA", help="a formula or matrix, as text or LaTeX")
     _json_option(parser)
 
 
@@ -303,7 +324,8 @@ COMMANDS: dict[str, tuple[str, Callable[[Namespace], int], Callable[[ArgumentPar
     "explain": ("show what is computed for a scene, what is skipped and why", _explain, _explain_arguments),
     "derive": ("print derivations, proven step by step", _derive, _derive_arguments),
     "check": ("decide whether formulas hold, and what would", _check, _check_arguments),
-    "emit": ("print the kernel of a scene as C or NumPy", _emit, _emit_arguments),
+    "identify": ("say what a formula is, whatever its symbols are called", _identify, _identify_arguments),
+    "emit": ("print a kernel of the library, or that of a scene, as C or NumPy", _emit, _emit_arguments),
     "scenes": ("list the scenes that come with symrot", _scenes, _json_option),
     "doctor": ("check compiler, cache and installed versions", _doctor, _doctor_arguments),
 }

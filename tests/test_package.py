@@ -22,7 +22,7 @@ ROOMS = (  # from left to right: a module imports at its top only from its own r
     {"dynamics"},
     {"catalogue", "textbook", "scene_reader", "scene_file", "scene_attitude", "scene_body", "scene_torque", "scene"},
     {"checker"},
-    {"planner", "scene_kernel"},
+    {"planner", "scene_kernel", "kernels"},
     {"codegen"},
     {"certify"},
     {"closed_form", "propagation"},

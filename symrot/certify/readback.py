@@ -479,7 +479,9 @@ def read_batch(text: str, name: str, where: str = "kernel") -> Operations:
     if cursor.peek():
         raise cursor.fail("the end of the function after the loop over samples")
     reader.statements(_Cursor(body, where), scope)
-    return _finished(reader, scope, function, sorted(scope.written), where)
+    order = [parameter.name for parameter in function.parameters]
+    places = sorted(scope.written, key=lambda place: (order.index(place[0]), place[1]))
+    return _finished(reader, scope, function, places, where)
 
 
 def _finished(

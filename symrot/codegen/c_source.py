@@ -1,74 +1,117 @@
 """Print a program as C99 that is also valid C++: one sample, and a batch over structure-of-arrays."""
 
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
+from struct import pack, unpack
 from textwrap import wrap
 
 from symrot.codegen.banner import WIDTH, Description, banner
-from symrot.expression import Node, names, rename, text
+from symrot.codegen.own_functions import called, own_function
+from symrot.expression import FUNCTIONS, Node, names, rename, text
 from symrot.kernel import Argument, Program
+from symrot.kernels.removable import FUNCTIONS as OWN_FUNCTIONS
 
-__all__ = ["c_expression", "c_function", "c_header", "c_source"]
-
-FUNCTIONS = {"abs": "fabs"}
-
-
-def c_literal(value: Fraction) -> str:
-    """Return the double nearest to an exact number, as the shortest text that reads back to it."""
-    shown = repr(float(value))
-    return shown if "." in shown or "e" in shown or "n" in shown else f"{shown}.0"
+__all__ = ["DOUBLE", "FLOAT", "Real", "c_expression", "c_function", "c_header", "c_source"]
 
 
-def c_expression(node: Node) -> str:
+@dataclass(frozen=True)
+class Real:
+    """A C type of numbers: its name, the letter that its functions and literals carry, its precision."""
+
+    type: str
+    suffix: str
+    precision: str
+
+    def literal(self, value: Fraction) -> str:
+        """Return the number of this type nearest to an exact one, as the shortest text that reads back to it."""
+        shown = _shortest_float(value) if self.suffix else repr(float(value))
+        return (shown if "." in shown or "e" in shown or "n" in shown else f"{shown}.0") + self.suffix
+
+    @cached_property
+    def functions(self) -> dict[str, str]:
+        """Return the names in C of the functions that kernels call."""
+        own = {name: f"symrot_{name}" for name in OWN_FUNCTIONS}
+        found = {name: name for name in FUNCTIONS} | own | {"abs": "fabs", "copysign": "copysign"}
+        return {name: f"{called}{self.suffix}" for name, called in found.items()}
+
+
+DOUBLE = Real("double", "", "binary64")
+FLOAT = Real("float", "f", "binary32")
+
+
+def _shortest_float(value: Fraction) -> str:
+    for digits in range(1, 10):
+        shown = f"{float(value):.{digits}g}"
+        if _as_float(float(shown)) == _as_float(float(value)):
+            break
+    return shown
+
+
+def _as_float(value: float) -> float:
+    return float(unpack("f", pack("f", value))[0])
+
+
+def c_expression(node: Node, real: Real = DOUBLE) -> str:
     """Return a formula as C, with the brackets that keep its order of evaluation."""
-    return text(rename(node, functions=FUNCTIONS), 0, c_literal)
+    return text(rename(node, functions=real.functions), 0, real.literal)
 
 
-def c_arguments(program: Program) -> str:
+def c_arguments(program: Program, real: Real = DOUBLE) -> str:
     """Return the parameter list of the one-sample function."""
-    return ", ".join(_declared(argument) for argument in program.signature.arguments if argument.size)
+    return ", ".join(_declared(argument, real) for argument in program.signature.arguments if argument.size)
 
 
-def _head(name: str, arguments: str, qualifier: str = "") -> str:
+def _head(name: str, arguments: str, qualifier: str = "", returns: str = "void") -> str:
     """Return a function's head, its arguments on lines of their own where one line is too long."""
-    head = f"{qualifier}void {name}({arguments})"
+    head = f"{qualifier}{returns} {name}({arguments})"
     if len(head) <= WIDTH:
         return head
     unbroken = arguments.replace(", ", ",\0").replace(" ", "\1").replace("\0", " ")  # break after commas only
     lines = wrap(unbroken, WIDTH - 4, break_long_words=False)
-    return f"{qualifier}void {name}(\n    " + "\n    ".join(lines).replace("\1", " ") + ")"
+    return f"{qualifier}{returns} {name}(\n    " + "\n    ".join(lines).replace("\1", " ") + ")"
 
 
-def _declared(argument: Argument) -> str:
+def _declared(argument: Argument, real: Real) -> str:
     const = "const " if argument.role == "in" else ""
-    return f"double {argument.name}" if argument.is_scalar else f"{const}double {argument.name}[{argument.size}]"
+    size = "" if argument.is_scalar else f"[{argument.size}]"
+    return f"{'' if argument.is_scalar else const}{real.type} {argument.name}{size}"
 
 
 def _used(program: Program) -> set[str]:
     return set().union(*(names(node) for _, node in program.temporaries + program.outputs))
 
 
-def _body(program: Program, element: str, indent: str) -> list[str]:
+def _statement(head: str, formula: str, indent: str) -> list[str]:
+    """Return ``head = formula;``, broken after operators where one line is too long."""
+    line = f"{indent}{head} = {formula};"
+    if len(line) <= WIDTH + 10:
+        return [line]
+    return wrap(line, WIDTH + 10, subsequent_indent=f"{indent}    ", break_long_words=False, break_on_hyphens=False)
+
+
+def _body(program: Program, element: str, indent: str, real: Real) -> list[str]:
     """Return the statements; ``element`` is the index of a component in its array, with {i} for its number."""
     used, lines = _used(program), []
     for argument in program.signature.arguments:
         if argument.role == "in" and not argument.is_scalar:
             place = "{i}" if argument.name == "p" else element
             lines += [
-                f"{indent}const double {name} = {argument.name}[{place.format(i=index)}];"
+                f"{indent}const {real.type} {name} = {argument.name}[{place.format(i=index)}];"
                 for index, (name, *_) in enumerate(argument.components)
                 if name in used
             ]
-    lines += [f"{indent}const double {name} = {c_expression(node)};" for name, node in program.temporaries]
+    for name, node in program.temporaries:
+        lines += _statement(f"const {real.type} {name}", c_expression(node, real), indent)
     if lines:
         lines.append("")
     results = dict(program.outputs)
     for argument in program.signature.arguments:
         if argument.role == "out":
-            lines += [
-                f"{indent}{argument.name}[{element.format(i=index)}] = {c_expression(results[name])};"
-                for index, (name, *_) in enumerate(argument.components)
-            ]
+            for index, (name, *_) in enumerate(argument.components):
+                place = f"{argument.name}[{element.format(i=index)}]"
+                lines += _statement(place, c_expression(results[name], real), indent)
     return lines
 
 
@@ -83,7 +126,11 @@ def _silenced(program: Program, indent: str) -> list[str]:
     return [f"{indent}(void){name};" for name in idle]
 
 
-def c_function(program: Program, qualifier: str = "") -> str:
+def _name(program: Program, real: Real) -> str:
+    return f"{program.signature.name}{real.suffix}"
+
+
+def c_function(program: Program, qualifier: str = "", real: Real = DOUBLE) -> str:
     """Return the one-sample function alone.
 
     Parameters
@@ -92,34 +139,47 @@ def c_function(program: Program, qualifier: str = "") -> str:
         What it computes. Outputs must not overlap inputs.
     qualifier : str
         In front of the definition, e.g. ``"static inline "``.
+    real : Real
+        ``DOUBLE`` or ``FLOAT``, whose function has an ``f`` behind its name.
     """
-    head = _head(program.signature.name, c_arguments(program), qualifier)
-    lines = [head, "{", *_silenced(program, "    "), *_body(program, "{i}", "    "), "}"]
+    head = _head(_name(program, real), c_arguments(program, real), qualifier)
+    lines = [head, "{", *_silenced(program, "    "), *_body(program, "{i}", "    ", real), "}"]
     return "\n".join(lines) + "\n"
 
 
-def _batch_arguments(program: Program) -> str:
+def _own_function(name: str, real: Real) -> list[str]:
+    """Return a function that kernels call beyond those of the mathematical library."""
+    parameters, temporaries, (relation, left, right, then, other) = own_function(name, real.precision)
+    arguments = ", ".join(f"{real.type} {parameter}" for parameter in parameters)
+    lines = [_head(real.functions[name], arguments, "static inline ", real.type), "{"]
+    for temporary, node in temporaries:
+        lines += _statement(f"const {real.type} {temporary}", c_expression(node, real), "    ")
+    condition = f"{c_expression(left, real)} {relation} {c_expression(right, real)}"
+    return [*lines, f"    return {condition} ? {c_expression(then, real)} : {c_expression(other, real)};", "}", ""]
+
+
+def _batch_arguments(program: Program, real: Real) -> str:
     parts = ["size_t n"]
     for argument in program.signature.arguments:
         const = "const " if argument.role == "in" else ""
         if argument.name == "p" and argument.size:
-            parts.append(_declared(argument))
+            parts.append(_declared(argument, real))
         elif argument.size:
-            parts.append(f"{const}double *SYMROT_RESTRICT {argument.name}")
+            parts.append(f"{const}{real.type} *SYMROT_RESTRICT {argument.name}")
     return ", ".join(parts)
 
 
-def _batch(program: Program) -> list[str]:
+def _batch(program: Program, real: Real) -> list[str]:
     scalars = [a for a in program.signature.arguments if a.is_scalar and a.role == "in"]
     used = _used(program)
     each = {a.name: f"{a.name}_k" for a in scalars}  # a scalar of one sample is an array in a batch
     return [
-        _head(f"{program.signature.name}_batch", _batch_arguments(program)),
+        _head(f"{_name(program, real)}_batch", _batch_arguments(program, real)),
         "{",
         *_silenced(program, "    "),
         "    for (size_t k = 0; k < n; ++k) {",
-        *(f"        const double {a.name}_k = {a.name}[k];" for a in scalars if a.components[0][0] in used),
-        *_body(_with_names(program, each), "{i}*n + k", "        "),
+        *(f"        const {real.type} {a.name}_k = {a.name}[k];" for a in scalars if a.components[0][0] in used),
+        *_body(_with_names(program, each), "{i}*n + k", "        ", real),
         "    }",
         "}",
     ]
@@ -143,26 +203,45 @@ def _includes(program: Program) -> list[str]:
     return ["#include <math.h>"] if calls else []
 
 
-def c_header(program: Program, description: Description) -> str:
-    """Return the header text: contract, include guard, both prototypes, usable from C and C++."""
-    name = program.signature.name
-    guard = f"SYMROT_{name.upper()}_H"
+def _prototypes(program: Program, real: Real) -> list[str]:
+    name = _name(program, real)
+    return [
+        f"{_head(name, c_arguments(program, real))};",
+        f"{_head(f'{name}_batch', _batch_arguments(program, real))};",
+    ]
+
+
+def c_header(program: Program, description: Description, reals: Sequence[Real] = (DOUBLE,)) -> str:
+    """Return the header text: contract, include guard, prototypes, usable from C and C++."""
+    guard = f"SYMROT_{program.signature.name.upper()}_H"
+    ones, batches = zip(*(_prototypes(program, real) for real in reals), strict=True)
+    shapes = ["/* one sample */", *ones, "", "/* n samples; component i of sample k stands at [i*n + k] */", *batches]
     return "\n".join([
         *banner(program, description, "/*", " *", " */"), f"#ifndef {guard}", f"#define {guard}", "",
         "#include <stddef.h>", "", "#ifndef SYMROT_RESTRICT", "#ifdef __cplusplus",
         "#define SYMROT_RESTRICT __restrict", "#else", "#define SYMROT_RESTRICT restrict", "#endif", "#endif", "",
         "#ifdef __cplusplus", 'extern "C" {', "#endif",
-        "", "/* one sample */", f"{_head(name, c_arguments(program))};", "",
-        "/* n samples; component i of sample k stands at [i*n + k] */",
-        f"{_head(f'{name}_batch', _batch_arguments(program))};", "",
+        "", *shapes, "",
         "#ifdef __cplusplus", "}", "#endif", "", "#endif",
     ]) + "\n"  # fmt: skip
 
 
-def c_source(program: Program, description: Description) -> str:
-    """Return the C99 text of a kernel. Same program, same bytes: no clock, no path, no environment."""
-    return "\n".join([
-        *banner(program, description, "/*", " *", " */"), *_includes(program),
-        f'#include "{program.signature.name}.h"', "",
-        c_function(program), *_batch(program),
-    ]) + "\n"  # fmt: skip
+def c_source(program: Program, description: Description, reals: Sequence[Real] = (DOUBLE,)) -> str:
+    """Return the C99 text of a kernel. Same program, same bytes: no clock, no path, no environment.
+
+    Parameters
+    ----------
+    program : Program
+        What it computes.
+    description : Description
+        What the head says beside that.
+    reals : sequence of Real
+        The types of numbers, each with its one-sample and its batch function.
+    """
+    lines = [*banner(program, description, "/*", " *", " */"), *_includes(program)]
+    lines += [f'#include "{program.signature.name}.h"', ""]
+    for real in reals:
+        for name in called(program):
+            lines += _own_function(name, real)
+    parts = ["\n".join([c_function(program, real=real), *_batch(program, real)]) for real in reals]
+    return "\n".join(lines) + "\n" + "\n\n".join(parts) + "\n"

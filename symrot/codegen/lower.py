@@ -17,6 +17,7 @@ from sympy import Abs, Expr, Function, Integer, Mul, Number, S, Symbol, default_
 from symrot.errors import InputError
 from symrot.expression import FUNCTIONS, Node, children, rename, text
 from symrot.kernel import Argument, Program, Signature
+from symrot.kernels.removable import FUNCTIONS as OWN_FUNCTIONS
 
 __all__ = ["Lowered", "lower", "to_node"]
 
@@ -75,7 +76,7 @@ def _chain(mark: str, nodes: Sequence[Node]) -> Node:
 
 def _function_name(expr: Expr) -> str:
     name = "abs" if isinstance(expr, Abs) else "exp" if expr.func.__name__ == "exp" else str(expr.func)
-    if not isinstance(expr, Function) or FUNCTIONS.get(name) != len(expr.args):
+    if not isinstance(expr, Function) or (FUNCTIONS | OWN_FUNCTIONS).get(name) != len(expr.args):
         raise InputError(f"expected a formula of + - * /, whole and half powers and {', '.join(FUNCTIONS)}; got {expr}")
     return name
 

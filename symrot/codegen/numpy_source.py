@@ -3,9 +3,11 @@
 from fractions import Fraction
 
 from symrot.codegen.banner import Description, banner
+from symrot.codegen.own_functions import called, own_function
 from symrot.expression import FUNCTIONS as KNOWN
 from symrot.expression import Node, names, rename, text
 from symrot.kernel import Argument, Program
+from symrot.kernels.removable import FUNCTIONS as OWN_FUNCTIONS
 
 __all__ = ["numpy_source"]
 
@@ -17,7 +19,22 @@ def _literal(value: Fraction) -> str:
 
 
 def _expression(node: Node) -> str:
-    return text(rename(node, functions={name: f"np.{FUNCTIONS.get(name, name)}" for name in KNOWN}), 0, _literal)
+    return text(rename(node, functions=_NAMES), 0, _literal)
+
+
+_NAMES = {name: f"np.{FUNCTIONS.get(name, name)}" for name in KNOWN} | {name: f"_{name}" for name in OWN_FUNCTIONS}
+_NAMES["copysign"] = "np.copysign"
+
+
+def _own_function(name: str) -> list[str]:
+    """Return a function that kernels call beyond those of NumPy: both sides of its choice, and one of them taken."""
+    parameters, temporaries, (relation, left, right, then, other) = own_function(name, "binary64")
+    condition = f"{_expression(left)} {relation} {_expression(right)}"
+    return [
+        "", "", '@np.errstate(divide="ignore", invalid="ignore")', f"def _{name}({', '.join(parameters)}):",
+        *(f"    {temporary} = {_expression(node)}" for temporary, node in temporaries),
+        f"    return np.where({condition}, {_expression(then)}, {_expression(other)})",
+    ]  # fmt: skip
 
 
 def _unpacked(argument: Argument, used: set[str]) -> list[str]:
@@ -37,7 +54,9 @@ def numpy_source(program: Program, description: Description) -> str:
     results = dict(program.outputs)
     lines = [*banner(program, description, '"""', "", '"""')]
     lines = [lines[0] + lines[1].strip(), *(line[1:] if line.startswith(" ") else line for line in lines[2:])]
-    lines += ["", "import numpy as np", "", "", f"def {program.signature.name}({', '.join(a.name for a in inputs)}):"]
+    lines += ["", "import numpy as np"]
+    lines += [line for name in called(program) for line in _own_function(name)]
+    lines += ["", "", f"def {program.signature.name}({', '.join(a.name for a in inputs)}):"]
     lines += [line for argument in inputs if not argument.is_scalar for line in _unpacked(argument, used)]
     lines += [f"    {name} = {_expression(node)}" for name, node in program.temporaries]
     for argument in outputs:

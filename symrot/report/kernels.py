@@ -1,4 +1,4 @@
-"""Emitted kernels as files: those of one scene, those of all shipped scenes, and whether the files there are stale."""
+"""Emitted kernels as files: one, or the library and those of all shipped scenes, and whether the files are stale."""
 
 from collections.abc import Callable, Mapping, Sequence
 from difflib import unified_diff
@@ -6,40 +6,48 @@ from pathlib import Path
 
 from symrot.errors import InputError
 from symrot.interface import emit
+from symrot.kernels.library import definition, kernel_names
 from symrot.report.files import write
-from symrot.scene import load_scene
 from symrot.scene_file import shipped_names
 
-__all__ = ["scene_files", "stale", "write_all", "write_files"]
+__all__ = ["kernel_files", "kernel_lines", "stale", "write_all", "write_files"]
 
 SUFFIXES = {"c": (".c", ".h"), "numpy": (".py",)}
-ROOM = "scenes"  # under the folder of each target
+SCENES = "scenes"  # under the folder of each target: the kernels of shipped scenes; those of the library beside it
 
 
-def scene_files(scene: str | Path, target: str) -> dict[str, str]:
-    """Return file name -> text of a scene's own kernel; in C the header comes first."""
-    found = emit(load_scene(scene), target)
+def kernel_lines() -> list[str]:
+    """Return a line for each kernel of the library: its name and what it computes."""
+    width = max(map(len, kernel_names()))
+    return [f"{name:<{width}}  {definition(name).title}" for name in kernel_names()]
+
+
+def kernel_files(kernel: str | Path, target: str) -> dict[str, str]:
+    """Return file name -> text of a kernel of the library or of a scene; in C the header comes first."""
+    found = emit(kernel, target)
     if target == "numpy":
         return {f"{found.name}.py": found.source}
     return {f"{found.name}.h": found.header, f"{found.name}.c": found.source}
 
 
 def _all_files(targets: Sequence[str], progress: Callable[[str], object]) -> dict[str, str]:
-    """Return path -> text of the kernels of all shipped scenes."""
+    """Return path -> text of the library and of the kernels of all shipped scenes."""
     files: dict[str, str] = {}
-    for name in shipped_names():
-        progress(f"emitting {name} ..")
-        for target in targets:
-            files |= {f"{target}/{ROOM}/{file}": text for file, text in scene_files(name, target).items()}
+    for room, names in (("", kernel_names()), (f"{SCENES}/", shipped_names())):
+        for name in names:
+            progress(f"emitting {name} ..")
+            for target in targets:
+                files |= {f"{target}/{room}{file}": text for file, text in kernel_files(name, target).items()}
     return files
 
 
 def _printed_before(directory: Path, targets: Sequence[str]) -> list[str]:
-    """Return the paths of the kernels that are there, those of scenes that are gone among them."""
+    """Return the paths of the kernels that are there, those that are no longer printed among them."""
     return [
         path.relative_to(directory).as_posix()
         for target in targets
-        for path in sorted((directory / target / ROOM).glob("*"))
+        for room in (directory / target, directory / target / SCENES)
+        for path in sorted(room.glob("*"))
         if path.suffix in SUFFIXES[target]
     ]
 
@@ -67,7 +75,7 @@ def write_files(directory: Path, files: Mapping[str, str]) -> list[Path]:
 
 
 def write_all(directory: Path, targets: Sequence[str], progress: Callable[[str], object]) -> list[Path]:
-    """Write the kernels of all shipped scenes, remove those of scenes that are gone, return the paths that changed."""
+    """Write the library and the kernels of all shipped scenes, remove others, return the paths that changed."""
     files = _all_files(targets, progress)
     changed = write_files(directory, files)
     for name in _printed_before(directory, targets):
@@ -96,5 +104,5 @@ def stale(directory: Path, targets: Sequence[str], progress: Callable[[str], obj
         if old != new or name not in files:
             before, after = f"{path} (on disk)", f"{path} (emitted)"
             diff = list(unified_diff(old.splitlines(), new.splitlines(), before, after, lineterm=""))
-            lines += diff or [f"{path}: {'line ends differ' if name in files else 'a kernel of no scene'}"]
+            lines += diff or [f"{path}: {'line ends differ' if name in files else 'a kernel that is not printed'}"]
     return lines

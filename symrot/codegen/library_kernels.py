@@ -1,0 +1,49 @@
+"""Kernels of the library as programs: lowered from their definitions, numbers such as pi in their place."""
+
+from collections.abc import Mapping
+from functools import cache
+
+from symrot import number
+from symrot.codegen.banner import Description
+from symrot.codegen.lower import lower
+from symrot.expression import Node, children, evaluate
+from symrot.kernel import Program, Signature
+from symrot.kernels.definition import Definition
+from symrot.kernels.library import definition
+
+__all__ = ["kernel_description", "kernel_program"]
+
+
+@cache
+def kernel_program(name: str) -> Program:
+    """Return the straight-line program of a kernel of the library."""
+    found = definition(name)
+    signature = Signature(name, (*found.inputs, *(target for target, _ in found.results)))
+    lowered = lower(signature, found.formulas, found.named, parameter_argument="constant_")
+    known = {"pi": number.PI}
+    values = {name: ("number", evaluate(node, known, {"sqrt": number.sqrt})) for name, node in lowered.parameters}
+    program = lowered.program
+    return Program(
+        signature,
+        tuple((name, _with(node, values)) for name, node in program.temporaries),
+        tuple((name, _with(node, values)) for name, node in program.outputs),
+    )
+
+
+def _with(node: Node, values: Mapping[str, Node]) -> Node:
+    """Return a formula with symbols replaced by formulas."""
+    if not children(node):
+        return values.get(node[1], node) if node[0] == "symbol" else node
+    if node[0] == "call":
+        return ("call", node[1], tuple(_with(child, values) for child in node[2]))
+    if node[0] == "**":
+        return ("**", _with(node[1], values), node[2])
+    return (node[0], *(_with(child, values) for child in node[1:]))
+
+
+def kernel_description(found: Definition, target: str) -> Description:
+    """Return what an emitted file says of a kernel."""
+    return Description(
+        title=found.title, domain=found.domain, derivation=found.derivation,
+        command=f"symrot emit {found.name} --target {target}",
+    )  # fmt: skip

@@ -1,0 +1,60 @@
+"""Text of the functions that kernels call beyond those of <math.h> (:mod:`symrot.kernels.removable`)."""
+
+from collections.abc import Iterable
+from fractions import Fraction
+
+from symrot.codegen.lower import to_node
+from symrot.expression import Node, children
+from symrot.kernel import Program
+from symrot.kernels.removable import FUNCTIONS, REMOVABLE, Removable
+
+__all__ = ["called", "own_function", "series"]
+
+Statement = tuple[str, Node]  # name of a temporary, formula
+ONE, ZERO = ("number", Fraction(1)), ("number", Fraction(0))
+Choice = tuple[str, Node, Node, Node, Node]  # relation, left, right, then, else
+_A, _B, _X, _Y, _S, _C = (("symbol", name) for name in "abxysc")
+_CHOICES: dict[str, tuple[tuple[str, ...], Choice]] = {
+    "select_ge": (("a", "b", "x", "y"), (">=", _A, _B, _X, _Y)),
+    "sinc": (("x",), ("==", _X, ZERO, ONE, ("/", ("call", "sin", (_X,)), _X))),
+    "arc_ratio": (("s", "c"), ("==", _S, ZERO, ("/", ONE, _C), ("/", ("call", "atan2", (_S, _C)), _S))),
+}
+
+
+def called(program: Program) -> list[str]:
+    """Return the own functions that a program calls, but for those that C has itself, in the order of the table."""
+    used: set[str] = set()
+
+    def visit(node: Node) -> None:
+        if node[0] == "call":
+            used.add(node[1])
+        for child in children(node):
+            visit(child)
+
+    for _, node in program.temporaries + program.outputs:
+        visit(node)
+    return [name for name in FUNCTIONS if name in used and (name in _CHOICES or name in REMOVABLE)]
+
+
+def series(coefficients: Iterable[Fraction], variable: str) -> Node:
+    """Return a polynomial by Horner's rule."""
+    first, *rest = reversed(tuple(coefficients))
+    node: Node = ("number", first)
+    for coefficient in rest:
+        node = ("+", ("number", coefficient), ("*", ("symbol", variable), node))
+    return node
+
+
+def own_function(name: str, precision: str) -> tuple[tuple[str, ...], list[Statement], Choice]:
+    """Return parameters, temporaries and the choice (relation, left, right, then, else) that a function returns."""
+    if name in _CHOICES:
+        parameters, choice = _CHOICES[name]
+        return parameters, [], choice
+    return _removable(REMOVABLE[name], precision)
+
+
+def _removable(which: Removable, precision: str) -> tuple[tuple[str, ...], list[Statement], Choice]:
+    square = ("t", ("*", ("symbol", "x"), ("symbol", "x")))
+    taylor = ("taylor", series(which.coefficients(precision), "t"))
+    choice = ("<", ("symbol", "t"), ("number", which.split), ("symbol", "taylor"), to_node(which.direct))
+    return ("x",), [square, taylor], choice

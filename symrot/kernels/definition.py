@@ -1,0 +1,82 @@
+"""What a kernel of the library is before it is printed: arguments, formulas, domain, laws of its outputs."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+from sympy import Expr, Matrix, Symbol
+
+from symrot import symbols
+from symrot.kernel import Argument
+
+__all__ = ["Box", "Definition", "Law", "argument", "boxed", "interval", "result", "scalar"]
+
+Box = dict[str, tuple[Fraction, Fraction]]  # name of an input component -> least and largest value
+
+
+@dataclass(frozen=True)
+class Law:
+    """Something that the outputs obey whatever the inputs: ``vanishing`` is zero where ``relations`` are.
+
+    The expressions hold inputs and outputs by their symbols. A law characterises the kernel independently of how its
+    formulas were found: a certificate proves it from the formulas.
+    """
+
+    text: str
+    vanishing: tuple[Expr, ...]
+    relations: tuple[Expr, ...] = ()
+
+
+@dataclass(frozen=True)
+class Definition:
+    """A kernel: its arguments in order, formulas for the outputs, where it holds, and its laws."""
+
+    name: str
+    title: str
+    inputs: tuple[Argument, ...]
+    results: tuple[tuple[Argument, tuple[Expr, ...]], ...]  # output argument, formula of each component
+    domain: str
+    derivation: str
+    box: Box  # of the inputs, on which its rounding error is bounded unless another is given
+    laws: Callable[[], tuple[Law, ...]]
+    named: tuple[tuple[Symbol, Expr], ...] = field(default=())  # quantities with a physical name that the formulas use
+
+    @property
+    def formulas(self) -> tuple[tuple[str, Expr], ...]:
+        """Return (output component, formula) in the order of the outputs."""
+        return tuple(
+            (component[0], formula)
+            for target, expressions in self.results
+            for component, formula in zip(target.components, expressions, strict=True)
+        )
+
+
+def argument(name: str, role: str, components: Sequence[Symbol | str], meaning: str, unit: str = "") -> Argument:
+    """Return an array argument of symbols of :mod:`symrot.symbols`, each with its unit (or ``unit``)."""
+    described = []
+    for component in components:
+        known = unit or symbols.UNIT[component]
+        described.append((str(component), known, meaning))
+    return Argument(name, role, tuple(described))
+
+
+def scalar(component: Symbol, meaning: str) -> Argument:
+    """Return a scalar input argument of one symbol."""
+    return Argument(str(component), "in", ((str(component), symbols.UNIT[component], meaning),), is_scalar=True)
+
+
+def result(
+    name: str, formulas: Matrix | Sequence[Expr], components: Sequence[Symbol], meaning: str, unit: str = ""
+) -> tuple[Argument, tuple[Expr, ...]]:
+    """Return an output argument and its formulas, a matrix row by row."""
+    return argument(name, "out", components, meaning, unit), tuple(formulas)
+
+
+def interval(low: Fraction | int | str, high: Fraction | int | str) -> tuple[Fraction, Fraction]:
+    """Return the range of an input, exactly."""
+    return Fraction(low), Fraction(high)
+
+
+def boxed(components: Sequence[Symbol], low: Fraction | int | str, high: Fraction | int | str) -> Box:
+    """Return one range for several inputs."""
+    return {str(component): interval(low, high) for component in components}

@@ -1,0 +1,148 @@
+"""Kernels of Euler angles: for all 24 sequences the dcm, both rate Jacobians and their inverses, and quaternions."""
+
+from collections.abc import Callable, Iterator
+from functools import partial
+
+from sympy import Expr, Matrix, pi
+
+from symrot import symbols
+from symrot.conventions import SEQUENCES, parse_sequence
+from symrot.kernels.definition import Box, Definition, Law, argument, boxed, interval, result
+from symrot.kernels.removable import select_ge
+from symrot.kinematics.euler import dcm, euler_of_quaternion, quaternion_of_euler, rate_jacobian
+from symrot.kinematics.quaternion import dcm_of, unit_relation
+from symrot.kinematics.rotations import skew
+
+__all__ = ["definitions"]
+
+ANGLES = argument("angles", "in", symbols.angles, "Euler angles, in order of application")
+ANGLE_BOX = boxed(symbols.angles, "-22/7", "22/7")
+OMEGA = {"body": symbols.omega_b, "space": symbols.omega_s}
+DERIVATION = "derivations/euler_body_rates.md"
+JACOBIAN = symbols.jacobian_entries
+QUATERNION = argument("q", "in", symbols.quaternion, "attitude, body to space")
+
+
+def prefix(sequence: str) -> str:
+    """Return the beginning of the names of a sequence's kernels; no two differ in case alone."""
+    return f"euler_{sequence.lower()}" if parse_sequence(sequence)[1] else f"euler_extrinsic_{sequence}"
+
+
+def definitions() -> Iterator[tuple[str, Callable[[], Definition]]]:
+    """Yield name and definition, made on demand, of every kernel of Euler angles."""
+    for sequence in SEQUENCES:
+        for suffix, make in _KINDS.items():
+            name = f"{prefix(sequence)}_{suffix}"
+            yield name, partial(make, name, sequence)
+
+
+def _called(sequence: str) -> str:
+    intrinsic = parse_sequence(sequence)[1]
+    return f"sequence {sequence} ({'intrinsic' if intrinsic else 'extrinsic'})"
+
+
+def _lock(sequence: str) -> str:
+    singular = str(rate_jacobian(sequence).determinant).lstrip("-")
+    return f"{singular} != 0; near it, digits are lost as 1/{singular}"
+
+
+def _regular_box(sequence: str) -> Box:
+    """Return angles away from the lock of a sequence: the middle angle within 1.4 rad of the best place."""
+    axes, _ = parse_sequence(sequence)
+    proper = axes[0] == axes[2]
+    return ANGLE_BOX | {"theta": interval("1/10", "304/100") if proper else interval("-7/5", "7/5")}
+
+
+def _dcm(name: str, sequence: str) -> Definition:
+    matrix = dcm(sequence)
+
+    def laws() -> tuple[Law, ...]:
+        found = Matrix(3, 3, symbols.rotation_entries)
+        return (
+            Law("it is the dcm of the product of the three turns as quaternions",
+                tuple(found - dcm_of(quaternion_of_euler(sequence)))),
+        )  # fmt: skip
+
+    return Definition(
+        name, f"direction cosine matrix dcm_sb of Euler angles, {_called(sequence)}; v_s = dcm_sb v_b, row by row",
+        (ANGLES,), (result("dcm", matrix, symbols.rotation_entries, "entry of dcm_sb"),),
+        "all finite angles", "derivations/rotation_matrices.md", ANGLE_BOX, laws,
+    )  # fmt: skip
+
+
+def _jacobian(frame: str, name: str, sequence: str) -> Definition:
+    def laws() -> tuple[Law, ...]:
+        found, matrix = Matrix(3, 3, JACOBIAN), dcm(sequence)
+        columns = []
+        for place, angle in enumerate(symbols.angles):
+            rate = matrix.diff(angle)
+            turning = matrix.T * rate if frame == "body" else rate * matrix.T
+            columns += list(turning - skew(found[:, place]))
+        return (Law("skew(B dq/dt) is the spin tensor of the dcm", tuple(columns)),)
+
+    return Definition(
+        name, f"rate Jacobian B of Euler angles, {_called(sequence)}: omega_{frame[0]} = B dangles/dt, row by row",
+        (ANGLES,), (result("jacobian", rate_jacobian(sequence, frame), JACOBIAN, "entry of B"),),
+        "all finite angles", DERIVATION, ANGLE_BOX, laws,
+    )  # fmt: skip
+
+
+def _rates(frame: str, name: str, sequence: str) -> Definition:
+    jacobian, omega = rate_jacobian(sequence, frame), Matrix(OMEGA[frame])
+
+    def laws() -> tuple[Law, ...]:
+        vanishing = Matrix(jacobian) * Matrix(symbols.angle_rates) - omega
+        return (Law("B dangles/dt is the given angular velocity", tuple(vanishing)),)
+
+    where = {"body": "body", "space": "space"}[frame]
+    return Definition(
+        name, f"rates of Euler angles from the angular velocity in {where} axes, {_called(sequence)}",
+        (ANGLES, argument("omega", "in", OMEGA[frame], f"angular velocity, {where} components")),
+        (result("dangles", jacobian.inverse * omega, symbols.angle_rates, "rate of the angle"),),
+        _lock(sequence), DERIVATION, _regular_box(sequence) | boxed(OMEGA[frame], -10, 10), laws,
+    )  # fmt: skip
+
+
+def _quaternion(name: str, sequence: str) -> Definition:
+    def laws() -> tuple[Law, ...]:
+        return (Law("its dcm is that of the angles", tuple(dcm_of() - dcm(sequence))),
+                Law("it is of unit norm", (unit_relation(),)))  # fmt: skip
+
+    return Definition(
+        name, f"quaternion of Euler angles, {_called(sequence)}",
+        (ANGLES,),
+        (result("q", quaternion_of_euler(sequence), symbols.quaternion, "attitude, body to space"),),
+        "all finite angles; q and -q are one attitude", "derivations/euler_parameters.md", ANGLE_BOX, laws,
+    )  # fmt: skip
+
+
+def _wrapped(angle: Expr) -> Expr:
+    """Return an angle in (-2 pi, 2 pi) as the same one in [-pi, pi]."""
+    return select_ge(pi, angle, select_ge(angle, -pi, angle, angle + 2 * pi), angle - 2 * pi)
+
+
+def _of_quaternion(name: str, sequence: str) -> Definition:
+    first, middle, last = euler_of_quaternion(sequence)
+
+    def laws() -> tuple[Law, ...]:
+        return (Law("the dcm of the angles is that of the quaternion", tuple(dcm(sequence) - dcm_of()),
+                    (unit_relation(),)),)  # fmt: skip
+
+    return Definition(
+        name, f"Euler angles of a quaternion of any norm, {_called(sequence)}",
+        (QUATERNION,),
+        (result("angles", (_wrapped(first), middle, _wrapped(last)), symbols.angles, "Euler angle"),),
+        "all quaternions but 0; at lock, where one combination of the first and last angle is left, both are finite",
+        "derivations/euler_parameters.md", boxed(symbols.quaternion, -1, 1), laws,
+    )  # fmt: skip
+
+
+_KINDS: dict[str, Callable[[str, str], Definition]] = {
+    "dcm": _dcm,
+    "body_jacobian": partial(_jacobian, "body"),
+    "space_jacobian": partial(_jacobian, "space"),
+    "body_rates": partial(_rates, "body"),
+    "space_rates": partial(_rates, "space"),
+    "quaternion": _quaternion,
+    "of_quaternion": _of_quaternion,
+}

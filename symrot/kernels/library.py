@@ -1,0 +1,36 @@
+"""The table of kernels, by name, in the order in which they are printed."""
+
+from collections.abc import Callable
+from functools import cache
+
+from symrot.errors import InputError
+from symrot.kernels import dynamics, euler, inertia, quaternion, rodrigues, rotation_vector, torques
+from symrot.kernels.definition import Definition
+
+__all__ = ["definition", "kernel_names"]
+
+_SHELVES = (euler, quaternion, rotation_vector, rodrigues, dynamics, torques, inertia)
+
+
+@cache
+def _table() -> dict[str, Callable[[], Definition]]:
+    return dict(item for shelf in _SHELVES for item in shelf.definitions())
+
+
+def kernel_names() -> tuple[str, ...]:
+    """Return the names of all kernels."""
+    return tuple(_table())
+
+
+@cache
+def definition(name: str) -> Definition:
+    """Return the kernel of that name, derived now.
+
+    Raises
+    ------
+    InputError
+        For a name that is not in the table.
+    """
+    if name not in _table():
+        raise InputError(f"expected the name of a kernel, such as quaternion_dcm or euler_zxz_body_rates, got {name!r}")
+    return _table()[name]()

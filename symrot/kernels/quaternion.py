@@ -1,0 +1,171 @@
+"""Kernels of unit quaternions: dcm and back, product, rotation of a vector, rates in both frames."""
+
+from collections.abc import Callable, Iterator
+from functools import partial
+from itertools import pairwise
+
+from sympy import Expr, Matrix, Symbol, sqrt
+
+from symrot import symbols
+from symrot.kernels.definition import Definition, Law, argument, boxed, result
+from symrot.kernels.removable import select_ge
+from symrot.kinematics.quaternion import (
+    conjugate,
+    dcm_of,
+    norm_squared,
+    qmul,
+    quaternion_of_dcm,
+    quaternion_rates,
+    unit_relation,
+)
+
+__all__ = ["OMEGA", "QUATERNION", "QUATERNION_BOX", "definitions"]
+
+OMEGA = {"body": symbols.omega_b, "space": symbols.omega_s}
+QUATERNION = argument("q", "in", symbols.quaternion, "attitude, body to space")
+QUATERNION_BOX = boxed(symbols.quaternion, -1, 1)
+
+_DERIVATION = "derivations/quaternion_rates.md"
+_UNIT = "unit quaternions"
+
+
+def definitions() -> Iterator[tuple[str, Callable[[], Definition]]]:
+    """Yield name and definition, made on demand, of every kernel of quaternions."""
+    for name, make in _KINDS.items():
+        yield name, partial(make, name)
+
+
+def _dcm(name: str) -> Definition:
+    def laws() -> tuple[Law, ...]:
+        found, q = Matrix(3, 3, symbols.rotation_entries), symbols.quaternion
+        turned = Matrix.hstack(*(qmul(q, [0, *axis], conjugate(q))[1:, 0] for axis in Matrix.eye(3).tolist()))
+        return (
+            Law("its columns are the turned axes q e q*", tuple(found - turned), (unit_relation(),)),
+            Law("it is orthogonal", tuple(found.T * found - Matrix.eye(3)), (unit_relation(),)),
+        )
+
+    return Definition(
+        name, "direction cosine matrix dcm_sb of a unit quaternion; v_s = dcm_sb v_b, row by row", (QUATERNION,),
+        (result("dcm", dcm_of(), symbols.rotation_entries, "entry of dcm_sb"),),
+        _UNIT, "derivations/euler_parameters.md", QUATERNION_BOX, laws,
+    )  # fmt: skip
+
+
+def _of_dcm(name: str) -> Definition:
+    matrix = Matrix(3, 3, symbols.rotation_entries)
+    branches = [_branch(matrix, pivot) for pivot in range(4)]
+    first, second = (_larger(a, b) for a, b in (branches[:2], branches[2:]))
+    divisor, row = _larger(first, second)
+    quotient = 2 * sqrt(divisor)
+    found = [entry / quotient for entry in row]
+
+    def laws() -> tuple[Law, ...]:
+        q = symbols.quaternion
+        return (Law("its dcm is the given one, of a rotation", tuple(dcm_of(q) - matrix), _rotation(matrix)),)
+
+    return Definition(
+        name, "quaternion of a direction cosine matrix dcm_sb, by the branch that divides by its largest component",
+        (argument("dcm", "in", symbols.rotation_entries, "entry of dcm_sb, row by row"),),
+        (result("q", found, symbols.quaternion, "attitude, body to space"),),
+        "rotations; q and -q are one attitude", "derivations/euler_parameters.md",
+        boxed(symbols.rotation_entries, -1, 1), laws,
+    )  # fmt: skip
+
+
+Branch = tuple[Expr, list[Expr]]  # four times the square of a component, and four times its products with all
+
+
+def _branch(matrix: Matrix, pivot: int) -> Branch:
+    """Return ``4 q_pivot^2`` and the row ``4 q_pivot q``, both linear in the dcm."""
+    q = quaternion_of_dcm(matrix, pivot)
+    square = 4 * q[pivot] ** 2
+    return square, [entry * 2 * sqrt(square) for entry in q]
+
+
+def _larger(left: Branch, right: Branch) -> Branch:
+    """Return the branch with the larger square."""
+    (a, row_a), (b, row_b) = left, right
+    return select_ge(a, b, a, b), [select_ge(a, b, x, y) for x, y in zip(row_a, row_b, strict=True)]
+
+
+def _rotation(matrix: Matrix) -> tuple[Expr, ...]:
+    """Return what vanishes for a rotation: the columns are a right-handed orthonormal frame."""
+    columns = [matrix[:, i] for i in range(3)]
+    cyclic = [*columns, columns[0]]
+    crossed = [a.cross(b) - columns[(k + 2) % 3] for k, (a, b) in enumerate(pairwise(cyclic))]
+    return (*(matrix.T * matrix - Matrix.eye(3)), *(entry for vector in crossed for entry in vector))
+
+
+def _rates(frame: str, name: str) -> Definition:
+    q, dq, omega = symbols.quaternion, symbols.quaternion_rates, Matrix(OMEGA[frame])
+
+    def laws() -> tuple[Law, ...]:
+        doubled = qmul(conjugate(q), dq) if frame == "body" else qmul(dq, conjugate(q))
+        return (
+            Law("2 q* dq/dt is (0, omega)" if frame == "body" else "2 dq/dt q* is (0, omega)",
+                tuple(2 * doubled - Matrix([0, *omega])), (unit_relation(),)),
+            Law("the norm is kept, for any q", (sum(a * b for a, b in zip(q, dq, strict=True)),)),
+        )  # fmt: skip
+
+    return Definition(
+        name, f"rate of a quaternion from the angular velocity in {frame} axes",
+        (QUATERNION, argument("omega", "in", OMEGA[frame], f"angular velocity, {frame} components")),
+        (result("dq", quaternion_rates(frame) * omega, dq, "rate of the quaternion"),),
+        "all quaternions; the rate keeps the norm", _DERIVATION, QUATERNION_BOX | boxed(OMEGA[frame], -10, 10), laws,
+    )  # fmt: skip
+
+
+def _product(name: str) -> Definition:
+    left, right, found = symbols.second_quaternion, symbols.quaternion, symbols.product_quaternion
+
+    def laws() -> tuple[Law, ...]:
+        matrices = (dcm_of(each, "homogeneous") for each in (found, left, right))
+        turned, first, second = matrices
+        return (
+            Law("its dcm is the product of the dcms", tuple(turned - first * second)),
+            Law("norms multiply", (norm_squared(found) - norm_squared(left) * norm_squared(right),)),
+        )
+
+    return Definition(
+        name, "Hamilton product p q of two quaternions: the turn q, then the turn p, in space",
+        (argument("p", "in", left, "left factor"), argument("q", "in", right, "right factor")),
+        (result("product", qmul(left, right), found, "p q"),),
+        "all quaternions", "derivations/composition.md", boxed((*left, *right), -1, 1), laws,
+    )  # fmt: skip
+
+
+def _rotate(towards: str, name: str) -> Definition:
+    vector, turned = Matrix(symbols.vector), symbols.turned_vector
+    to_space = towards == "space"
+    matrix = dcm_of() if to_space else dcm_of().T
+    here, there = ("body", "space") if to_space else ("space", "body")
+    half, formulas = _turned(symbols.quaternion if to_space else conjugate(symbols.quaternion), vector)
+
+    def laws() -> tuple[Law, ...]:
+        return (Law("it is the dcm times the vector", tuple(Matrix(turned) - matrix * vector), (unit_relation(),)),)
+
+    return Definition(
+        name, f"{there} components of a vector given in {here} axes, by a unit quaternion",
+        (QUATERNION, argument("vector", "in", tuple(vector), f"{here} components")),
+        (result("turned", formulas, turned, f"{there} components"),),
+        _UNIT, "derivations/euler_parameters.md", QUATERNION_BOX | boxed(tuple(vector), -1, 1), laws, half,
+    )  # fmt: skip
+
+
+def _turned(q: Matrix, vector: Matrix) -> tuple[tuple[tuple[Symbol, Expr], ...], Matrix]:
+    """Return ``v + q0 h + u x h`` with ``h = 2 u x v`` for ``q = (q0, u)``: fewer operations than by the dcm."""
+    scalar, axis = q[0], Matrix(q[1:])
+    half = Matrix([Symbol(f"twice_cross_{i}", real=True) for i in "123"])
+    named = tuple(zip(half, 2 * axis.cross(vector), strict=True))
+    return named, vector + scalar * half + axis.cross(half)
+
+
+_KINDS: dict[str, Callable[[str], Definition]] = {
+    "quaternion_dcm": _dcm,
+    "quaternion_of_dcm": _of_dcm,
+    "quaternion_body_rates": partial(_rates, "body"),
+    "quaternion_space_rates": partial(_rates, "space"),
+    "quaternion_product": _product,
+    "quaternion_to_space": partial(_rotate, "space"),
+    "quaternion_to_body": partial(_rotate, "body"),
+}

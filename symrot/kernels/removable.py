@@ -1,0 +1,101 @@
+"""Functions with a removable singularity, as kernels compute them: accurate on the whole line, no epsilon to tune.
+
+``sin(x)/x`` loses nothing but at zero, where a choice gives its limit. A difference of nearly equal terms,
+``(x - sin x)/x^3``, is summed as its Taylor series near zero, to a truncation that is proven below half the last bit,
+and computed as it stands where the terms differ: which of the two is a property of the function, not a setting.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cache
+from itertools import pairwise
+from typing import Any
+
+from sympy import Expr, Function, Integer, Symbol, atan2, cos, factorial, sin
+
+__all__ = ["FUNCTIONS", "REMOVABLE", "Removable", "arc_ratio", "copysign", "explicit", "select_ge", "sinc", "sine_gap",
+           "tangent_gap"]  # fmt: skip
+
+sinc = Function("sinc", real=True)
+sine_gap = Function("sine_gap", real=True)
+tangent_gap = Function("tangent_gap", real=True)
+arc_ratio = Function("arc_ratio", real=True)
+copysign = Function("copysign", real=True)
+select_ge = Function("select_ge", real=True)
+
+FUNCTIONS: dict[str, int] = {  # what kernels of the library call beyond the functions of scenes; number of arguments
+    "sinc": 1, "sine_gap": 1, "tangent_gap": 1, "arc_ratio": 2, "copysign": 2, "select_ge": 4,
+}  # fmt: skip
+DIGITS = {"binary64": 53, "binary32": 24}
+
+_x, _t = Symbol("x", real=True), Symbol("t", real=True)
+
+
+@dataclass(frozen=True)
+class Removable:
+    """A function of x that is even and analytic, ``numerator / x^power``, which is undefined at zero as it stands.
+
+    ``split`` is the square of the |x| below which the series is summed; the terms alternate and fall there. Beyond it
+    ``direct`` is computed, the same quotient over ``t = x^2`` in a form without cancellation.
+    """
+
+    name: str
+    numerator: Expr  # in x
+    power: int
+    split: Fraction
+    direct: Expr  # in x and t
+    about: str
+
+    def formula(self, x: Expr) -> Expr:
+        """Return the quotient at x."""
+        return self.numerator.xreplace({_x: x}) / x**self.power
+
+    def coefficients(self, precision: str = "binary64") -> tuple[Fraction, ...]:
+        """Return the Taylor coefficients in x^2 that are summed for a precision.
+
+        As many as make the first one left out, times the power of ``split``, less than a quarter of a unit in the
+        last place of the least value there: the series alternates, so that this bounds the rest.
+        """
+        return _summed(self, precision)
+
+
+@cache
+def _summed(which: Removable, precision: str) -> tuple[Fraction, ...]:
+    found: list[Fraction] = []
+    derivative, order = which.numerator, 0
+    while True:
+        for _ in range(which.power if not found else 2):
+            derivative, order = derivative.diff(_x), order + 1
+        value = derivative.xreplace({_x: Integer(0)}) / factorial(order)
+        found.append(Fraction(int(value.p), int(value.q)))
+        terms = [abs(a) * which.split**k for k, a in enumerate(found)]
+        if any(a * b >= 0 for a, b in pairwise(found)) or sorted(terms, reverse=True) != terms:
+            raise AssertionError(f"{which.name}: expected a series that alternates and falls below {which.split}")
+        if len(terms) > 2 and terms[-1] < (terms[0] - terms[1]) * Fraction(1, 2 ** (DIGITS[precision] + 2)):
+            return tuple(found[:-1])
+
+
+REMOVABLE: dict[str, Removable] = {
+    each.name: each
+    for each in (
+        Removable("sine_gap", _x - sin(_x), 3, Fraction(4), (1 - sin(_x) / _x) / _t, "(x - sin(x))/x^3"),
+        Removable("tangent_gap", sin(_x) - _x * cos(_x), 3, Fraction(9, 4), (sin(_x) / _x - cos(_x)) / _t,
+                  "(sin(x) - x cos(x))/x^3; 4 ulp for |x| <= pi, before its first zero"),
+    )
+}  # fmt: skip
+
+_EXPLICIT: dict[str, Callable[..., Any]] = {
+    "sinc": lambda x: sin(x) / x,
+    "arc_ratio": lambda s, c: atan2(s, c) / s,
+    **{name: each.formula for name, each in REMOVABLE.items()},
+}
+
+
+def explicit(expr: Expr) -> Expr:
+    """Return an expression with the removable functions as quotients, which hold everywhere but at zero."""
+    for name, formula in _EXPLICIT.items():
+        expr = expr.replace(
+            lambda e, name=name: getattr(e.func, "__name__", "") == name, lambda e, formula=formula: formula(*e.args)
+        )
+    return expr

@@ -1,0 +1,113 @@
+"""Kernels of the torques of the table, in body components."""
+
+from collections.abc import Callable, Iterator
+from functools import partial
+
+from sympy import Matrix, eye, sqrt
+
+from symrot import symbols
+from symrot.dynamics.torque_kinds import TORQUE_KINDS, Field
+from symrot.dynamics.torques import LAWS, Motion, TorqueLaw, field_value, torque_of_potential
+from symrot.kernel import Argument
+from symrot.kernels.definition import Box, Definition, Law, boxed, interval, result, scalar
+from symrot.kernels.dynamics import OMEGA, OMEGA_BOX, TENSOR, TENSOR_BOX, tensor_argument
+from symrot.kernels.quaternion import QUATERNION, QUATERNION_BOX
+from symrot.kinematics.quaternion import dcm_of, unit_relation
+
+__all__ = ["definitions"]
+
+# kernel: kind of the table, the fields it takes as inputs; the others are zero
+_KERNELS: dict[str, tuple[str, tuple[str, ...]]] = {
+    "torque_constant_body": ("constant_body", ("torque",)),
+    "torque_constant_space": ("constant_space", ("torque",)),
+    "torque_gravity": ("gravity", ("weight", "center_of_mass", "direction")),
+    "torque_gravity_gradient": ("gravity_gradient", ("mean_motion",)),
+    "torque_damping_linear": ("damping", ("linear",)),
+    "torque_damping_quadratic": ("damping", ("quadratic",)),
+    "torque_spring": ("spring", ("stiffness", "attitude")),
+    "torque_rotor": ("rotor", ("angular_momentum",)),
+}
+_SIZE = {"scalar": 1, "vector": 3, "scalar or vector": 3, "attitude": 4}
+_MOTION = Motion(Matrix(symbols.omega_b), symbols.quaternion, TENSOR)
+_RANGE: dict[str, str | int] = {"mean_motion": "1/100", "weight": 100}  # largest value of a field in the box, else 1
+
+
+def definitions() -> Iterator[tuple[str, Callable[[], Definition]]]:
+    """Yield name and definition, made on demand, of every kernel of torques."""
+    for name in _KERNELS:
+        yield name, partial(_torque, name)
+
+
+def _field_argument(field: Field) -> Argument:
+    size = _SIZE[field.shape]
+    first = 0 if size == 4 else 1
+    names = [field.name] if size == 1 else [f"{field.name}_{i}" for i in range(first, first + size)]
+    components = tuple((name, field.unit, field.meaning) for name in names)
+    return Argument(field.name, "in", components, is_scalar=size == 1)
+
+
+def _field_box(given: Argument) -> Box:
+    largest = interval(0, _RANGE.get(given.name, 1))
+    return {name: largest if given.is_scalar else (-largest[1], largest[1]) for name, *_ in given.components}
+
+
+def _law_of(kind: str, fields: tuple[str, ...]) -> TorqueLaw:
+    arguments = {}
+    for field in TORQUE_KINDS[kind].fields:
+        if field.name in fields:
+            size = _SIZE[field.shape]
+            arguments[field.name] = field_value(field.name, "*" if size == 1 else ["*"] * size)
+        elif kind == "damping":
+            arguments[field.name] = field_value(field.name, "0" if field.name == "quadratic" else ["0"] * 3)
+    return LAWS[kind](_MOTION, **arguments)
+
+
+def _torque(name: str) -> Definition:
+    kind, fields = _KERNELS[name]
+    law = _law_of(kind, fields)
+    torque = law.torque - _MOTION.omega_b.cross(law.momentum)  # a rotor acts on the body through its momentum
+    given = tuple(_field_argument(field) for field in TORQUE_KINDS[kind].fields if field.name in fields)
+    used = torque.free_symbols | {s for _, value in law.definitions for s in value.free_symbols}
+    states = (
+        ((symbols.t,), scalar(symbols.t, "time"), boxed((symbols.t,), 0, 1000)),
+        (tuple(TENSOR.free_symbols), tensor_argument(), TENSOR_BOX),
+        (symbols.omega_b, OMEGA, OMEGA_BOX),
+        (symbols.quaternion, QUATERNION, QUATERNION_BOX),
+    )
+    taken = [(state, box) for needed, state, box in states if used & set(needed)]
+    box = {key: value for each in (*(box for _, box in taken), *map(_field_box, given)) for key, value in each.items()}
+    about = f"torque of the kind {kind!r} ({', '.join(fields)}), body components: {TORQUE_KINDS[kind].meaning}"
+    return Definition(
+        name, about, (*(state for state, _ in taken), *given),
+        (result("torque_b", torque, symbols.torque_b, "torque, body components"),),
+        "unit quaternions" if any(state is QUATERNION for state, _ in taken) else "all finite values",
+        "derivations/euler_equations.md", box, partial(_laws, kind, fields, law), law.definitions,
+    )  # fmt: skip
+
+
+def _laws(kind: str, fields: tuple[str, ...], law: TorqueLaw) -> tuple[Law, ...]:
+    found, omega = Matrix(symbols.torque_b), _MOTION.omega_b
+    unit = (unit_relation(),)
+    if kind == "rotor":
+        return (Law("it is minus omega x h", tuple(found + omega.cross(law.momentum))),
+                Law("it does no work", (found.dot(omega),)))  # fmt: skip
+    if law.potential is not None:
+        return (Law("its work is what the potential loses, for every angular velocity",
+                    tuple(found - torque_of_potential(law)), unit),)  # fmt: skip
+    if kind == "damping":
+        return _damping_laws(found, fields)
+    matrix = dcm_of() if kind == "constant_space" else eye(3)
+    given = field_value("torque", ["*"] * 3)
+    return (Law("carried to the axes of the given torque it is that torque", tuple(matrix * found - given), unit),)
+
+
+def _damping_laws(found: Matrix, fields: tuple[str, ...]) -> tuple[Law, ...]:
+    omega = _MOTION.omega_b
+    if fields == ("linear",):
+        drag = field_value("linear", ["*"] * 3).multiply_elementwise(omega)
+        return (Law("each component is minus its coefficient times omega", tuple(found + drag)),)
+    power = field_value("quadratic", "*") * sqrt(omega.dot(omega)) ** 3
+    return (
+        Law("it is along omega", tuple(found.cross(omega))),
+        Law("its power is minus the coefficient times the cube of |omega|", (found.dot(omega) + power,)),
+    )
