@@ -132,9 +132,9 @@ def test_hypotheses_that_grant_a_condition_take_it_away():
 
 
 def test_what_is_not_known_is_undecided_with_the_term():
-    verdict = symrot.check("atan2(y, x) == 2*atan2(y, x + sqrt(x**2 + y**2))")
+    verdict = symrot.check("3*sin(atan(x)/3) - 4*sin(atan(x)/3)**3 == x/sqrt(1 + x**2)")  # true
     assert verdict.verdict == "undecided"
-    assert "atan2" in verdict.reason
+    assert "atan(x)" in verdict.reason
 
 
 def test_expressions_of_sympy_are_claims_too():
@@ -161,7 +161,7 @@ REFUSED = (
     ("x/(sin(y)**2 + cos(y)**2 - 1) == 1", "zero everywhere"),
     ("inverse(Matrix([[1, 2], [2, 4]])) == eye(2)", "determinant"),
     ("sinn(x) == 0", "did you mean sin"),
-    ("exp(x) == 0", "'exp'"),
+    ("acot(x) == 0", "'acot'"),
     ("f(x) == 0", "'f'"),
     ("x + eye(2) == 0", "a scalar"),
     ("eye(2)*eye(3) == 0", "3 x 3"),

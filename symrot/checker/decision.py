@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from sympy import Derivative, Expr, Mul, Pow, zeros
+from sympy.polys.rings import PolyElement
 from sympy.printing.str import StrPrinter
 
 from symrot.checker.conditions import Requirement, branch_requirements, requirements, surely_nonnegative
@@ -12,9 +13,12 @@ from symrot.checker.grounds import Grounds
 from symrot.checker.real_points import ATTEMPTS
 from symrot.checker.verdict import Counterexample
 from symrot.errors import InputError
+from symrot.exact import domain
+from symrot.exact.branches import lifts, proof
 from symrot.exact.counterexample import Counterexample as Witness
 from symrot.exact.counterexample import closed_form_witness, rational_witness
 from symrot.exact.decide import flatten
+from symrot.exact.intervals import surely_nonnegative_number
 from symrot.exact.ratio import TooLarge
 from symrot.exact.ring import FormulaRing, as_zero
 
@@ -77,9 +81,9 @@ def decide_problem(problem: Problem) -> Decision:
     """
     lefts, rights, shape = _sides(problem)
     relations = [as_zero(relation) for relation in problem.hypotheses]
-    for formula in [*lefts, *rights, *relations, *problem.divisors]:
+    for formula in [*lefts, *rights, *relations, *problem.divisors, *problem.radicands]:
         _affordable(formula)
-    ring = FormulaRing([*lefts, *rights, *problem.divisors, *problem.nonzero], relations)
+    ring = FormulaRing([*lefts, *rights, *problem.divisors, *problem.nonzero], relations, problem.radicands)
     try:
         return _decided(ring, problem, lefts, rights, shape)
     except TooLarge as reason:
@@ -94,28 +98,31 @@ def _decided(
 ) -> Decision:
     granted = _granted(ring, problem.nonzero)
     residuals = [ring.difference(a, b) for a, b in zip(lefts, rights, strict=True)]
-    wrong = [place for place, residual in enumerate(residuals) if ring.reduce(residual.numerator)]
+    proofs = [proof(ring, residual.numerator) for residual in residuals]
+    wrong = [place for place, found in enumerate(proofs) if found is None]
     for divisor in problem.divisors:
         ring.ratios.invert(ring.ratio(divisor), divisor)
-    conditions = _conditions(ring, granted, problem.radicands)
+    further = [lift for found in proofs if found for lift in found]
+    conditions = _conditions([ring, *further], granted, problem.radicands)
     grounds = Grounds(ring, shown)
     if not wrong:
         return Decision("true", conditions, notes=grounds.notes())
     numerators = [ring.reduce(residuals[place].numerator) for place in wrong]
-    witness = _witness([rational_witness, grounds.near_witness], ring, lefts, rights, wrong[:4], shape)
-    if not witness:
+    closed_form = grounds.checked(closed_form_witness)
+    nearest = _within(ring, grounds.near_witness) if ring.hypotheses else closed_form
+    witness = _witness([rational_witness, nearest], ring, lefts, rights, wrong[:4], shape)
+    branches, lift = _branches(ring, numerators)
+    conditions = _conditions([ring, *further, *lift], granted, problem.radicands)
+    if branches is not None and _taken_for_granted(branches, ring, problem.radicands):
+        return Decision("true", conditions, notes=grounds.notes())
+    if not witness and (ring.hypotheses or branches is None):
         if grounds.imply(numerators):
             return Decision("true", conditions, notes=grounds.notes())
         grounds.refuse_if_empty()
-        rest = [grounds.witness, grounds.checked(closed_form_witness)]
+        rest = [_within(ring, grounds.witness), closed_form]
         witness = _witness(rest, ring, lefts, rights, wrong[:4], shape)
     needed = requirements(ring, numerators, [(lefts[n], rights[n]) for n in wrong], len(lefts))
-    needed = [requirement for requirement in needed if grounds.allow(requirement.zeros)]
-    if not needed and ring.roots:
-        branches = branch_requirements(ring, numerators)
-        if branches == []:
-            return Decision("true", conditions, notes=grounds.notes())
-        needed = branches or []
+    needed = [requirement for requirement in needed if grounds.allow(requirement.zeros)] or branches or []
     counterexample = _as_text(witness) if witness else None
     if needed:
         texts = tuple(requirement.text for requirement in needed)
@@ -176,26 +183,55 @@ def _granted(ring: FormulaRing, nonzero: Sequence[Expr]) -> set[int]:
     return set(range(len(ring.ratios.factors)))
 
 
-def _conditions(ring: FormulaRing, granted: set[int], radicands: Sequence[Expr]) -> tuple[str, ...]:
-    """Return where both sides are defined, less what assumptions grant."""
-    found: dict[str, None] = {}
-    for number, (source, factor) in enumerate(zip(ring.ratios.sources, ring.ratios.factors, strict=True)):
-        if number in granted or source.is_nonzero or source.is_positive or source.is_number:
-            continue
-        formula = factor.as_expr(*ring.generators)
-        small = source if len(str(source)) <= len(str(formula)) else formula
-        if not (formula.is_nonzero or formula.is_number):
-            found[f"{shown(small)} != 0"] = None
-    rooted = [radical.base for radical in ring.radicals.values() if radical.power % 2 and not _is_square(radical.base)]
-    for base in dict.fromkeys([*radicands, *rooted]):
-        if not base.is_number and not surely_nonnegative(base):
-            found[f"{shown(base)} >= 0"] = None
+def _conditions(rings: Sequence[FormulaRing], granted: set[int], radicands: Sequence[Expr]) -> tuple[str, ...]:
+    """Return where both sides are defined, and a proof in further rings holds, less what assumptions grant."""
+    ring, *further = rings
+    forms = [*domain.divisors(ring, granted), *(pair for other in further for pair in domain.divisors(other))]
+    free = set(domain.divisors(ring)) - set(domain.divisors(ring, granted))
+    found = {f"{shown(min(pair, key=_length))} != 0" for pair in forms if pair not in free}
+    found |= {f"{shown(base)} >= 0" for base in (*radicands, *domain.radicands(ring)) if not surely_nonnegative(base)}
+    for condition in sorted(found):
+        formula, positive = condition.removesuffix(" >= 0"), condition.endswith(" >= 0")
+        if positive and f"{formula} != 0" in found:
+            found = found - {condition, f"{formula} != 0"} | {f"{formula} > 0"}
     return tuple(sorted(found))
 
 
-def _is_square(base: Expr) -> bool:
-    """Return whether a radicand comes from an absolute value, which the ring keeps as the root of a square."""
-    return bool(isinstance(base, Pow) and base.exp.is_Integer and base.exp % 2 == 0)
+def _taken_for_granted(branches: Sequence[Requirement], ring: FormulaRing, radicands: Sequence[Expr]) -> bool:
+    """Return whether sign conditions hold wherever both sides are defined."""
+    known = {f"{shown(formula)} >= 0" for formula in (*radicands, *domain.signs(ring))}
+    return all(sign in known for requirement in branches for sign in requirement.text.split(" and "))
+
+
+def _length(formula: Expr) -> int:
+    return len(str(formula))
+
+
+def _branches(
+    ring: FormulaRing, numerators: Sequence[PolyElement]
+) -> tuple[list[Requirement] | None, tuple[FormulaRing, ...]]:
+    """Return sign conditions under which residuals vanish, and the further ring that shows it.
+
+    An empty list where no condition is needed; None where none is known.
+    """
+    found = branch_requirements(ring, numerators) if ring.roots else None
+    if found is None and len(numerators) == 1:
+        for lift in lifts(ring, numerators[0]):
+            found = branch_requirements(lift.ring, [poly for poly in lift.numerators if poly])
+            if found is not None:
+                return found, (lift.ring,)
+    return found, ()
+
+
+def _within(ring: FormulaRing, search: Search) -> Search:
+    """Return a search for witnesses less those outside the domain that the text shows and the formulas no longer do."""
+
+    def searched(ring: FormulaRing, left: Expr, right: Expr, entry: tuple[int, int] | None) -> Witness | None:
+        found = search(ring, left, right, entry)
+        values = dict(found.values) if found else {}
+        return found if all(surely_nonnegative_number(formula.xreplace(values)) for formula in ring.domain) else None
+
+    return searched if ring.domain else search
 
 
 def _witness(

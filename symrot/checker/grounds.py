@@ -20,7 +20,7 @@ from symrot.checker.real_points import ATTEMPTS, RealPoint, real_points, value_a
 from symrot.errors import InputError
 from symrot.exact.angles import base_angle
 from symrot.exact.counterexample import Counterexample as Witness
-from symrot.exact.counterexample import enclosure
+from symrot.exact.intervals import enclosure
 from symrot.exact.ring import FormulaRing
 
 __all__ = ["Grounds"]

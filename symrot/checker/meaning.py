@@ -30,7 +30,7 @@ LARGEST_MATRIX = 12
 time = Symbol("t", real=True)
 
 CONSTANTS: dict[str, Expr] = {"pi": sympy.pi}
-UNKNOWN_HERE = ("exp", "log", "sinh", "cosh", "tanh", "asin", "acos", "atan", "E", "I", "Rational")
+UNKNOWN_HERE = ("ln", "arcsin", "arccos", "arctan", "acot", "E", "I", "Rational")
 """Names that become no symbol or function of the user's own by mere use: a reader takes them for something else."""
 
 
@@ -317,6 +317,28 @@ def _atan2(meaning: Meaning, node: Node) -> Expr:
     return sympy.atan2(y, x)
 
 
+def _arc(function: Callable[[Expr], Expr]) -> Any:
+    """Return asin or acos, of what lies between -1 and 1."""
+
+    def call(meaning: Meaning, node: Node) -> Expr:
+        value = meaning.scalar(node.args[0], f"as the argument of {node.value}")
+        if (1 - value**2).is_negative:
+            raise meaning.fail(node.args[0], f"a number from -1 to 1 in {node.value}")
+        meaning.take_root(1 - value**2, node.args[0])
+        return function(value)
+
+    return call
+
+
+def _log(meaning: Meaning, node: Node) -> Expr:
+    value = meaning.scalar(node.args[0], "as the argument of log")
+    if value.is_nonpositive:
+        raise meaning.fail(node.args[0], "a positive number in log")
+    meaning.divide_by(value, node.args[0])
+    meaning.take_root(value, node.args[0])
+    return sympy.log(value)
+
+
 def _rotation(axis: str) -> Any:
     return lambda meaning, node: elementary_rotation(axis, meaning.scalar(node.args[0], "as an angle"))
 
@@ -478,7 +500,15 @@ BUILT_IN: Mapping[str, tuple[int, int, Callable[[Meaning, Node], Any]]] = {
     "cot": (1, 1, _of_scalar(sympy.cot, sympy.sin)),
     "sec": (1, 1, _of_scalar(sympy.sec, sympy.cos)),
     "csc": (1, 1, _of_scalar(sympy.csc, sympy.sin)),
+    "asin": (1, 1, _arc(sympy.asin)),
+    "acos": (1, 1, _arc(sympy.acos)),
+    "atan": (1, 1, _of_scalar(sympy.atan)),
     "atan2": (2, 2, _atan2),
+    "exp": (1, 1, _of_scalar(sympy.exp)),
+    "log": (1, 1, _log),
+    "sinh": (1, 1, _of_scalar(sympy.sinh)),
+    "cosh": (1, 1, _of_scalar(sympy.cosh)),
+    "tanh": (1, 1, _of_scalar(sympy.tanh)),
     "abs": (1, 1, _of_scalar(sympy.Abs)),
     "diff": (2, 9, _diff),
     "integrate": (2, 9, _integrate),

@@ -9,7 +9,7 @@ from symrot.checker.claims import Claim
 from symrot.checker.decision import Decision, shown
 from symrot.checker.verdict import Counterexample
 from symrot.errors import InputError
-from symrot.exact.counterexample import enclosure
+from symrot.exact.intervals import enclosure
 
 __all__ = ["decide_value"]
 

@@ -30,8 +30,10 @@ class LinearForm:
     half_turns: Fraction
 
 
-def linear_form(argument: Expr) -> LinearForm:
+def linear_form(argument: Expr, turns: bool = True) -> LinearForm:
     """Return the Q-linear form of an angle (rad); products are expanded, anything not a number is an atom.
+
+    Without ``turns``, of an exponent say, ``pi`` is an atom like any other.
 
     Raises
     ------
@@ -45,7 +47,7 @@ def linear_form(argument: Expr) -> LinearForm:
         if not number.is_Rational:
             raise InputError(f"an exact angle needs rational coefficients, got {number} in {argument}")
         coefficient = Fraction(int(number.p), int(number.q))
-        if atom == pi and PARTS % coefficient.denominator == 0:
+        if turns and atom == pi and PARTS % coefficient.denominator == 0:
             half_turns += coefficient
         elif coefficient:
             coefficients[atom] = coefficients.get(atom, Fraction(0)) + coefficient

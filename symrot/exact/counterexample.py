@@ -12,12 +12,12 @@ from itertools import product
 from random import Random
 from typing import Any
 
-from mpmath import iv
-from sympy import Abs, Expr, Rational, Symbol, cos, cot, csc, exp, log, pi, preorder_traversal, sec, sin, tan
+from sympy import Expr, Rational, Symbol, acos, asin, atan, atan2, cos, pi, preorder_traversal, sin
 from sympy.core.function import AppliedUndef
 from sympy.polys.rings import PolyElement
 
 from symrot.exact.angles import base_angle
+from symrot.exact.intervals import enclosure, surely_nonnegative_number
 from symrot.exact.ratio import Ratio
 from symrot.exact.ring import FormulaRing
 
@@ -29,7 +29,12 @@ ATTEMPTS = 60
 SIMPLER_TERMS = 200_000
 """Terms of the residual that may be evaluated to make a point simpler."""
 
-DIGITS = 50
+_INVERSE = (asin, acos, atan, atan2)
+_TRIANGLES = [Rational(n, d) for n, d in ((3, 5), (-4, 5), (3, 4), (-4, 3), (1, 1), (-1, 1), (2, 1), (-2, 1), (1, 2))]
+"""Values at which sines and cosines of inverse functions are rational, for the most part."""
+
+_TURNS = [Rational(n, d) * pi for n, d in ((1, 1), (-1, 1), (2, 1), (1, 2), (-1, 2), (3, 1), (1, 3), (3, 2), (-2, 3))]
+"""Values of angles at which sines and cosines are simple."""
 
 
 @dataclass(frozen=True)
@@ -68,10 +73,11 @@ def rational_witness(
 
     The two must be readable in the ring.
     """
-    if ring.outside_scope or ring.roots or not _angles_are_free(ring):
+    if ring.outside_scope or ring.roots or ring.fine or ring.exponentials or not _angles_are_free(ring):
         return None
     coordinates, solved = _coordinates(ring)
     sides = ring.ratio(left), ring.ratio(right)
+    domain = [ring.ratio(formula) for formula in ring.domain]
     residual = ring.difference(left, right).numerator
 
     def point(choices: Sequence[tuple[Fraction, ...]]) -> dict[int, Fraction] | None:
@@ -86,6 +92,7 @@ def rational_witness(
             all(_assumed(leaf, values[number]) for leaf, number in ring.symbols.items())
             and not any(_value(hypothesis, values) for hypothesis in ring.hypothesis_numerators)
             and all(_value(factor, values) for factor in ring.ratios.factors)
+            and all(_ratio_value(ring, formula, values) >= 0 for formula in domain)
         )
         return values if admissible and _value(residual, values) else None
 
@@ -129,8 +136,12 @@ def closed_form_witness(
     variables = sorted({*_variables(left), *_variables(right)}, key=str)
     source = Random(2)
     simple = [Rational(1), Rational(2), Rational(-1), Rational(1, 2), Rational(3), Rational(-1, 3)]
+    if left.has(*_INVERSE) or right.has(*_INVERSE):
+        simple = _TRIANGLES
+    angles = _pure_angles(ring)
     for attempt in range(ATTEMPTS):
-        pool = simple if attempt < ATTEMPTS // 2 else [Rational(n, 7) for n in range(-40, 41) if n]
+        early = attempt < ATTEMPTS // 2
+        pool = simple if early else [Rational(n, 7) for n in range(-40, 41) if n]
         numbers = {number: value for c in tied for number, value in zip(c.generators, c.random(source), strict=True)}
         if not all(_solve(hypothesis, generator, numbers) for generator, hypothesis in solved):
             continue
@@ -141,14 +152,39 @@ def closed_form_witness(
             continue
         for leaf in variables:
             if leaf not in values:
-                values[leaf] = source.choice([v for v in pool if _assumed(leaf, v)] or [Rational(1)])
-        if not all(_nonnegative(found.base.xreplace(values)) for found in ring.radicals.values() if found.base != -1):
+                choices = _TURNS if early and leaf in angles else pool
+                values[leaf] = source.choice([v for v in choices if _assumed(leaf, v)] or [Rational(1)])
+        within = [*(found.base for found in ring.radicals.values() if found.base != -1), *ring.domain]
+        if not all(surely_nonnegative_number(formula.xreplace(values)) for formula in within):
+            continue
+        if not all(_nonzero(source.xreplace(values)) for source in ring.ratios.sources):
             continue
         sides = left.xreplace(values), right.xreplace(values)
         enclosures = [enclosure(side) for side in sides]
         if None not in enclosures and 0 not in enclosures[0] - enclosures[1]:
-            return Counterexample(tuple(sorted(values.items(), key=str)), entry, *sides)
+            return Counterexample(tuple(sorted(values.items(), key=str)), entry, *map(_shortest, sides))
     return None
+
+
+def _pure_angles(ring: FormulaRing) -> set[Expr]:
+    """Return the symbols and functions of time that stand in angles only, each alone but for a number."""
+    inside = [atom for atom in ring.bases if atom.is_Symbol or isinstance(atom, AppliedUndef)]
+    others = [*ring.symbols, *ring.exponent_bases, *(atom for atom in ring.bases if atom not in inside)]
+    return {atom for atom in inside if not any(other.has(atom) for other in others)}
+
+
+def _nonzero(number: Expr) -> bool:
+    held = enclosure(number)
+    return held is not None and 0 not in held
+
+
+def _shortest(number: Expr) -> Expr:
+    """Return a number as a rational where it is one."""
+    if number.is_Rational or not number.is_number:
+        return number
+    own = FormulaRing([number])
+    found = own.expression(own.ratio(number))
+    return found if found.is_Rational else number
 
 
 def _occurring(poly: PolyElement) -> set[int]:
@@ -342,60 +378,3 @@ def _variables(expression: Expr) -> list[Expr]:
         else:
             stack.extend(node.args)
     return sorted(found, key=str)
-
-
-INTERVAL = {
-    sin: iv.sin,
-    cos: iv.cos,
-    tan: lambda x: iv.sin(x) / iv.cos(x),
-    cot: lambda x: iv.cos(x) / iv.sin(x),
-    sec: lambda x: 1 / iv.cos(x),
-    csc: lambda x: 1 / iv.sin(x),
-    exp: iv.exp,
-    log: iv.log,
-    Abs: abs,
-}
-
-
-def _nonnegative(number: Expr) -> bool:
-    held = enclosure(number)
-    return held is not None and bool(held.a >= 0)
-
-
-def enclosure(number: Expr) -> Any:
-    """Return a 50-digit interval that holds a closed-form real number, or None where it cannot tell."""
-    iv.dps = DIGITS
-    try:
-        return _enclose(number)
-    except (KeyError, ZeroDivisionError, ValueError, TypeError):  # an unknown function, a pole, a complex number
-        return None
-
-
-def _enclose(node: Expr) -> Any:
-    if node.is_Rational:
-        return iv.mpf(int(node.p)) / int(node.q)
-    if node is pi:
-        return +iv.pi
-    if node.is_Add:
-        return sum((_enclose(term) for term in node.args), iv.mpf(0))
-    if node.is_Mul:
-        total = iv.mpf(1)
-        for factor in node.args:
-            total = total * _enclose(factor)
-        return total
-    if node.is_Pow:
-        return _enclose_power(_enclose(node.base), node.exp)
-    value = INTERVAL[type(node)](*(_enclose(argument) for argument in node.args))
-    if not (value.a > -iv.inf and value.b < iv.inf):
-        raise ValueError(f"{node} has a pole in its interval")
-    return value
-
-
-def _enclose_power(base: Any, exponent: Expr) -> Any:
-    if exponent.is_Integer:
-        if exponent < 0 and 0 in base:
-            raise ZeroDivisionError
-        return base ** int(exponent)
-    if not base.a > 0:
-        raise ValueError("a fractional power is taken of positive numbers here")
-    return iv.exp(_enclose(exponent) * iv.log(base))

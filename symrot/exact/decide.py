@@ -1,21 +1,25 @@
 """Decide whether two formulas are equal: the normal form of their difference, and a verdict with its evidence.
 
 Scope, with its theorem (research: VERIFICATION.md, section 1). For rational functions of sines and cosines of
-Q-linear combinations of angles (rational multiples of pi/24 included), of parameters, of rates, and of unit-norm
-groups, the normal form is zero if and only if the identity holds at all real points where both sides are defined:
-circles and spheres are rational, irreducible over the complex numbers, and their real points are dense. The same
-holds when an angle also occurs outside sines (Ax-Schanuel). With square roots, other functions or other hypotheses a
-zero normal form still proves the identity; a nonzero one proves nothing, and "false" is said only with a witness.
+Q-linear combinations of angles (rational multiples of pi included), of exponentials, of parameters, of rates, and of
+unit-norm groups, the normal form is zero if and only if the identity holds at all real points where both sides are
+defined: circles and spheres are rational, irreducible over the complex numbers, and their real points are dense. The
+same holds when an angle or an exponent also occurs outside (Ax-Schanuel). Numbers made of roots and cosines of rational
+angles are zero or not by proof (:mod:`symrot.exact.constants`). With square roots, inverse functions or other
+hypotheses a zero normal form still proves the identity; a nonzero one proves nothing, and "false" is said only with a
+witness.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from sympy import Expr, Ge, Matrix, MatrixBase, MatrixExpr, Ne, sympify, zeros
+from sympy import Expr, Ge, Integer, Matrix, MatrixBase, MatrixExpr, Ne, sympify, zeros
 
 from symrot.errors import InputError
+from symrot.exact.branches import proof, vanishes
 from symrot.exact.counterexample import Counterexample, closed_form_witness, rational_witness
+from symrot.exact.domain import divisors, radicands
 from symrot.exact.ring import FormulaRing, as_zero
 
 __all__ = ["Verdict", "decide", "is_zero", "normal_form"]
@@ -69,14 +73,15 @@ def normal_form(expression: Any, relations: Sequence[Any] = ()) -> Any:
     """
     entries, shape = flatten(expression)
     ring = FormulaRing(entries, [as_zero(relation) for relation in relations])
-    return _shaped([ring.expression(ring.ratio(entry)) for entry in entries], shape)
+    values = [ring.ratio(entry) for entry in entries]
+    return _shaped([Integer(0) if vanishes(ring, v.numerator) else ring.expression(v) for v in values], shape)
 
 
 def is_zero(expression: Any, relations: Sequence[Any] = ()) -> bool:
     """Return whether a formula or matrix is proven to vanish identically (see :func:`normal_form`)."""
     entries, _ = flatten(expression)
     ring = FormulaRing(entries, [as_zero(relation) for relation in relations])
-    return not any(ring.reduce(ring.ratio(entry).numerator) for entry in entries)
+    return all(vanishes(ring, ring.ratio(entry).numerator) for entry in entries)
 
 
 def decide(left: Any, right: Any, relations: Sequence[Any] = ()) -> Verdict:
@@ -100,8 +105,11 @@ def decide(left: Any, right: Any, relations: Sequence[Any] = ()) -> Verdict:
     if shape != other:
         raise InputError(f"two sides of an equation have one shape, got {_shape_text(shape)} = {_shape_text(other)}")
     ring = FormulaRing([*lefts, *rights], [as_zero(relation) for relation in relations])
-    residuals = [ring.expression(ring.difference(a, b)) for a, b in zip(lefts, rights, strict=True)]
-    conditions = _conditions(ring)
+    differences = [ring.difference(a, b) for a, b in zip(lefts, rights, strict=True)]
+    proofs = [proof(ring, value.numerator) for value in differences]
+    pairs = zip(differences, proofs, strict=True)
+    residuals = [ring.expression(value) if found is None else Integer(0) for value, found in pairs]
+    conditions = _conditions([ring, *(lift for found in proofs if found for lift in found)])
     residual = _shaped(residuals, shape)
     wrong = [place for place, value in enumerate(residuals) if value != 0]
     if not wrong:
@@ -134,13 +142,10 @@ def flatten(expression: Any) -> tuple[list[Expr], tuple[int, int] | None]:
     return [expression], None
 
 
-def _conditions(ring: FormulaRing) -> tuple[Any, ...]:
-    """Return what both sides need to be defined, less what the assumptions on the symbols grant."""
-    nonzero = [source for source in ring.ratios.sources if not source.is_nonzero and not source.is_number]
-    radicands = [found.base for found in ring.radicals.values() if found.power % 2 and not found.base.is_number]
-    unique = dict.fromkeys(
-        [*(Ne(source, 0) for source in nonzero), *(Ge(base, 0) for base in radicands if not base.is_nonnegative)]
-    )
+def _conditions(rings: Sequence[FormulaRing]) -> tuple[Any, ...]:
+    """Return what both sides need to be defined, and proofs to hold, less what the assumptions on the symbols grant."""
+    nonzero = [Ne(source, 0) for ring in rings for source, _ in divisors(ring)]
+    unique = dict.fromkeys([*nonzero, *(Ge(base, 0) for base in radicands(rings[0]))])
     return tuple(sorted(unique, key=str))
 
 

@@ -19,11 +19,15 @@ __all__ = ["Relations", "Rule", "relate"]
 
 @dataclass(frozen=True)
 class Rule:
-    """``generator^power = replacement``, the replacement free of that generator and of all higher ones."""
+    """``generator^power = replacement``, the replacement free of all higher generators.
+
+    It is free of the generator too, except in the ``minimal`` polynomial of a number, which holds that one only.
+    """
 
     generator: int
     power: int
     replacement: PolyElement
+    minimal: bool = False
 
     @property
     def polynomial(self) -> PolyElement:
@@ -41,7 +45,7 @@ class Relations:
     def reduce(self, poly: PolyElement) -> PolyElement:
         """Return the normal form of a polynomial: zero exactly when it follows from the relations."""
         for rule in self.rules:
-            poly = _replace(poly, rule)
+            poly = (_divide if rule.minimal else _replace)(poly, rule)
         return poly.rem(list(self.basis)) if self.basis and poly else poly
 
     @property
@@ -104,3 +108,23 @@ def _replace(poly: PolyElement, rule: Rule) -> PolyElement:
     for times in sorted(high):
         total = total + poly.new(high[times]) * rule.replacement**times
     return total
+
+
+def _divide(poly: PolyElement, rule: Rule) -> PolyElement:
+    """Return the remainder by a polynomial in one generator."""
+    place, power = rule.generator, rule.power
+    groups: dict[tuple[int, ...], dict[int, Any]] = {}
+    for mono, coefficient in poly.items():
+        groups.setdefault((*mono[:place], 0, *mono[place + 1 :]), {})[mono[place]] = coefficient
+    if all(max(column) < power for column in groups.values()):
+        return poly
+    replacement = [(mono[place], coefficient) for mono, coefficient in rule.replacement.items()]
+    zero = poly.ring.domain.zero
+    total: dict[tuple[int, ...], Any] = {}
+    for mono, column in groups.items():
+        for high in range(max(column), power - 1, -1):
+            lead = column.pop(high, zero)
+            for low, coefficient in replacement if lead else ():
+                column[high - power + low] = column.get(high - power + low, zero) + lead * coefficient
+        total |= {(*mono[:place], n, *mono[place + 1 :]): c for n, c in column.items() if c}
+    return poly.new(total)

@@ -1,19 +1,22 @@
 """Expressions as fractions of polynomials, in one ring made for the problem at hand.
 
-Generators, highest first: roots (outer before inner), sines, then symbols and functions of time, then cosines. The
-order is lexicographic, so each relation
+Generators, highest first: roots (outer before inner), sines, then symbols and functions of time, exponentials of base
+exponents, then cosines. Inverse trigonometric functions are angles whose sine and cosine are known. The order is
+lexicographic, so each relation
 
     root:    g^n = P           circle:    s^2 = 1 - c^2           hypothesis:    q0^2 = 1 - q1^2 - q2^2 - q3^2
+    number:  M(2 cos(pi/N)) = 0, its minimal polynomial
 
 leads with a power of its own generator, and replacing leading powers gives the unique normal form
 (:mod:`symrot.exact.relations`; research: VERIFICATION.md, section 1, steps (b) to (f)).
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from fractions import Fraction
 from typing import Any
 
 import sympy
-from sympy import Derivative, Expr, Integer, Rational, S, cos, preorder_traversal, sin
+from sympy import Derivative, Expr, I, Integer, Rational, S, cos, pi, preorder_traversal, sin
 from sympy.core.function import AppliedUndef
 from sympy.matrices.expressions.matexpr import MatrixElement
 from sympy.polys.domains import QQ, ZZ
@@ -21,6 +24,7 @@ from sympy.polys.orderings import lex
 from sympy.polys.rings import PolyElement, PolyRing
 
 from symrot.errors import InputError
+from symrot.exact import cyclotomic
 from symrot.exact.angles import (
     LinearForm,
     base_angle,
@@ -29,11 +33,25 @@ from symrot.exact.angles import (
     constant_cosine_sine,
     linear_form,
 )
+from symrot.exact.constants import Number, cosine_number, root_number, vanishes
+from symrot.exact.inverse import INVERSE, cosine_sine
+from symrot.exact.radicands import dependences, take_squares
 from symrot.exact.ratio import Ratio, Ratios
 from symrot.exact.relations import Relations, Rule, relate
-from symrot.exact.roots import Radical, Root, is_root, radical
+from symrot.exact.roots import Radical, Radicand, Root, is_root, radical
 
 __all__ = ["FormulaRing", "as_zero"]
+
+REWRITTEN = {
+    sympy.sinh: lambda u: (sympy.exp(u) - sympy.exp(-u)) / 2,
+    sympy.cosh: lambda u: (sympy.exp(u) + sympy.exp(-u)) / 2,
+    sympy.tanh: lambda u: (sympy.exp(2 * u) - 1) / (sympy.exp(2 * u) + 1),
+    sympy.coth: lambda u: (sympy.exp(2 * u) + 1) / (sympy.exp(2 * u) - 1),
+    sympy.asinh: lambda u: sympy.log(u + sympy.sqrt(u**2 + 1)),
+    sympy.acosh: lambda u: sympy.log(u + sympy.sqrt(u - 1) * sympy.sqrt(u + 1)),
+    sympy.atanh: lambda u: (sympy.log(1 + u) - sympy.log(1 - u)) / 2,
+}
+"""Hyperbolic functions and their inverses, in exponentials and logarithms."""
 
 TRIGONOMETRIC = {
     sympy.sin: ("sin", None),
@@ -73,6 +91,8 @@ class FormulaRing:
         Everything that will be read into the ring.
     relations : sequence of Expr
         Hypotheses, each an expression that is zero.
+    domain : sequence of Expr
+        What is not negative wherever the formulas are defined, as far as they no longer show it themselves.
 
     Raises
     ------
@@ -81,33 +101,48 @@ class FormulaRing:
         divides by what is zero everywhere, or if the hypotheses contradict each other.
     """
 
-    def __init__(self, expressions: Sequence[Expr], relations: Sequence[Expr] = ()) -> None:
+    def __init__(
+        self, expressions: Sequence[Expr], relations: Sequence[Expr] = (), domain: Sequence[Expr] = ()
+    ) -> None:
         self.hypotheses = tuple(relations)
+        self.domain = tuple(domain)
         self.forms: dict[Expr, LinearForm] = {}  # argument of a sine or cosine -> its linear form
+        self.exponents: dict[Expr, LinearForm] = {}  # argument of an exponential -> its linear form
+        self.rewritten: dict[Expr, Expr] = {}  # node -> what it is read as
         self.radicals: dict[Expr, Radical] = {}  # node with a fractional power -> what it is made of
         self.leaves: dict[Expr, bool] = {}  # symbols, functions of time, other functions -> in scope?
-        self._collect([*expressions, *relations])
+        self._collect([*expressions, *relations, *domain])
 
-        self.bases = base_coefficients(self.forms.values())
+        self.bases = base_coefficients(map(_unbound, self.forms.values()))
+        self.fine = self._take_fine_constants()
+        self.exponent_bases = base_coefficients(self.exponents.values())
         atoms = sorted(self.bases, key=_order)
+        exponents = sorted(self.exponent_bases, key=_order)
         leaves = sorted(self.leaves, key=_order)
-        roots = sorted({root for found in self.radicals.values() for root in found.roots}, key=_depth)
-        first_leaf, first_cosine = len(roots) + len(atoms), len(roots) + len(atoms) + len(leaves)
-        self.roots = {root: number for number, root in enumerate(roots)}
-        self.sines = {atom: len(roots) + number for number, atom in enumerate(atoms)}
-        self.symbols = {leaf: first_leaf + number for number, leaf in enumerate(leaves)}
-        self.cosines = {atom: first_cosine + number for number, atom in enumerate(atoms)}
-        self.generators: list[Expr] = [
-            *(root.expression for root in roots),
-            *(sin(base_angle(atom, self.bases[atom])) for atom in atoms),
-            *leaves,
-            *(cos(base_angle(atom, self.bases[atom])) for atom in atoms),
-        ]
+        roots = self._independent_roots()
+        self.generators: list[Expr] = []
+        self.roots = self._number((root, root.expression) for root in roots)
+        self.sines = self._number((atom, sin(base_angle(atom, self.bases[atom]))) for atom in atoms)
+        self.symbols = self._number((leaf, leaf) for leaf in leaves)
+        self.exponentials = self._number(
+            (atom, sympy.exp(base_angle(atom, self.exponent_bases[atom]))) for atom in exponents
+        )
+        self.cosines = self._number((atom, cos(base_angle(atom, self.bases[atom]))) for atom in atoms)
+        if self.fine:
+            (self.fine_place,) = self._number([(pi, 2 * cos(pi / self.fine))]).values()
         relations_found = self._relate(ZZ) or self._relate(QQ)
         assert relations_found is not None  # the rationals suffice for any polynomial
         self.relations: Relations = relations_found
         if self.relations.contradictory:
             raise InputError(f"the hypotheses contradict each other: {', '.join(map(str, self.hypotheses))}")
+
+    def _number(self, named: Iterable[tuple[Any, Expr]]) -> dict[Any, int]:
+        """Append generators; return their numbers by what they stand for."""
+        numbers = {}
+        for key, expression in named:
+            numbers[key] = len(self.generators)
+            self.generators.append(expression)
+        return numbers
 
     # -- what occurs ------------------------------------------------------------------------------------------------
 
@@ -134,19 +169,49 @@ class FormulaRing:
                 form = self.forms[node.args[0]] = linear_form(node.args[0])
                 if form.half_turns:
                     stack.extend(constant_cosine_sine(form.half_turns))
+                for atom, coefficient in form.terms:
+                    if _is_bound(atom, coefficient):
+                        stack.extend(part for pair in _pairs_of(atom, coefficient) for part in pair)
+            elif isinstance(node, sympy.exp) and node.args[0].is_extended_real is not False:
+                self.exponents[node.args[0]] = linear_form(node.args[0], turns=False)
+            elif type(node) in REWRITTEN:
+                self.rewritten[node] = REWRITTEN[type(node)](*node.args)
+                stack.append(self.rewritten[node])
+            elif node is S.Exp1:
+                self.exponents[Integer(1)] = linear_form(Integer(1))
             else:
                 self.leaves[node] = _is_jet(node)
 
-    def _radicand(self, base: Expr) -> tuple[Rational, Expr, Expr]:
+    def _radicand(self, base: Expr, index: int) -> Radicand:
         """Return a radicand in lowest terms, reduced by those hypotheses that hold no roots themselves."""
         plain = [relation for relation in self.hypotheses if not any(map(is_root, preorder_traversal(relation)))]
         inner = FormulaRing([base], plain)
-        return inner.lowest_terms(inner.ratio(base))
+        content, above, below = inner.lowest_polynomials(inner.ratio(base))
+        if index != 2:
+            return Radicand(content, above.as_expr(*inner.generators), below.as_expr(*inner.generators))
+        rest, outside = take_squares(above, below, inner.generators)
+        return Radicand(content, rest, Integer(1), outside)
+
+    def _independent_roots(self) -> list[Root]:
+        """Return the roots that become generators, outer ones first; note how others are products of these."""
+        roots = {root for found in self.radicals.values() for root in found.generators}
+        self.dependences = dependences(sorted(roots, key=_depth))
+        for dependence in self.dependences.values():
+            roots |= {factor for factor, _ in dependence.divisors if isinstance(factor, Root)}
+        return sorted(roots - set(self.dependences), key=_depth)
+
+    def _take_fine_constants(self) -> int:
+        """Return N of the generator 2 cos(pi/N) for constants of angles that are no multiples of pi/24; 0 for none."""
+        n = cyclotomic.order(self.bases[pi].denominator) if pi in self.bases else 0
+        if not n or cyclotomic.degree(n) > cyclotomic.LARGEST_DEGREE:
+            return 0
+        del self.bases[pi]
+        return n
 
     @property
     def outside_scope(self) -> tuple[Expr, ...]:
         """Functions about which the ring knows less than mathematics does: a nonzero normal form proves nothing."""
-        atoms = [atom for atom in self.bases if atom.is_number]
+        atoms = [atom for atom in self.bases if atom.is_number or atom.has(*INVERSE, sympy.log)]
         return tuple(sorted([*atoms, *(leaf for leaf, known in self.leaves.items() if not known)], key=_order))
 
     # -- the ring and its relations ---------------------------------------------------------------------------------
@@ -155,13 +220,19 @@ class FormulaRing:
         """Build the ring over a domain and return its relations; None if they need fractions that it lacks."""
         self.ring = PolyRing([f"x{number}" for number in range(len(self.generators))], domain, lex)
         self.relations = Relations()
+        self.numbers: dict[int, Number] = {}
         self.ratios = Ratios(self.ring, self.generators, self.reduce)
         self._read_already: dict[Expr, Ratio] = {}
         self._angles_read: dict[Expr, tuple[Ratio, Ratio]] = {}
         rules = [Rule(self.sines[atom], 2, 1 - self.ring.gens[self.cosines[atom]] ** 2) for atom in self.bases]
+        if self.fine:
+            *low, _ = cyclotomic.minimal_polynomial(self.fine)
+            rules.append(Rule(self.fine_place, len(low), -self._in_generator(self.fine_place, low), minimal=True))
+            self.relations = Relations(tuple(rules[-1:]))
         rules += [Rule(number, root.index, self._polynomial(root)) for root, number in self.roots.items()]
         self.relations = Relations(tuple(sorted(rules, key=lambda rule: rule.generator)))
         self.hypothesis_numerators = [self.ratio(hypothesis).numerator for hypothesis in self.hypotheses]
+        self.numbers = self._tangled_numbers(rules)
         return relate(rules, self.hypothesis_numerators)
 
     def _polynomial(self, root: Root) -> PolyElement:
@@ -172,9 +243,38 @@ class FormulaRing:
             raise InputError(f"the square root {root.expression} has a radicand that is no polynomial: {above}/{below}")
         return above.mul_ground(below.LC)
 
+    def _tangled_numbers(self, rules: Sequence[Rule]) -> dict[int, Number]:
+        """Return the generators that are numbers if relations may hold between them; square roots of primes have none.
+
+        Empty when one of them is imaginary.
+        """
+        known: dict[int, Number] = {}
+        if self.fine:
+            known[self.fine_place] = cosine_number(self.fine_place, cyclotomic.degree(self.fine), self.fine)
+        inside = {rule.generator: rule.replacement for rule in rules}
+        for root, place in reversed(self.roots.items()):
+            if root.power_expression.is_number and all(n in known for n in _occurring(inside[place])):
+                known[place] = root_number(place, root.index, inside[place], known)
+        simple = all(number.index == 2 and not number.needs for number in known.values())
+        return {} if simple or len(known) < 2 or I in self.generators else known
+
     def reduce(self, poly: PolyElement) -> PolyElement:
         """Return the normal form of a polynomial: zero exactly when it follows from the relations."""
-        return self.relations.reduce(poly)
+        poly = self.relations.reduce(poly)
+        return self._without_zeros(poly) if self.numbers and poly else poly
+
+    def _without_zeros(self, poly: PolyElement) -> PolyElement:
+        """Return a polynomial without those coefficients, made of tangled numbers, that are zero."""
+        groups: dict[tuple[int, ...], dict[tuple[int, ...], Any]] = {}
+        for mono, coefficient in poly.items():
+            free = tuple(0 if n in self.numbers else power for n, power in enumerate(mono))
+            number = tuple(power if n in self.numbers else 0 for n, power in enumerate(mono))
+            groups.setdefault(free, {})[number] = coefficient
+        for free, terms in groups.items():
+            coefficient = poly.new(terms)
+            if vanishes(coefficient, self.numbers):
+                poly = poly - coefficient.mul_monom(free)
+        return poly
 
     # -- reading ----------------------------------------------------------------------------------------------------
 
@@ -196,6 +296,10 @@ class FormulaRing:
             return Ratio(self.ring.gens[self.symbols[node]])
         if node.is_Rational:
             return ratios.number(int(node.p), int(node.q))
+        if node in self.rewritten:
+            return self.ratio(self.rewritten[node])
+        if node is S.Exp1 or (isinstance(node, sympy.exp) and node.args[0] in self.exponents):
+            return self._read_exponential(self.exponents[node.args[0] if node.args else Integer(1)])
         if node.is_Add:
             return ratios.add([self.ratio(term) for term in node.args])
         if node.is_Mul:
@@ -215,10 +319,33 @@ class FormulaRing:
         return self.ratios.power(base if exponent >= 0 else self.ratios.invert(base, source), abs(exponent))
 
     def _read_radical(self, found: Radical) -> Ratio:
-        factors = [Ratio(self.ring.gens[self.roots[root]]) for root in found.roots]
+        factors = [self._root(root) for root in found.roots]
         below = self.ratios.invert(self.ratio(found.below), found.below)
-        value = self.ratios.multiply([self.ratio(found.rational), below, *factors])
+        value = self.ratios.multiply([self.ratio(found.rational), below, *factors, *self._outside(found.outside)])
         return self._power(value, found.power, found.base)
+
+    def _root(self, root: Root) -> Ratio:
+        dependence = self.dependences.get(root)
+        if dependence is None:
+            return Ratio(self.ring.gens[self.roots[root]])
+        divisors = self._outside((factor, -times) for factor, times in dependence.divisors)
+        return self.ratios.multiply([*map(self._root, dependence.roots), *divisors])
+
+    def _outside(self, factors: Iterable[tuple[Root | Expr, int]]) -> Iterator[Ratio]:
+        """Yield the powers of absolute values, and of what is not negative, in front of roots."""
+        for factor, times in factors:
+            if isinstance(factor, Root):
+                yield self._power(self._root(factor), times, factor.expression)
+            else:
+                yield self._power(self.ratio(factor), times, factor)
+
+    def _read_exponential(self, form: LinearForm) -> Ratio:
+        factors = []
+        for atom, coefficient in form.terms:
+            base = self.exponent_bases[atom]
+            generator = Ratio(self.ring.gens[self.exponentials[atom]])
+            factors.append(self._power(generator, int(coefficient / base), self.generators[self.exponentials[atom]]))
+        return self.ratios.multiply(factors)
 
     def _cosine_sine(self, argument: Expr) -> tuple[Ratio, Ratio]:
         """Return the cosine and sine of an angle in those of the base angles (angle addition, Chebyshev)."""
@@ -227,26 +354,54 @@ class FormulaRing:
             return known
         form = self.forms[argument]
         cosine, sine = self.ring.one, self.ring.zero
+        c0, s0 = map(self.ratio, constant_cosine_sine(form.half_turns))
+        pairs = [(c0, s0)]
         for atom, coefficient in form.terms:
+            if _is_bound(atom, coefficient):
+                pairs += self._known_angle(atom, coefficient)
+                continue
+            if atom is pi and self.fine:
+                pairs.append(self._fine_constant(coefficient))
+                continue
             multiple = int(coefficient / self.bases[atom])
             first, second = chebyshev(abs(multiple))
-            c = self._in_cosine(atom, first)
-            s = self._in_cosine(atom, second) * self.ring.gens[self.sines[atom]]
+            c = self._in_generator(self.cosines[atom], first)
+            s = self._in_generator(self.cosines[atom], second) * self.ring.gens[self.sines[atom]]
             s = s if multiple > 0 else -s
             cosine, sine = cosine * c - sine * s, sine * c + cosine * s
-        c0, s0 = map(self.ratio, constant_cosine_sine(form.half_turns))
+        turned = Ratio(cosine), Ratio(sine)
+        for pair in pairs:
+            turned = self._turned(turned, pair)
+        self._angles_read[argument] = turned
+        return turned
+
+    def _turned(self, angle: tuple[Ratio, Ratio], by: tuple[Ratio, Ratio]) -> tuple[Ratio, Ratio]:
+        """Return the cosine and sine of a sum of two angles."""
+        (cosine, sine), (c0, s0) = angle, by
         minus_s0 = self.ratios.multiply([self.ratios.number(-1), s0])
         turn, add = self.ratios.multiply, self.ratios.add
-        pair = (
-            add([turn([Ratio(cosine), c0]), turn([Ratio(sine), minus_s0])]),
-            add([turn([Ratio(sine), c0]), turn([Ratio(cosine), s0])]),
+        return (
+            add([turn([cosine, c0]), turn([sine, minus_s0])]),
+            add([turn([sine, c0]), turn([cosine, s0])]),
         )
-        self._angles_read[argument] = pair
-        return pair
 
-    def _in_cosine(self, atom: Expr, coefficients: Sequence[int]) -> PolyElement:
-        """Return the polynomial in one cosine with these integer coefficients, low to high."""
-        gen = self.ring.gens[self.cosines[atom]]
+    def _known_angle(self, atom: Expr, coefficient: Fraction) -> Iterator[tuple[Ratio, Ratio]]:
+        """Yield the cosines and sines of angles that sum to a multiple of an inverse trigonometric function."""
+        for (cosine, sine), times in zip(_pairs_of(atom, coefficient), _split(coefficient), strict=False):
+            c, s = self.ratio(cosine), self.ratio(sine)
+            if times < 0:
+                s = self.ratios.multiply([self.ratios.number(-1), s])
+            for _ in range(abs(times)):
+                yield c, s
+
+    def _fine_constant(self, half_turns: Fraction) -> tuple[Ratio, Ratio]:
+        both = (cyclotomic.doubled_cosine(times, self.fine) for times in cyclotomic.multiples(half_turns, self.fine))
+        cosine, sine = (Ratio(self._in_generator(self.fine_place, coefficients), 2) for coefficients in both)
+        return cosine, sine
+
+    def _in_generator(self, place: int, coefficients: Sequence[int]) -> PolyElement:
+        """Return the polynomial in one generator with these integer coefficients, low to high."""
+        gen = self.ring.gens[place]
         return sum((gen**power * number for power, number in enumerate(coefficients) if number), self.ring.zero)
 
     # -- back to SymPy ----------------------------------------------------------------------------------------------
@@ -258,15 +413,43 @@ class FormulaRing:
 
     def lowest_terms(self, value: Ratio) -> tuple[Rational, Expr, Expr]:
         """Return (c, P, Q) with value = c*P/Q: c a rational >= 0, P and Q primitive over the integers."""
+        constant, above, below = self.lowest_polynomials(value)
+        return constant, above.as_expr(*self.generators), below.as_expr(*self.generators)
+
+    def lowest_polynomials(self, value: Ratio) -> tuple[Rational, PolyElement, PolyElement]:
+        """Return (c, P, Q) as :meth:`lowest_terms`, P and Q in the ring."""
         numerator = self.reduce(value.numerator)
         if not numerator:
-            return Integer(0), Integer(0), Integer(1)
+            return Integer(0), self.ring.zero, self.ring.one
         pair = numerator.cancel(self.reduce(self.ratios.denominator(value)))
         scales, parts = zip(*(poly.clear_denoms() for poly in pair), strict=True)
-        contents, parts = zip(*(poly.primitive() for poly in parts), strict=True)
+        contents, (above, below) = zip(*(poly.primitive() for poly in parts), strict=True)
         constant = Rational(int(contents[0]) * int(scales[1]), int(contents[1]) * int(scales[0]))
-        above, below = (part.as_expr(*self.generators) for part in parts)
         return constant, above, below
+
+
+def _is_bound(atom: Expr, coefficient: Fraction) -> bool:
+    """Return whether the sine and cosine of a multiple of an atom are known: of whole and half inverse functions."""
+    return type(atom) in INVERSE and coefficient.denominator <= 2
+
+
+def _unbound(form: LinearForm) -> LinearForm:
+    return LinearForm(tuple(term for term in form.terms if not _is_bound(*term)), form.half_turns)
+
+
+def _split(coefficient: Fraction) -> tuple[int, int]:
+    """Return how many whole angles and how many half angles make up a multiple."""
+    whole = int(coefficient)
+    return whole, int(2 * (coefficient - whole))
+
+
+def _pairs_of(atom: Expr, coefficient: Fraction) -> list[tuple[Expr, Expr]]:
+    """Return (cosine, sine) of an inverse function and, where a half is needed, of its half."""
+    return [cosine_sine(atom, half) for half in (False, True) if not half or coefficient.denominator == 2]
+
+
+def _occurring(poly: PolyElement) -> set[int]:
+    return {number for mono in poly for number, power in enumerate(mono) if power}
 
 
 def _is_jet(node: Expr) -> bool:

@@ -1,9 +1,11 @@
 """Roots: every fractional power as a rational factor times generators ``g`` with a relation ``g^n = P``.
 
-``sqrt(P/Q)`` is written ``g/Q`` with ``g = Q*sqrt(P/Q)``, so that ``g^2 = P*Q`` holds whatever the signs are, and
-positive rational numbers are taken out as square roots of primes. Two different radicands get two generators, even
-where their product is a square (``sqrt(x^2) = |x|``): what follows from the relations is true, and what does not may
-still be true on one branch. :func:`symrot.exact.decide.decide` says "undecided" there unless it finds a witness.
+``sqrt(P/Q)`` is written ``g/|Q|`` with ``g^2 = P*Q``, and positive rational numbers are taken out as square roots of
+primes: the generator of a square root is never negative. (Of another root, ``(P/Q)^(1/n) = g/Q``.) Squares leave a root
+as absolute values, ``sqrt(x^2 y) = |x| sqrt(y)``, and a radicand that is others' product is no generator of its own
+(:mod:`symrot.exact.radicands`). Roots that depend on each other in other ways, nested ones say, keep a generator each:
+what follows from the relations is true, and what does not may still be true on one branch.
+:func:`symrot.exact.decide.decide` says "undecided" there unless it finds a witness.
 """
 
 from collections.abc import Callable, Iterable
@@ -14,7 +16,7 @@ from sympy import Abs, Expr, I, Integer, Pow, Rational, factorint, sqrt
 
 from symrot.errors import InputError
 
-__all__ = ["Radical", "Root", "is_root", "radical"]
+__all__ = ["Radical", "Radicand", "Root", "absolute", "is_root", "radical"]
 
 
 @dataclass(frozen=True)
@@ -28,30 +30,53 @@ class Root:
 
 
 @dataclass(frozen=True)
+class Radicand:
+    """``content * above / below * product(factor^(2 n) of outside)``, ``below`` being 1 under a square root.
+
+    ``content`` is a rational >= 0, ``above`` and ``below`` are primitive polynomials over the integers in canonical
+    form; no factor outside is negative.
+    """
+
+    content: Rational
+    above: Expr
+    below: Expr
+    outside: tuple[tuple[Root | Expr, int], ...] = ()
+
+
+@dataclass(frozen=True)
 class Radical:
-    """``(rational * product(roots) / below)^power``, the root of ``base`` to that power."""
+    """``(rational * product(roots) * product(factor^n of outside) / below)^power``, a root of ``base``.
+
+    A factor outside is the absolute value of something, which is a root too, or an expression that is not negative.
+    """
 
     base: Expr
     rational: Rational
     roots: tuple[Root, ...]
     below: Expr
     power: int
+    outside: tuple[tuple[Root | Expr, int], ...] = ()
+
+    @property
+    def generators(self) -> tuple[Root, ...]:
+        """All roots that occur, absolute values included."""
+        return (*self.roots, *(factor for factor, _ in self.outside if isinstance(factor, Root)))
 
     @property
     def parts(self) -> tuple[Expr, ...]:
         """The expressions that must be readable before this one is."""
-        return (self.rational, self.below, *(root.power_expression for root in self.roots))
+        insides = [root.power_expression for root in self.generators]
+        return (self.rational, self.below, *insides, *(f for f, _ in self.outside if not isinstance(f, Root)))
 
 
-def radical(node: Expr, lowest_terms: Callable[[Expr], tuple[Rational, Expr, Expr]]) -> Radical:
+def radical(node: Expr, radicand: Callable[[Expr, int], Radicand]) -> Radical:
     """Return what a fractional power, ``i`` or the absolute value of a real expression is made of.
 
     Parameters
     ----------
     node : Expr
-    lowest_terms : function
-        From an expression to (positive rational, numerator, denominator), the last two primitive polynomials over the
-        integers in canonical form, or (0, 0, 1).
+    radicand : function
+        From an expression and the index of a root to its factors, squares apart for a square root.
 
     Raises
     ------
@@ -65,7 +90,8 @@ def radical(node: Expr, lowest_terms: Callable[[Expr], tuple[Rational, Expr, Exp
     else:
         assert isinstance(node, Pow)
         base, power, index = node.base, int(node.exp.p), int(node.exp.q)
-    content, above, below = lowest_terms(base)
+    found = radicand(base, index)
+    content, above, below = found.content, found.above, found.below
     if not content:
         if power < 0:
             raise InputError(f"the formula divides by a power of {base}, which is zero everywhere")
@@ -82,7 +108,16 @@ def radical(node: Expr, lowest_terms: Callable[[Expr], tuple[Rational, Expr, Exp
         inside = (above * below ** (index - 1)).expand()
         shown = below * (above / below) ** Rational(1, index)
         roots.append(Root(shown, inside, index, 1 + _nesting([inside])))
-    return Radical(base, rational, tuple(roots), below, power)
+    return Radical(base, rational, tuple(roots), below, power, found.outside)
+
+
+def absolute(value: Expr) -> Root | Expr:
+    """Return the absolute value of a real expression: itself or its negative where that is known, or a root."""
+    if value.is_nonnegative:
+        return value
+    if value.is_nonpositive:
+        return -value
+    return Root(Abs(value), (value**2).expand(), 2, 1 + _nesting([value]))
 
 
 def is_root(node: Expr) -> bool:

@@ -1,0 +1,135 @@
+"""Is a number made of roots and of cosines of rational angles zero? Decided by a bound, not by digits.
+
+A sum of products of algebraic integers is one itself. If it is not zero, the product of its conjugates is a whole
+number other than zero, so it is at least ``B^(1 - D)`` in size, where B bounds all its conjugates and D is the degree
+of the field (Burnikel, Funke, Mehlhorn, Schirra, Schmitt, A separation bound for real algebraic expressions, 2001). An
+interval narrower than that decides.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from math import lcm, prod
+from typing import Any
+
+from mpmath import iv
+from sympy.polys.rings import PolyElement
+
+__all__ = ["MOST_BITS", "Number", "cosine_number", "root_number", "vanishes"]
+
+MOST_BITS = 40_000
+"""Of the interval; a sum that would need more counts as not known to vanish."""
+
+Monomial = tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Number:
+    """A generator of the ring that is an algebraic number.
+
+    ``multiplier * number`` is an algebraic integer whose conjugates are at most ``2^bound`` in size; ``index`` and
+    ``inside`` make it a root, ``order`` makes it ``2 cos(pi/order)``; ``needs`` are the generators inside it.
+    """
+
+    place: int
+    degree: int
+    multiplier: int
+    bound: int
+    order: int = 0
+    index: int = 0
+    inside: PolyElement | None = None
+    needs: frozenset[int] = frozenset()
+
+
+class NotReal(ArithmeticError):
+    """An even root of what is negative."""
+
+
+def cosine_number(place: int, degree: int, order: int) -> Number:
+    """Return ``2 cos(pi/order)``."""
+    return Number(place, degree, 1, 1, order)
+
+
+def root_number(place: int, index: int, inside: PolyElement, known: Mapping[int, Number]) -> Number:
+    """Return the root of a polynomial in known numbers."""
+    needs = _places(inside)
+    needs = needs.union(*(known[n].needs for n in needs)) if needs else needs
+    multiplier, bound = _integral(inside.items(), known)
+    # (multiplier g)^index = multiplier^(index - 1) * (multiplier * inside)
+    bound = -(-((index - 1) * multiplier.bit_length() + bound) // index)
+    return Number(place, index, multiplier, bound, index=index, inside=inside, needs=needs)
+
+
+def vanishes(poly: PolyElement, known: Mapping[int, Number]) -> bool:
+    """Return whether a polynomial in numbers is proven to be zero."""
+    terms = list(poly.items())
+    if not terms:
+        return True
+    if len(terms) == 1:
+        return False
+    used = _places(poly)
+    used = used.union(*(known[n].needs for n in used)) if used else used
+    multiplier, bound = _integral(terms, known)
+    bits = bound * (prod(known[n].degree for n in used) - 1) + multiplier.bit_length()
+    before, iv.prec = iv.prec, 100
+    try:
+        while True:
+            size = abs(_enclosed(terms, known, {}))
+            if size.a > 0:
+                return False
+            if size.b < iv.mpf(2) ** -bits:
+                return True
+            if iv.prec > min(bits + bound + 200, MOST_BITS):
+                return False
+            iv.prec = min(4 * iv.prec, bits + bound + 201)
+    except NotReal:
+        return False
+    finally:
+        iv.prec = before
+
+
+def _places(poly: PolyElement) -> frozenset[int]:
+    return frozenset(n for mono in poly for n, power in enumerate(mono) if power)
+
+
+def _integral(terms: Iterable[tuple[Monomial, Any]], known: Mapping[int, Number]) -> tuple[int, int]:
+    """Return a multiplier that makes a sum an algebraic integer, and a bound (a power of two) on its conjugates."""
+    terms = list(terms)
+    most = [max(column) for column in zip(*(mono for mono, _ in terms), strict=True)]
+    whole = lcm(*(int(c.denominator) for _, c in terms))
+    multiplier = whole * prod(known[n].multiplier ** power for n, power in enumerate(most) if power)
+    total = 0
+    for mono, c in terms:
+        rest = abs(int(c.numerator)) * whole // int(c.denominator)
+        for n, power in enumerate(mono):
+            if most[n]:
+                rest *= known[n].multiplier ** (most[n] - power) << known[n].bound * power
+        total += rest
+    return multiplier, total.bit_length()
+
+
+def _enclosed(terms: Sequence[tuple[Monomial, Any]], known: Mapping[int, Number], values: dict[int, Any]) -> Any:
+    total = iv.mpf(0)
+    for mono, c in terms:
+        term = iv.mpf(int(c.numerator)) / int(c.denominator)
+        for n, power in enumerate(mono):
+            if power:
+                if n not in values:
+                    values[n] = _value(known[n], known, values)
+                term = term * values[n] ** power
+        total = total + term
+    return total
+
+
+def _value(number: Number, known: Mapping[int, Number], values: dict[int, Any]) -> Any:
+    if number.order:
+        return 2 * iv.cos(iv.pi / number.order)
+    assert number.inside is not None
+    inside = _enclosed(list(number.inside.items()), known, values)
+    if not inside.b >= 0:
+        raise NotReal
+    inside = iv.mpf([max(inside.a, 0), inside.b])
+    if number.index == 2:
+        return iv.sqrt(inside)
+    if not inside.a > 0:
+        raise NotReal
+    return iv.exp(iv.log(inside) / number.index)

@@ -1,0 +1,77 @@
+"""Sines and cosines of rational multiples of pi that are no multiples of pi/24, as polynomials in one number.
+
+With ``g = 2 cos(pi/N)``, N even, ``2 cos(k pi/N)`` is a polynomial in g with integer coefficients, and the sine is the
+cosine of the complement. The minimal polynomial of g comes from the cyclotomic polynomial of order 2N, which reads
+``x^d M(x + 1/x)``.
+"""
+
+from fractions import Fraction
+from functools import cache
+
+from sympy import Poly, cyclotomic_poly, totient
+from sympy.abc import x
+
+__all__ = ["LARGEST_DEGREE", "degree", "doubled_cosine", "minimal_polynomial", "multiples", "order"]
+
+LARGEST_DEGREE = 160
+"""Of the minimal polynomial: multiples of pi/180 need 48, of pi/360 need 96; beyond it a constant stays a symbol."""
+
+
+def order(denominator: int) -> int:
+    """Return the even N such that sines and cosines of multiples of pi/denominator are polynomials in 2 cos(pi/N)."""
+    return denominator if denominator % 2 == 0 else 2 * denominator
+
+
+def degree(n: int) -> int:
+    """Return the degree of 2 cos(pi/n) over the rationals, n >= 2."""
+    return int(totient(2 * n)) // 2
+
+
+@cache
+def minimal_polynomial(n: int) -> tuple[int, ...]:
+    """Return the coefficients, low to high, of the minimal polynomial of 2 cos(pi/n), n >= 2; the last is 1."""
+    symmetric = [int(c) for c in Poly(cyclotomic_poly(2 * n, x), x).all_coeffs()]
+    middle = len(symmetric) // 2
+    total = [symmetric[middle]] + [0] * middle
+    before, last = [2], [0, 1]  # x^j + x^-j in g = x + 1/x: 2, g, g^2 - 2, ..
+    for j in range(1, middle + 1):
+        for power, coefficient in enumerate(last):
+            total[power] += symmetric[middle + j] * coefficient
+        before, last = last, _minus([0, *last], before)
+    return tuple(total)
+
+
+@cache
+def doubled_cosine(times: int, n: int) -> tuple[int, ...]:
+    """Return the coefficients, low to high, of 2 cos(times pi/n) in g = 2 cos(pi/n)."""
+    times = abs(times) % (2 * n)
+    times = min(times, 2 * n - times)
+    relation = minimal_polynomial(n)
+    before, last = [2], _rest([0, 1], relation)
+    if times == 0:
+        return tuple(before)
+    for _ in range(times - 1):
+        before, last = last, _rest(_minus([0, *last], before), relation)
+    return tuple(last)
+
+
+def multiples(turns: Fraction, n: int) -> tuple[int, int]:
+    """Return (k, l) with ``cos(turns pi) = cos(k pi/n)`` and ``sin(turns pi) = cos(l pi/n)``; n turns is whole."""
+    k = int(turns * n)
+    return k, n // 2 - k
+
+
+def _minus(first: list[int], second: list[int]) -> list[int]:
+    return [a - (second[n] if n < len(second) else 0) for n, a in enumerate(first)]
+
+
+def _rest(poly: list[int], relation: tuple[int, ...]) -> list[int]:
+    """Return the remainder of a polynomial by a monic one."""
+    poly = list(poly)
+    size = len(relation) - 1
+    while len(poly) > size:
+        lead = poly.pop()
+        if lead:
+            for power in range(size):
+                poly[len(poly) - size + power] -= lead * relation[power]
+    return poly

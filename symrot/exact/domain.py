@@ -1,0 +1,67 @@
+"""Where a formula is defined: what must not vanish, and what must not be negative."""
+
+from collections.abc import Container, Iterable
+
+from sympy import Abs, Expr, Pow, acos, asin, atan2, log
+
+from symrot.exact.ring import FormulaRing
+from symrot.exact.roots import Root
+
+__all__ = ["divisors", "radicands", "signs"]
+
+
+def divisors(ring: FormulaRing, granted: Container[int] = ()) -> list[tuple[Expr, Expr]]:
+    """Return what must not vanish, as it was divided by and as the factor found in it, less the ``granted`` factors.
+
+    A root is shown by what stands under it.
+    """
+    roots = {place: root for root, place in ring.roots.items()}
+    found: list[tuple[Expr, Expr]] = []
+    for number, (source, factor) in enumerate(zip(ring.ratios.sources, ring.ratios.factors, strict=True)):
+        if number in granted:
+            continue
+        places = [n for n, power in enumerate(factor.leading_expv()) if power] if len(factor) == 1 else []
+        root = roots.get(places[0]) if len(places) == 1 else None
+        inside = _inside(root) if root else factor.as_expr(*ring.generators)
+        found.append((source, inside))
+    found += [(formula, formula) for leaf in _leaves(ring) for formula in _nonzero(leaf)]
+    return [pair for pair in dict.fromkeys(found) if not any(form.is_nonzero or form.is_number for form in pair)]
+
+
+def _inside(root: Root) -> Expr:
+    return root.expression.args[0] if isinstance(root.expression, Abs) else root.power_expression
+
+
+def radicands(ring: FormulaRing) -> list[Expr]:
+    """Return what must not be negative: under roots of even index, in logarithms, 1 - x^2 for asin(x) and acos(x)."""
+    found = [radical.base for radical in ring.radicals.values() if radical.power % 2 and not _is_square(radical.base)]
+    found += [formula for leaf in _leaves(ring) for formula in _nonnegative(leaf)]
+    return [formula for formula in dict.fromkeys(found) if not (formula.is_nonnegative or formula.is_number)]
+
+
+def signs(ring: FormulaRing) -> list[Expr]:
+    """Return what is not negative wherever the formulas are defined, in as many forms as are known."""
+    sides = [1 + sign * leaf.args[0] for leaf in _leaves(ring) if isinstance(leaf, asin | acos) for sign in (1, -1)]
+    return [*radicands(ring), *sides]
+
+
+def _leaves(ring: FormulaRing) -> Iterable[Expr]:
+    """Return inverse functions and logarithms: those that stand alone, and those inside sines and cosines."""
+    return [*ring.symbols, *(atom for form in ring.forms.values() for atom, _ in form.terms)]
+
+
+def _nonzero(leaf: Expr) -> list[Expr]:
+    if isinstance(leaf, atan2):
+        return [leaf.args[0] ** 2 + leaf.args[1] ** 2]
+    return [leaf.args[0]] if isinstance(leaf, log) else []
+
+
+def _nonnegative(leaf: Expr) -> list[Expr]:
+    if isinstance(leaf, asin | acos):
+        return [1 - leaf.args[0] ** 2]
+    return [leaf.args[0]] if isinstance(leaf, log) else []
+
+
+def _is_square(base: Expr) -> bool:
+    """Return whether a radicand comes from an absolute value, which the ring keeps as the root of a square."""
+    return bool(isinstance(base, Pow) and base.exp.is_Integer and base.exp % 2 == 0)

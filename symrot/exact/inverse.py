@@ -1,0 +1,84 @@
+"""Inverse trigonometric functions as angles: the sine and cosine of each, on its branch, and the range of its values.
+
+``asin``, ``acos``, ``atan`` and ``atan2`` have their principal values. So ``cos(asin(u)) = +sqrt(1 - u^2)``, and the
+half of any of them lies in [-pi/2, pi/2], where the cosine is not negative. ``atan2(y, x)`` is undefined at (0, 0).
+"""
+
+from collections.abc import Callable
+from fractions import Fraction
+
+from sympy import Expr, Integer, Rational, acos, asin, atan, atan2, sqrt
+
+__all__ = ["INVERSE", "Range", "cosine_sine", "range_of"]
+
+HALF = Rational(1, 2)
+
+Pair = tuple[Expr, Expr]
+
+
+def _asin(u: Expr) -> Pair:
+    return sqrt(1 - u**2), u
+
+
+def _acos(u: Expr) -> Pair:
+    return u, sqrt(1 - u**2)
+
+
+def _atan(u: Expr) -> Pair:
+    return 1 / sqrt(1 + u**2), u / sqrt(1 + u**2)
+
+
+def _atan2(y: Expr, x: Expr) -> Pair:
+    return x / sqrt(x**2 + y**2), y / sqrt(x**2 + y**2)
+
+
+def _half_of(whole: Callable[..., Pair]) -> Callable[..., Pair]:
+    """Return the (cosine, sine) of half an angle strictly between -pi and pi."""
+
+    def half(*arguments: Expr) -> Pair:
+        cosine, sine = whole(*arguments)
+        below = sqrt(HALF + cosine / 2)
+        return below, sine / (2 * below)
+
+    return half
+
+
+def _half_acos(u: Expr) -> Pair:
+    return sqrt(HALF + u / 2), sqrt(HALF - u / 2)
+
+
+INVERSE: dict[type, tuple[Callable[..., Pair], Callable[..., Pair]]] = {
+    asin: (_asin, _half_of(_asin)),
+    acos: (_acos, _half_acos),
+    atan: (_atan, _half_of(_atan)),
+    atan2: (_atan2, _half_of(_atan2)),
+}
+"""Function -> (cosine, sine) of its value, and of half its value."""
+
+
+def cosine_sine(angle: Expr, half: bool) -> Pair:
+    """Return the cosine and sine of a value of an inverse function, or of half of it."""
+    found: Pair = INVERSE[type(angle)][half](*angle.args)
+    return found
+
+
+Range = tuple[Fraction, Fraction, bool, bool]
+"""Least and greatest value, in half-turns, and whether each is taken."""
+
+_QUARTER = Fraction(1, 2)
+
+
+def range_of(angle: Expr) -> Range:
+    """Return a range that holds all values of an inverse function, the smaller where the signs of arguments show it."""
+    first, second = (*angle.args, Integer(1))[:2]
+    closed = not isinstance(angle, atan)
+    if isinstance(angle, acos):
+        return Fraction(0), _QUARTER if first.is_nonnegative else Fraction(1), True, True
+    low, high, taken = -_QUARTER, _QUARTER, closed
+    if isinstance(angle, atan2) and not second.is_nonnegative:
+        low, high, taken = Fraction(-1), Fraction(1), False
+    if first.is_nonnegative:
+        return Fraction(0), high, True, closed
+    if first.is_nonpositive and isinstance(angle, asin | atan):
+        return low, Fraction(0), taken, True
+    return low, high, taken, closed
