@@ -69,12 +69,15 @@ class _Writer:
 
 
 def tape_of(program: Program, outputs: Sequence[str], more: Sequence[Node] = ()) -> Tape:
-    """Return the tape of some outputs of a program, then of more formulas over its inputs."""
+    """Return the tape of some outputs of a program, then of more formulas over its inputs and its outputs."""
     writer = _Writer()
     formulas = dict(program.outputs)
     for name, node in program.temporaries:
         writer.names[name] = writer.read(node)
-    places = [writer.read(formulas[name]) for name in outputs] + [writer.read(node) for node in more]
+    places = [writer.read(formulas[name]) for name in outputs]
+    if more:
+        writer.names |= {name: writer.read(node) for name, node in formulas.items()}
+        places += [writer.read(node) for node in more]
     return _trimmed(Tape(tuple(writer.known), tuple(places)))
 
 

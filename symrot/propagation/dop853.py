@@ -142,7 +142,7 @@ def integrate(
     PropagationError
         If the motion cannot be followed to the end; the sentence says how far it came.
     """
-    return Task(_stepper, library, p, y0, t0, tolerance, max_step, max_steps, breaks).sample(times)
+    return task(library, p, y0, t0, tolerance, max_step, max_steps, breaks).sample(times)
 
 
 def record(
@@ -162,7 +162,21 @@ def record(
     The same steps are taken as by :func:`integrate` to the ends of the span, so the two agree where they overlap. One
     step takes 8 N + 2 numbers of memory.
     """
-    return Task(_stepper, library, p, y0, t0, tolerance, max_step, max_steps, breaks).record(span)
+    return task(library, p, y0, t0, tolerance, max_step, max_steps, breaks).record(span)
+
+
+def task(
+    library: PathLike,
+    p: ArrayLike,
+    y0: ArrayLike,
+    t0: float,
+    tolerance: float,
+    max_step: float = math.inf,
+    max_steps: int = MAX_STEPS,
+    breaks: Sequence[float] = (),
+) -> Task:
+    """Return a motion to follow; arguments as :func:`integrate`."""
+    return Task(_stepper, library, p, y0, t0, tolerance, max_step, max_steps, breaks)
 
 
 class _Stepper(Stepper):

@@ -321,7 +321,12 @@ class Propagator:
         return np.linspace(float(span.start), float(span.stop), span.samples)
 
     def __call__(
-        self, t: ArrayLike | None = None, *, omega: ArrayLike | None = None, quaternion: ArrayLike | None = None
+        self,
+        t: ArrayLike | None = None,
+        *,
+        omega: ArrayLike | None = None,
+        quaternion: ArrayLike | None = None,
+        events: Any = None,
     ) -> Trajectory:
         """Return the motion at the times ``t``.
 
@@ -333,6 +338,9 @@ class Propagator:
             Another initial angular velocity, body components, rad/s.
         quaternion : array, shape (4,), optional
             Another initial attitude, scalar first; it is normalised.
+        events : sequence, optional
+            Formulas whose zeros are sought: text, :class:`symrot.propagation.events.Event` or mappings with its fields;
+            see ``t_events`` of the trajectory. Samples beyond a terminal event are left out.
 
         Raises
         ------
@@ -345,11 +353,17 @@ class Propagator:
         motion = self._motion
         if omega is not None or quaternion is not None:
             motion = self._prepare(make_plan(self.scene, _initial(self.scene, omega, quaternion)))
+        message = f"{motion.choice.method}: {motion.choice.reason}"
         try:
+            if events is not None:
+                from symrot.propagation.eventful import follow
+                from symrot.propagation.events import read_events
+
+                found = follow(motion, times, read_events(events))
+                return Trajectory(motion, found.t, found.states, motion.choice.method, found.stats, message, found)
             states, stats = motion.integrate(times)
         except PropagationError as error:
             raise PropagationError(f"{self.scene.name}: {error}") from None
-        message = f"{motion.choice.method}: {motion.choice.reason}"
         return Trajectory(motion, times, states, motion.choice.method, stats, message)
 
 
@@ -425,6 +439,8 @@ def _tolerance(tolerance: float) -> float:
     return float(found)
 
 
-def propagate(scene: Scene | str | Path, method: str = "auto", tolerance: float | None = None) -> Trajectory:
-    """Return the motion of a scene at its own sample times; see :func:`propagator`."""
-    return propagator(scene, method, tolerance)()
+def propagate(
+    scene: Scene | str | Path, method: str = "auto", tolerance: float | None = None, events: Any = None
+) -> Trajectory:
+    """Return the motion of a scene at its own sample times; see :func:`propagator` and :class:`Propagator`."""
+    return propagator(scene, method, tolerance)(events=events)

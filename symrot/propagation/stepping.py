@@ -250,6 +250,12 @@ class Stepper(ABC):
     def cost(run: Any) -> tuple[int, int, int]:
         """Return steps accepted, steps rejected and evaluations of a run."""
 
+    @property
+    def dense_address(self) -> Any:
+        """The dense output as a function in C, for other libraries to call."""
+        function: Any = self._dense
+        return ctypes.cast(function, ctypes.c_void_p)
+
     def dense(self, rows: Floats, times: Floats) -> Floats:
         """Return the states at times inside recorded steps, all on one side of t0."""
         states = np.empty((len(times), self.states))
@@ -352,14 +358,16 @@ class Task:
         stepper = self.stepper
         run = stepper.new_run(t=self.t0, pace=abs(end - self.t0) * self.pace, max_step=self.max_step, **self.fields)
         run.y[:] = self.y0
-        for stretch in stretches(self.t0, end, self.breaks):
-            run.stop, run.next = stretch.stop, 0
-            stepper.enter(run, stretch, self.allowed)
-            yield run
-        accepted, rejected, evaluations = stepper.cost(run)
-        self.accepted += accepted
-        self.rejected += rejected
-        self.evaluations += evaluations
+        try:
+            for stretch in stretches(self.t0, end, self.breaks):
+                run.stop, run.next = stretch.stop, 0
+                stepper.enter(run, stretch, self.allowed)
+                yield run
+        finally:  # a caller may need no more
+            accepted, rejected, evaluations = stepper.cost(run)
+            self.accepted += accepted
+            self.rejected += rejected
+            self.evaluations += evaluations
 
     def advance(self, run: Any, times: int | None, count: int, states: int | None, rows: int | None, room: int) -> int:
         """Call the stepper once; raise where it cannot go on."""

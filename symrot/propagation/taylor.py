@@ -147,7 +147,7 @@ def integrate(
     stats : Stats
         ``evaluations`` counts jets: all coefficients of one step.
     """
-    return _task(library, p, y0, t0, tolerance, max_step, max_steps, project).sample(times)
+    return task(library, p, y0, t0, tolerance, max_step, max_steps, project).sample(times)
 
 
 def record(
@@ -166,22 +166,23 @@ def record(
 
     One step takes 21 N + 4 numbers of memory.
     """
-    return _task(library, p, y0, t0, tolerance, max_step, max_steps, project).record(span)
+    return task(library, p, y0, t0, tolerance, max_step, max_steps, project).record(span)
 
 
-def _task(
+def task(
     library: PathLike,
     p: ArrayLike,
     y0: ArrayLike,
     t0: float,
     tolerance: float,
-    max_step: float,
-    max_steps: int,
-    project: bool,
+    max_step: float = math.inf,
+    max_steps: int = MAX_STEPS,
+    project: bool = True,
 ) -> Task:
-    task = Task(_stepper, library, p, y0, t0, tolerance, max_step, max_steps)
-    task.fields["every"] = PROJECTED_EVERY if project and tolerance <= PROJECTED_FROM else 0
-    return task
+    """Return a motion to follow; arguments as :func:`integrate`."""
+    found = Task(_stepper, library, p, y0, t0, tolerance, max_step, max_steps)
+    found.fields["every"] = PROJECTED_EVERY if project and tolerance <= PROJECTED_FROM else 0
+    return found
 
 
 class _Stepper(Stepper):

@@ -12,6 +12,7 @@ from symrot.kinematics import conversions
 from symrot.propagation.dop853 import Stats
 
 if TYPE_CHECKING:
+    from symrot.propagation.eventful import Eventful
     from symrot.propagation.propagator import Motion
 
 __all__ = ["Invariant", "Trajectory"]
@@ -52,15 +53,31 @@ class Trajectory:
     method, stats : str, Stats
         How it was propagated, and what that cost: steps, evaluations, seconds.
     status, message, success : int, str, bool
-        As of solve_ivp; a motion that cannot be followed raises instead.
+        As of solve_ivp: 1 where a terminal event ended the motion, else 0; a motion that cannot be followed raises.
+    t_events, y_events : list of arrays or None
+        Per event that was asked for: its times, shape (k,), and the states there, shape (k, N).
+    event_kinds : list of lists of str, or None
+        Per event: ``"rising"``, ``"falling"`` or ``"touching"`` for each of its times.
     """
 
-    status = 0
     success = True
 
-    def __init__(self, motion: "Motion", t: Floats, states: Floats, method: str, stats: Stats, message: str) -> None:
+    def __init__(
+        self,
+        motion: "Motion",
+        t: Floats,
+        states: Floats,
+        method: str,
+        stats: Stats,
+        message: str,
+        events: "Eventful | None" = None,
+    ) -> None:
         self._motion, self._states = motion, states
         self.t, self.method, self.stats, self.message = t, method, stats, message
+        self.t_events = events and events.t_events
+        self.y_events = events and events.y_events
+        self.event_kinds = events and events.kinds
+        self.status = int(events is not None and events.ended)
 
     def __len__(self) -> int:
         return len(self.t)

@@ -1,0 +1,182 @@
+"""Follow a motion with events: their times, the states there, and the samples up to a terminal one."""
+
+from collections.abc import Callable, Sequence
+from time import perf_counter
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symrot.codegen import library
+from symrot.errors import InputError, PropagationError
+from symrot.propagation import dop853, taylor
+from symrot.propagation.events import (
+    Event,
+    Found,
+    even_pieces,
+    event_library_source,
+    exact_dense,
+    search,
+    stepped,
+    uses_attitude,
+)
+from symrot.propagation.kernels import error_blocks
+from symrot.propagation.stepping import Stats, both_sides
+from symrot.scene_kernel import bind
+
+if TYPE_CHECKING:
+    from symrot.propagation.propagator import Motion
+
+__all__ = ["Eventful", "follow"]
+
+Floats = NDArray[np.float64]
+
+TURN_PER_PIECE = 1.0  # rad: how far a motion without steps turns in one piece that is searched
+SAMPLES_OF_RATE = 257  # by which the largest rate of such a motion is judged
+
+
+class Eventful(NamedTuple):
+    """A motion with events.
+
+    Attributes
+    ----------
+    t, states : arrays, shapes (n,) and (n, N)
+        Samples as they were asked for, without those beyond a terminal event.
+    t_events, y_events : lists of arrays, shapes (k,) and (k, N)
+        Per event, in rising order of time: when it happened, and the states there.
+    kinds : list of lists of str
+        Per event: ``"rising"``, ``"falling"`` or ``"touching"``, as the motion goes away from its start.
+    ended : bool
+        Whether a terminal event ended the motion, on either side.
+    """
+
+    t: Floats
+    states: Floats
+    stats: Stats
+    t_events: list[Floats]
+    y_events: list[Floats]
+    kinds: list[list[str]]
+    ended: bool
+
+
+class _Side(NamedTuple):
+    """A motion to one side of its start: how to take it piece by piece, and its states at times on the way."""
+
+    pieces: Any
+    dense: Any
+    states: Callable[[Floats], Floats]
+    broken: list[PropagationError]
+    cost: Callable[[], tuple[int, int, int]]
+
+
+def follow(motion: "Motion", times: Floats, events: Sequence[Event]) -> Eventful:
+    """Return a motion at its sample times with the events on the way from the start to the first and last of them.
+
+    Raises
+    ------
+    InputError
+        If an event needs the attitude and the plan leaves it out, or if nothing of the motion changes.
+    CompilerError
+        If there is no C compiler.
+    PropagationError
+        If the motion cannot be followed to the last time and no terminal event comes before.
+    """
+    began, plan = perf_counter(), motion.plan
+    if uses_attitude(events) and not plan.structure["attitude"]:
+        raise InputError(
+            "events: the attitude is not computed, since neither a torque nor the output of the scene asks for it: "
+            'expected "quaternion" among output.quantities'
+        )
+    if not plan.states:
+        raise InputError(f"events: expected a motion with states that change, got the scene {plan.scene.name!r}")
+    quantities = motion.kernel.quantities
+    source = event_library_source(quantities, events, plan.states, *error_blocks(plan))
+    path, p = library.build(source, "events"), bind(motion.kernel.quantity_parameters, plan.constants)
+    states, kept = np.empty((len(times), len(plan.states))), np.zeros(len(times), dtype=bool)
+    found: list[tuple[Found, Floats]] = []
+    counts, ended = np.zeros(3, dtype=int), False
+    for part in both_sides(times, motion.start):
+        end = float(times[part[-1]])
+        side = _side(motion, end)
+        listed, stop = (
+            search(path, events, p, side.dense, side.pieces, motion.start) if end != motion.start else ([], None)
+        )
+        if side.broken and stop is None:
+            raise side.broken[0]
+        ended |= stop is not None
+        inside = part if stop is None else part[np.abs(times[part] - motion.start) <= abs(stop - motion.start)]
+        kept[inside] = True
+        states[inside] = side.states(times[inside])
+        rows = side.states(np.array([each.t for each in listed]))
+        found = _joined(found, list(zip(listed, rows, strict=True)), motion.start)
+        side.pieces.close()
+        counts += side.cost()
+    found.sort(key=lambda each: each[0].t)
+    own = [[each for each in found if each[0].event == number] for number in range(len(events))]
+    return Eventful(
+        times[kept],
+        states[kept],
+        Stats(int(counts[0]), int(counts[1]), int(counts[2]), perf_counter() - began),
+        [np.array([each.t for each, _ in group]) for group in own],
+        [np.array([row for _, row in group]).reshape(-1, len(plan.states)) for group in own],
+        [[each.kind for each, _ in group] for group in own],
+        ended,
+    )
+
+
+def _joined(
+    before: list[tuple[Found, Floats]], after: list[tuple[Found, Floats]], t0: float
+) -> list[tuple[Found, Floats]]:
+    """Put the two sides of a motion together: a zero at the start is one, a touch if both sides leave it alike."""
+    at_start = {each.event: each for each, _ in before if each.t == t0}
+    joined = [
+        pair for pair in before if pair[0].t != t0 or pair[0].event not in {e.event for e, _ in after if e.t == t0}
+    ]
+    for each, row in after:
+        other = at_start.get(each.event) if each.t == t0 else None
+        joined.append((each._replace(kind="touching") if other and other.kind == each.kind else each, row))
+    return joined
+
+
+def _side(motion: "Motion", end: float) -> _Side:
+    """Return the motion from its start to an end."""
+    method, plan = motion.choice.method.partition(":")[0], motion.plan
+    start, y0 = motion.start, np.array(plan.initial_state, dtype=np.float64)
+    broken: list[PropagationError] = []
+    if method in ("taylor", "dop853"):
+        parameters = motion.taylor_parameters if method == "taylor" else motion.rate_parameters
+        task = {"taylor": taylor, "dop853": dop853}[method].task(
+            motion.library, parameters, plan.initial_state, start, motion.tolerance
+        )
+        rows: list[Floats] = []
+
+        def pieces() -> Any:
+            for piece in stepped(task, end, broken):
+                rows.append(piece.record)
+                yield piece
+
+        def states(times: Floats) -> Floats:
+            found = task.stepper.dense(np.concatenate(rows), times) if rows else np.empty((len(times), len(y0)))
+            found[times == start] = y0
+            return found
+
+        stepper = task.stepper
+        return _Side(pieces(), stepper.dense_address, states, broken, lambda: _cost(task))
+    if method == "scipy":
+        from symrot.propagation import fallback
+
+        recording = fallback.record(
+            motion.rates, motion.rate_parameters, y0, start, (start, end), motion.tolerance, **motion.scipy_options
+        )
+        anywhere: Callable[[Floats], Floats] = recording
+        cost = recording.stats[:3]
+    else:
+        anywhere, cost = (lambda times: motion.integrate(times)[0]), (0, 0, 0)
+    rates = anywhere(np.linspace(start, end, SAMPLES_OF_RATE))[:, : error_blocks(plan)[0][1]]
+    longest = TURN_PER_PIECE / max(float(np.abs(rates).max()), 1e-300)
+    dense = exact_dense(anywhere, len(y0))
+    return _Side(even_pieces(start, end, longest), dense, anywhere, broken, lambda: cost)
+
+
+def _cost(task: Any) -> tuple[int, int, int]:
+    return task.accepted, task.rejected, task.evaluations

@@ -1,0 +1,216 @@
+"""Events against closed forms: zeros to the last bits, touches told from crossings, close pairs, ends of a motion."""
+
+import math
+
+import mpmath
+import numpy as np
+import pytest
+
+import symrot
+from symrot.errors import InputError, PropagationError
+from symrot.propagation.events import read_events
+from symrot.scene import Scene
+
+METHODS = ["taylor", "dop853", "exact"]
+ULP = 2.0**-52
+
+
+@pytest.fixture(scope="module", autouse=True)
+def own_cache(tmp_path_factory):
+    """Build into a directory of this test run."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("SYMROT_CACHE", str(tmp_path_factory.mktemp("cache")))
+        yield
+
+
+def scene(omega=("3/8", 1, "1/2"), stop=30, **more):
+    form = {
+        "schema": 1, "title": "body", "body": {"principal": [1, 2, 3]}, "initial": {"omega": list(omega)},
+        "span": {"t": [0, stop], "samples": 4}, "output": {"quantities": ["omega", "quaternion"]},
+    }  # fmt: skip
+    return Scene.from_dict(form | more, "body")
+
+
+def pendulum(rate, stop=20):
+    """A body that swings about its first axis from straight down: I theta'' = -m g l sin theta, all constants one."""
+    return scene(
+        (rate, 0, 0), stop, body={"principal": [1, 1, "1/2"], "about": "fixed_point"},
+        torque=[{"kind": "gravity", "weight": 1, "center_of_mass": [0, 0, -1]}],
+    )  # fmt: skip
+
+
+SPIN = {"body": {"principal": [1, 1, 1]}}  # steady rotation: components of the quaternion are cosines
+
+
+def run(found, events, method="taylor", tolerance=1e-15, **more):
+    return symrot.propagator(found, method=method, tolerance=tolerance)(events=events, **more)
+
+
+# ------------------------------------------------------------------------------------------------ closed forms
+
+
+def zeros_of_sn():
+    """Times at which omega_2 of the free body is zero: u0 + lambda t = 2 k K (moments 1, 2, 3; it rises at first)."""
+    with mpmath.workdps(40):
+        w = [mpmath.mpf("0.375"), mpmath.mpf(1), mpmath.mpf("0.5")]
+        # omega_2' = -(A - C)/B omega_1 omega_3 with omega_1^2, omega_3^2 linear in omega_2^2: sn with these constants
+        a1 = w[0] ** 2 + w[1] ** 2 * 2 * (3 - 2) / mpmath.mpf(1 * (3 - 1))
+        a3 = w[2] ** 2 + w[1] ** 2 * 2 * (2 - 1) / mpmath.mpf(3 * (3 - 1))
+        b1, b3 = mpmath.mpf(2 * (3 - 2)) / (1 * (3 - 1)), mpmath.mpf(2 * (2 - 1)) / (3 * (3 - 1))
+        rate = mpmath.mpf(3 - 1) / 2
+        # w2' = -rate sqrt(a1 - b1 w2^2) sqrt(a3 - b3 w2^2); with w2 = r sin(am): the smaller of a/b is r^2
+        first, second = (a1, b1), (a3, b3)
+        if a3 / b3 < a1 / b1:
+            first, second = second, first
+        r = mpmath.sqrt(first[0] / first[1])
+        speed = rate * mpmath.sqrt(first[1] * second[0])
+        m = second[1] * first[0] / (first[1] * second[0])
+        ahead = mpmath.ellipf(mpmath.asin(w[1] / r), m) / speed
+        half = 2 * mpmath.ellipk(m) / speed
+        return [float(k * half - ahead) for k in range(1, 7)]
+
+
+@pytest.mark.parametrize("method, ulps", [("taylor", 12), ("dop853", 60), ("exact", 4)])
+def test_zeros_of_sn(method, ulps):
+    """The free body passes omega_2 = 0 every half period of sn; it rises at the start, so it falls at the first."""
+    trajectory = run(scene(), ["omega_2"], method)
+    exact = [t for t in zeros_of_sn() if t < 30]
+    assert abs(trajectory.t_events[0] - exact).max() < ulps * ULP * 30
+    assert trajectory.event_kinds[0] == ["falling", "rising"] * (len(exact) // 2) + ["falling"] * (len(exact) % 2)
+    assert abs(trajectory.y_events[0][:, 1]).max() < 30 * ULP * 0.5  # the rate there is below one half
+    assert trajectory.status == 0 and len(trajectory) == 4
+
+
+@pytest.mark.parametrize("method", ["taylor", "exact"])
+def test_turning_points_of_a_pendulum(method):
+    """omega_1 = 0 at odd multiples of K(m), m = (omega/2)^2, and the lowest point at even ones."""
+    quarter = float(mpmath.ellipk(mpmath.mpf("0.5625")))  # omega = 3/2
+    trajectory = run(pendulum("3/2"), ["omega_1", "q1"], method)
+    count = int(20 / quarter)
+    turning = [quarter * k for k in range(1, count + 1, 2)]
+    lowest = [quarter * k for k in range(0, count + 1, 2)]
+    assert abs(trajectory.t_events[0] - turning).max() < 4 * ULP * 20
+    assert trajectory.t_events[1][0] == 0.0
+    assert abs(trajectory.t_events[1] - lowest).max() < 4 * ULP * 20
+    assert trajectory.event_kinds[1][0] == "rising"
+
+
+# ------------------------------------------------------------------------------------------------ kinds of zeros
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_touches_are_told_from_crossings_and_from_near_misses(method):
+    """q0 = cos(t/2): its square touches zero at odd multiples of pi, moved by more than rounding it does not."""
+    motion = scene((1, 0, 0), 20, **SPIN)
+    events = ["q0*q0", "q0*q0 + 1e-14", "q0*q0 - 1e-14", "q0 == 1", "q0**3"]
+    trajectory = run(motion, events, method)
+    odd = math.pi * np.array([1, 3, 5])
+    square, above, below, top, cube = trajectory.t_events
+    assert abs(square - odd).max() < 1e-12 and trajectory.event_kinds[0] == ["touching"] * 3
+    assert len(above) == 0
+    assert len(below) == 6 and abs(below - np.repeat(odd, 2) - 2e-7 * np.tile([-1, 1], 3)).max() < 1e-8
+    assert trajectory.event_kinds[2] == ["falling", "rising"] * 3
+    assert abs(top - [0, 4 * math.pi]).max() < 3e-7 and set(trajectory.event_kinds[3]) <= {"touching", "falling"}
+    assert abs(cube - odd).max() < 1e-5 and trajectory.event_kinds[4] == ["falling", "rising", "falling"]
+
+
+@pytest.mark.parametrize("gap", [1e-3, 1e-6, 1e-9])
+def test_close_pairs(gap):
+    """Two zeros of omega-free formulas of t and of the motion, however close, and ten in one step."""
+    trajectory = run(scene(), [f"(omega_2 - {gap!r})*omega_2", f"(t - 7)*(t - 7 - {gap!r})"])
+    first, second = trajectory.t_events
+    assert len(first) == 2 * len([t for t in zeros_of_sn() if t < 30]) and (np.diff(first) > 0).all()
+    assert second[0] == pytest.approx(7, abs=1e-14) and second[1] == pytest.approx(7 + gap, abs=1e-14)
+    assert trajectory.event_kinds[1] == ["falling", "rising"]
+
+
+def test_many_zeros_in_one_step():
+    trajectory = run(scene(), ["sin(40*t)"])
+    exact = math.pi / 40 * np.arange(int(30 * 40 / math.pi) + 1)
+    assert len(trajectory.t_events[0]) == len(exact) and abs(trajectory.t_events[0] - exact).max() < 4 * ULP * 30
+
+
+def test_what_is_zero_all_along_or_never_is_no_event():
+    trajectory = run(scene((0, 0, 1)), ["omega_1", "omega_3 - 2", "q0*q0 + q3*q3 - 1"])
+    assert [len(t) for t in trajectory.t_events] == [0, 0, 0]
+
+
+def test_formulas_without_a_value_somewhere():
+    """sqrt of a negative number is no event and no error; the zero beside it is found."""
+    trajectory = run(scene(), ["sqrt(t - 5) - 1", "log(t - 40)", "abs(omega_2) - 0.2"])
+    assert trajectory.t_events[0] == pytest.approx([6], abs=1e-14)
+    assert len(trajectory.t_events[1]) == 0 and len(trajectory.t_events[2]) >= 10
+
+
+# ------------------------------------------------------------------------------------------------ terminal, direction
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_terminal_event_ends_the_motion(method):
+    event = symrot.Event("omega_2", terminal=2, direction=0)
+    trajectory = run(scene(), [event, "omega_1"], method, t=np.linspace(0, 30, 301))
+    assert trajectory.status == 1 and len(trajectory.t_events[0]) == 2
+    assert trajectory.t[-1] <= trajectory.t_events[0][-1] < trajectory.t[-1] + 0.1
+    assert (trajectory.t_events[1] <= trajectory.t_events[0][-1]).all()
+    whole = run(scene(), ["omega_1"], method, t=trajectory.t)
+    assert abs(whole.omega - trajectory.omega).max() < 1e-14 and whole.status == 0
+
+
+def test_directions_and_backward_motion():
+    """Directions are those of the motion as it goes: backward, what falls in time rises."""
+    both, up, down = run(
+        scene(), ["omega_2", symrot.Event("omega_2", direction=1), {"formula": "omega_2", "direction": -1}]
+    ).t_events
+    assert sorted([*up, *down]) == list(both) and len(up) and len(down)
+    t = np.linspace(-30, 30, 7)
+    two_sided = run(scene(), ["omega_2", "t", symrot.Event("omega_2", terminal=True)], t=t)
+    assert (np.diff(two_sided.t_events[0]) > 0).all()
+    assert list(two_sided.t_events[1]) == [0.0]
+    assert len(two_sided.t_events[2]) == 2 and two_sided.t_events[2][0] < 0 < two_sided.t_events[2][1]
+    assert list(two_sided.t) == [0.0]
+
+
+def test_an_event_at_the_start_is_listed_and_ends_nothing():
+    trajectory = run(pendulum(1), [symrot.Event("q1", terminal=True, direction=1)])
+    assert trajectory.t_events[0][0] == 0.0 and len(trajectory.t_events[0]) == 2
+    assert trajectory.t_events[0][1] == pytest.approx(4 * float(mpmath.ellipk(0.25)) * 1.0, abs=1e-13)
+
+
+def test_a_singularity_beyond_a_terminal_event_does_no_harm():
+    torque = [{"kind": "expression", "torque": ["omega_1*omega_1", 0, 0]}]
+    motion = scene((1, 0, 0), 3, torque=torque, body={"principal": [1, 1, 1]})
+    assert run(motion, [symrot.Event("omega_1 == 8", terminal=True)]).t_events[0] == pytest.approx([7 / 8], abs=1e-14)
+    with pytest.raises(PropagationError, match="cannot be followed beyond t = "):
+        run(motion, ["omega_1 == 8"])
+
+
+def test_scipy_finds_the_same():
+    found = run(scene(stop=8), ["omega_2"], "scipy", 1e-12).t_events[0]
+    assert abs(found - [t for t in zeros_of_sn() if t < 8]).max() < 1e-11
+
+
+# ------------------------------------------------------------------------------------------------ refusals
+
+
+@pytest.mark.parametrize(
+    "events, words",
+    [
+        (["omega_4"], r"events\[0\]: expected names among t, omega_1..3, q0..q3 and pi, got omega_4"),
+        (["__import__('os')"], r"events\[0\]: expected"),
+        ([3], r"events\[0\]: expected a formula as text"),
+        (["q0", {"formula": "q1", "stop": 1}], r"events\[1\]: expected a formula as text"),
+        ([symrot.Event("q0", terminal=-1)], "terminal: expected true, false or a count, got -1"),
+        ([symrot.Event("q0", direction=2)], "direction: expected -1, 0 or 1, got 2"),
+        (["q0 == "], r"events\[0\]: expected a number, a name or"),
+    ],
+)
+def test_what_is_no_event_is_refused(events, words):
+    with pytest.raises(InputError, match=words):
+        read_events(events)
+
+
+def test_an_event_of_an_attitude_that_is_left_out_is_refused():
+    motion = scene(output={"quantities": ["omega"]})
+    assert len(run(motion, ["omega_2"]).t_events[0])
+    with pytest.raises(InputError, match=r'expected "quaternion" among output\.quantities'):
+        run(motion, ["q0"])
