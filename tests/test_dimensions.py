@@ -103,7 +103,7 @@ def test_what_fits_is_not_complained_of(claim):
 @pytest.mark.parametrize(("claim", "words"), [
     ("tau_1 == I1*omega_1", "the left side is kg m^2/s^2, the right side is kg m^2/s"),
     ("diff(I1*omega_1(t), t) == I1*omega_1(t)", "the left side is kg m^2/s^2, the right side is kg m^2/s"),
-    ("sin(omega_1) == 0", "the argument of sin, omega_1, is 1/s"), ("exp(t) == 1", None), ("2**t == 1", None),
+    ("sin(omega_1) == 0", "the argument of sin, omega_1, is 1/s"), ("exp(t) == 1", "the argument of exp, t, is s"),
     ("Matrix([[m], [t]]) == Matrix([[m], [g]])", "in entry (2, 1) the left side is s, the right side is m/s^2"),
     ("Rx(t*g)*Matrix([x, y, z]) == Matrix([x, y, z])", "the argument of Rx, t*g, is m/s"),
     ("atan2(t, m) == theta", "the arguments of atan2 are s and kg"), ("abs(t) + sqrt(t) == 0", "term 1 of the sum"),
@@ -111,10 +111,6 @@ def test_what_fits_is_not_complained_of(claim):
     ("trace(Matrix([[t, 0], [0, m]])) == t + m", "of a trace is s"), ("dot(Matrix([t, m]), Matrix([t, m])) == 0", "product of vectors"),
 ])  # fmt: skip
 def test_contradictions_are_found_and_named(claim, words):
-    if words is None:
-        with pytest.raises(InputError):
-            symrot.check(claim)
-        return
     found = dimension(claim)
     assert found.status == "inconsistent"
     assert words in found.text

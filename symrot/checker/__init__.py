@@ -1,9 +1,9 @@
-"""Verdicts on formulas: ``check`` and ``check_file`` are loaded on first use."""
+"""Verdicts on formulas: ``check``, ``check_file`` and ``identify`` are loaded on first use."""
 
 from importlib import import_module
 from typing import Any
 
-_HOME = {"check": "interface", "check_file": "interface", "Verdict": "verdict"}
+_HOME = {"check": "interface", "check_file": "interface", "Verdict": "verdict", "identify": "identification"}
 
 
 def __getattr__(name: str) -> Any:

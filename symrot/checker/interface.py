@@ -140,6 +140,8 @@ def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict 
                 return verdict, found
     if repair and claim.relation is not None and decision.verdict in ("false", "conditional"):
         verdict = _diagnosed(claim, decision, verdict)
+    elif repair and claim.relation is not None and verdict and verdict.conditions:
+        verdict = replace(verdict, diagnosis=_domain(claim))
     return replace(verdict, seconds=perf_counter() - start), None
 
 
@@ -161,11 +163,26 @@ def _decide(claim: Claim) -> tuple[Decision, Verdict]:
 
 def _diagnosed(claim: Claim, decision: Decision, verdict: Verdict) -> Verdict:
     from symrot.checker.diagnose import diagnose
+    from symrot.checker.identification import named_parts
 
     diagnosis, repairs = diagnose(claim, decision)
     if diagnosis.code == "none" and verdict.dimension.status == "inconsistent":
         diagnosis = Diagnosis("dimension", f"the units do not fit: {verdict.dimension.text}")
-    return replace(verdict, diagnosis=diagnosis, repairs=repairs)
+    notes = (*verdict.notes, *named_parts(claim))
+    return replace(verdict, diagnosis=diagnosis, repairs=repairs, notes=notes)
+
+
+def _domain(claim: Claim) -> Diagnosis:
+    """Return the remark that a true claim holds only where one side is defined, when the other is so everywhere."""
+    assert claim.relation is not None
+    sides = [replace(claim, relation=("==", side, side)) for side in claim.relation[1:]]
+    left, right = (decide_problem(side.problem()).conditions for side in sides)
+    if bool(left) == bool(right):
+        return Diagnosis("none", "")
+    narrow, wide = ("left", "right") if left else ("right", "left")
+    where = ", ".join(left or right)
+    text = f"it holds only where it is defined: the {narrow} side needs {where}, the {wide} side needs nothing"
+    return Diagnosis("domain", text)
 
 
 def _verdict(decision: Any, text: str, start: float) -> Verdict:

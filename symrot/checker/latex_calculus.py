@@ -3,11 +3,20 @@
 from symrot.checker.latex_cursor import CLOSING, TIME
 from symrot.checker.latex_names import NamesPart
 from symrot.checker.latex_tokens import GREEK, Token
+from symrot.checker.meaning import BUILT_IN
 from symrot.checker.tree import Node, number, product, walk
 
 __all__ = ["DOTS", "FUNCTIONS", "CalculusPart"]
 
-FUNCTIONS = {f"\\{name}": name for name in ("sin", "cos", "tan", "cot", "sec", "csc")}
+FUNCTIONS = {
+    f"\\{spelled}": name
+    for spelled, name in (
+        *((name, name) for name in ("sin", "cos", "tan", "cot", "sec", "csc", "sinh", "cosh", "tanh", "exp")),
+        *(("arcsin", "asin"), ("arccos", "acos"), ("arctan", "atan"), ("ln", "log")),
+    )
+    if name in BUILT_IN
+}
+"""Command -> function; ``\\log`` may be to several bases, and is refused."""
 
 DOTS = {"\\dot": 1, "\\ddot": 2, "\\dddot": 3}
 

@@ -1,0 +1,34 @@
+"""A true formula one side of which is defined in fewer places than the other says so beside its verdict."""
+
+import pytest
+
+import symrot
+
+
+@pytest.mark.parametrize(("claim", "needs"), [
+    ("(x**2 - 1)/(x - 1) == x + 1", "the left side needs x - 1 != 0"), ("x == sqrt(x)**2", "the right side needs x >= 0"),
+    ("sin(theta) == sin(theta)**2/sin(theta)", "the right side needs sin(theta) != 0"), ("cos(acos(x)) == x", "the left side needs 1 - x**2 >= 0"),
+])  # fmt: skip
+def test_what_holds_only_where_it_is_defined(claim, needs):
+    verdict = symrot.check(claim)
+    assert (verdict.verdict, verdict.diagnosis.code) == ("true", "domain")
+    assert needs in verdict.diagnosis.text
+    assert verdict.to_json()["diagnosis"]["code"] == "domain"
+
+
+@pytest.mark.parametrize(
+    "claim",
+    [
+        "tan(x) == sin(x)/cos(x)",
+        "1/x + 1/x == 2/x",
+        "sin(x)**2 + cos(x)**2 == 1",
+        "sqrt(x)*sqrt(x)*y/y == x*y/y*(x/x)**0",
+    ],
+)
+def test_sides_that_are_defined_alike_are_not_remarked(claim):
+    verdict = symrot.check(claim)
+    assert (verdict.verdict, verdict.diagnosis.code) == ("true", "none")
+
+
+def test_the_remark_is_left_out_with_the_repairs():
+    assert symrot.check("x/x == 1", repair=False).diagnosis.code == "none"
