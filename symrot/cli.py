@@ -201,17 +201,6 @@ def _identify(options: Namespace) -> int:
     return GOOD if found else FAILED
 
 
-def _identify(options: Namespace) -> int:
-    found = symrot.identify(options.formula)
-    if options.json:
-        _say_json([identification.to_json() for identification in found])
-    else:
-        _say(f"{identification}\n  {identification.source}" for identification in found)
-        if not found:
-            _say(["nothing that symrot derives is equal to it"])
-    return GOOD if found else FAILED
-
-
 def _scenes(options: Namespace) -> int:
     from symrot.report.layout import columns
 
@@ -305,11 +294,6 @@ def _identify_arguments(parser: ArgumentParser) -> None:
     _json_option(parser)
 
 
-def _identify_arguments(parser: ArgumentParser) -> None:
-    parser.add_argument("formula", metavar="FORMULA", help="a formula or matrix, as text or LaTeX")
-    _json_option(parser)
-
-
 def _check_textbook(options: Namespace) -> int:
     from symrot.report import errata, files
     from symrot.textbook import DOCUMENTS
@@ -340,7 +324,6 @@ COMMANDS: dict[str, tuple[str, Callable[[Namespace], int], Callable[[ArgumentPar
     "explain": ("show what is computed for a scene, what is skipped and why", _explain, _explain_arguments),
     "derive": ("print derivations, proven step by step", _derive, _derive_arguments),
     "check": ("decide whether formulas hold, and what would", _check, _check_arguments),
-    "identify": ("say what a formula is, whatever its symbols are called", _identify, _identify_arguments),
     "identify": ("say what a formula is, whatever its symbols are called", _identify, _identify_arguments),
     "emit": ("print a kernel of the library, or that of a scene, as C or NumPy", _emit, _emit_arguments),
     "scenes": ("list the scenes that come with symrot", _scenes, _json_option),
