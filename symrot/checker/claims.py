@@ -165,6 +165,9 @@ LISTS = ("symbols", "functions", "given", "alternatives", "lost")
 OTHERS = ("define", "units")
 """Keys of a claim by the shape of their value."""
 
+FILE_KEYS = ("schema", "claim", "document", "title", "kind", "lost", "note")
+"""Keys of a file: the last five tell of a document whose claims it holds."""
+
 MOST_CLAIMS = 2000
 MOST_NAMES = 500
 """Claims of a file, and names that one claim may declare or define."""
@@ -209,7 +212,7 @@ def read_entries(path: str | Path) -> list[Claim | Refusal]:
     table = read_toml(Path(path), label, "claim")
     if table.get("schema") != 1:
         raise InputError(f"{label}: expected schema = 1, got {table.get('schema')!r}")
-    unknown = next((key for key in table if key not in ("schema", "claim")), None)
+    unknown = next((key for key in table if key not in FILE_KEYS), None)
     if unknown is not None:
         raise InputError(f"{label}: expected schema and [[claim]] tables, got the key {unknown[:40]!r}")
     found = table.get("claim")
