@@ -15,7 +15,8 @@ from time import perf_counter
 
 from symrot.checker.edits import single_edits
 from symrot.checker.interface import check
-from symrot.checker.judge import ANGLES, FUNCTIONS, SYMBOLS, truth
+from symrot.checker.judge import ANGLES, FUNCTIONS, QUATERNIONS, SYMBOLS
+from symrot.checker.judge_wider import EXPONENTS, HYPOTHESES, INVERSES, truth_under
 from symrot.checker.reader import read_expression
 from symrot.checker.tree import Node, number, product, replaced, sum_of, text, walk
 from symrot.errors import InputError
@@ -42,8 +43,18 @@ RULES = (
     ("qmul(P, qmul(Q, P))", "qmul(qmul(P, Q), P)"), ("dcm_of(qmul(P, Q))", "dcm_of(P)*dcm_of(Q)"),
     ("diff(sin(F), t)", "cos(F)*diff(F, t)"), ("diff(cos(F), t)", "-sin(F)*diff(F, t)"),
     ("diff(X*Y, t)", "diff(X, t)*Y + X*diff(Y, t)"), ("diff(X + Y, t)", "diff(X, t) + diff(Y, t)"),
+    ("sqrt(X**2)", "abs(X)"), ("abs(X)", "sqrt(X**2)"), ("abs(X*Y)", "abs(X)*abs(Y)"), ("abs(X)**2", "X**2"),
+    ("abs(cos(A))", "sqrt((1 + cos(2*A))/2)"), ("abs(sin(A))", "sqrt(1 - cos(A)**2)"), ("abs(X)", "abs(-X)"),
+    ("abs(X/Y)", "abs(X)/abs(Y)"), ("abs(X)", "X**2/abs(X)"),
+    ("exp(H + J)", "exp(H)*exp(J)"), ("exp(H - J)", "exp(H)/exp(J)"), ("exp(H)", "exp(H/2)**2"),
+    ("exp(H)", "1/exp(-H)"), ("exp(2*H)", "exp(H)**2"), ("exp(H)*exp(J)", "exp(H + J)"),
+    ("cos(2*asin(k))", "1 - 2*k**2"), ("sin(asin(k))", "k"), ("cos(acos(k))", "k"), ("tan(atan(l))", "l"),
+    ("cos(asin(k))", "sqrt(1 - k**2)"), ("sin(acos(k))", "sqrt(1 - k**2)"), ("sin(2*atan(l))", "2*l/(1 + l**2)"),
+    ("cos(2*atan(l))", "(1 - l**2)/(1 + l**2)"), ("sin(2*asin(k))", "2*k*cos(asin(k))"),
+    ("cos(A + asin(k))", "cos(A)*cos(asin(k)) - k*sin(A)"), ("sin(A + atan(l))", "cos(atan(l))*(sin(A) + l*cos(A))"),
 )  # fmt: skip
-"""Left and right of identities; A, B angles, X, Y, Z scalars, U, V columns, P, Q quaternions, F a function of time."""
+"""Left and right of identities; A, B angles, X, Y, Z scalars, U, V columns, P, Q quaternions, F a function of time,
+H, J exponents."""
 
 SEEDS = (
     "sin(a + b)*cos(c)", "x*sin(a) + y*cos(b)", "(x + y)*(z - x)", "cos(2*a) + sin(b)**2", "tan(a)*x",
@@ -57,11 +68,50 @@ SEEDS = (
     "trace(Rx(a)*Rz(b))", "(Rx(a)*Rz(b)).T", "inverse(Rx(a))*Ry(c)", "diff(Rx(theta(t))*Rz(phi(t)), t)",
 )  # fmt: skip
 
+WIDER_SEEDS = (
+    "sqrt(x**2*y**2) + abs(z)", "abs(x)*abs(y - z)", "abs(cos(a))*x + abs(sin(a))*y", "abs(x*y)/abs(z)",
+    "sqrt(x**2 + 2*x*y + y**2)", "sqrt((x*cos(a))**2)*sqrt(y**2)",
+    "exp(u + v)*x + exp(2*u)", "exp(u - v)*sin(a)", "x*exp(u)*exp(v) + y/exp(u)",
+    "Rz(a)*Matrix([x*exp(u), exp(-v), z])",
+    "cos(asin(k))*x + k", "sin(a + asin(k))", "cos(2*atan(l))*y + sin(2*atan(l))", "sin(2*acos(k))*z",
+    "tan(atan(l))*x + cos(acos(k))", "cos(a + asin(k))*cos(b)", "sin(a + atan(l))*x",
+)  # fmt: skip
+"""Roots, exponentials and inverse functions."""
+
+UNIT_P, UNIT_Q, UNIT_V, UNIT_XY, PRODUCT = HYPOTHESES
+UNDER: tuple[tuple[tuple[str, ...], tuple[str, ...], tuple[tuple[str, str], ...]], ...] = (
+    ((UNIT_P,), ("dcm_of(p0, p1, p2, p3)*Matrix([x, y, z])", "dcm_of(p0, p1, p2, p3)*skew(x, y, z)", "p0**2 - p3**2",
+                 "trace(dcm_of(p0, p1, p2, p3))"),
+     (("1", "p0**2 + p1**2 + p2**2 + p3**2"), ("p0**2", "1 - p1**2 - p2**2 - p3**2"),
+      ("X", "X*det(dcm_of(p0, p1, p2, p3))"), ("trace(dcm_of(p0, p1, p2, p3))", "4*p0**2 - 1"),
+      ("dcm_of(p0, p1, p2, p3)", "inverse(dcm_of(p0, p1, p2, p3)).T"))),
+    ((UNIT_P, UNIT_Q), ("qmul((p0, p1, p2, p3), (q0, q1, q2, q3))", "dcm_of(p0, p1, p2, p3)*dcm_of(q0, q1, q2, q3)",
+                        "p0*q0 + p1*q1 + x"),
+     (("dcm_of(p0, p1, p2, p3)*dcm_of(q0, q1, q2, q3)", "dcm_of(qmul((p0, p1, p2, p3), (q0, q1, q2, q3)))"),
+      ("X", "X*(p0**2 + p1**2 + p2**2 + p3**2)"), ("X", "X + q0**2 + q1**2 + q2**2 + q3**2 - 1"))),
+    ((UNIT_V,), ("skew(x, y, z)*skew(x, y, z)", "x*sin(a) + y*z", "(x*y + z)**2", "skew(x, y, z)*Matrix([z, x, y])"),
+     (("x**2", "1 - y**2 - z**2"), ("1", "x**2 + y**2 + z**2"), ("X", "X*(x**2 + y**2 + z**2)"),
+      ("skew(x, y, z)", "-skew(x, y, z)*skew(x, y, z)*skew(x, y, z)"),
+      ("skew(x, y, z)*skew(x, y, z)", "Matrix([x, y, z])*Matrix([x, y, z]).T - eye(3)"))),
+    ((UNIT_XY,), ("(x + y)**2", "x**4 - y**4", "x*cos(a) + y*sin(a)", "Matrix([[x, -y], [y, x]])*Matrix([z, x])"),
+     (("x**2", "1 - y**2"), ("1", "x**2 + y**2"), ("X", "X*(x**2 + y**2)"),
+      ("(x + y)**2", "1 + 2*x*y"), ("x**4 - y**4", "x**2 - y**2"))),
+    ((PRODUCT,), ("x*y + z", "(x + y)**2 - z", "z*sin(a) - x*y*cos(a)", "Rx(a)*Matrix([z, x, y])"),
+     (("z", "x*y"), ("x*y", "z"), ("X", "X + z - x*y"), ("z", "2*z - x*y"))),
+)  # fmt: skip
+"""Hypotheses, seeds, and rules that hold under them."""
+
 
 # -- claims -----------------------------------------------------------------------------------------------------------
 
 _KINDS = {"A": "angle", "B": "angle", "X": "scalar", "Y": "scalar", "Z": "scalar", "U": "matrix", "V": "matrix",
-          "P": "matrix", "Q": "matrix", "F": "function"}  # fmt: skip
+          "P": "matrix", "Q": "matrix", "F": "function", "H": "exponent", "J": "exponent"}  # fmt: skip
+NOT_INSIDE = ("Rx", "Ry", "Rz", "sin", "cos", "tan", "exp", *INVERSES, *FUNCTIONS)
+"""Functions whose arguments are left as they are: an angle is to stay one."""
+
+LONGEST = 1500
+"""Letters of a claim."""
+
 _MATRICES = ("Rx", "Ry", "Rz", "skew", "cross", "Matrix", "qmul", "dcm_of", "vee", "diag", "inverse")
 
 
@@ -82,10 +132,14 @@ def _fits(kind: str, node: Node) -> bool:
     if is_matrix(node):
         return False
     names = {piece.value for _, piece in walk(node) if piece.kind == "name"} - {"t", "pi"}
+    if kind == "exponent":
+        return bool(names) and names <= {*EXPONENTS}
     calls = {piece.value for _, piece in walk(node) if piece.kind == "call"}
     if kind == "angle":
         return names <= {*ANGLES} and calls <= {*FUNCTIONS} and node.kind != "number"
-    return bool(names <= {*SYMBOLS, *ANGLES} and (not names & {*ANGLES} or calls & {"sin", "cos", "tan"}))
+    known = {*SYMBOLS, *ANGLES, *INVERSES.values(), *EXPONENTS, *(name for q in QUATERNIONS for name in q)}
+    inside = names & {*ANGLES, *EXPONENTS}
+    return names <= known and (not inside or bool(calls & {"sin", "cos", "tan", "exp"}))
 
 
 def _matched(pattern: Node, node: Node, found: dict[str, Node]) -> bool:
@@ -113,17 +167,25 @@ def _filled(pattern: Node, found: dict[str, Node]) -> Node:
     return Node(pattern.kind, pattern.value, tuple(args))
 
 
-_COMPILED = tuple((read_expression(left), read_expression(right)) for left, right in RULES)
+Rules = Sequence[tuple[Node, Node]]
 
 
-def rewritten(tree: Node, source: Random) -> Node:
+def _compiled(rules: Sequence[tuple[str, str]]) -> Rules:
+    return tuple((read_expression(left), read_expression(right)) for left, right in rules)
+
+
+_COMPILED = _compiled(RULES)
+_UNDER = tuple((given, seeds, (*_compiled(rules), *_COMPILED)) for given, seeds, rules in UNDER)
+
+
+def rewritten(tree: Node, source: Random, rules: Rules = _COMPILED) -> Node:
     """Return a tree with one random rule used at one random piece, read again as text."""
     places = [(path, node) for path, node in walk(tree) if node.kind not in ("list",)]
     for _ in range(60):
         path, node = source.choice(places)
-        if _inside(tree, path, ("Rx", "Ry", "Rz", "sin", "cos", "tan", *FUNCTIONS)) or path_in_exponent(tree, path):
+        if _inside(tree, path, NOT_INSIDE) or path_in_exponent(tree, path):
             continue
-        left, right = source.choice(_COMPILED)
+        left, right = source.choice(rules)
         found: dict[str, Node] = {}
         if _matched(left, node, found) and (found or node.kind != "name"):
             made = _filled(right, found)
@@ -149,26 +211,41 @@ def path_in_exponent(tree: Node, path: Sequence[int]) -> bool:
     return False
 
 
-def claims(count: int, seed: int = 0) -> Iterator[tuple[str, bool]]:
-    """Yield generated claims as text, with their truth: half of them true."""
+Generated = tuple[str, tuple[str, ...], bool]
+"""A claim, its hypotheses, and whether it is true."""
+
+
+def claims(count: int, seed: int = 0) -> Iterator[Generated]:
+    """Yield generated claims as text, with their hypotheses and their truth: half of them true."""
     source = Random(seed)
     made = 0
     while made < count:
-        left = right = read_expression(source.choice(SEEDS))
+        given, seeds, rules = _setting(source)
+        left = right = read_expression(source.choice(seeds))
         for _ in range(source.randint(2, 5)):
-            right = rewritten(right, source)
+            right = rewritten(right, source, rules)
         if source.random() < 0.5:
-            left = rewritten(left, source)
-        if left == right or len(text(left)) + len(text(right)) > 1500 or truth(left, right, source, 1) is not True:
+            left = rewritten(left, source, rules)
+        if left == right or len(text(left)) + len(text(right)) > LONGEST:
+            continue
+        if truth_under(left, right, given, source, 1) is not True:
             continue
         wanted = made % 2 == 0
         if not wanted:
             edits = list(single_edits(right, [*SYMBOLS, *ANGLES], FUNCTIONS, is_matrix, moving=False))
             right = source.choice(edits).tree
-            if truth(left, right, source) is not False:
+            if truth_under(left, right, given, source) is not False:
                 continue
         made += 1
-        yield f"{text(left)} == {text(right)}", wanted
+        yield f"{text(left)} == {text(right)}", given, wanted
+
+
+def _setting(source: Random) -> tuple[tuple[str, ...], Sequence[str], Rules]:
+    """Return hypotheses, seeds and rules: half of all claims are plain, a quarter wider, a quarter under hypotheses."""
+    chosen = source.randrange(4)
+    if chosen < 2:
+        return (), SEEDS, _COMPILED
+    return ((), WIDER_SEEDS, _COMPILED) if chosen == 2 else source.choice(_UNDER)
 
 
 @dataclass(frozen=True)
@@ -198,18 +275,19 @@ def campaign(count: int, seed: int = 0, progress: Callable[[int], None] = lambda
     counts: Counter[tuple[bool, str]] = Counter()
     wrong, refused = [], []
     slowest, start = 0.0, perf_counter()
-    for done, (claim, true) in enumerate(claims(count, seed), start=1):
+    for done, (claim, given, true) in enumerate(claims(count, seed), start=1):
         before = perf_counter()
+        shown = claim + "".join(f", given {hypothesis}" for hypothesis in given)
         try:
-            verdict = check(claim, repair=False).verdict
+            verdict = check(claim, assume=given, repair=False).verdict
         except InputError as reason:
             verdict = "refused"
             if true:
-                refused.append(f"{claim}: {reason}")
+                refused.append(f"{shown}: {reason}")
         slowest = max(slowest, perf_counter() - before)
         counts[true, verdict] += 1
         if (true, verdict) not in RIGHT and verdict != "refused":
-            wrong.append(f"{'true' if true else 'false'} but {verdict}: {claim}")
+            wrong.append(f"{'true' if true else 'false'} but {verdict}: {shown}")
         progress(done)
     return Outcome(dict(counts), tuple(wrong), tuple(refused), slowest, perf_counter() - start)
 

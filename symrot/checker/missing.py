@@ -1,7 +1,9 @@
 """Repairs that add what a claim lacks: a term read off the exact difference, a matrix factor, another definition."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
+
+from sympy import factor
 
 from symrot.checker.decision import shown
 from symrot.checker.edits import Edit
@@ -15,8 +17,13 @@ from symrot.exact.ratio import TooLarge
 
 __all__ = ["lacking_matrix", "lacking_term", "renamed"]
 
-MOST_BRACKETS = 8
-MOST_LETTERS = 120
+MOST_BRACKETS = 12
+MOST_BRACKETS_OF_LARGE = 4
+LARGE = 300
+"""Pieces of an entry from which on fewer brackets are looked into."""
+
+MOST_TERMS = 60
+MOST_LETTERS = 240
 """Length of a missing term that is still offered."""
 
 
@@ -30,53 +37,61 @@ def lacking_term(sieve: Sieve) -> Iterator[Found]:
         residuals = [normal_form(a - b, problem.hypotheses) for a, b in zip(lefts, rights, strict=True)]
     except (TooLarge, InputError):
         return
-    lacking = {n: term for n, term in enumerate(residuals) if term != 0}
-    if any(not _is_term(term) for term in lacking.values()):
-        return
+    lacking = {n: residual for n, residual in enumerate(residuals) if residual != 0}
     for place, sign in (("right", 1), ("left", -1)):
         tree = sieve.tree_at(place)
         cells = {0: ()} if shape is None else cells_of(tree)
         if not speaks(tree) or tree.kind == "name" or not lacking.keys() <= cells.keys():
             continue
-        made = tree
-        for number_of, term in lacking.items():
-            piece = at(made, cells[number_of])
-            assert piece is not None
-            added = read_expression(shown(sign * term))
-            whole = added if piece == number(0) else sum_of([piece, added])
-            made = replaced(made, cells[number_of], always(whole))
-        cost = 1.7 * len(lacking)
-        yield cost, "missing_term", (Change(place, Edit("missing_term", cost, (), made)),)
-    if shape is None:
-        yield from _inside(sieve, residuals[0], problem.hypotheses)
+        yield from _whole(sieve, place, {cells[n]: sign * residual for n, residual in lacking.items()})
+    for place, sign in (("right", 1), ("left", -1)):
+        cells = {0: ()} if shape is None else cells_of(sieve.tree_at(place))
+        if len(lacking) == 1 and lacking.keys() <= cells.keys():
+            ((number_of, residual),) = lacking.items()
+            yield from _inside(sieve, place, cells[number_of], sign * residual, problem.hypotheses)
 
 
-def _inside(sieve: Sieve, residual: Any, hypotheses: Sequence[Any]) -> Iterator[Found]:
+def _whole(sieve: Sieve, place: str, lacking: Mapping[Path, Any]) -> Iterator[Found]:
+    """Yield a side with what each of its entries lacks, where that is one term."""
+    made = sieve.tree_at(place)
+    for path, residual in lacking.items():
+        term, piece = _term(residual), at(made, path)
+        if term is None or piece is None:
+            return
+        whole = term if piece == number(0) else sum_of([piece, term])
+        made = replaced(made, path, always(whole))
+    cost = 1.75 * len(lacking)
+    yield cost, "missing_term", (Change(place, Edit("missing_term", cost, (), made)),)
+
+
+def _inside(sieve: Sieve, place: str, cell: Path, residual: Any, hypotheses: Sequence[Any]) -> Iterator[Found]:
     """Yield a side with the one term that a bracket in it lacks: ``a (b + m)`` for ``a b``."""
     meaning = sieve.claim.meaning()
-    for place, sign in (("right", 1), ("left", -1)):
-        tree = sieve.tree_at(place)
-        for path, piece in [found for found in _linear_pieces(tree) if found[0]][:MOST_BRACKETS]:
-            ends = [meaning.read(replaced(tree, path, always(number(value)))) for value in (0, 1)]
-            try:
-                term = normal_form(sign * residual / (ends[1] - ends[0]), hypotheses)
-            except (TooLarge, InputError):
-                continue
-            if not _is_term(term):
-                continue
-            made = replaced(tree, path, always(sum_of([piece, read_expression(shown(term))])))
+    tree = sieve.tree_at(place)
+    whole = at(tree, cell)
+    assert whole is not None
+    most = MOST_BRACKETS if sum(1 for _ in walk(whole)) < LARGE else MOST_BRACKETS_OF_LARGE
+    brackets = sorted(_linear_pieces(whole), key=lambda found: found[1].kind != "sum")
+    for path, piece in [found for found in brackets if found[0]][:most]:
+        ends = [meaning.read(replaced(whole, path, always(number(value)))) for value in (0, 1)]
+        try:
+            term = _term(normal_form(residual / (ends[1] - ends[0]), hypotheses))
+        except (TooLarge, InputError):
+            continue
+        if term is not None:
+            made = replaced(tree, (*cell, *path), always(sum_of([piece, term])))
             yield 1.8, "missing_term", (Change(place, Edit("missing_term", 1.8, path, made)),)
 
 
 def lacking_matrix(sieve: Sieve) -> Iterator[Found]:
     """Yield a tree with one matrix multiplied by another one that occurs, from the left or the right."""
     named = [Node("name", name) for name in sorted(sieve.matrix_names)]
-    factors = [*named, *(Node("transpose", None, (factor,)) for factor in named)]
+    factors = [*named, *(Node("transpose", None, (by,)) for by in named)]
     for place in SIDES:
         tree = sieve.tree_at(place)
         for path, piece in pieces(tree):
-            for factor in factors if sieve.is_matrix(piece) and speaks(tree) else ():
-                for both in ([factor, piece], [piece, factor]):
+            for by in factors if sieve.is_matrix(piece) and speaks(tree) else ():
+                for both in ([by, piece], [piece, by]):
                     made = replaced(tree, path, always(product(both)))
                     change = Change(place, Edit("factor", 1.4 + 0.05 * len(path), path, made))
                     if sieve.holds([change]):
@@ -97,10 +112,16 @@ def renamed(sieve: Sieve) -> Iterator[Found]:
                     yield 1.3, "wrong_symbol", (change,)
 
 
-def _is_term(term: Any) -> bool:
-    """Return whether an expression is one product, short and without a divisor, as a term that was left out is."""
-    above, below = term.as_numer_denom()
-    return bool(below.is_number and not above.is_Add and term.free_symbols and len(shown(term)) <= MOST_LETTERS)
+def _term(residual: Any) -> Node | None:
+    """Return a residual as a term that was left out: one product, of brackets too, short and without a divisor."""
+    above, below = residual.as_numer_denom()
+    if not below.is_number or not residual.free_symbols:
+        return None
+    if above.is_Add:
+        residual = factor(residual) if len(above.args) <= MOST_TERMS else above
+    if residual.is_Add or len(shown(residual)) > MOST_LETTERS:
+        return None
+    return read_expression(shown(residual))
 
 
 def _linear_pieces(tree: Node, path: Path = ()) -> Iterator[tuple[Path, Node]]:

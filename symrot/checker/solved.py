@@ -65,6 +65,7 @@ class Vocabulary:
             entries += self._products(atoms, degree)[: MOST_PRODUCTS - len(entries)]
         sums = self._valued(dict.fromkeys(n for n in written if n.kind == "sum" and not sieve.is_matrix(n)), MOST_SUMS)
         entries += [Entry((a, s), _times(u, v)) for s, v in sums for a, u in [(number(1), v), *atoms] if a != number(1)]
+        entries += [Entry((r, s), _times(u, v)) for (r, u), (s, v) in combinations_with_replacement(sums, 2)]
         entries += [Entry((node,), values) for node, values in sums]
         terms = dict.fromkeys(n for n in written if n.kind in ("product", "power") and not sieve.is_matrix(n))
         entries += [Entry((node,), values) for node, values in self._valued(terms, 10 * MOST_SUMS)]
