@@ -185,9 +185,7 @@ def test_errors_are_those_promised(name, tolerance):
     own = problem(name)
     order = lanes.order_for(tolerance)
     path = library.build(lanes.translation_unit(own.kernel.rates, own.blocks, own.scales, order), "accuracy")
-    found = lanes.follow(
-        path, np.array([own.p] * 5), np.array([own.y0] * 5), 0.0, np.array([own.stop]), tolerance
-    )
+    found = lanes.follow(path, np.array([own.p] * 5), np.array([own.y0] * 5), 0.0, np.array([own.stop]), tolerance)
     assert own.error(found.states[0, 0], bench.reference(name)) < 5 * tolerance
     assert (found.states == found.states[0]).all()
 

@@ -230,7 +230,7 @@ static SYMROT_APART void symrot_first_units(symrot_job *job, symrot_lanes *lanes
     for (int tries = 0; tries < 64; ++tries) {
         symrot_jet(c, symrot_load(lanes->t), unit, 2, x);
         broken = fresh & ~symrot_finite(x, 2);
-        if (!symrot_any(broken)) break;
+        if (!V_ANY(broken)) break;
         unit = V_SELECT(broken, V_MUL(unit, V_ALL(1.0/65536)), unit);
     }
     SYMROT_UNROLLED for (int b = 0; b < SYMROT_BLOCKS; ++b) {
@@ -351,7 +351,7 @@ SYMROT_EXPORT int symrot_lanes_run(symrot_lanes *lanes, symrot_job *job, int64_t
         for (;;) {  /* samples inside the step, one of each lane at a time */
             const symrot_v due = symrot_load(lanes->due);
             const symrot_bits inside = stepping & V_LESS(V_MUL(V_SUB(due, t1), side), V_ALL(0.0));
-            if (!symrot_any(inside)) break;
+            if (!V_ANY(inside)) break;
             const symrot_v at = V_DIV(V_SUB(V_SUB(due, t), low), unit);
             EACH_STATE(i) y1[i] = V_ADD(x[i][0], V_FMA(symrot_sum(x[i], at), at, carry[i]));
             EACH_LANE(l) if (V_LANE(inside, l)) symrot_sample(job, lanes, l, y1);
@@ -367,7 +367,7 @@ SYMROT_EXPORT int symrot_lanes_run(symrot_lanes *lanes, symrot_job *job, int64_t
         low = V_SELECT(stepping, low1, low);
         steps = V_ADD(steps, V_SELECT(stepping, V_ALL(1.0), V_ALL(0.0)));
         symrot_bits ended = stepping & V_EQUAL(symrot_load(lanes->due), t);
-        while (symrot_any(ended)) {  /* samples at the end of the step */
+        while (V_ANY(ended)) {  /* samples at the end of the step */
             EACH_STATE(i) y1[i] = x[i][0];
             EACH_LANE(l) if (V_LANE(ended, l)) symrot_sample(job, lanes, l, y1);
             ended = stepping & V_EQUAL(symrot_load(lanes->due), t);
@@ -375,7 +375,7 @@ SYMROT_EXPORT int symrot_lanes_run(symrot_lanes *lanes, symrot_job *job, int64_t
 
         const symrot_bits far = stepping & V_LESS(V_ALL(0.6), symrot_size_of(logarithm));
         const symrot_bits broken = active & ~finite;
-        if (symrot_any(far | broken)) {
+        if (V_ANY(far | broken)) {
             const symrot_v magic = V_ALL(6755399441055744.0);  /* added and taken away again, it rounds */
             const symrot_v nearest = symrot_exp2(V_SUB(V_ADD(logarithm, magic), magic));
             unit = V_SELECT(far, V_MUL(unit, nearest), unit);
@@ -386,7 +386,7 @@ SYMROT_EXPORT int symrot_lanes_run(symrot_lanes *lanes, symrot_job *job, int64_t
         const symrot_bits lost = broken & V_LESS(V_ALL(60.0), halvings);
         const symrot_bits full = stepping & ~at_stop & ~V_LESS(steps, V_ALL(job->max_steps));
         const symrot_bits over = (stepping & at_stop) | lost | (active & finite & stuck) | full;
-        if (symrot_any(over) || attempts == 0) {
+        if (V_ANY(over) || attempts == 0) {
             symrot_keep(lanes->t, t);
             symrot_keep(lanes->low, low);
             symrot_keep(lanes->unit, unit);

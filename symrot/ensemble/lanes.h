@@ -38,7 +38,13 @@ typedef double symrot_v __attribute__((vector_size(8*SYMROT_LANES)));
 typedef int64_t symrot_bits __attribute__((vector_size(8*SYMROT_LANES)));  /* a mask has all bits of a lane, or none */
 #define V_ALL(s) ((double)(s) - (symrot_v){0.0})
 #define V_LANE(v, i) ((v)[i])
+#if SYMROT_LANES == 4 && defined(__AVX__) && defined(__GNUC__) && !defined(__clang__)  /* gcc does not find these */
+#define V_SELECT(m, a, b) __builtin_ia32_blendvpd256(b, a, (symrot_v)(m))
+#define V_ANY(m) (__builtin_ia32_movmskpd256((symrot_v)(m)) != 0)
+#else
 #define V_SELECT(m, a, b) ((symrot_v)(((symrot_bits)(a) & (m)) | ((symrot_bits)(b) & ~(m))))
+#define V_ANY(m) symrot_any(m)
+#endif
 #define V_LESS(a, b) ((symrot_bits)((a) < (b)))
 #define V_EQUAL(a, b) ((symrot_bits)((a) == (b)))
 #define V_TO_BITS(v) ((symrot_bits)(v))
@@ -50,6 +56,7 @@ typedef int64_t symrot_bits;
 #define V_ALL(s) ((double)(s))
 #define V_LANE(v, i) ((&(v))[i])
 #define V_SELECT(m, a, b) ((m) ? (a) : (b))
+#define V_ANY(m) ((m) != 0)
 #define V_LESS(a, b) (-(symrot_bits)((a) < (b)))
 #define V_EQUAL(a, b) (-(symrot_bits)((a) == (b)))
 #define V_TO_BITS(v) symrot_to_bits(v)

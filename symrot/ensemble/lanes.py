@@ -35,7 +35,13 @@ REASONS = {
     UNDERFLOW: "the step shrank to nothing, as it does before a singularity",
     TOO_MANY: "{steps} steps were not enough",
 }
-ORDERS = ((1e-3, 12), (1e-6, 16), (0.0, 20))  # from which tolerance on which order is fastest, see order_for
+ORDERS = (
+    (3e-3, 12),
+    (3e-6, 14),
+    (3e-8, 16),
+    (3e-9, 18),
+    (0.0, 20),
+)  # from which tolerance on which order is fastest, see order_for
 
 
 def order_for(tolerance: float) -> int:

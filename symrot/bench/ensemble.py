@@ -1,0 +1,260 @@
+"""Measure ensembles in SIMD lanes against heyoka's batch and ensemble modes, at equal error, on one core.
+
+    python -m symrot.bench.ensemble [--rounds 9] [--orders] [--motion NAME] [--many 4096]
+
+The motions are those of :mod:`symrot.bench.taylor`, from initial states that differ by a tenth: eight trajectories over
+the whole span, and 4096 over a twentieth of it. heyoka compiles the same right-hand side, its constants as numbers; it
+runs as batches of 4 and of 8 and, for the many, through ``ensemble_propagate_until`` and its batch form with one
+thread. Runs are interleaved and the least time of each counts. The error is the largest of all trajectories (of the
+first 16 of the many) against heyoka in long double, which is held against a series in 40 digits. At each decade of the
+error the table takes the fastest run that is at least as good.
+
+``--orders`` compares orders of our own series instead. heyoka is needed: ``pip install heyoka``.
+"""
+
+import argparse
+import gc
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
+from time import perf_counter
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from symrot.bench.taylor import DECADES, MOTIONS, Floats, Run, best_of, reference
+from symrot.bench.taylor import _Problem as Problem
+from symrot.codegen import library
+from symrot.ensemble import lanes
+
+__all__ = ["main", "measure"]
+
+SPREAD = 0.1  # of the initial states about those of the motion
+SHORTER = 20  # the span of the many is so much shorter
+COMPARED = 16  # of the many are compared with the reference
+TIGHTEST = 1e-19  # tolerance of the reference in long double
+ORDERS = (8, 10, 12, 14, 16, 18, 20, 24)
+WIDTHS = (4, 8)
+ENSEMBLE_TOLERANCES = (1e-6, 1e-12)  # few: each of its trajectories takes a copy of the integrator
+
+
+class Start(NamedTuple):
+    """An ensemble: its motion, initial states (n, N), end, and the last states of the first of them."""
+
+    problem: Any
+    y: Floats
+    stop: float
+    exact: Floats
+
+    def error(self, states: Floats) -> float:
+        """Return the largest error of last states (n, N)."""
+        pairs = zip(states[: len(self.exact)], self.exact, strict=True)
+        return float(max(self.problem.error(found, exact) for found, exact in pairs))
+
+
+def prepare(name: str, n: int, stop: float, problem: Any) -> Start:
+    """Return an ensemble about a motion; its first trajectory is the motion itself."""
+    random = np.random.default_rng(1)
+    y = np.tile(np.array(problem.y0), (n, 1))
+    rates = problem.blocks[1]
+    y[1:, :rates] *= 1 + SPREAD * random.standard_normal((n - 1, rates))
+    y[1:, rates:] += SPREAD * random.standard_normal((n - 1, y.shape[1] - rates))
+    y[1:, rates:] /= np.sqrt((y[1:, rates:] ** 2).sum(axis=1, keepdims=True))
+    return Start(problem, y, stop, _references(problem, y[:COMPARED], stop))
+
+
+def _references(problem: Any, y: Floats, stop: float) -> Floats:
+    """Return last states in long double."""
+    import heyoka
+
+    real = np.longdouble
+    integrator = heyoka.taylor_adaptive(_system(problem, real), y[0].astype(real), tol=real(TIGHTEST), fp_type=real)
+    found = np.empty_like(y)
+    for row, start in zip(found, y, strict=True):
+        integrator.time = real(0)
+        integrator.state[:] = start.astype(real)
+        integrator.propagate_until(real(stop))
+        row[:] = integrator.state.astype(float)
+    return found
+
+
+def _system(problem: Any, real: Callable[[float], Any] = float) -> list[tuple[Any, Any]]:
+    """Return the right-hand side for heyoka."""
+    import heyoka
+
+    names = [name for name, *_ in problem.kernel.rates.signature.argument("y").components]
+    variables = dict(zip(names, heyoka.make_vars(*names), strict=True))
+    values = [real(value) for value in problem.p]
+    parameters = dict(zip((name for name, _ in problem.kernel.rate_parameters), values, strict=True))
+    functions = {name: getattr(heyoka, name) for name in ("sqrt", "sin", "cos", "exp")}
+    rates = problem.kernel.rates.evaluate({**variables, **parameters, "t": heyoka.time}, functions, real)
+    return [(variables[name], rates[f"d{name}"]) for name in names]
+
+
+# ------------------------------------------------------------------------------------------------ contestants
+
+Outcome = tuple[int, Floats]  # steps of all trajectories, last states (n, N)
+Task = tuple[str, float, Callable[[], Outcome]]
+
+
+def _library(problem: Any, order: int, width: int | None = None) -> Any:
+    source = lanes.translation_unit(problem.kernel.rates, problem.blocks, problem.scales, order, width)
+    return library.build(source, "lanes")
+
+
+def _lanes(path: Any, start: Start, p: Floats, tolerance: float) -> Outcome:
+    found = lanes.follow(path, p, start.y, 0.0, np.array([start.stop]), tolerance)
+    return int(found.steps.sum()), found.states[:, 0]
+
+
+def _ours(
+    start: Start, tolerances: Sequence[float], orders: Iterable[int] = (), width: int | None = None
+) -> list[Task]:
+    p = np.tile(np.array(start.problem.p), (len(start.y), 1))
+    tasks: list[Task] = []
+    for order in sorted(set(orders)) or [0]:
+        for tolerance in tolerances:
+            path = _library(start.problem, order or lanes.order_for(tolerance), width)
+            tasks.append((f"{order}" if order else "lanes", tolerance, partial(_lanes, path, start, p, tolerance)))
+    return tasks
+
+
+def _batches(integrator: Any, width: int, start: Start) -> Outcome:
+    """Run heyoka's integrator of a batch over the ensemble, one batch after the other."""
+    states, steps = np.empty_like(start.y), 0
+    for first in range(0, len(start.y), width):
+        integrator.set_time(0.0)
+        integrator.state[:] = start.y[first : first + width].T
+        integrator.propagate_until(start.stop)
+        states[first : first + width] = integrator.state.T
+        steps += sum(result[3] for result in integrator.propagate_res)
+    return steps, states
+
+
+def _ensemble(propagate: Any, integrator: Any, width: int, start: Start) -> Outcome:
+    """Run heyoka's own loop over an ensemble, in one thread."""
+
+    def begin(integrator: Any, i: int) -> Any:
+        if width == 1:
+            integrator.time = 0.0
+            integrator.state[:] = start.y[i]
+        else:
+            integrator.set_time(0.0)
+            integrator.state[:] = start.y[i * width : (i + 1) * width].T
+        return integrator
+
+    found = propagate(integrator, start.stop, len(start.y) // width, begin, max_workers=1)
+    states = np.vstack([one[0].state.T if width > 1 else one[0].state[None] for one in found])
+    if width == 1:
+        return sum(int(one[4]) for one in found), states
+    return sum(int(result[3]) for one in found for result in one[0].propagate_res), states
+
+
+def _heyoka(start: Start, tolerances: Sequence[float], many: bool) -> list[Task]:
+    import heyoka
+
+    system = _system(start.problem)
+    tasks: list[Task] = []
+    for tolerance in tolerances:
+        for width in WIDTHS:
+            first = np.ascontiguousarray(start.y[:width].T)
+            integrator = heyoka.taylor_adaptive_batch(system, first, tol=tolerance)
+            tasks.append((f"heyoka batch {width}", tolerance, partial(_batches, integrator, width, start)))
+    for tolerance in ENSEMBLE_TOLERANCES if many else ():
+        width = WIDTHS[0]
+        batch = heyoka.taylor_adaptive_batch(system, np.ascontiguousarray(start.y[:width].T), tol=tolerance)
+        run = partial(_ensemble, heyoka.ensemble_propagate_until_batch, batch, width, start)
+        tasks.append((f"heyoka ensemble batch {width}", tolerance, run))
+        single = heyoka.taylor_adaptive(system, start.y[0], tol=tolerance)
+        run = partial(_ensemble, heyoka.ensemble_propagate_until, single, 1, start)
+        tasks.append(("heyoka ensemble", tolerance, run))
+    return tasks
+
+
+def _raced(start: Start, tasks: Sequence[Task], rounds: int) -> list[Run]:
+    runs = []
+    for name, tolerance, task in tasks:
+        steps, states = task()
+        runs.append(Run(name, tolerance, steps, start.error(states), []))
+    gc.disable()
+    for _ in range(rounds):
+        for (_, _, task), run in zip(tasks, runs, strict=True):
+            began = perf_counter()
+            task()
+            run.seconds.append(perf_counter() - began)
+    gc.enable()
+    return runs
+
+
+def measure(start: Start, rounds: int, many: bool = False) -> list[Run]:
+    """Return the runs of all contestants."""
+    ours, theirs = ([10.0 ** (-k / 2) for k in range(first, last)] for first, last in ((4, 29), (8, 33)))
+    return _raced(start, [*_ours(start, ours), *_heyoka(start, theirs, many)], rounds)
+
+
+# ------------------------------------------------------------------------------------------------ tables
+
+
+def _print_table(runs: list[Run], n: int) -> None:
+    peers = sorted({run.name for run in runs} - {"lanes"})
+    for contestant in ("lanes", *peers):
+        own = [run for run in runs if run.name == contestant]
+        longest = min(own, key=lambda run: run.tolerance)
+        pace = min(longest.seconds) / longest.steps * 1e9
+        print(f"  {contestant:24}{pace:6.0f} ns per trajectory and step, least error {min(r.error for r in own):.1e}")
+    print(f"{'  error <=':10}{'lanes us':>10}{'heyoka us':>11}{'ratio':>8}   per trajectory; its fastest mode")
+    ratios = []
+    for decade in DECADES:
+        ours, other = best_of(runs, decade, ["lanes"]), best_of(runs, decade, peers)
+        if ours is None or other is None:
+            continue
+        times = [min(run.seconds) / n * 1e6 for run in (ours, other)]
+        ratios.append(times[1] / times[0])
+        print(f"{decade:10.0e}{times[0]:10.1f}{times[1]:11.1f}{ratios[-1]:8.2f}   {other.name}")
+    if ratios:
+        print(f"  median ratio {np.median(ratios):.2f}, least {min(ratios):.2f}")
+
+
+def _print_widths(start: Start, rounds: int) -> None:
+    """Compare four lanes with eight."""
+    tasks = [
+        (f"{width} lanes", *task[1:]) for width in WIDTHS for task in _ours(start, [1e-12], [20], width)
+    ]  # fmt: skip
+    runs = _raced(start, tasks, rounds)
+    said = [f"{run.name} {min(run.seconds) / run.steps * 1e9:.0f} ns" for run in runs]
+    print(f"  order 20, per trajectory and step: {', '.join(said)}")
+
+
+def _print_orders(start: Start, rounds: int) -> None:
+    runs = _raced(start, _ours(start, [10.0 ** (-k / 2) for k in range(2, 29)], ORDERS), rounds)
+    print(f"{'  error <=':10}" + "".join(f"{order:>14}" for order in ORDERS) + "   us per trajectory (tolerance)")
+    for decade in DECADES:
+        found = [best_of(runs, decade, [f"{order}"]) for order in ORDERS]
+        cells = [f"{min(r.seconds) / len(start.y) * 1e6:7.1f} {r.tolerance:.0e}" if r else "-" for r in found]
+        print(f"{decade:10.0e}" + "".join(f"{cell:>14}" for cell in cells))
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Print the tables."""
+    parser = argparse.ArgumentParser(prog="python -m symrot.bench.ensemble", description=(__doc__ or "").split("\n")[0])
+    parser.add_argument("--rounds", type=int, default=9)
+    parser.add_argument("--orders", action="store_true", help="compare orders of the series")
+    parser.add_argument("--many", type=int, default=4096, help="trajectories of the large ensemble (a multiple of 8)")
+    parser.add_argument("--motion", choices=list(MOTIONS), help="one motion only")
+    options = parser.parse_args(arguments)
+    for name in [options.motion] if options.motion else MOTIONS:
+        problem = Problem(name, 1.0)
+        few = prepare(name, 8, problem.stop, problem)
+        off = problem.error(few.exact[0], reference(name))
+        print(f"\n{name}, 8 trajectories, t = {problem.stop:g} s (long double against 40 digits: {off:.0e})")
+        if options.orders:
+            _print_orders(few, options.rounds)
+            continue
+        _print_table(measure(few, options.rounds), 8)
+        _print_widths(few, options.rounds)
+        many = prepare(name, options.many, problem.stop / SHORTER, problem)
+        print(f"{name}, {options.many} trajectories, t = {many.stop:g} s")
+        _print_table(measure(many, max(1, options.rounds // 4), many=True), options.many)
+
+
+if __name__ == "__main__":
+    main()
