@@ -1,0 +1,255 @@
+"""A torque that is no formula: a function in Python or C, or a table of samples, with declared switching times.
+
+It acts besides the torques of the scene. Dormand and Prince's method steps the motion; at every switching time it stops
+exactly and starts anew behind it, so that a jump costs no accuracy and no rejected steps.
+"""
+
+import ctypes
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from symrot import number
+from symrot.codegen import library
+from symrot.errors import InputError, PropagationError
+from symrot.planner import Plan
+from symrot.propagation import dop853
+from symrot.propagation.kernels import error_blocks, scene_kernel
+from symrot.propagation.propagator import Choice, Motion, Propagator
+from symrot.propagation.stepping import Recording, Stats
+from symrot.scene import Scene
+from symrot.scene_kernel import SceneKernel
+
+__all__ = ["DrivenPropagator"]
+
+Floats = NDArray[np.float64]
+CALLBACK = ctypes.CFUNCTYPE(
+    ctypes.c_int, ctypes.c_double, ctypes.POINTER(ctypes.c_double), ctypes.POINTER(ctypes.c_double),
+    ctypes.POINTER(ctypes.c_double), ctypes.c_void_p,
+)  # fmt: skip
+WHOLE: dict[str, Any] = {"planar": None, "initial_quaternion": None, "constant": {}, "attitude": True}
+SAMPLES_PER_STEP = 8.0  # of a table: a longer step could pass over what they say
+FORMS = "a function of (t, omega, quaternion), a C function of ctypes, or a table (times, samples)"
+
+
+class _Function:
+    """A function in Python as one in C; keeps the exception that ends a motion."""
+
+    user: Any = None
+    longest_step = math.inf
+
+    def __init__(self, function: Callable[[float, Floats, Floats], ArrayLike]) -> None:
+        self.function, self.error = function, None  # type: tuple[Callable[..., Any], BaseException | None]
+        self.pointer = CALLBACK(self._call)
+
+    def _call(self, t: float, omega: Any, quaternion: Any, torque: Any, user: Any) -> int:
+        if self.error is not None:
+            return 1
+        try:
+            found = np.asarray(self.function(t, np.array(omega[:3]), np.array(quaternion[:4])), dtype=np.float64)
+            if found.shape != (3,) or not np.isfinite(found).all():
+                raise InputError(
+                    f"torque: expected three finite numbers in N m, got {number.show(found.tolist())} at t = {t!r} s"
+                )
+            torque[0], torque[1], torque[2] = found.tolist()
+        except InputError as error:
+            self.error = error
+        except Exception as error:
+            self.error = InputError(f"torque: the function raised {type(error).__name__}: {error}, at t = {t!r} s")
+            self.error.__cause__ = error
+        except BaseException as error:  # an interrupt: handed on as it is
+            self.error = error
+        return int(self.error is not None)
+
+    def check(self, low: float, high: float) -> None:
+        self.error = None
+
+    def failure(self) -> BaseException | None:
+        return self.error
+
+
+class _CFunction:
+    """A function of a C library: ``int (double, const double[3], const double[4], double[3], void *)``."""
+
+    user: Any = None
+    longest_step = math.inf
+
+    def __init__(self, function: Any) -> None:
+        self.pointer = function
+
+    def check(self, low: float, high: float) -> None: ...
+
+    def failure(self) -> BaseException | None:
+        return None
+
+
+class _Table:
+    """Samples, interpolated by cubic splines between switching times."""
+
+    def __init__(self, times: Any, samples: Any, switching: Sequence[float]) -> None:
+        try:
+            t, values = np.array(times, dtype=np.float64), np.array(samples, dtype=np.float64)
+        except (TypeError, ValueError):
+            raise InputError(f"torque: expected {FORMS}, got {number.show((times, samples))}") from None
+        if t.ndim != 1 or len(t) < 2 or values.shape != (len(t), 3):
+            raise InputError(
+                "torque: expected a table of n times in s and samples in N m of shape (n, 3), n from 2 on, got shapes "
+                f"{t.shape} and {values.shape}"
+            )
+        if not (np.isfinite(t).all() and np.isfinite(values).all()):
+            raise InputError("torque: expected a table of finite numbers, got some that are not")
+        repeated = t[1:][np.diff(t) == 0]
+        if (np.diff(t) < 0).any() or not set(repeated.tolist()) <= set(switching) or (np.diff(repeated) == 0).any():
+            raise InputError(
+                "torque: expected a table of rising times, twice the same at switching times alone (the samples before "
+                "and after the jump)"
+            )
+        self.span = float(t[0]), float(t[-1])
+        self.longest_step = SAMPLES_PER_STEP * float(np.diff(t).max())
+        self.user = np.concatenate(_pieces(t, values, switching))
+        self.pointer: Any = None  # set when the library is loaded
+
+    def check(self, low: float, high: float) -> None:
+        if low < self.span[0] or high > self.span[1]:
+            asked = low if low < self.span[0] else high
+            raise InputError(f"torque: the table covers {self.span[0]} to {self.span[1]} s, asked for {asked} s")
+
+    def failure(self) -> BaseException | None:
+        return None
+
+
+def _pieces(t: Floats, values: Floats, switching: Sequence[float]) -> list[Floats]:
+    """Return the table of ``symrot_table_torque``: one spline between each two switching times."""
+    from scipy.interpolate import CubicSpline
+
+    cuts = [0]
+    for switch in switching:
+        inside = np.flatnonzero(t == switch)
+        if len(inside) == 2:
+            cuts.append(int(inside[1]))
+    cuts.append(len(t))
+    edges, coefficients = [], []
+    for low, high in pairwise(cuts):
+        if high - low < 2:
+            raise InputError(f"torque: expected two samples or more between switching times, got one at {t[low]} s")
+        spline = CubicSpline(t[low:high], values[low:high])
+        edges.append(spline.x[:-1])
+        coefficients.append(np.ascontiguousarray(np.moveaxis(spline.c, 0, 2)).reshape(-1, 12))
+    count = sum(map(len, edges))
+    return [np.array([float(count)]), *edges, t[-1:], *(part.ravel() for part in coefficients)]
+
+
+def _drive(torque: Any, switching: Sequence[float]) -> Any:
+    if isinstance(torque, ctypes._CFuncPtr):  # type: ignore[attr-defined]
+        return _CFunction(torque)
+    if callable(torque):
+        return _Function(torque)
+    if isinstance(torque, tuple | list) and len(torque) == 2:
+        return _Table(torque[0], torque[1], switching)
+    raise InputError(f"torque: expected {FORMS}, got {number.show(torque)}")
+
+
+def _bits(address: int) -> float:
+    """Return the double whose bits are an address."""
+    return ctypes.c_double.from_buffer_copy(ctypes.c_uint64(address)).value
+
+
+def _address(pointer: Any) -> int:
+    return int(ctypes.cast(pointer, ctypes.c_void_p).value or 0)
+
+
+class DrivenMotion(Motion):
+    """The motion of a scene under one more torque."""
+
+    def __init__(self, plan: Plan, tolerance: float, drive: Any, in_space: bool, switching: Sequence[float]) -> None:
+        plan = replace(plan, structure=plan.structure | WHOLE)
+        self.plan, self.tolerance = plan, tolerance
+        self.choice = Choice("dop853", "a torque that is no formula has no Taylor series")
+        self.start = float(plan.scene.span.start)
+        self._drive, self.switching = drive, switching
+        bare = scene_kernel(plan)
+        own = len(bare.rate_parameters)
+        text = "\n".join(
+            (
+                bare.source,
+                f"#define SYMROT_OWN {own}",
+                Path(__file__).with_name("driven.c").read_text(encoding="utf-8"),
+            )
+        )
+        source = dop853.translation_unit(text, "symrot_driven", len(plan.states), own + 12, *error_blocks(plan))
+        self.library = library.build(source, "driven")
+        if drive.pointer is None:
+            self._loaded = ctypes.CDLL(str(self.library))
+            drive.pointer = self._loaded.symrot_table_torque
+        user = 0 if drive.user is None else drive.user.ctypes.data
+        inverse = np.linalg.inv(np.array([[float(x) for x in row] for row in plan.scene.body.inertia]))
+        self._more = [_bits(_address(drive.pointer)), _bits(user), float(in_space), *inverse.ravel().tolist()]
+        lost = [[*item[:3], False, "changed by the torque that is no formula"] for item in bare.data["conserved"]]
+        self._kernel = SceneKernel({**bare.data, "conserved": lost})
+
+    @property
+    def kernel(self) -> SceneKernel:
+        """The kernels of the scene, whose invariants are lost."""
+        return self._kernel
+
+    @property
+    def driven_parameters(self) -> list[float]:
+        """Those of the rates, then those of the torque."""
+        return [*self.rate_parameters, *self._more]
+
+    def task(self) -> Any:
+        """Return the motion, to be followed."""
+        assert self.library is not None
+        return dop853.task(
+            self.library, self.driven_parameters, self.plan.initial_state, self.start, self.tolerance,
+            max_step=self._drive.longest_step, breaks=self.switching,
+        )  # fmt: skip
+
+    def guarded(self, low: float, high: float, run: Callable[[], Any]) -> Any:
+        """Return what a run gives, or raise what the torque raised in it."""
+        self._drive.check(min(low, self.start), max(high, self.start))
+        try:
+            return run()
+        except PropagationError:
+            failure = self._drive.failure()
+            if failure is None:
+                raise
+            raise failure from failure.__cause__
+
+    def integrate(self, times: Floats) -> tuple[Floats, Stats]:
+        """Return the states at the times, shape (n, N), and what it cost."""
+        low, high = (float(times.min()), float(times.max())) if len(times) else (self.start, self.start)
+        found: tuple[Floats, Stats] = self.guarded(low, high, lambda: self.task().sample(times))
+        return found
+
+    def _dense(self, span: tuple[float, float]) -> Recording:
+        recording: Recording = self.guarded(*span, lambda: self.task().record(span))
+        return recording
+
+
+class DrivenPropagator(Propagator):
+    """Propagates a scene under one more torque; made by :func:`symrot.propagator` with ``torque``."""
+
+    def __init__(
+        self, scene: Scene, tolerance: float, torque: Any, switching_times: ArrayLike = (), frame: str = "body"
+    ) -> None:
+        try:
+            switching = np.array(switching_times, dtype=np.float64, ndmin=1).ravel()
+        except (TypeError, ValueError):
+            switching = np.array([np.nan])
+        if not np.isfinite(switching).all():
+            raise InputError(f"switching_times: expected finite times in s, got {number.show(switching_times)}")
+        if frame not in ("body", "space"):
+            raise InputError(f"torque_frame: expected 'body' or 'space', got {frame!r}")
+        self._switching = tuple(sorted(set(switching.tolist())))
+        self._torque, self._in_space = _drive(torque, self._switching), frame == "space"
+        super().__init__(scene, "dop853", tolerance)
+
+    def _prepare(self, plan: Plan) -> Motion:
+        return DrivenMotion(plan, self.tolerance, self._torque, self._in_space, self._switching)

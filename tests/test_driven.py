@@ -1,0 +1,172 @@
+"""Torques that are no formulas: functions in Python and C, tables, switching times; their errors come to the surface."""
+
+import ctypes
+import math
+import subprocess
+
+import numpy as np
+import pytest
+
+import symrot
+from symrot.codegen import library
+from symrot.errors import InputError
+from symrot.scene import Scene
+
+
+@pytest.fixture(scope="module", autouse=True)
+def own_cache(tmp_path_factory):
+    """Build into a directory of this test run."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("SYMROT_CACHE", str(tmp_path_factory.mktemp("cache")))
+        yield
+
+
+def scene(omega=(0, 0, 0), moments=(1, 1, 1), stop=3, **more):
+    form = {
+        "schema": 1, "title": "body", "body": {"principal": list(moments)}, "initial": {"omega": list(omega)},
+        "span": {"t": [0, stop], "samples": 7}, "output": {"quantities": ["omega", "quaternion"]},
+    }  # fmt: skip
+    return Scene.from_dict(form | more, "body")
+
+
+def square_wave(t, omega, quaternion):
+    return (0, 0, 1.0 if t < 1.25 else -0.5)
+
+
+def test_a_square_wave_restarted_at_its_jumps_is_exact():
+    """S42: constant pieces give parabolas; the declared jump costs no rejected step and no accuracy."""
+    propagator = symrot.propagator(scene(), torque=square_wave, switching_times=[1.25], tolerance=1e-12)
+    t = np.array([0.3, 1.25, 2.0, 3.0])
+    trajectory = propagator(t)
+    late = np.maximum(t - 1.25, 0)
+    assert abs(trajectory.omega[:, 2] - (np.minimum(t, 1.25) - late / 2)).max() < 1e-15  # a few bits of 1.25
+    angle = np.minimum(t, 1.25) ** 2 / 2 + 1.25 * late - late**2 / 4
+    assert abs(trajectory.quaternion[:, 3] - np.sin(angle / 2)).max() < 1e-12
+    assert trajectory.stats.rejected == 0 and trajectory.method == "dop853"
+    blind = symrot.propagator(scene(), torque=square_wave, tolerance=1e-12)(t)
+    assert blind.stats.rejected > 10
+
+
+def test_a_function_acts_as_the_same_formula_does():
+    """A driven and damped heavy top: the formula in the scene, and the same as a function of time, rates and attitude."""
+    gravity = {"kind": "gravity", "weight": 1, "center_of_mass": ["1/10", "1/5", "9/10"]}
+    formulas = ["sin(3*t)/4 - omega_1/10", "q0*q1", "cos(t) - q3"]
+    body = {"principal": [1, "3/2", "7/10"], "about": "fixed_point"}
+    more = {"kind": "expression", "torque": formulas}
+    start = {"omega": ["1/2", "3/10", 4]}
+    known = symrot.propagate(scene(body=body, initial=start, torque=[gravity, more]), "taylor", 1e-13)
+
+    def torque(t, w, q):
+        return [math.sin(3 * t) / 4 - w[0] / 10, q[0] * q[1], math.cos(t) - q[3]]
+
+    found = symrot.propagator(scene(body=body, initial=start, torque=[gravity]), torque=torque, tolerance=1e-12)()
+    assert abs(found.omega - known.omega).max() < 2e-11 and abs(found.quaternion - known.quaternion).max() < 2e-11
+    assert [item.name for item in found.invariants] == ["quaternion norm"]
+
+
+def test_general_axes_and_components_in_space():
+    """A tensor with products; a torque of fixed direction in space, by formula and by function in either frame."""
+    body = {"inertia": {"xx": 3, "yy": 4, "zz": 5, "xy": "-1/2", "xz": "1/4", "yz": "-1/3"}}
+    start = {"omega": ["1/2", 1, "-1/4"], "attitude": {"axis": [1, 2, 3], "angle": 1}}
+    push = [{"kind": "constant_space", "torque": ["1/2", 0, "-1/4"]}]
+    known = symrot.propagate(scene(body=body, initial=start, torque=push), "taylor", 1e-13)
+    free = scene(body=body, initial=start)
+    in_space = symrot.propagator(free, torque=lambda t, w, q: (0.5, 0, -0.25), torque_frame="space", tolerance=1e-12)()
+    assert abs(in_space.omega - known.omega).max() < 1e-11
+
+    def in_body(t, w, q):
+        from symrot.kinematics.conversions import quaternion_to_dcm
+
+        return quaternion_to_dcm(q / np.linalg.norm(q)).T @ (0.5, 0, -0.25)
+
+    assert abs(symrot.propagator(free, torque=in_body, tolerance=1e-12)().omega - known.omega).max() < 1e-11
+
+
+def test_a_table_is_interpolated_and_may_jump():
+    t = np.linspace(0, 3, 61)
+    smooth = np.stack([np.cos(t), 0 * t, np.sin(t)], axis=1)
+    trajectory = symrot.propagator(scene(), torque=(t, smooth), tolerance=1e-10)()
+    assert abs(trajectory.omega[:, 0] - np.sin(trajectory.t)).max() < 2e-7  # the spline's own error, (h^4)
+    jump = (np.array([0, 1, 1.25, 1.25, 3]), [[0, 0, 1]] * 3 + [[0, 0, -0.5]] * 2)
+    stepped = symrot.propagator(scene(), torque=jump, switching_times=[1.25])()
+    assert stepped.omega[-1, 2] == pytest.approx(1.25 - 1.75 / 2, abs=1e-15)
+    assert stepped.stats.rejected == 0
+
+
+def test_a_c_function_through_ctypes(tmp_path):
+    text = "int push(double t, const double *w, const double *q, double *torque, void *user)"
+    text += "{ (void)q; (void)user; torque[0] = -w[0]; torque[1] = t; torque[2] = 2.0; return 0; }"
+    (tmp_path / "push.c").write_text(text)
+    tool = library.compiler()
+    made = tmp_path / "push.so"
+    subprocess.run([*tool.command, "-shared", "-fPIC", "-o", str(made), str(tmp_path / "push.c")], check=True)
+    push = ctypes.CDLL(str(made)).push
+    found = symrot.propagator(scene((1, 0, 0), (2, 2, 2)), torque=push, tolerance=1e-12)()
+    t = found.t
+    exact = np.stack([np.exp(-t / 2), t**2 / 4, t], axis=1)
+    assert abs(found.omega - exact).max() < 1e-11
+
+
+def test_events_and_dense_output_of_a_driven_motion():
+    propagator = symrot.propagator(scene(), torque=square_wave, switching_times=[1.25], tolerance=1e-12)
+    trajectory = propagator(events=["omega_3 - 1", "omega_3 - 1.25", symrot.Event("t == 2", terminal=True)])
+    assert trajectory.t_events[0] == pytest.approx([1.0, 1.75], abs=1e-14) and trajectory.status == 1
+    assert trajectory.t_events[1] == pytest.approx([1.25], abs=1e-14)
+    assert propagator().sol(2.0)[2] == pytest.approx(0.875, abs=1e-14)
+
+
+def test_what_the_function_raises_comes_out():
+    def broken(t, omega, quaternion):
+        if t > 1:
+            raise KeyError("no thrust")
+        return (0, 0, 0)
+
+    with pytest.raises(
+        InputError, match=r"torque: the function raised KeyError: 'no thrust', at t = 1\.\d* s"
+    ) as caught:
+        symrot.propagator(scene(), torque=broken)()
+    assert isinstance(caught.value.__cause__, KeyError)
+    propagator = symrot.propagator(scene(), torque=broken)
+    with pytest.raises(InputError, match="no thrust"):
+        propagator()
+    assert len(propagator([0.5])) == 1  # the failure of one call is not that of the next
+
+    def interrupted(t, omega, quaternion):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        symrot.propagator(scene(), torque=interrupted)()
+
+
+@pytest.mark.parametrize(
+    "torque, words",
+    [
+        (lambda t, w, q: [1, 2], r"three finite numbers in N m, got \[1.0, 2.0\] at t = 0.0 s"),
+        (lambda t, w, q: [1, 2, math.nan], "three finite numbers in N m"),
+        (lambda t, w, q: None, "three finite numbers in N m"),
+        (lambda t, w, q: "push", "the function raised ValueError"),
+        (3, "expected a function of"),
+        (([0, 1], [[1, 2, 3]]), r"samples in N m of shape \(n, 3\)"),
+        (([0, 1], [[1, 2, 3], [1, 2, math.inf]]), "finite numbers"),
+        (([0, 2, 1, 3], [[1, 2, 3]] * 4), "rising times"),
+        (([0, 1, 1, 3], [[1, 2, 3]] * 4), "twice the same at switching times alone"),
+        (([0, 1], [[1, 2, 3]] * 2), r"the table covers 0.0 to 1.0 s, asked for 3.0 s"),
+    ],
+)  # fmt: skip
+def test_a_torque_that_cannot_be_used_is_refused(torque, words):
+    with pytest.raises(InputError, match=words):
+        symrot.propagator(scene(), torque=torque)()
+
+
+@pytest.mark.parametrize(
+    "more, words",
+    [
+        ({"method": "taylor"}, "expected 'auto' or 'dop853' for a torque that is no formula, got 'taylor'"),
+        ({"switching_times": [math.inf]}, "switching_times: expected finite times"),
+        ({"switching_times": "soon"}, "switching_times: expected finite times"),
+        ({"torque_frame": "orbit"}, "torque_frame: expected 'body' or 'space', got 'orbit'"),
+    ],
+)
+def test_options_that_cannot_be_used_are_refused(more, words):
+    with pytest.raises(InputError, match=words):
+        symrot.propagator(scene(), torque=square_wave, **more)
