@@ -59,21 +59,35 @@ class Removable:
         """
         return _summed(self, precision)
 
+    def taylor(self, count: int) -> tuple[Fraction, ...]:
+        """Return the first Taylor coefficients in x^2."""
+        return _taylor(self, count)
+
 
 @cache
 def _summed(which: Removable, precision: str) -> tuple[Fraction, ...]:
-    found: list[Fraction] = []
-    derivative, order = which.numerator, 0
+    count = 3
     while True:
-        for _ in range(which.power if not found else 2):
-            derivative, order = derivative.diff(_x), order + 1
-        value = derivative.xreplace({_x: Integer(0)}) / factorial(order)
-        found.append(Fraction(int(value.p), int(value.q)))
+        found = which.taylor(count)
         terms = [abs(a) * which.split**k for k, a in enumerate(found)]
         if any(a * b >= 0 for a, b in pairwise(found)) or sorted(terms, reverse=True) != terms:
             raise AssertionError(f"{which.name}: expected a series that alternates and falls below {which.split}")
-        if len(terms) > 2 and terms[-1] < (terms[0] - terms[1]) * Fraction(1, 2 ** (DIGITS[precision] + 2)):
-            return tuple(found[:-1])
+        if terms[-1] < (terms[0] - terms[1]) * Fraction(1, 2 ** (DIGITS[precision] + 2)):
+            return found[:-1]
+        count += 1
+
+
+@cache
+def _taylor(which: Removable, count: int) -> tuple[Fraction, ...]:
+    known = _taylor(which, count - 1) if count > 1 else ()
+    order = which.power + 2 * (count - 1)
+    value = _derivative(which, order).xreplace({_x: Integer(0)}) / factorial(order)
+    return (*known, Fraction(int(value.p), int(value.q)))
+
+
+@cache
+def _derivative(which: Removable, order: int) -> Expr:
+    return _derivative(which, order - 1).diff(_x) if order else which.numerator
 
 
 REMOVABLE: dict[str, Removable] = {
