@@ -404,7 +404,15 @@ def _initial(scene: Scene, omega: ArrayLike | None, quaternion: ArrayLike | None
     return initial
 
 
-def propagator(scene: Scene | str | Path, method: str = "auto", tolerance: float | None = None) -> Propagator:
+def propagator(
+    scene: Scene | str | Path,
+    method: str = "auto",
+    tolerance: float | None = None,
+    *,
+    torque: Any = None,
+    switching_times: ArrayLike = (),
+    torque_frame: str = "body",
+) -> Propagator:
     """Return the propagator of a scene: derived, specialised, emitted and compiled, or taken from the cache.
 
     Parameters
@@ -416,6 +424,16 @@ def propagator(scene: Scene | str | Path, method: str = "auto", tolerance: float
     tolerance : float, optional
         Error of the trajectory to aim for: attitude in rad, angular velocity relative to its size; default: the
         scene's own.
+    torque : optional
+        One more torque, N m, that is no formula: a function of (t, omega, quaternion) that returns three numbers; a C
+        function of ctypes, ``int (double t, const double omega[3], const double quaternion[4], double torque[3], void
+        *user)``, which returns 0, with ``user`` null; or a table (times, samples of shape (n, 3)), which is
+        interpolated by cubic splines between the switching times. The method is then ``dop853``.
+    switching_times : array, optional
+        Times, s, at which that torque jumps: the motion is stepped exactly to each and started anew. A function is
+        asked just inside them; a table has two samples at each, before and after the jump.
+    torque_frame : str
+        ``"body"`` or ``"space"``: whose components that torque has.
 
     Raises
     ------
@@ -426,7 +444,14 @@ def propagator(scene: Scene | str | Path, method: str = "auto", tolerance: float
     """
     if not isinstance(scene, Scene):
         scene = load_scene(scene)
-    return Propagator(scene, method, float(scene.tolerance) if tolerance is None else _tolerance(tolerance))
+    aim = float(scene.tolerance) if tolerance is None else _tolerance(tolerance)
+    if torque is None:
+        return Propagator(scene, method, aim)
+    if method not in ("auto", "dop853"):
+        raise InputError(f"method: expected 'auto' or 'dop853' for a torque that is no formula, got {method!r}")
+    from symrot.propagation.driven import DrivenPropagator
+
+    return DrivenPropagator(scene, aim, torque, switching_times, torque_frame)
 
 
 def _tolerance(tolerance: float) -> float:
