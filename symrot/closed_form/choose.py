@@ -7,6 +7,7 @@ from typing import NamedTuple, Protocol
 from numpy.typing import ArrayLike
 
 from symrot.closed_form.library import Floats
+from symrot.codegen import library
 from symrot.number import equal
 from symrot.scene import Scene
 
@@ -35,7 +36,7 @@ class Form(NamedTuple):
         """Start what compiles the form, if it must be compiled; other work can be done meanwhile."""
         from symrot.closed_form.library import begin
 
-        if self.library:
+        if self.library and not library.missing():
             begin(self.library)
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from symrot.closed_form.library import Floats, address, load, times_of
+from symrot.codegen import library
 from symrot.errors import CompilerError, InputError
 
 __all__ = ["REGIMES", "ExactMotion", "prepared"]
@@ -21,16 +22,13 @@ _bound: dict[str, _Functions] = {}
 
 
 class ExactMotion:
-    """A motion with its constants. Times are counted from that of the initial state."""
+    """A motion at any time. Times are counted from that of the initial state."""
 
-    def __init__(self, constants: Any, evaluate: Any) -> None:
-        self.constants, self._evaluate = constants, evaluate
-        self._address = ctypes.addressof(constants)
+    regime: str
+    """One of :data:`REGIMES`."""
 
-    @property
-    def regime(self) -> str:
-        """One of :data:`REGIMES`."""
-        return REGIMES[int(self.constants[0])]
+    def _fill(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> None:
+        raise NotImplementedError
 
     def evaluate(
         self, t: ArrayLike, omega: bool = True, quaternion: bool = True
@@ -59,8 +57,27 @@ class ExactMotion:
         times = times_of(t)
         rates = np.empty((len(times), 3)) if omega else None
         attitudes = np.empty((len(times), 4)) if quaternion else None
-        self._evaluate(self._address, len(times), address(times), address(rates), address(attitudes))
+        self._fill(times, rates, attitudes)
         return rates, attitudes
+
+
+class _Compiled(ExactMotion):
+    """A motion whose constants and samples C computes."""
+
+    def __init__(self, constants: Any, evaluate: Any) -> None:
+        self._constants, self._evaluate = constants, evaluate
+        self._address = ctypes.addressof(constants)
+        self.regime = REGIMES[int(constants[0])]
+
+    def _fill(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> None:
+        self._evaluate(self._address, len(times), address(times), address(omega), address(quaternion))
+
+
+class _Portable(ExactMotion):
+    """A motion whose constants mpmath and whose samples NumPy computes: where there is no C compiler."""
+
+    def __init__(self, motion: Any) -> None:
+        self.regime, self._fill = motion.regime, motion.evaluate  # type: ignore[method-assign]
 
 
 def _functions(name: str, arguments: int) -> _Functions:
@@ -84,8 +101,15 @@ def prepared(name: str, arguments: tuple[list[float] | None, ...], refusal: Call
     InputError
         With the sentence of ``refusal`` if the numbers are not of the motion's domain.
     CompilerError
-        If there is no C compiler, or one that breaks error-free arithmetic.
+        If the C compiler refuses the source, or breaks error-free arithmetic.
     """
+    if name not in _bound and library.missing():
+        from symrot.closed_form.portable import MOTIONS
+
+        try:
+            return _Portable(MOTIONS[name](*arguments))
+        except ValueError:
+            raise InputError(refusal()) from None
     prepare, evaluate, record = _functions(name, len(arguments))
     constants = record()
     given = [None if values is None else _array(values) for values in arguments]
@@ -94,7 +118,7 @@ def prepared(name: str, arguments: tuple[list[float] | None, ...], refusal: Call
         raise InputError(refusal())
     if status:
         raise CompilerError("the C compiler breaks error-free arithmetic: it must round every operation as written")
-    return ExactMotion(constants, evaluate)
+    return _Compiled(constants, evaluate)
 
 
 _kinds = {length: ctypes.c_double * length for length in (2, 4, 6, 8, 26)}

@@ -19,7 +19,20 @@ from typing import NamedTuple
 
 from symrot.errors import CompilerError
 
-__all__ = ["FLAGS", "Building", "Cache", "Compiler", "build", "built", "cache", "clear", "compiler", "fetch", "store"]
+__all__ = [
+    "FLAGS",
+    "Building",
+    "Cache",
+    "Compiler",
+    "build",
+    "built",
+    "cache",
+    "clear",
+    "compiler",
+    "fetch",
+    "missing",
+    "store",
+]
 
 NATIVE = "-march=native"
 FLAGS = (
@@ -69,6 +82,15 @@ def compiler() -> Compiler:
             return Compiler((path, *command[1:]), _identity(path, command[1:]))
     wanted = f"CC={chosen!r} names no program" if chosen else f"none of {', '.join(COMPILERS)} is on the path"
     raise CompilerError(f"a C compiler is needed: {wanted}; set CC to one, or use method 'scipy'")
+
+
+def missing() -> str:
+    """Return an empty text, or the sentence that says why there is no C compiler."""
+    try:
+        compiler()
+    except CompilerError as error:
+        return str(error)
+    return ""
 
 
 def cache(probe: bool = False) -> Cache:

@@ -10,7 +10,6 @@ from functools import cache
 from pathlib import Path
 
 from symrot.codegen import library
-from symrot.errors import CompilerError
 from symrot.planner import Plan
 from symrot.propagation.dop853 import translation_unit
 from symrot.scene_kernel import SceneKernel
@@ -69,13 +68,7 @@ def scene_kernel(plan: Plan, on_source: Callable[[str, int], object] = lambda so
     return kernel
 
 
-def missing_compiler() -> str:
-    """Return an empty text, or the sentence that says why there is no C compiler."""
-    try:
-        library.compiler()
-    except CompilerError as error:
-        return str(error)
-    return ""
+missing_compiler = library.missing
 
 
 def compiled(plan: Plan) -> tuple[SceneKernel, Path]:

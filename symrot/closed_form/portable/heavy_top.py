@@ -1,0 +1,296 @@
+"""A symmetric heavy top by mpmath and NumPy; the formulas are those of :file:`heavy_top.h`.
+
+With 120 digits, differences may cancel: the constants are found from the roots of the cubic as they stand.
+"""
+
+from typing import Any
+
+import numpy as np
+from mpmath import mp, mpc, mpf
+
+from symrot.closed_form.library import Floats
+from symrot.closed_form.portable.phases import DIGITS, TERMS, Phase, multiples, number, power_of_two, vector
+from symrot.closed_form.portable.quaternions import Axes, conjugate, mapping, product, unit
+
+__all__ = ["HeavyTop"]
+
+SWITCH = 0.7  # the modulus from which on the imaginary transforms are summed
+EQUAL = (
+    mpf(10) ** -45
+)  # roots closer than that are one: inputs have 31 digits, and differences go with their square root
+NOTHING = mpf(10) ** -31  # of alpha or beta
+
+
+class HeavyTop:
+    """One motion; arguments as ``symrot_heavy_top_prepare`` takes them, in lists of hi, lo."""
+
+    def __init__(
+        self,
+        moments: list[float],
+        pull: list[float],
+        omega: list[float],
+        quaternion: list[float],
+        space: list[float],
+        axes: list[float] | None,
+    ) -> None:
+        with mp.workdps(DIGITS):
+            a, c = vector(moments)
+            if a <= 0 or not any(vector(quaternion)):
+                raise ValueError("moments or quaternion")
+            force, w = number(*pull) / a, vector(omega)
+            self.scale = power_of_two(max(mp.sqrt(force), *(abs(x) for x in w)))
+            self.frame, self.space = Axes(axes), vector(space)
+            w = [x / self.scale for x in w]
+            q = unit(vector(quaternion))
+            start = [mpc(q[0], q[3]), mpc(q[1], q[2])]  # alpha, beta
+            start = [mpc(0) if abs(x) < NOTHING else x for x in start]
+            self._prepare(c / a, force / self.scale**2, w, start)
+
+    def _prepare(self, shape: Any, pull: Any, w: list[Any], start: list[Any]) -> None:
+        alpha, beta = start
+        across, spin = mpc(w[0], w[1]), shape * w[2]
+        lever = 2 * mp.conj(mp.conj(alpha) * beta) * across
+        s = 2 * abs(beta) ** 2  # 1 - cos theta
+        momentum = lever.imag + spin * (1 - s)  # L_z
+        d, sigma = momentum - spin, momentum + spin
+        if not across and not (alpha and beta):
+            half, upright = w[2] / 2, not beta
+            self.regime, self.slopes = "steady", [0.0, 0.0]
+            self.turning = [Phase.of(half / (2 * mp.pi)), Phase.of(-half / (2 * mp.pi))]
+            self.steady = (1.0, 0.0) if upright else (0.0, 1.0)
+            self._maps(start[0] if upright else mpc(1), mpc(1) if upright else start[1], w[2])
+            return
+        twice = abs(across) ** 2 - 2 * pull * s  # 2 (E - M)
+        s1, s2, s3 = _roots(pull, twice, d, spin)
+        m, complement = (s1 - s2) / (s1 - s3), (s2 - s3) / (s1 - s3)
+        rate = mp.sqrt(pull * (s1 - s3) / 2)
+        u = mpf(0)
+        if m:
+            sine = min(max((s1 - s) / (s1 - s2), mpf(0)), mpf(1))
+            u = mp.sqrt(sine) * mp.elliprf(1 - sine, 1 - m * sine, 1)
+            u = -u if lever.real > 0 else u
+        k = mp.pi / (2 * mp.agm(1, mp.sqrt(complement))) if complement else mp.inf
+        k_prime = mp.pi / (2 * mp.agm(1, mp.sqrt(m))) if m else mp.inf
+        ys = [
+            _zero((2 - s1) / (2 - s2), m) if m else mpf(0),
+            _zero(s2 / s1 / complement, m) if m and complement else mpf(0),
+        ]
+        signs = [-1 if sigma > 0 else 1, -1 if d > 0 else 1]
+        steady = [(w[2] - spin + (sigma / (2 - s2) if s2 < 2 else 0)) / 2, (spin - w[2] + (d / s1 if s1 else 0)) / 2]
+        series = self._circular if m < SWITCH else self._hyperbolic
+        numerators, kappas, leads, speed, place, below = series(m, k, k_prime, ys, signs, steady, rate, u)
+        self._scale_numerators(numerators, kappas, leads, speed, place, below, start, across, w[2])
+
+    def _circular(
+        self, m: Any, k: Any, k_prime: Any, ys: list[Any], signs: list[int], steady: list[Any], rate: Any, u: Any
+    ) -> Any:
+        self.regime, self.slopes = "circular", [0.0, 0.0]
+        per = mp.pi / k
+        q = mp.exp(-per * k_prime) if m else mpf(0)
+        speed = per * rate / 2  # dz/dt
+        numerators, kappas = [], []
+        for i, (y, sign) in enumerate(zip(ys, signs, strict=True)):
+            rise = [mp.exp((2 * n + 1) * per * y / 2 - per * y / 2) if m else mpf(n == 0) for n in range(TERMS)]
+            fall = [mp.exp(-(2 * n + 2) * per * y / 2) if m else mpf(0) for n in range(TERMS)]
+            weights = [q ** (n * (n + 1)) for n in range(TERMS)]
+            even = [x * (up + down) for x, up, down in zip(weights, rise, fall, strict=True)]
+            odd = [sign * x * (up - down) for x, up, down in zip(weights, rise, fall, strict=True)]
+            drift = -sum((2 * n + 1) * x for n, x in enumerate(odd)) / sum(even)
+            flips = [(-1) ** n if i == 0 else 1 for n in range(TERMS)]
+            numerators.append(([f * x for f, x in zip(flips, even, strict=True)],
+                               [(f if i == 0 else -f) * x for f, x in zip(flips, odd, strict=True)]))  # fmt: skip
+            kappas.append(steady[i] - speed * drift)
+        self.turning = [Phase.of(x / (2 * mp.pi)) for x in kappas]
+        self.axial = Phase.of(rate / k / 4, u / k / 4)
+        z = mp.pi * u / (2 * k)
+        below = [1 + 2 * sum((-1) ** n * q ** (n * n) * mp.cos(2 * n * z) for n in range(1, TERMS)),
+                 -4 * sum((-1) ** n * n * q ** (n * n) * mp.sin(2 * n * z) for n in range(1, TERMS))]  # fmt: skip
+        return numerators, kappas, [mpf(0), mpf(0)], speed, z, below
+
+    def _hyperbolic(
+        self, m: Any, k: Any, k_prime: Any, ys: list[Any], signs: list[int], steady: list[Any], rate: Any, u: Any
+    ) -> Any:
+        endless = k == mp.inf
+        self.regime = "separatrix" if endless else "hyperbolic"
+        per = mp.pi / k_prime
+        q = mpf(0) if endless else mp.exp(-per * k)
+        self.log_nome = -np.inf if endless else float(-per * k)
+        speed = per * rate / 2  # dv/dt
+        numerators, kappas, slopes, even_parts = [], [], [], []
+        for i, (y, sign) in enumerate(zip(ys, signs, strict=True)):
+            chi = mp.pi * y / (2 * k_prime)
+            orders = [2 * n + 1 if i == 0 else 2 * n for n in range(TERMS)]
+            sines, cosines = [mp.sin(o * chi) for o in orders], [mp.cos(o * chi) for o in orders]
+            if i == 0:
+                re = [(-1) ** n * sign * x for n, x in enumerate(sines)]
+                im = [-((-1) ** n) * x for n, x in enumerate(cosines)]
+                grown = [q ** (n * n) for n in range(TERMS + 1)]  # at u = K, times 2 sqrt(nome)
+                value = sum(mpc(a * (grown[n] + grown[n + 1]), b * (grown[n] - grown[n + 1]))
+                            for n, (a, b) in enumerate(zip(re, im, strict=True)))  # fmt: skip
+                slope = sum(orders[n] * mpc(a * (grown[n] - grown[n + 1]), b * (grown[n] + grown[n + 1]))
+                            for n, (a, b) in enumerate(zip(re, im, strict=True)))  # fmt: skip
+            else:
+                re = [(2 if n else 1) * (-1) ** n * x for n, x in enumerate(cosines)]
+                im = [sign * (2 if n else 1) * (-1) ** n * x for n, x in enumerate(sines)]
+                value = sum(q ** (n * n) * x for n, x in enumerate(re))
+                slope = sum(orders[n] * q ** (n * n) * mpc(0, x) for n, x in enumerate(im))
+            numerators.append((re, im))
+            kappas.append(steady[i] - speed * (slope / value).imag)
+            slopes.append(mpf(0) if endless else -sign * y / (2 * k_prime))
+            even_parts.append(mpf(0) if endless else slopes[i] * mp.pi / k * rate)
+        self.turning = [Phase.of((x - e) / (2 * mp.pi)) for x, e in zip(kappas, even_parts, strict=True)]
+        self.slopes = [float(x) for x in slopes]
+        v = per * u / 2
+        if endless:
+            self.axial = Phase.of(speed, v, periodic=False)
+        else:
+            self.stretch, self.axial = float(per * k), Phase.of(rate / k / 4, u / k / 4)
+        leads = [mpf(0) if endless else u / k / 2 * x for x in slopes]
+        below = [sum(q ** (n * (n + 1)) * mp.cosh((2 * n + 1) * v) for n in range(TERMS)),
+                 sum((2 * n + 1) * q ** (n * (n + 1)) * mp.sinh((2 * n + 1) * v) for n in range(TERMS))]  # fmt: skip
+        return numerators, kappas, leads, speed, v, below
+
+    def _functions(self, i: int, place: Any) -> tuple[list[Any], list[Any], list[Any], list[Any]]:
+        """Return the functions of the terms of a numerator and their derivatives: those of `re`, those of `im`."""
+        odd = (
+            [2 * n + 1 for n in range(TERMS)] if self.regime == "circular" or i == 0 else [2 * n for n in range(TERMS)]
+        )
+        if self.regime == "circular":
+            sines, cosines = [mp.sin(o * place) for o in odd], [mp.cos(o * place) for o in odd]
+            up, down = (
+                [o * x for o, x in zip(odd, cosines, strict=True)],
+                [-o * x for o, x in zip(odd, sines, strict=True)],
+            )
+            return (sines, cosines, up, down) if i == 0 else (cosines, sines, down, up)
+        weights = self._weights(i)
+        sines = [x * mp.sinh(o * place) for x, o in zip(weights, odd, strict=True)]
+        cosines = [x * mp.cosh(o * place) for x, o in zip(weights, odd, strict=True)]
+        return (cosines, sines, [o * x for o, x in zip(odd, sines, strict=True)],
+                [o * x for o, x in zip(odd, cosines, strict=True)])  # fmt: skip
+
+    def _weights(self, i: int) -> list[Any]:
+        powers = [n * (n + 1) if i == 0 else n * n for n in range(TERMS)]
+        return [mp.exp(self.log_nome * x) if x else mpf(1) for x in powers]
+
+    def _scale_numerators(
+        self,
+        numerators: Any,
+        kappas: Any,
+        leads: Any,
+        speed: Any,
+        place: Any,
+        below: Any,
+        start: Any,
+        across: Any,
+        spin: Any,
+    ) -> None:
+        """Find what multiplies the series: from the initial value, or where that is small, from its rate."""
+        alpha, beta = start
+        initial_rates = [
+            mpc(0, spin / 2) * alpha - beta * mp.conj(across) / 2,
+            alpha * across / 2 - mpc(0, spin / 2) * beta,
+        ]
+        inner = speed * below[1] / below[0]
+        constants = []
+        for i, (re, im) in enumerate(numerators):
+            f, g, df, dg = self._functions(i, place)
+            value = mpc(mp.fdot(re, f), mp.fdot(im, g))
+            slope = mpc(mp.fdot(re, df), mp.fdot(im, dg))
+            moving = slope * speed + mpc(0, kappas[i]) * value - inner * value
+            by_rate = abs(value) < mpf(10) ** -3 * abs(moving)
+            found = initial_rates[i] / moving if by_rate else start[i] / value
+            constants.append(found * mp.expjpi(-2 * leads[i]))
+        sizes = [abs(x) for x in constants]
+        total = mp.hypot(*sizes)
+        self.terms = [
+            [float(x * size / total) for x in part]
+            for size, pair in zip(sizes, numerators, strict=True)
+            for part in pair
+        ]
+        self.kappas, self.speed = [float(x) for x in kappas], float(speed)
+        units = [x / size if size else mpc(1) for x, size in zip(constants, sizes, strict=True)]
+        self._maps(units[0], units[1], spin)
+
+    def _maps(self, a: Any, b: Any, spin: Any) -> None:
+        zero, back = mpf(0), conjugate(self.frame.quaternion)
+        columns = [[a.real, zero, zero, a.imag], [-a.imag, zero, zero, a.real],
+                   [zero, b.real, b.imag, zero], [zero, -b.imag, b.real, zero]]  # fmt: skip
+        self.attitude = mapping([product(product(self.space, x), back) for x in columns])
+        turn, rows = b * mp.conj(a), self.frame.matrix
+        self.omega = np.array([[float((r[0] * turn.real + r[1] * turn.imag) * self.scale),
+                                float((r[1] * turn.real - r[0] * turn.imag) * self.scale),
+                                float(r[2] * spin * self.scale)] for r in rows])  # fmt: skip
+
+    def evaluate(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> None:
+        """Write angular velocity (n, 3) and attitude (n, 4) at the times, where an array is given."""
+        t = times * float(self.scale)
+        (a, b), (da, db), whole = self._values(t)
+        inverse = 1.0 / ((a * a.conj()).real + (b * b.conj()).real)
+        turns = [phase.circle(t, slope * whole) for phase, slope in zip(self.turning, self.slopes, strict=True)]
+        turned = [cosine + 1j * sine for sine, cosine in turns]
+        if omega is not None:
+            across = 2.0 * (a.conj() * db - b * da.conj()) * turned[0].conj() * turned[1] * inverse
+            omega[:] = np.stack([across.real, across.imag, np.ones_like(t)], axis=1) @ self.omega.T
+        if quaternion is not None:
+            unit_size = np.sqrt(inverse)
+            a, b = a * turned[0] * unit_size, b * turned[1] * unit_size
+            quaternion[:] = np.stack([a.real, a.imag, b.real, b.imag], axis=1) @ self.attitude.T
+
+    def _values(self, t: Floats) -> tuple[Any, Any, Floats]:
+        """Return alpha and beta but for the turning and a common factor, their rates, and the phase in half turns."""
+        none = np.zeros_like(t)
+        if self.regime == "steady":
+            a, b = (np.full(t.shape, x, dtype=complex) for x in self.steady)
+            return (a, b), (0.0 * a, 0.0 * b), none
+        if self.regime == "circular":
+            sine, cosine = self.axial.circle(t)
+            odd: list[Any] = multiples(sine, cosine)[1::2]
+            orders = range(1, 2 * TERMS, 2)
+            pairs: list[Any] = [[(s, c, o * c, -o * s) for (s, c), o in zip(odd, orders, strict=True)],
+                     [(c, s, -o * s, o * c) for (s, c), o in zip(odd, orders, strict=True)]]  # fmt: skip
+            return (*self._summed(pairs), none)
+        separatrix = self.regime == "separatrix"
+        whole, flip, v = self.axial.argument_once(t) if separatrix else self.axial.argument(t, self.stretch)
+
+        def term(weight: int, order: int) -> tuple[Any, ...]:
+            """Return nome**weight times cosh and sinh of order*v, never a product of something huge and tiny."""
+            log = self.log_nome * weight if weight else 0.0
+            up, down = np.exp(log + order * v), np.exp(log - order * v)
+            c, s = 0.5 * flip * (up + down), flip * (np.sinh(order * v) if log == 0.0 else 0.5 * (up - down))
+            return c, s, order * s, order * c
+
+        pairs = [[term(n * (n + 1), 2 * n + 1) for n in range(TERMS)], [term(n * n, 2 * n) for n in range(TERMS)]]
+        return (*self._summed(pairs), whole)
+
+    def _summed(self, pairs: Any) -> tuple[Any, Any]:
+        values, rates = [], []
+        for i, functions in enumerate(pairs):
+            re, im = self.terms[2 * i], self.terms[2 * i + 1]
+            value, slope = 0.0, 0.0
+            for a, b, (f, g, df, dg) in zip(re, im, functions, strict=True):
+                value = value + (a * f + 1j * (b * g))
+                slope = slope + (a * df + 1j * (b * dg))
+            values.append(value)
+            rates.append(slope * self.speed + 1j * self.kappas[i] * value)
+        return values, rates
+
+
+def _roots(pull: Any, twice: Any, d: Any, spin: Any) -> list[Any]:
+    """Return the roots S1 >= S2 >= S3 of 2 (E - M + M s) s (2 - s) - (D + l s)^2, equal ones exactly so."""
+    # -2M s^3 + (4M - 2(E - M) - l^2) s^2 + (4 (E - M) - 2 D l) s - D^2
+    cubic = [-2 * pull, 4 * pull - twice - spin**2, 2 * twice - 2 * d * spin, -(d**2)]
+    found = sorted((mp.re(x) for x in mp.polyroots(cubic, maxsteps=400, extraprec=800)), reverse=True)
+    s1, s2, s3 = found
+    s3, s2, s1 = min(s3, mpf(0)), max(s2, mpf(0)), min(s1, mpf(2))
+    size = max(abs(x) for x in found)
+    if s1 - s2 < EQUAL * size:
+        s2 = s1
+    if s2 - s3 < EQUAL * size:
+        s2 = s3 = mpf(0)
+    return [s1, s2, s3]
+
+
+def _zero(square: Any, m: Any) -> Any:
+    """Return y with sn^2(y) = square of the modulus 1 - m."""
+    square = min(max(square, mpf(0)), mpf(1))
+    return mp.sqrt(square) * mp.elliprf(1 - square, 1 - (1 - m) * square, 1)

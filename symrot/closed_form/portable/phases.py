@@ -1,0 +1,108 @@
+"""Phases in turns, and the functions of a phase, over arrays of times; as :file:`circular.h` and :file:`stages.h`."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from mpmath import mp, mpf
+
+from symrot.closed_form.library import Floats
+
+__all__ = ["DIGITS", "TERMS", "Phase", "multiples", "number", "power_of_two", "turned_by", "two_product", "vector"]
+
+DIGITS = 120  # of the constants: what cancels leaves more than enough
+TERMS = 8  # of a series
+LARGEST = 80.0  # argument of a hyperbolic function: beyond it nothing changes any more
+_SPLITTER = 134217729.0  # 2^27 + 1
+
+
+def number(high: float, low: float) -> Any:
+    """Return hi + lo."""
+    return mpf(high) + mpf(low)
+
+
+def vector(pairs: list[float]) -> list[Any]:
+    """Return the numbers of a list that holds hi, lo of each."""
+    return [number(high, low) for high, low in zip(pairs[::2], pairs[1::2], strict=True)]
+
+
+def power_of_two(value: Any) -> Any:
+    """Return a power of two near a positive number, 1 for zero."""
+    return mpf(2) ** int(mp.frexp(value)[1]) if value else mpf(1)
+
+
+def two_product(a: Floats, b: float | Floats) -> tuple[Floats, Floats]:
+    """Return a*b and its rounding error (Dekker 1971)."""
+    product = a * b
+    wide_a, wide_b = _SPLITTER * a, _SPLITTER * np.asarray(b)
+    high_a, high_b = wide_a - (wide_a - a), wide_b - (wide_b - b)
+    low_a, low_b = a - high_a, b - high_b
+    return product, ((high_a * high_b - product) + high_a * low_b + low_a * high_b) + low_a * low_b
+
+
+def _two_sum(a: Floats, b: float) -> tuple[Floats, Floats]:
+    total = a + b
+    part = total - a
+    return total, (a - (total - part)) + (b - part)
+
+
+class Phase(NamedTuple):
+    """A phase that grows evenly with time, in turns: rate and start, each as hi, lo."""
+
+    rate: tuple[float, float]
+    start: tuple[float, float]
+
+    @classmethod
+    def of(cls, rate: Any, start: Any = 0, periodic: bool = True) -> "Phase":
+        """Return the phase with a rate and a start of any precision; a periodic one starts within half a turn."""
+        start = mpf(start) - mp.nint(start) if periodic else start
+        high = [float(rate), float(start)]
+        return cls((high[0], float(rate - high[0])), (high[1], float(start - high[1])))
+
+    def rest(self, t: Floats, parts: int, more: Floats | float = 0.0) -> tuple[Floats, Floats]:
+        """Return the phase less whole parts of a turn, and how many parts were taken off, but for whole turns."""
+        product, error = two_product(t, self.rate[0])
+        small = error + t * self.rate[1]
+        small = (small - np.rint(small)) + self.start[1] + more
+        high, low = _two_sum(product - np.rint(product), self.start[0])
+        taken = np.rint(parts * (high + small))
+        return (high - taken / parts) + (low + small), taken
+
+    def whole(self, t: Floats) -> Floats:
+        """Return the phase itself, of what is not periodic."""
+        product, error = two_product(t, self.rate[0])
+        high, low = _two_sum(product, self.start[0])
+        return high + (low + (error + t * self.rate[1] + self.start[1]))
+
+    def circle(self, t: Floats, more: Floats | float = 0.0) -> tuple[Floats, Floats]:
+        """Return sine and cosine of the phase."""
+        rest, taken = self.rest(t, 4, more)
+        sine, cosine = np.sin(2.0 * np.pi * rest), np.cos(2.0 * np.pi * rest)
+        quarter = taken.astype(np.int64) & 3
+        sign = np.where(quarter < 2, 1.0, -1.0)
+        odd = (quarter & 1) == 1
+        return sign * np.where(odd, cosine, sine), sign * np.where(odd, -sine, cosine)
+
+    def argument(self, t: Floats, stretch: float) -> tuple[Floats, Floats, Floats]:
+        """Return the phase in half turns from -1/2 to 1/2, the sign that changes with each, and the argument."""
+        rest, taken = self.rest(t, 2)
+        whole = 2.0 * rest
+        flip: Floats = np.where(taken.astype(np.int64) & 1, -1.0, 1.0)
+        return whole, flip, np.clip(stretch * whole, -LARGEST, LARGEST)
+
+    def argument_once(self, t: Floats) -> tuple[Floats, Floats, Floats]:
+        """The same of what never repeats."""
+        return np.zeros_like(t), np.ones_like(t), np.clip(self.whole(t), -LARGEST, LARGEST)
+
+
+def turned_by(real: Floats, imaginary: Floats, sine: Floats, cosine: Floats) -> tuple[Floats, Floats]:
+    """Return the product of two complex numbers, the second of unit size."""
+    return real * cosine - imaginary * sine, real * sine + imaginary * cosine
+
+
+def multiples(sine: Floats, cosine: Floats) -> list[tuple[Floats, Floats]]:
+    """Return sine and cosine of 0, 1, 2 .. times an angle, twice as many as a series has terms."""
+    found = [(np.zeros_like(sine), np.ones_like(sine))]
+    for _ in range(2 * TERMS - 1):
+        s, c = found[-1]
+        found.append((s * cosine + c * sine, c * cosine - s * sine))
+    return found

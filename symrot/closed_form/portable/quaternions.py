@@ -1,0 +1,60 @@
+"""Quaternions and changes of axes, of any precision and over arrays; as :file:`series.h`."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from mpmath import mp, mpf
+
+from symrot.closed_form.library import Floats
+from symrot.closed_form.portable.phases import vector
+
+__all__ = ["UNIT", "Axes", "conjugate", "mapping", "matrix_quaternion", "product", "unit"]
+
+UNIT = [mpf(1), mpf(0), mpf(0), mpf(0)]
+
+
+def product(a: Sequence[Any], b: Sequence[Any]) -> list[Any]:
+    """Return the product of two quaternions, scalar first."""
+    return [
+        a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
+        a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
+        a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1],
+        a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0],
+    ]
+
+
+def conjugate(a: Sequence[Any]) -> list[Any]:
+    """Return the conjugate."""
+    return [a[0], -a[1], -a[2], -a[3]]
+
+
+def unit(a: Sequence[Any]) -> list[Any]:
+    """Return a vector or quaternion divided by its norm."""
+    norm = mp.sqrt(sum(x * x for x in a))
+    return [x / norm for x in a]
+
+
+def matrix_quaternion(r: Sequence[Sequence[Any]]) -> list[Any]:
+    """Return the unit quaternion of a proper rotation matrix (Shepperd's choice of the largest)."""
+    trace = r[0][0] + r[1][1] + r[2][2]
+    rows = (
+        [1 + trace, r[2][1] - r[1][2], r[0][2] - r[2][0], r[1][0] - r[0][1]],
+        [r[2][1] - r[1][2], 1 + 2 * r[0][0] - trace, r[0][1] + r[1][0], r[2][0] + r[0][2]],
+        [r[0][2] - r[2][0], r[0][1] + r[1][0], 1 + 2 * r[1][1] - trace, r[1][2] + r[2][1]],
+        [r[1][0] - r[0][1], r[2][0] + r[0][2], r[1][2] + r[2][1], 1 + 2 * r[2][2] - trace],
+    )
+    return unit([mpf(x) for x in max(rows, key=lambda row: sum(x * x for x in row))])
+
+
+class Axes:
+    """From the axes of a motion to those in which it is returned: v_given = matrix*v, from 26 numbers or None."""
+
+    def __init__(self, given: list[float] | None) -> None:
+        values = vector(given) if given else [mpf(int(i % 4 == 0)) for i in range(9)] + UNIT
+        self.matrix, self.quaternion = [values[3 * i : 3 * i + 3] for i in range(3)], values[9:]
+
+
+def mapping(images: Sequence[Sequence[Any]]) -> Floats:
+    """Return the matrix whose columns are given, rounded once."""
+    return np.array([[float(x) for x in image] for image in images]).T

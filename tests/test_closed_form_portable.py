@@ -1,0 +1,89 @@
+"""The exact motions without a C compiler: mpmath's constants and NumPy's samples against C's, which share no code."""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from symrot.closed_form import axial, free_body, gyrostat, heavy_top, library, motion
+from symrot.errors import InputError
+from symrot.propagation.propagator import propagator
+
+Q0 = (0.1, 0.7, -0.5, 0.5)
+BAR = 1e-15  # of q; of omega relative to the largest: each side is within 5e-16 of the motion
+TOP, ABOVE = (1.0, 1.0, 0.5), (0.0, 0.0, 1.0)
+CASES = {
+    "axes renamed": lambda: free_body.motion((3, 1, 2), (-0.3, 1, 0.5), Q0),
+    "outer axis": lambda: free_body.motion((1.0, 2.0, 3.0), (0.3, 1.0, 1.5), Q0),
+    "flips": lambda: free_body.motion((1.0, 2.0, 3.0), (0.01, 1.0, 0.01), Q0),
+    "near the separatrix": lambda: free_body.motion((1.0, 2.0, 3.0), (1e-9, 1.0, 1e-9), Q0),
+    "on the separatrix": lambda: free_body.motion((3.0, 4.0, 6.0), (2.0, -1.5, 1.0), Q0),
+    "symmetric": lambda: free_body.motion((1.0, 1.0, 2.0), (0.3, 1.0, 0.5), Q0),
+    "steady": lambda: free_body.motion((3.0, 1.0, 1.0), (0.0, 0.2, 0.5), Q0),
+    "at rest": lambda: free_body.motion((3.0, 1.0, 2.0), (0.0, 0.0, 0.0), Q0),
+    "nearly spherical": lambda: free_body.motion((1.0, 1 + 1e-10, 1 + 3e-10), (0.3, 1.0, 0.5), Q0),
+    "exact numbers": lambda: free_body.motion((Fraction(1, 3), Fraction(2, 3), 1), (Fraction(1, 7), 1, 2), Q0),
+    "full tensor": lambda: free_body.motion_of_tensor(((2, 0.1, 0.2), (0.1, 3, 0.3), (0.2, 0.3, 4)), (0.3, 1, 0.5), Q0),
+    "nutation": lambda: heavy_top.motion(TOP, 1.0, ABOVE, (0.3, -1.8, 4.0), (0.9, 0.3, 0.0, 0.1)),
+    "pendulum": lambda: heavy_top.motion(TOP, 1.0, ABOVE, (0.0, 1.0, 0.0), (0.9, 0.1, 0.3, 0.0)),
+    "plane separatrix": lambda: heavy_top.motion(TOP, 1.0, ABOVE, (2.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0)),
+    "through the vertical": lambda: heavy_top.motion(TOP, 1.0, ABOVE, (2.5, 0.0, 1.0), (1.0, 0.0, 0.0, 0.0)),
+    "sleeping": lambda: heavy_top.motion(TOP, 1.0, ABOVE, (0.0, 0.0, 4.5), (1.0, 1e-5, 0.0, 0.0)),
+    "waking": lambda: heavy_top.motion(TOP, 1.0, ABOVE, (0.0, 0.0, 3.9), (1.0, 1e-5, 0.0, 0.0)),
+    "hanging": lambda: heavy_top.motion(TOP, 1.0, ABOVE, (0.0, 0.0, 2.0), (1e-4, 1.0, 0.0, 0.0)),
+    "upright": lambda: heavy_top.motion(TOP, 1.0, ABOVE, (0.0, 0.0, 5.0), (1.0, 0.0, 0.0, 0.0)),
+    "another axis": lambda: heavy_top.motion((0.5, 1, 1), 1, (1, 0, 0), (4, 0.3, 0.8), Q0, (0, 1, -2)),
+    "gyrostat": lambda: gyrostat.motion((2, 1, 1), (-1, 0, 0), (0.3, 1, 0.5), Q0),
+}
+TIMES = np.concatenate([np.linspace(-20.0, 50.0, 141), [0.0, 1e3, 1e6]])
+
+
+@pytest.fixture
+def no_compiler(monkeypatch):
+    """A machine without a C compiler, and with nothing loaded before."""
+    monkeypatch.setenv("CC", "no such compiler")
+    monkeypatch.setattr(motion, "_bound", {})
+    monkeypatch.setattr(library, "_loaded", {})
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_numpy_returns_what_c_returns(name, monkeypatch):
+    compiled = CASES[name]()
+    monkeypatch.setenv("CC", "no such compiler")
+    monkeypatch.setattr(motion, "_bound", {})
+    portable = CASES[name]()
+    assert type(portable) is not type(compiled) and portable.regime == compiled.regime
+    (w, q), (rates, attitudes) = compiled.evaluate(TIMES), portable.evaluate(TIMES)
+    assert np.abs(w - rates).max() <= BAR * max(np.abs(w).max(), 1e-300)
+    assert np.abs(q - attitudes).max() <= BAR
+    alone = portable.evaluate(TIMES, quaternion=False), portable.evaluate(TIMES, omega=False)
+    assert alone[0][1] is None and np.array_equal(alone[0][0], rates)
+    assert alone[1][0] is None and np.array_equal(alone[1][1], attitudes)
+
+
+def test_huge_times(no_compiler):
+    """Phases in turns to 31 digits: at 1e15 the attitude is as good as at the start."""
+    found = free_body.motion((1, 1, 2), (0.3, 1.0, 0.5), Q0).evaluate([1e9, 1e15])[1]
+    expected = gyrostat.motion((1, 1, 2), (0, 0, 0), (0.3, 1.0, 0.5), Q0).evaluate([1e9, 1e15])[1]
+    assert np.abs(np.abs((found * expected).sum(axis=1)) - 1).max() < BAR
+
+
+def test_auto_stays_exact_without_a_compiler(no_compiler):
+    for name in ("tumbling_prism", "heavy_top_loops"):
+        made = propagator(name)
+        assert made.method == "exact"
+        assert max(item.drift for item in made().invariants) < 1e-14
+    assert propagator("gravity_gradient_satellite").method == "scipy"
+
+
+@pytest.mark.parametrize("make", [
+    lambda: free_body.motion((1, -1, 2), (0, 0, 1)), lambda: heavy_top.motion((-1, -1, 1), 1, (0, 0, 1), (0, 0, 1)),
+    lambda: free_body.motion((1, 1, 2), (0, 0, 1), (0, 0, 0, 0)), lambda: gyrostat.motion((-1, -1, 1), (0, 0, 1), (0, 0, 1)),
+])  # fmt: skip
+def test_bad_input_is_refused_in_the_same_words(make, no_compiler):
+    with pytest.raises(InputError, match="positive"):
+        make()
+
+
+def test_rotation_about_one_axis_needs_no_compiler(no_compiler):
+    assert axial.motion((1, 2, 3), 2, 1, (0, 0, 1)).evaluate([2.0])[0][0, 2] == pytest.approx(1 + 2 / 3)
