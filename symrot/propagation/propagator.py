@@ -12,12 +12,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from symrot import number
 from symrot.closed_form.choose import FORMS, Exact, Form, exact_form
+from symrot.codegen import library
 from symrot.errors import InputError, PropagationError
 from symrot.planner import Plan, Row, general_structure, make_plan
 from symrot.propagation import dop853, taylor
 from symrot.propagation.dop853 import Stats
 from symrot.propagation.invariants import invariant_parameters
-from symrot.propagation.kernels import compiled, error_blocks, missing_compiler, scene_kernel, taylor_library
+from symrot.propagation.kernels import compiled, error_blocks, scene_kernel, taylor_library
 from symrot.propagation.smoothness import roughness
 from symrot.propagation.trajectory import ARRAY_FUNCTIONS, Trajectory
 from symrot.scene import Initial, Scene, load_scene
@@ -57,15 +58,15 @@ def _closed_form(plan: Plan) -> str:
 
 
 def _series(plan: Plan) -> str:
-    return "" if missing_compiler() or roughness(plan) else "the torque is smooth, and a C compiler is there"
+    return "" if library.missing() or roughness(plan) else "the torque is smooth, and a C compiler is there"
 
 
 AUTO: tuple[tuple[str, Callable[[Plan], str]], ...] = (
     ("constant", lambda plan: "" if plan.states else "the plan leaves no state to integrate"),
     ("exact", _closed_form),
     ("taylor", _series),
-    ("dop853", lambda plan: "" if missing_compiler() else f"{roughness(plan)}, and a C compiler is there"),
-    ("scipy", lambda plan: missing_compiler()),
+    ("dop853", lambda plan: "" if library.missing() else f"{roughness(plan)}, and a C compiler is there"),
+    ("scipy", lambda plan: library.missing()),
 )
 """What ``auto`` tries, in order: (method, condition); a condition returns the reason to take it, or nothing."""
 
