@@ -17,9 +17,7 @@ __all__ = ["PRIME", "Outside", "Print", "atoms_of", "fingerprint", "values_at"]
 
 PRIME = 2**61 - 1
 """Three modulo four: a circle without points at infinity, and roots by one power."""
-DRAWS = ((3_141_592_653_589_793, 2_718_281_828_459_045), (1_414_213_562_373_095, 1_732_050_807_568_877),
-         (1_618_033_988_749_894, 5_772_156_649_015_328), (6_931_471_805_599_453, 2_302_585_092_994_045),
-         (9_159_655_941_772_190, 1_202_056_903_159_594), (2_685_452_001_065_306, 4_669_201_609_102_990))  # fmt: skip
+DRAWS = tuple((pow(3, 101 + 2 * n, PRIME), pow(3, 102 + 2 * n, PRIME)) for n in range(48))
 """(value of the raised symbol, value of the others), tried in turn until all is defined."""
 PARTS = 4
 """Angles are counted in quarters: halves and quarters of an angle are multiples."""
@@ -190,11 +188,23 @@ def fingerprint(entries: Sequence[Expr]) -> Print:
 
 def _active(entries: Sequence[Expr], atoms: Sequence[Expr]) -> list[Expr]:
     """Return the atoms that a formula depends on, by its values beside a point."""
-    for first, second in DRAWS:
+    for first, _ in DRAWS:
         point = {atom: pow(first, n + 2, PRIME) for n, atom in enumerate(atoms)}
-        try:
-            here = values_at(entries, point)
-            return [atom for atom in atoms if values_at(entries, {**point, atom: second}) != here]
-        except Outside:
-            continue
-    raise Outside
+        here = _defined(entries, point)
+        if here is not None:
+            break
+    else:
+        raise Outside
+    return [atom for atom in atoms if _moves(entries, point, atom, here)]
+
+
+def _moves(entries: Sequence[Expr], point: Mapping[Expr, int], atom: Expr, here: Values) -> bool:
+    beside = (_defined(entries, {**point, atom: second}) for _, second in DRAWS)
+    return next((values != here for values in beside if values is not None), True)
+
+
+def _defined(entries: Sequence[Expr], point: Mapping[Expr, int]) -> Values | None:
+    try:
+        return values_at(entries, point)
+    except Outside:
+        return None

@@ -30,6 +30,7 @@ __all__ = ["Identification", "identify", "named_parts"]
 MOST = 8
 MOST_TRIES = 720
 """Ways of pairing symbols of equal signatures that are tried."""
+MOST_DRAWS = 24
 FACTORS = tuple(Rational(*pair) for pair in ((1, 1), (-1, 1)))
 SCALES = (*FACTORS, *(Rational(*pair) for pair in ((2, 1), (-2, 1), (1, 2), (-1, 2), (4, 1), (1, 4))))
 LAST_FIRST = (3, 0, 1, 2)
@@ -257,7 +258,7 @@ def _factor(
     factors: Sequence[Rational],
 ) -> Rational | None:
     """Return the constant by which two formulas differ at points of their own for each symbol; None if they do more."""
-    for draw in range(4):
+    for draw in range(MOST_DRAWS):
         point = {mine: pow(7 + 2 * draw, 40 + 3 * n, PRIME) for n, mine in enumerate(pairing)}
         try:
             left = values_at(theirs, point)

@@ -17,6 +17,7 @@ from symrot.checker.decision import shown
 from symrot.checker.fingerprint import Outside, fingerprint
 from symrot.conventions import SEQUENCES
 from symrot.dynamics.equations import euler_equations
+from symrot.dynamics.torques import Motion, torque_law
 from symrot.exact.decide import flatten
 from symrot.inertia import tensor
 from symrot.inertia.shapes import SHAPES
@@ -161,9 +162,33 @@ def _mechanics() -> Iterator[Named]:
     yield "parallel-axis theorem for the full tensor", page_of, full + point
 
 
+ACTING = (
+    ("gravity", "gravity on a body about a fixed point", {"weight": "*", "center_of_mass": "***", "direction": "00-"}),
+    ("gravity", "gravity in any direction", {"weight": "*", "center_of_mass": "***", "direction": "***"}),
+    ("gravity_gradient", "gravity gradient on a circular orbit", {"mean_motion": "*"}),
+    ("damping", "linear damping", {"linear": "***", "quadratic": "0"}),
+    ("spring", "torsional spring", {"stiffness": "*", "attitude": "****"}),
+)
+"""Kind of torque, what it is, and which of its values are symbols."""
+
+
+def _torques() -> Iterator[Named]:
+    motion = Motion(Matrix(symbols.omega_b), symbols.quaternion, diag(*symbols.principal))
+    for kind, spoken, patterns in ACTING:
+        fields = {
+            name: pattern if len(pattern) == 1 else ["-1" if mark == "-" else mark for mark in pattern]
+            for name, pattern in patterns.items()
+        }
+        law = torque_law({"kind": kind, "prefix": "", "fields": fields}, motion)
+        source = f'symrot.dynamics.torques, kind "{kind}"'
+        yield f"torque of {spoken}, body components", source, law.torque
+        if law.potential is not None:
+            yield f"potential of {spoken}", source, law.potential
+
+
 def stated() -> Iterator[Named]:
     """Yield the formulas of kinematics, inertia and dynamics, in a fixed order."""
-    for group in (_axes, _sequences, _quaternions, _vectors, _solids, _mechanics):
+    for group in (_axes, _sequences, _quaternions, _vectors, _solids, _mechanics, _torques):
         yield from group()
 
 

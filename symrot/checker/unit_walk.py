@@ -94,7 +94,7 @@ class Walker:
             return self.units[name]
         quaternion = {f"{name[:-1]}{n}" for n in range(4)}
         plain = name in self.angles or (name[:-1] in ("q", "q_") and quaternion <= self.names)
-        unit = "1" if plain else customary(name)
+        unit = "1" if plain else customary(name) if len(name) > 1 or self.physical() else None
         if unit is None:
             return {name: Fraction(1)}
         self.known = True
@@ -102,6 +102,10 @@ class Walker:
         if dimension:
             self.assumed[name] = unit
         return dimension
+
+    def physical(self) -> bool:
+        """Return whether letters such as m and t are quantities here: units are given, or longer names have one."""
+        return bool(self.units) or any(len(name) > 1 and customary(name) not in (None, "rad") for name in self.names)
 
     def values_of(self, rows: Rows, node: Node) -> Rows:
         """Return the dimensions of a matrix of numbers: of none for unit vectors, else whatever they stand for."""
@@ -119,8 +123,12 @@ class Walker:
             return second if first is ZERO else first
         if not self.system.equate(first, second):
             place = f"{self.place} " if self.place else ""
-            self.faults.append(place + words.format(*(shown_unit(self.system.reduced(d)) for d in (first, second))))
+            self.faults.append(place + words.format(*map(self.said, (first, second))))
         return first
+
+    def said(self, dimension: Dimension) -> str:
+        unit = shown_unit(self.system.reduced(dimension))
+        return "dimensionless" if unit == "1" else unit
 
     def same_matrices(self, first: Value, second: Value, words: str) -> Value:
         shapes = [shape_of(value) for value in (first, second)]

@@ -49,7 +49,8 @@ CUSTOM = (
     (r"I(_?[0-3xyz]|_?([1-3]{2}|[xyz]{2}))?", "kg m^2"),
     (r"tau(_?[xyz1-3])?", "N m"),
 )
-"""Names that nearly every book uses for one quantity -> its unit. All others are inferred."""
+"""Names that nearly every book uses for one quantity -> its unit. All others are inferred, and single letters too in
+a claim without any longer name of the table or a unit of its own: it may be mathematics."""
 
 
 def times(first: Dimension, second: Dimension) -> Dimension:
