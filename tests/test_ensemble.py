@@ -126,6 +126,29 @@ def test_the_number_of_lanes_changes_no_bit():
     assert all((other.states == found[0].states).all() for other in found[1:])
 
 
+@pytest.mark.parametrize("power", [-400, -60, 3, 500])
+def test_no_unit_of_time_changes_a_bit(power):
+    """omega 2^k over times 2^-k: the same attitudes, bit by bit."""
+    own = problem("free asymmetric")
+    path = library.build(lanes.translation_unit(own.kernel.rates, own.blocks, own.scales, 14), "free")
+    y, p, times = np.array([own.y0] * 3), np.array([own.p] * 3), np.array([-3.0, 0.0, 1.0, 7.0])
+    y[:, :3] *= [[1.0], [-2.3], [0.7]]
+    plain = lanes.follow(path, p, y, 0.0, times, 1e-11).states
+    y[:, :3] *= 2.0**power
+    scaled = lanes.follow(path, p, y, 0.0, times * 2.0**-power, 1e-11).states
+    assert (scaled[..., 3:] == plain[..., 3:]).all() and (scaled[..., :3] == plain[..., :3] * 2.0**power).all()
+
+
+def test_what_does_not_move_and_what_lies_at_the_ends_of_doubles():
+    path = small({"x": "y", "y": "-k*x"}, 16)
+    y = [[0.0, 0.0], [1e-300, 0.0], [1e3, 1e3], [1.0, 1.0], [math.inf, 0.0], [1.0, 0.0]]
+    found = follow(path, y, [5e-324, 1.0], p=np.array([[1.0], [1.0], [1.0], [0.0], [1.0], [1e-320]]))
+    assert [bool(message) for message in found.messages] == [False] * 4 + [True, False]
+    assert (found.states[0] == 0).all() and found.states[3, 1].tolist() == [2.0, 1.0]
+    assert found.states[1, 1, 0] == pytest.approx(1e-300 * math.cos(1), rel=1e-12)
+    assert found.states[2, 1, 0] == pytest.approx(1e3 * (math.cos(1) + math.sin(1)), rel=1e-12)
+
+
 def test_a_motion_that_breaks_off_leaves_the_others_alone():
     """x' = x^2 ends at t = 1/x0; its samples before are there, those after are not numbers."""
     path = small({"x": "x**2", "y": "-x*y"})
