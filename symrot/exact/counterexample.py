@@ -133,7 +133,9 @@ def closed_form_witness(
     coordinates, solved = _coordinates(ring)
     bound = {number for hypothesis in ring.hypothesis_numerators for number in _occurring(hypothesis)}
     tied = [c for c in coordinates if bound & set(c.generators)]
-    variables = sorted({*_variables(left), *_variables(right)}, key=str)
+    radicands = [found.base for found in ring.radicals.values()]
+    spoken = (left, right, *ring.ratios.sources, *ring.domain, *radicands)  # SymPy may have cancelled a divisor
+    variables = sorted({variable for formula in spoken for variable in _variables(formula)}, key=str)
     source = Random(2)
     simple = [Rational(1), Rational(2), Rational(-1), Rational(1, 2), Rational(3), Rational(-1, 3)]
     if left.has(*_INVERSE) or right.has(*_INVERSE):
