@@ -68,6 +68,28 @@ def test_a_symmetric_body_driven_about_its_axis():
         driven.evaluate([2.5])
 
 
+def test_a_symmetric_body_driven_about_its_axis_and_damped_about_all():
+    w, _ = flow((1, 1, 3), (0.3, 1, 0.5), 2.5, torque=(0, 0, 0.25), damping=(0.125, 0.125, 0.5))
+    driven = axial.motion((1, 1, 3), 2, 0.25, (0.3, 1, 0.5), Q0, 0.5, 0.125)
+    assert np.abs(driven.evaluate([2.5], quaternion=False)[0][0] - w).max() <= 2 * BAR
+
+
+@pytest.mark.parametrize("omega, damping", [((0, 0.75, 0), 0), ((0, 0.75, 0), 0.125), ((0, 0, 0), 3)])
+def test_driven_rotations_at_any_times(omega, damping):
+    """One, many, unsorted, repeated, before the start: each sample is its own, and the first is the start."""
+    motion = axial.motion((1, 3, 2), 1, 0.25, omega, Q0, damping)
+    times = np.array([3.0, -2.0, 0.0, 1e15 if damping else 1e7, 3.0, 1e-9])
+    rates, attitudes = motion.evaluate(times)
+    for k, t in enumerate(times):
+        one = motion.evaluate(t)
+        assert np.array_equal(one[0][0], rates[k]) and np.array_equal(one[1][0], attitudes[k])
+    assert rates[2].tolist() == list(omega)
+    assert np.abs(attitudes[2] - np.array(Q0) / np.linalg.norm(Q0)).max() < 2e-16
+    if damping:
+        assert rates[3, 1] == 0.25 / damping
+    assert np.abs(np.linalg.norm(attitudes, axis=1) - 1).max() < 5e-16
+
+
 @pytest.mark.parametrize("damping, times", [(0, (1e6, 1e9)), (0.125, (-4.0, 1e3, 1e12))])
 def test_phases_over_many_turns(damping, times):
     """Up to 1e17 turns, against the angle to 60 digits."""

@@ -234,6 +234,43 @@ def test_inertia_tensors_in_any_axes():
     assert min(np.abs(attitudes - back).max(), np.abs(attitudes + back).max()) < 1e-12
 
 
+TENSORS = {
+    "general": ([[2, "1/10", "1/5"], ["1/10", 3, "3/10"], ["1/5", "3/10", 4]], ("3/10", 1, "1/2")),
+    "nearly symmetric": ([[2, "1e-9", 0], ["1e-9", 2, "1e-9"], [0, "1e-9", 3]], ("3/10", 1, "1/2")),
+    "symmetric": ([[2, "1/2", "1/2"], ["1/2", 2, "1/2"], ["1/2", "1/2", 2]], ("3/10", 1, "1/2")),
+    "long and thin": ([[1, "999/1000", 0], ["999/1000", 1, 0], [0, 0, 2]], ("3/10", 1, "1/2")),
+}
+
+
+@pytest.mark.parametrize("name", TENSORS)
+def test_full_tensors_to_fifty_digits(name):
+    """Principal axes by Jacobi's rotations to 60 digits, the motion along them by the reference: to a million s."""
+    inertia, omega = TENSORS[name]
+    inertia, omega = [[Fraction(x) for x in row] for row in inertia], [Fraction(x) for x in omega]
+    motion = free_body.motion_of_tensor(inertia, omega, Q0)
+    times = [0.0, 0.13, 3.7, -11.3, 1e3, -1e6 / 3, 1e6]
+    rates, attitudes = motion.evaluate(times)
+    with mp.workdps(60):
+        moments, axes = mp.eigsy(mp.matrix([[reference.exactly(x) for x in row] for row in inertia]))
+        axes *= mp.det(axes)  # proper
+        along = list(axes.T * mp.matrix([reference.exactly(x) for x in omega]))
+        square = [1 + axes[0, 0] * a + axes[1, 1] * b + axes[2, 2] * c
+                  for a, b, c in ((1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1))]  # fmt: skip
+        first = max(range(4), key=lambda k: square[k])
+        cross = [[square[0], axes[2, 1] - axes[1, 2], axes[0, 2] - axes[2, 0], axes[1, 0] - axes[0, 1]],
+                 [axes[2, 1] - axes[1, 2], square[1], axes[0, 1] + axes[1, 0], axes[0, 2] + axes[2, 0]],
+                 [axes[0, 2] - axes[2, 0], axes[0, 1] + axes[1, 0], square[2], axes[1, 2] + axes[2, 1]],
+                 [axes[1, 0] - axes[0, 1], axes[0, 2] + axes[2, 0], axes[1, 2] + axes[2, 1], square[3]]]  # fmt: skip
+        turn = reference.normalised(cross[first])
+        start = reference.multiply([reference.exactly(x) for x in Q0], turn)
+        expected = reference.motion(list(moments), along, start, 60)
+        for t, rate, attitude in zip(times, rates.tolist(), attitudes.tolist(), strict=True):
+            w, q = expected(t)
+            w, q = list(axes * mp.matrix(w)), reference.multiply(q, [turn[0], *(-x for x in turn[1:])])
+            assert max(abs(x - y) for x, y in zip(rate, w, strict=True)) <= BAR * mp.norm(mp.matrix(along))
+            assert min(max(abs(x - s * y) for x, y in zip(attitude, q, strict=True)) for s in (1, -1)) <= BAR
+
+
 def test_only_what_is_asked_in_any_order():
     motion = free_body.motion((1, 2, 3), (0.3, 1.0, 0.5), Q0)
     rates, attitudes = motion.evaluate(SPREAD)

@@ -66,12 +66,13 @@ class AxialMotion:
         axis: int,
         axial: tuple[Fraction, Fraction, Fraction],
         rates: list[Fraction],
-        lag: Fraction,
+        across: tuple[Fraction, Fraction],
         attitude: Floats,
     ) -> None:
         self._axis, (self._rate, self._push, self._decay) = axis, axial
         self._across = rates[(axis + 1) % 3], rates[(axis + 2) % 3]
-        self._lag, self._attitude = lag, attitude
+        self._lag, self._decay_across = across
+        self._attitude = attitude
 
     @property
     def has_attitude(self) -> bool:
@@ -114,7 +115,8 @@ class AxialMotion:
         rates = np.empty((len(t), 3))
         x = -float(self._decay) * t
         rates[:, self._axis] = float(self._rate) * np.exp(x) + float(self._push) * t * _first(x)
-        first, second = (float(w) for w in self._across)
+        left = np.exp(-float(self._decay_across) * t)
+        first, second = (float(w) * left for w in self._across)
         sine, cosine = self._angle(t, self._lag) if any(self._across) else (0.0, 1.0)
         rates[:, (self._axis + 1) % 3] = first * cosine - second * sine
         rates[:, (self._axis + 2) % 3] = first * sine + second * cosine
@@ -135,6 +137,7 @@ def motion(
     omega0: Sequence[Number],
     quaternion0: Sequence[Number] = (1.0, 0.0, 0.0, 0.0),
     damping: Number = 0.0,
+    damping_across: Number = 0.0,
 ) -> AxialMotion:
     """Return the motion of a body under a constant torque and linear damping about one principal axis.
 
@@ -151,6 +154,8 @@ def motion(
         Body to space, scalar first.
     damping : number
         N m s, of the torque ``-damping*omega`` about the axis.
+    damping_across : number
+        N m s, the same about every axis across it.
 
     Raises
     ------
@@ -160,7 +165,7 @@ def motion(
     moments = [Fraction(x) for x in numbers("inertia", inertia, 3)]
     rates = [Fraction(x) for x in numbers("omega", omega0, 3)]
     attitude = [Fraction(x) for x in numbers("quaternion", quaternion0, 4)]
-    push, drag = (Fraction(x) for x in numbers("torque and damping", [torque, damping], 2))
+    push, drag, slowing = (Fraction(x) for x in numbers("torque and damping", [torque, damping, damping_across], 3))
     square = sum((x * x for x in attitude), Fraction(0))
     if axis not in (0, 1, 2) or min(moments) <= 0 or not square:
         raise InputError(
@@ -175,4 +180,5 @@ def motion(
         )
     norm = number.sqrt(square)
     unit = np.array([float(x / norm) for x in attitude])
-    return AxialMotion(axis, (rates[axis], push / own, drag / own), rates, (own - across) / across, unit)
+    turning = (own - across) / across, slowing / across
+    return AxialMotion(axis, (rates[axis], push / own, drag / own), rates, turning, unit)

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 from symrot.closed_form.library import Floats
 from symrot.codegen import library
 from symrot.number import equal
+from symrot.planner import ATTITUDE_QUANTITIES
 from symrot.scene import Scene
 
 __all__ = ["FORMS", "Exact", "Form", "exact_form"]
@@ -21,6 +22,9 @@ class Exact(Protocol):
         self, t: ArrayLike, omega: bool = True, quaternion: bool = True
     ) -> tuple[Floats | None, Floats | None]:
         """Return angular velocity (n, 3) in the body and attitude (n, 4), what is not asked for as None."""
+
+
+Vector = tuple[Fraction, ...]
 
 
 class Form(NamedTuple):
@@ -102,44 +106,75 @@ def _gyrostat(scene: Scene) -> Exact:
     )
 
 
+def _push_and_drag(scene: Scene) -> tuple[Vector, Vector]:
+    """Return the constant torque in the body and the coefficients of linear damping."""
+    found = []
+    for kind, field in (("constant_body", "torque"), ("damping", "linear")):
+        given = [torque.values[field] for torque in scene.torques if torque.kind == kind]
+        found.append(tuple(sum((vector[i] for vector in given), Fraction(0)) for i in range(3)))
+    return found[0], found[1]
+
+
+def _is_driven(scene: Scene) -> bool:
+    if not scene.torques or not set(_torques(scene)) <= {"constant_body", "damping"}:
+        return False
+    return scene.body.principal.given_axes and not any(torque.values.get("quadratic") for torque in scene.torques)
+
+
 def _driven_axis(scene: Scene) -> int | None:
     """Return the principal axis that constant torques and linear damping keep a rotation to."""
-    if not scene.torques or not set(_torques(scene)) <= {"constant_body", "damping"}:
+    if not _is_driven(scene):
         return None
-    if not scene.body.principal.given_axes:
-        return None
-    pushes = [torque.values["torque"] for torque in scene.torques if torque.kind == "constant_body"]
-    push = tuple(sum((vector[i] for vector in pushes), Fraction(0)) for i in range(3))
-    turning = _only_axis(scene.initial.omega_b)
+    push, turning = _push_and_drag(scene)[0], _only_axis(scene.initial.omega_b)
     axis = turning if turning is not None else _only_axis(push)
-    across = [component for i, component in enumerate(scene.initial.omega_b) if i != axis]
-    if axis is None or any(across) or any(component for i, component in enumerate(push) if i != axis):
+    across = [*scene.initial.omega_b, *push]
+    return None if any(x for i, x in enumerate(across) if i % 3 != axis) else axis
+
+
+def _driven_symmetry_axis(scene: Scene) -> int | None:
+    """Return the symmetry axis that a constant torque acts about, where no attitude is asked for."""
+    if not _is_driven(scene) or set(scene.output.quantities) & ATTITUDE_QUANTITIES:
         return None
-    return None if any(torque.values.get("quadratic") for torque in scene.torques) else axis
+    push, drag = _push_and_drag(scene)
+    for axis in range(3):
+        if (
+            _symmetric_about(scene, axis)
+            and drag[axis - 2] == drag[axis - 1]
+            and not push[axis - 2]
+            and not push[axis - 1]
+        ):
+            return axis
+    return None
 
 
 def _axial(scene: Scene) -> Exact:
     from symrot.closed_form import axial
 
     axis = _driven_axis(scene)
+    axis = _driven_symmetry_axis(scene) if axis is None else axis
     assert axis is not None
-    push = sum((t.values["torque"][axis] for t in scene.torques if t.kind == "constant_body"), Fraction(0))
-    drag = sum((t.values["linear"][axis] for t in scene.torques if t.kind == "damping"), Fraction(0))
-    start = scene.initial
-    return axial.motion(_moments(scene), axis, push, start.omega_b, start.quaternion, drag)
+    start, (push, drag) = scene.initial, _push_and_drag(scene)
+    return axial.motion(_moments(scene), axis, push[axis], start.omega_b, start.quaternion, drag[axis], drag[axis - 1])
 
 
 FORMS = (
-    Form("free body, theta functions", _is_free, _free_body, "free_body", "free_asymmetric_body"),
-    Form("symmetric heavy top, theta functions", _is_symmetric_top, _heavy_top, "heavy_top", "heavy_top"),
+    Form("free body, theta functions", _is_free, _free_body, "free_body", "free_body_attitude"),
+    Form("symmetric heavy top, theta functions", _is_symmetric_top, _heavy_top, "heavy_top", "heavy_top_motion"),
     Form(
         "symmetric gyrostat, two steady rotations",
         _is_symmetric_gyrostat,
         _gyrostat,
         "gyrostat",
-        "gyrostat_invariants",
+        "symmetric_gyrostat",
     ),
-    Form("rotation about one axis", lambda scene: _driven_axis(scene) is not None, _axial, "", "planar_motion"),
+    Form("rotation about one axis", lambda scene: _driven_axis(scene) is not None, _axial, "", "driven_rotation"),
+    Form(
+        "symmetric body driven about its axis, angular velocity alone",
+        lambda scene: _driven_symmetry_axis(scene) is not None,
+        _axial,
+        "",
+        "driven_rotation",
+    ),
 )
 """The motions in closed form, in the order in which they are looked for."""
 
