@@ -17,7 +17,10 @@ from sympy.polys.rings import PolyElement, PolyRing
 
 from symrot.exact.ring import FormulaRing
 
-__all__ = ["Constraints", "constraints_of", "occurring"]
+__all__ = ["Constraints", "constraints_of", "distinct_factors", "occurring"]
+
+MOST_TERMS, MOST_UNKNOWNS, LARGEST_DEGREE = 40, 4, 12
+"""Of a polynomial that is still factored; from a larger one only unknowns are taken out that divide every term."""
 
 
 @dataclass(frozen=True)
@@ -62,6 +65,17 @@ class Constraints:
 def occurring(polynomials: Sequence[PolyElement]) -> set[int]:
     """Return the numbers of the generators that occur in polynomials."""
     return {place for poly in polynomials for mono in poly for place, power in enumerate(mono) if power}
+
+
+def distinct_factors(poly: PolyElement) -> list[PolyElement]:
+    """Return the factors of a polynomial that is not constant, each once and monic; of a large one the plain ones."""
+    if len(poly) <= MOST_TERMS and len(occurring([poly])) <= MOST_UNKNOWNS and max(map(sum, poly)) <= LARGEST_DEGREE:
+        return [factor.monic() for factor, _ in poly.factor_list()[1]]
+    shared = [min(column) for column in zip(*poly, strict=True)]
+    found = [poly.ring.gens[place] for place, power in enumerate(shared) if power]
+    if found:
+        poly = poly.new({tuple(m - s for m, s in zip(mono, shared, strict=True)): c for mono, c in poly.items()})
+    return found if poly.is_ground else [*found, poly.monic()]
 
 
 def constraints_of(ring: FormulaRing) -> Constraints:

@@ -16,7 +16,7 @@ from sympy import Poly, Symbol
 from sympy.polys.domains import QQ
 from sympy.polys.rings import PolyElement, PolyRing
 
-from symrot.checker.constraints import Constraints, occurring
+from symrot.checker.constraints import Constraints, distinct_factors, occurring
 from symrot.exact.buchberger import groebner_basis
 from symrot.exact.ratio import TooLarge
 
@@ -24,10 +24,10 @@ __all__ = ["Emptiness", "vanishes_on", "why_empty"]
 
 MOST_CASES = 40
 MOST_ROUNDS = 6
-MOST_FACTORED = 40
-"""Cases looked at, rounds of taking apart in one case, and terms of a polynomial that is factored."""
+"""Cases looked at, and rounds of taking apart in one case."""
 
-PRODUCTS_PER_BASIS = 100_000
+MOST_PRODUCTS = 150_000
+"""Products of terms in all Groebner bases of one proof."""
 
 
 class _Undecided(Exception):
@@ -80,7 +80,7 @@ def _lifted(poly: PolyElement, ring: PolyRing) -> PolyElement:
 
 class _Prover:
     def __init__(self, ring: PolyRing, constraints: Constraints) -> None:
-        self.ring, self.constraints, self.cases = ring, constraints, 0
+        self.ring, self.constraints, self.cases, self.spent = ring, constraints, 0, [0]
         self.nonnegative = constraints.positive | constraints.nonnegative
         self.signed = constraints.positive | constraints.negative
         self.forbidden = {poly.monic() for poly in constraints.nonzero if poly and not poly.is_ground}
@@ -103,7 +103,7 @@ class _Prover:
         for poly in simple:
             if self.keeps_its_sign(poly, simple):
                 return Emptiness(*self.why(poly))
-        basis = groebner_basis(simple, self.ring, PRODUCTS_PER_BASIS)
+        basis = groebner_basis(simple, self.ring, MOST_PRODUCTS, self.spent)
         if any(poly.is_ground for poly in basis):
             return Emptiness("they contradict each other")
         for poly in basis:
@@ -120,7 +120,7 @@ class _Prover:
         """Return the factors that may vanish, each once; none if the polynomial cannot (or is zero)."""
         if not poly or poly.is_ground:
             return []
-        found = [f.monic() for f, _ in poly.factor_list()[1]] if len(poly) <= MOST_FACTORED else [poly.monic()]
+        found = distinct_factors(poly)
         return [f for f in found if f not in self.forbidden and not self.one_signed(f) and not self.rootless(f)]
 
     def parts(self, poly: PolyElement) -> list[PolyElement]:

@@ -15,6 +15,14 @@ from sympy.core.function import AppliedUndef
 
 from symrot.checker.integration import definite_integral
 from symrot.checker.reader import complaint
+from symrot.checker.size import (
+    LARGEST_INVERSE,
+    MOST_DIFFERENTIATED,
+    MOST_PIECES,
+    MOST_PRODUCTS,
+    pieces,
+    products_of_determinant,
+)
 from symrot.checker.tree import Node
 from symrot.errors import InputError
 from symrot.kinematics.quaternion import dcm_of, qmul
@@ -118,6 +126,12 @@ class Meaning:
             raise self.fail(node, f"a {wanted} {of} instead of {shown}")
         return value
 
+    def bounded(self, value: Any, node: Node, most: int = MOST_PIECES) -> Any:
+        """Return a value that is not too large to be worked with; refuse it otherwise."""
+        if pieces(value if is_matrix(value) else [value]) > most:
+            raise self.fail(node, f"a formula of at most {most} symbols, numbers and operations, written out,")
+        return value
+
     def divide_by(self, value: Expr, node: Node) -> None:
         """Note a divisor; one that SymPy sees to be zero is refused here, others by the exact engine."""
         if value.is_zero:
@@ -198,7 +212,8 @@ def _product(meaning: Meaning, node: Node) -> Any:
         elif is_matrix(total) and is_matrix(value) and total.cols != value.rows:
             raise meaning.fail(factor, f"a matrix with {total.cols} rows instead of {_described(value)}")
         else:
-            total = total * value
+            large = is_matrix(total) and is_matrix(value)
+            total = meaning.bounded(total * value, factor) if large else total * value
     return total
 
 
@@ -224,8 +239,11 @@ def _power(meaning: Meaning, node: Node) -> Any:
         if base.rows != base.cols or exponent.q != 1:
             raise meaning.fail(node, "a square matrix to a whole power")
         if exponent < 0:
-            return _inverted(meaning, base, node.args[0]) ** int(-exponent)
-        return base ** int(exponent)
+            base = _inverted(meaning, base, node.args[0])
+        total = ImmutableMatrix(sympy.eye(base.rows))
+        for _ in range(abs(int(exponent))):
+            total = meaning.bounded(total * base, node)
+        return total
     _shape(meaning, base, node.args[0])
     if exponent < 0:
         meaning.divide_by(base, node.args[0])
@@ -384,7 +402,16 @@ def _square(meaning: Meaning, node: Node) -> ImmutableMatrix:
 
 
 def _det(meaning: Meaning, node: Node) -> Expr:
-    return _square(meaning, node).det(method="berkowitz")
+    return _determinant(meaning, _square(meaning, node), node.args[0], MOST_PRODUCTS)
+
+
+def _determinant(meaning: Meaning, matrix: ImmutableMatrix, node: Node, most_products: int) -> Expr:
+    products = products_of_determinant(matrix)
+    if products > most_products:
+        raise meaning.fail(
+            node, f"a matrix whose determinant has at most {most_products} products instead of {products}"
+        )
+    return matrix.det(method="berkowitz")
 
 
 def _inverse_of(meaning: Meaning, node: Node) -> ImmutableMatrix:
@@ -392,7 +419,7 @@ def _inverse_of(meaning: Meaning, node: Node) -> ImmutableMatrix:
 
 
 def _inverted(meaning: Meaning, matrix: ImmutableMatrix, node: Node) -> ImmutableMatrix:
-    determinant = matrix.det(method="berkowitz")
+    determinant = _determinant(meaning, matrix, node, LARGEST_INVERSE)
     from symrot.exact import normal_form
 
     shortest = normal_form(determinant)
@@ -462,7 +489,7 @@ def _diff(meaning: Meaning, node: Node) -> Any:
         elif not (variable.is_Symbol or isinstance(variable, AppliedUndef) or _is_rate(variable)):
             raise meaning.fail(argument, "a symbol, a function of t or its derivative to differentiate by")
         for _ in range(times):
-            formula = formula.diff(variable)
+            formula = meaning.bounded(formula, node, MOST_DIFFERENTIATED).diff(variable)
         last = variable
     return formula
 

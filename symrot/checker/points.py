@@ -52,6 +52,9 @@ __all__ = ["Meaningless", "Point", "agree", "entries_of", "points"]
 DERIVATIVES = 6
 """Derivatives of each function of time that a point holds, the value included."""
 
+HEAVIEST = 3**5
+"""Products of numbers in one product of values that is still lifted: derivatives up to the sixth."""
+
 GAUSS = {1: 20, 2: 18, 3: 16}
 """Nodes of Gauss and Legendre's rule in each direction, by the number of nested integrals."""
 
@@ -70,7 +73,8 @@ class Point:
     functions: dict[str, tuple[Any, ...]]
     definitions: Mapping[str, Node]
     kept: frozenset[int] = frozenset()
-    spent: list[int] = field(default_factory=lambda: [0])  # pieces evaluated, shared by all points made of this one
+    spent: list[int] = field(default_factory=lambda: [0])  # products of numbers, shared by all points made of this one
+    weight: int = 1  # products in one product of values: three for each lift to dual numbers
     known: dict[Any, Any] = field(default_factory=dict)
     lifted: dict[Any, "Point"] = field(default_factory=dict)
 
@@ -91,7 +95,7 @@ class Point:
         key = id(node)
         if key in self.known:
             return self.known[key]
-        self.spent[0] += 1
+        self.spent[0] += self.weight
         value = _VALUE[node.kind](self, node)
         if key in self.kept:
             self.known[key] = value
@@ -110,6 +114,8 @@ class Point:
             inner = inner.args[0]
         name = inner.value
         key = (name, order)
+        if self.weight > HEAVIEST:
+            raise Meaningless("derivatives of too high an order")
         if key not in self.lifted:
             in_time = name == "t" and not order
             if not in_time and name not in self.symbols and name not in self.functions:
@@ -124,6 +130,7 @@ class Point:
                 self.definitions,
                 self.kept,
                 self.spent,
+                3 * self.weight,
             )  # fmt: skip
         return self.lifted[key]
 

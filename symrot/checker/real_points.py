@@ -14,7 +14,7 @@ from sympy import Expr, Poly, Symbol
 from sympy.polys.domains import QQ
 from sympy.polys.rings import PolyElement
 
-from symrot.checker.constraints import Constraints, occurring
+from symrot.checker.constraints import Constraints, distinct_factors, occurring
 from symrot.checker.quadrics import SIMPLE, point_of_quadric
 
 __all__ = ["ATTEMPTS", "RealPoint", "real_points", "value_at"]
@@ -25,8 +25,7 @@ RATIONAL = 60
 
 MOST_STEPS = 60
 MOST_TERMS = 300
-MOST_FACTORED = 16
-"""Of one drawing: steps, terms of an equation, terms of an equation that is still factored."""
+"""Of one drawing: steps, and terms of an equation."""
 
 MOST_BARREN = 3
 """Times that a quadric may fail to give a point before it is left alone."""
@@ -184,10 +183,10 @@ class _Drawing:
     def factor(self) -> bool:
         """Let a product vanish with one of its factors."""
         for number, poly in enumerate(self.zeros):
-            if len(poly) > MOST_FACTORED or self.field != QQ:
-                continue
+            if self.field != QQ:
+                return False
             if poly not in self.known:
-                self.known[poly] = [factor.monic() for factor, _ in poly.factor_list()[1]]
+                self.known[poly] = distinct_factors(poly)
             factors = self.known[poly]
             if len(factors) > 1 or factors[0] != poly.monic():
                 self.zeros[number] = self.source.choice(factors)

@@ -22,7 +22,10 @@ Terms = dict[Monomial, Any]
 
 
 def groebner_basis(
-    polynomials: Sequence[PolyElement], ring: PolyRing, most_products: int = MOST_PRODUCTS
+    polynomials: Sequence[PolyElement],
+    ring: PolyRing,
+    most_products: int = MOST_PRODUCTS,
+    spent: list[int] | None = None,
 ) -> tuple[PolyElement, ...]:
     """Return the reduced Groebner basis of an ideal, monic, largest leading term first.
 
@@ -34,25 +37,27 @@ def groebner_basis(
         Over a field, in any order of monomials.
     most_products : int
         The budget.
+    spent : list of one int, optional
+        What several calls with one budget have used so far.
 
     Raises
     ------
     TooLarge
         When the budget is spent.
     """
-    return _Basis(ring, most_products).of(polynomials)
+    return _Basis(ring, most_products, [0] if spent is None else spent).of(polynomials)
 
 
 class _Basis:
-    def __init__(self, ring: PolyRing, most_products: int) -> None:
-        self.ring, self.most, self.spent = ring, most_products, 0
+    def __init__(self, ring: PolyRing, most_products: int, spent: list[int]) -> None:
+        self.ring, self.most, self.spent = ring, most_products, spent
         self.key: Callable[[Monomial], Any] = ring.order
         self.members: list[Terms] = []
         self.leads: list[Monomial] = []
 
     def spend(self, products: int) -> None:
-        self.spent += products
-        if self.spent > self.most:
+        self.spent[0] += products
+        if self.spent[0] > self.most:
             raise TooLarge(f"relating the hypotheses takes more than {self.most} products of terms")
 
     def of(self, polynomials: Sequence[PolyElement]) -> tuple[PolyElement, ...]:
@@ -117,7 +122,7 @@ class _Basis:
         left: Terms = {}
         while terms:
             lead = max(terms, key=self.key)
-            self.spend(1 + len(terms) // 8)
+            self.spend(1 + len(terms) // 8 + len(leads) // 4)
             for member, divisor in zip(members, leads, strict=True):
                 if _divides(divisor, lead):
                     self.subtract(terms, member, tuple(map(int.__sub__, lead, divisor)), terms[lead])
