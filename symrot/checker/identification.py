@@ -121,7 +121,7 @@ def named_parts(claim: Claim) -> tuple[str, ...]:
         f"{place} is the {identification}"
         for place, value in _parts(claim)
         if isinstance(value, MatrixBase) and len(value) > 2 and len(value.atoms(Function, Symbol) - {time}) > 1
-        for identification in islice(_identified(ImmutableMatrix(value)), 1)
+        for identification in islice(_identified(ImmutableMatrix(value), steps=False), 1)
     )
 
 
@@ -138,7 +138,7 @@ def _parts(claim: Claim) -> Iterator[tuple[str, Any]]:
             yield name, meaning.values[name]
 
 
-def _identified(value: Any) -> Iterator[Identification]:
+def _identified(value: Any, steps: bool = True) -> Iterator[Identification]:
     entries, shape = flatten(value)
     try:
         own = fingerprint(entries)
@@ -149,7 +149,7 @@ def _identified(value: Any) -> Iterator[Identification]:
             match
             for view in views
             for known in by_fingerprint().get(own.key(view.shape, view.order), ())
-            if (match := _matched(known, own, entries, view)) is not None
+            if (steps or not known.is_step) and (match := _matched(known, own, entries, view)) is not None
         ]
         if found:
             break
@@ -214,10 +214,17 @@ def _matched(known: Known, own: Print, entries: Sequence[Expr], view: View) -> I
                 continue
         except (InputError, TooLarge):
             continue
-        renamed = {shown(mine): shown(other) for mine, other in pairing.items() if shown(mine) != shown(other)}
+        renamed = {
+            shown(mine): shown(other) for mine, other in pairing.items() if not _alike(shown(mine), shown(other))
+        }
         said = [part for part in (view.how, _said(factor)) if part]
         return Identification(known.name, " and ".join(said), dict(sorted(renamed.items())), known.source)
     return None
+
+
+def _alike(mine: str, other: str) -> bool:
+    """Return whether two texts name one thing: ``phi`` and ``phi(t)``, ``dphi`` and ``diff(phi(t), t)``."""
+    return other in (mine, f"{mine}(t)") or (mine.startswith("d") and other == f"diff({mine[1:]}(t), t)")
 
 
 def _said(factor: Rational) -> str:

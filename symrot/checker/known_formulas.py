@@ -4,13 +4,13 @@
 """
 
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
 
-from sympy import ImmutableMatrix, Matrix, diag
+from sympy import Expr, ImmutableMatrix, Matrix, diag
 
 from symrot import catalogue, symbols
 from symrot.checker.decision import shown
@@ -28,8 +28,9 @@ from symrot.kinematics.rotations import elementary_rotation, skew
 __all__ = ["FILE", "Known", "Named", "by_fingerprint", "derived", "page", "stated"]
 
 FILE = Path(__file__).with_name("known_formulas.toml")
-LONGEST = 900
-"""Letters of a formula that is still kept."""
+LONGEST = 6000
+LONGEST_DERIVED = 900
+"""Letters of a formula that is still kept: one that has a name of its own, or a side of a step."""
 
 FRAMES = ("body", "space")
 
@@ -42,6 +43,11 @@ class Known:
     source: str
     text: str
     scaled: bool = False
+
+    @property
+    def is_step(self) -> bool:
+        """Whether it is a side of a step of a derivation, without a name of its own."""
+        return ", step " in self.source
 
 
 Named = tuple[str, str, Any]
@@ -202,23 +208,29 @@ def derived() -> Iterator[Named]:
                 yield f"{found.title}: {claim}", f"derivations/{name}.md, step {number}", side
 
 
-def _kept(formulas: Iterator[Named], least: int) -> Iterator[tuple[str, Known]]:
+def _kept(formulas: Iterator[Named], least: int, longest: int) -> Iterator[tuple[str, Known]]:
     """Yield fingerprints and formulas: each formula once, of at least so many symbols, of a length people write."""
     seen = set()
     for name, source, value in formulas:
         entries, shape = flatten(value)
-        if sum(entry.count_ops() for entry in entries) > LONGEST // 3:
+        if sum(entry.count_ops() for entry in entries) > longest // 3:
             continue
         text = " ".join(shown(ImmutableMatrix(value) if shape else value).split())
         try:
             found = fingerprint(entries)
         except Outside:
             continue
-        if len(found.atoms) < least or len(text) > LONGEST or (name, text) in seen:
+        if _is_general(entries) or len(found.atoms) < least or len(text) > longest or (name, text) in seen:
             continue
         seen.add((name, text))
         scaled = "quaternion rate" in name
         yield found.key(shape, range(len(entries))), Known(name, source, text, scaled)
+
+
+def _is_general(entries: Sequence[Expr]) -> bool:
+    """Return whether the entries are symbols of their own and nothing else: any vector, any diagonal matrix."""
+    held = [entry for entry in entries if entry != 0]
+    return all(entry.is_Symbol for entry in held) and len(set(held)) == len(held)
 
 
 def page(*groups: Iterator[Named]) -> str:
@@ -228,8 +240,9 @@ def page(*groups: Iterator[Named]) -> str:
         "# Printed by `python -m symrot.checker.known_formulas`; do not edit.",
     ]
     texts: set[str] = set()
-    for least, formulas in zip((1, 3), groups or (stated(), derived()), strict=False):
-        for key, known in _kept(formulas, least):
+    kept = ((1, LONGEST), (3, LONGEST_DERIVED))
+    for (least, longest), formulas in zip(kept, groups or (stated(), derived()), strict=False):
+        for key, known in _kept(formulas, least, longest):
             if least > 1 and known.text in texts:
                 continue
             texts.add(known.text)
