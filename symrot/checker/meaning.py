@@ -17,11 +17,13 @@ from symrot.checker.integration import definite_integral
 from symrot.checker.reader import complaint
 from symrot.checker.size import (
     LARGEST_INVERSE,
+    MOST_ANGLE_TERMS,
     MOST_DIFFERENTIATED,
     MOST_PIECES,
     MOST_PRODUCTS,
     pieces,
     products_of_determinant,
+    terms_of_angle,
 )
 from symrot.checker.tree import Node
 from symrot.errors import InputError
@@ -33,12 +35,16 @@ __all__ = ["BUILT_IN", "CONSTANTS", "Divisor", "Meaning", "is_matrix", "time"]
 LARGEST_EXPONENT = 64
 LARGEST_ROOT = 12
 MOST_BITS = 20_000
+MOST_BITS_FACTORED = 64
 LARGEST_MATRIX = 12
 
 time = Symbol("t", real=True)
 
 CONSTANTS: dict[str, Expr] = {"pi": sympy.pi}
-UNKNOWN_HERE = ("ln", "arcsin", "arccos", "arctan", "acot", "E", "I", "Rational")
+UNKNOWN_HERE = (
+    "ln", "arcsin", "arccos", "arctan", "acot", "E", "I", "Rational", "nan", "NaN", "NAN", "inf", "Inf", "INF", "oo",
+    "zoo", "infinity", "Infinity",
+)  # fmt: skip
 """Names that become no symbol or function of the user's own by mere use: a reader takes them for something else."""
 
 
@@ -141,10 +147,16 @@ class Meaning:
             if not base.is_number:
                 self.divisors.append(Divisor(base, node))
 
+    def factorable(self, value: Expr, node: Node) -> None:
+        """Refuse the root of a number that is too long to be factored."""
+        if value.is_Rational and max(int(value.p).bit_length(), int(value.q).bit_length()) > MOST_BITS_FACTORED:
+            raise self.fail(node, f"a number of at most {MOST_BITS_FACTORED} bits under a root, since it is factored,")
+
     def take_root(self, value: Expr, node: Node) -> None:
         """Note a radicand; one that is negative is refused."""
         if value.is_negative:
             raise self.fail(node, "a number that is not negative under an even root")
+        self.factorable(value, node)
         if not value.is_number:
             self.radicands.append(value)
 
@@ -251,6 +263,8 @@ def _power(meaning: Meaning, node: Node) -> Any:
         raise meaning.fail(node, f"a number of at most {MOST_BITS} bits")
     if exponent.q % 2 == 0:
         meaning.take_root(base, node.args[0])
+    elif exponent.q > 1:
+        meaning.factorable(base, node.args[0])
     return base**exponent
 
 
@@ -316,6 +330,8 @@ def _of_scalar(function: Callable[[Expr], Expr], below: Callable[[Expr], Expr] |
 
     def call(meaning: Meaning, node: Node) -> Expr:
         value = meaning.scalar(node.args[0], f"as the argument of {node.value}")
+        if terms_of_angle(value) > MOST_ANGLE_TERMS:
+            raise meaning.fail(node.args[0], f"an angle whose sine has at most {MOST_ANGLE_TERMS} terms")
         if below is not None:
             meaning.divide_by(below(value), node)
         return function(value)

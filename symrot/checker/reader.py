@@ -25,7 +25,11 @@ _TOKEN = re.compile(
     r"|(?P<mark>\*\*|==|!=|>=|<=|[-+*/(),\[\].=<>])",
     re.ASCII,
 )
-_HINTS = {"^": "write ** for a power", "'": "write diff(x, t) for a derivative", "\\": "LaTeX goes into latex = .."}
+_HINTS = {
+    "^": "write ** for a power", "'": "write diff(x, t) for a derivative", "\\": "LaTeX goes into latex = ..",
+    "\u2212": "write - for a minus sign", "\u00b7": "write * for a product", "\u00d7": "write * for a product",
+    "\u00b2": "write **2 for a square",
+}  # fmt: skip
 
 Relation = tuple[str, Node, Node]
 

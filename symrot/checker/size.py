@@ -6,13 +6,9 @@ from typing import Any
 from sympy import Expr
 
 __all__ = [
-    "LARGEST_INVERSE",
-    "MOST_DIFFERENTIATED",
-    "MOST_PIECES",
-    "MOST_PRODUCTS",
-    "pieces",
-    "products_of_determinant",
-]
+    "LARGEST_INVERSE", "MOST_ANGLE_TERMS", "MOST_DIFFERENTIATED", "MOST_PIECES", "MOST_PRODUCTS", "pieces",
+    "products_of_determinant", "terms_of_angle",
+]  # fmt: skip
 
 MOST_PIECES = 200_000
 """Symbols, numbers and operations that a value may be made of, those that occur twice counted twice."""
@@ -25,6 +21,9 @@ MOST_PRODUCTS = 2_000
 
 LARGEST_INVERSE = 200
 """The same for a matrix that is inverted, whose minors are all needed; a full 5 x 5 matrix has 120."""
+
+MOST_ANGLE_TERMS = 2_000
+"""Terms of a sine, written in sines and cosines of the angles in its argument; a sum of eleven has 1024."""
 
 
 def pieces(entries: Iterable[Expr]) -> int:
@@ -51,3 +50,14 @@ def products_of_determinant(matrix: Any) -> int:
                     after[key] = after.get(key, 0) + number
         ways = after
     return sum(ways.values())
+
+
+def terms_of_angle(angle: Expr) -> int:
+    """Return about how many terms the sine of an angle has in sines and cosines of the angles that it is a sum of."""
+    terms, number = 1, 0
+    for term in angle.as_ordered_terms() if angle.is_Add else [angle]:
+        multiple, atom = term.as_coeff_Mul()
+        if atom.free_symbols:
+            number += 1
+            terms *= 1 + abs(int(multiple.p)) // 2 if multiple.is_Rational else 1
+    return int(terms * 2 ** max(number - 1, 0))
