@@ -1,21 +1,24 @@
-"""Measure the Taylor stepper: against symrot's DOP853 and against heyoka where it is installed, at equal error.
+"""Measure the steppers at equal error: against heyoka in each of its settings, and against loops written by hand in C.
 
-    python -m symrot.bench.taylor [--rounds 9] [--settings] [--orders] [--motion NAME]
+    python -m symrot.bench.taylor [--rounds 7] [--quick] [--orders] [--motion NAME]
 
-Each contestant runs over a range of tolerances; runs are interleaved, the least time of each counts, the error is that
-of the last state against a Taylor series in 40 digits. At each decade of the error the table takes the fastest run
-that is at least as good, so no curve is smoothed or extended. ``--settings`` adds heyoka's other ways of compiling
-(fast math, high accuracy, compact) and counts the best of all; ``--orders`` compares orders of our own series instead.
+Each contestant runs over a range of tolerances (or of steps, for RK4 and DOP853 with a fixed step by hand); runs are
+interleaved, the least time of each counts, the error is that of the last state against a Taylor series in 40 digits.
+At each decade of the error the table takes the fastest run that is at least as good, so no curve is smoothed or
+extended. ``best heyoka`` is the fastest of its settings at each decade: default, fast math, high accuracy, compact;
+``--quick`` leaves all but the default out. Loops by hand are compared with the faster of symrot's two methods, in the
+decades where low order is at its best. ``--orders`` compares orders of our own series instead.
 
 heyoka is no requirement: ``pip install heyoka``.
 """
 
 import argparse
+import ctypes
 import gc
+import math
 import tomllib
 from collections.abc import Callable, Iterable, Sequence
 from fractions import Fraction
-from functools import partial
 from pathlib import Path
 from time import perf_counter
 from typing import Any, NamedTuple
@@ -69,6 +72,8 @@ SETTINGS: dict[str, dict[str, bool]] = {
     "heyoka": {}, "heyoka fast": {"fast_math": True}, "heyoka accurate": {"high_accuracy": True},
     "heyoka compact": {"compact_mode": True},
 }  # fmt: skip
+OURS, BY_HAND = ("taylor", "dop853"), ("rk4", "dop853")
+HAND_DECADES = (1e-3, 1e-4, 1e-5)  # where low order is at its best
 DECADES = tuple(10.0**-k for k in range(3, 14))
 ORDERS = (12, 16, 18, 20, 22, 24, 28)
 REFERENCE_DIGITS, REFERENCE_ORDER, REFERENCE_TAIL = 40, 32, 1e-28
@@ -108,6 +113,8 @@ class _Problem:
     def error(self, state: Iterable[Any], exact: Floats) -> float:
         """Return the largest error of a state, rates relative to the largest rate."""
         found, worst = np.array([float(value) for value in state]), 0.0
+        if not np.isfinite(found).all():
+            return math.inf
         for low, high, scale in zip(self.blocks[:-1], self.blocks[1:], self.scales, strict=True):
             size = scale or float(np.linalg.norm(exact[low:high]))
             worst = max(worst, float(abs(found[low:high] - exact[low:high]).max()) / size)
@@ -176,11 +183,15 @@ Outcome = tuple[int, Iterable[Any]]  # steps, last state
 Task = Callable[[], Outcome]
 
 
-def _stepper(
-    integrate: Callable[..., Any], path: Any, p: Sequence[float], problem: _Problem, tolerance: float
-) -> Outcome:
-    states, stats = integrate(path, p, problem.y0, 0.0, [problem.stop], tolerance)
-    return stats.accepted, states[0]
+def _stepper(follow: Callable[..., Any], path: Any, p: Sequence[float], problem: _Problem, tolerance: float) -> Task:
+    """Return a run of one of ours, set up once as a propagator does."""
+    motion = follow(path, p, problem.y0, 0.0, tolerance)
+
+    def task() -> Outcome:
+        states, stats = motion.again().sample([problem.stop])
+        return stats.accepted, states[0]
+
+    return task
 
 
 def _heyoka(problem: _Problem, tolerance: float, settings: dict[str, bool]) -> Task | None:
@@ -197,19 +208,52 @@ def _heyoka(problem: _Problem, tolerance: float, settings: dict[str, bool]) -> T
     return task
 
 
+def _by_hand(library_: Any, method: str, problem: _Problem, steps: int) -> Task:
+    """Return a run of a loop by hand."""
+    function = getattr(library_, method)
+    real = ctypes.c_double
+    function.argtypes, function.restype = (real, real, ctypes.c_long, ctypes.c_void_p, ctypes.c_void_p), None
+    start, p = np.array(problem.y0), np.array(problem.p or [0.0])
+
+    def task() -> Outcome:
+        state = start.copy()
+        function(0.0, problem.stop, steps, state.ctypes.data, p.ctypes.data)
+        return steps, state
+
+    return task
+
+
+def _loops(problem: _Problem) -> list[tuple[str, float, Task]]:
+    """Return loops by hand, with the numbers of steps in the place of tolerances."""
+    here = Path(__file__).parent
+    text = "\n".join(
+        (
+            problem.kernel.source,
+            f"#define N {len(problem.y0)}",
+            (here.parent / "propagation" / "dop853_tableau.h").read_text(encoding="utf-8"),
+            (here / "fixed_step.c").read_text(encoding="utf-8"),
+        )
+    )
+    loaded = ctypes.CDLL(str(library.build(text, "by_hand")))
+    turns = problem.stop * max(1.0, float(np.linalg.norm(problem.y0[: problem.blocks[1]])))
+    return [
+        (f"{method} by hand", float(steps), _by_hand(loaded, method, problem, steps))
+        for method, per_turn in (("rk4", 2.0), ("dop853", 0.3))
+        for steps in (int(turns * per_turn * 1.2**k) for k in range(18))
+    ]
+
+
 def _contestants(problem: _Problem, settings: bool) -> list[tuple[str, float, Task]]:
-    tolerances = [10.0 ** (-k / 2) for k in range(4, 29)]  # two for each decade of the table
+    tolerances = [10.0 ** (-k / 2) for k in range(2, 29)]  # two for each decade of the table
     ours = {order: problem.taylor_library(order) for order in {taylor.order_for(e) for e in tolerances}}
     hairer = library.build(library_source(problem.plan, problem.kernel.source, len(problem.p)), "motion")
+    p, q = problem.taylor_p, problem.p
     tasks: list[tuple[str, float, Task]] = []
-    tasks += [
-        ("taylor", e, partial(_stepper, taylor.integrate, ours[taylor.order_for(e)], problem.taylor_p, problem, e))
-        for e in tolerances
-    ]
-    p = problem.p
-    tasks += [("dop853", e, partial(_stepper, dop853.integrate, hairer, p, problem, e)) for e in tolerances[:-4]]
+    tasks += [("taylor", e, _stepper(taylor.task, ours[taylor.order_for(e)], p, problem, e)) for e in tolerances]
+    tasks += [("dop853", e, _stepper(dop853.task, hairer, q, problem, e)) for e in tolerances[:-4]]
+    tasks += _loops(problem)
     for name, how in SETTINGS.items() if settings else list(SETTINGS.items())[:1]:
-        for e in (*tolerances[2:], 1e-15, 1e-16):
+        for e in (*tolerances, 1e-15, 1e-16):
             task = _heyoka(problem, e, how)
             if task is None:
                 return tasks
@@ -247,9 +291,10 @@ def best_of(runs: Iterable[Run], error: float, names: Sequence[str]) -> Run | No
 # ------------------------------------------------------------------------------------------------ tables
 
 
-def _print_table(name: str, runs: list[Run]) -> None:
+def _print_table(name: str, runs: list[Run]) -> dict[str, list[float]]:
+    """Print one motion; return the ratios by title."""
     stop = MOTIONS[name]["span"]["t"][1]
-    present = [n for n in ("taylor", "dop853", *SETTINGS) if any(run.name == n for run in runs)]
+    present = list(dict.fromkeys(run.name for run in runs))
     peers = [n for n in present if n.startswith("heyoka")]
     print(f"\n{name}, t = {stop} s")
     for contestant in present:
@@ -257,25 +302,34 @@ def _print_table(name: str, runs: list[Run]) -> None:
         best, longest = min(own, key=lambda run: run.error), max(own, key=lambda run: run.steps)
         pace = min(longest.seconds) / longest.steps
         print(f"  {contestant:16}{pace * 1e9:6.0f} ns per step, least error {best.error:.1e} at {best.tolerance:.0e}")
-    columns = [("taylor", ["taylor"]), ("dop853", ["dop853"])]
-    columns += [("heyoka", ["heyoka"])] if peers else []
-    columns += [("best heyoka", peers)] if len(peers) > 1 else []
-    print(f"{'  error <=':10}{'taylor ms':>12}" + "".join(f"{title:>14} ms{'ratio':>8}" for title, _ in columns[1:]))
-    ratios: dict[str, list[float]] = {title: [] for title, _ in columns[1:]}
+    columns: list[tuple[str, list[str], tuple[str, ...], tuple[float, ...]]] = [
+        ("dop853", ["dop853"], ("taylor",), DECADES),
+        ("heyoka", ["heyoka"], ("taylor",), DECADES),
+        ("best heyoka", peers, ("taylor",), DECADES),
+        ("by hand", [f"{method} by hand" for method in BY_HAND], OURS, HAND_DECADES),
+    ]
+    columns = [column for column in columns if set(column[1]) & set(present)]
+    print(f"{'  error <=':10}{'taylor ms':>12}" + "".join(f"{title:>14} ms{'ratio':>8}" for title, *_ in columns))
+    ratios: dict[str, list[float]] = {title: [] for title, *_ in columns}
     for decade in DECADES:
-        ours = best_of(runs, decade, ["taylor"])
-        line = f"{decade:10.0e}" + (f"{min(ours.seconds) * 1e3:12.3f}" if ours else f"{'-':>12}")
-        for title, names in columns[1:]:
-            other = best_of(runs, decade, names)
-            if ours is None or other is None:
+        found = best_of(runs, decade, ["taylor"])
+        line = f"{decade:10.0e}" + (f"{min(found.seconds) * 1e3:12.3f}" if found else f"{'-':>12}")
+        for title, names, against, decades in columns:
+            ours, other = best_of(runs, decade, against), best_of(runs, decade, names)
+            if ours is None or other is None or decade not in decades:
                 line += f"{'-':>17}{'-':>8}"
                 continue
             ratios[title].append(min(other.seconds) / min(ours.seconds))
             line += f"{min(other.seconds) * 1e3:17.3f}{ratios[title][-1]:8.2f}"
         print(line)
+    _print_ratios("  ", ratios)
+    return ratios
+
+
+def _print_ratios(indent: str, ratios: dict[str, list[float]]) -> None:
     for title, found in ratios.items():
         if found:
-            print(f"  {title}: median ratio {np.median(found):.2f}, least {min(found):.2f}")
+            print(f"{indent}{title}: median ratio {np.median(found):.2f}, least {min(found):.2f}")
 
 
 def _print_orders(name: str, rounds: int) -> None:
@@ -283,7 +337,7 @@ def _print_orders(name: str, rounds: int) -> None:
     problem, exact = _Problem(name, 1.0), reference(name)
     paths = {f"{order}": problem.taylor_library(order) for order in ORDERS}
     tasks: list[tuple[str, float, Task]] = [
-        (order, 10.0**-k, partial(_stepper, taylor.integrate, path, problem.taylor_p, problem, 10.0**-k))
+        (order, 10.0**-k, _stepper(taylor.task, path, problem.taylor_p, problem, 10.0**-k))
         for k in range(2, 15) for order, path in paths.items()
     ]  # fmt: skip
     runs = _raced(problem, exact, tasks, rounds)
@@ -297,8 +351,8 @@ def _print_orders(name: str, rounds: int) -> None:
 def main(arguments: list[str] | None = None) -> None:
     """Print the tables."""
     parser = argparse.ArgumentParser(prog="python -m symrot.bench.taylor", description=(__doc__ or "").split("\n")[0])
-    parser.add_argument("--rounds", type=int, default=9)
-    parser.add_argument("--settings", action="store_true", help="race heyoka's other settings too")
+    parser.add_argument("--rounds", type=int, default=7)
+    parser.add_argument("--quick", action="store_true", help="race heyoka in its default setting only")
     parser.add_argument("--orders", action="store_true", help="compare orders of the series")
     parser.add_argument("--reference", action="store_true", help="compute the last states (minutes) and print them")
     parser.add_argument("--motion", choices=list(MOTIONS), help="one motion only")
@@ -306,11 +360,16 @@ def main(arguments: list[str] | None = None) -> None:
     if options.reference:
         print(references_text(), end="")
         return
+    every: dict[str, list[float]] = {}
     for name in [options.motion] if options.motion else MOTIONS:
         if options.orders:
             _print_orders(name, options.rounds)
-        else:
-            _print_table(name, measure(name, options.rounds, options.settings))
+            continue
+        for title, found in _print_table(name, measure(name, options.rounds, not options.quick)).items():
+            every.setdefault(title, []).extend(found)
+    if every:
+        print("\nall motions and decades")
+        _print_ratios("  ", every)
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@ import ctypes
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import cached_property
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -22,7 +23,7 @@ from symrot.planner import Plan
 from symrot.propagation import dop853
 from symrot.propagation.kernels import error_blocks, scene_kernel
 from symrot.propagation.propagator import Choice, Motion, Propagator
-from symrot.propagation.stepping import Recording, Stats
+from symrot.propagation.stepping import Recording, Stats, Task
 from symrot.scene import Scene
 from symrot.scene_kernel import SceneKernel
 
@@ -203,8 +204,9 @@ class DrivenMotion(Motion):
         """Those of the rates, then those of the torque."""
         return [*self.rate_parameters, *self._more]
 
-    def task(self) -> Any:
-        """Return the motion, to be followed."""
+    @cached_property
+    def stepping(self) -> Task:
+        """The motion as the stepper in C follows it."""
         assert self.library is not None
         return dop853.task(
             self.library, self.driven_parameters, self.plan.initial_state, self.start, self.tolerance,
@@ -225,11 +227,11 @@ class DrivenMotion(Motion):
     def integrate(self, times: Floats) -> tuple[Floats, Stats]:
         """Return the states at the times, shape (n, N), and what it cost."""
         low, high = (float(times.min()), float(times.max())) if len(times) else (self.start, self.start)
-        found: tuple[Floats, Stats] = self.guarded(low, high, lambda: self.task().sample(times))
+        found: tuple[Floats, Stats] = self.guarded(low, high, lambda: self.stepping.again().sample(times))
         return found
 
     def _dense(self, span: tuple[float, float]) -> Recording:
-        recording: Recording = self.guarded(*span, lambda: self.task().record(span))
+        recording: Recording = self.guarded(*span, lambda: self.stepping.again().record(span))
         return recording
 
 

@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from symrot.codegen import library
 from symrot.errors import InputError, PropagationError
-from symrot.propagation import dop853, taylor
 from symrot.propagation.events import (
     Event,
     Found,
@@ -143,8 +142,8 @@ def _side(motion: "Motion", end: float) -> _Side:
     method, plan = motion.choice.method.partition(":")[0], motion.plan
     start, y0 = motion.start, np.array(plan.initial_state, dtype=np.float64)
     broken: list[PropagationError] = []
-    if method in STEPPED:
-        task = STEPPED[method](motion)
+    if method in ("taylor", "dop853"):
+        task = motion.stepping.again()
         rows: list[Floats] = []
 
         def pieces() -> Any:
@@ -173,23 +172,6 @@ def _side(motion: "Motion", end: float) -> _Side:
     longest = TURN_PER_PIECE / max(float(np.abs(rates).max()), 1e-300)
     dense = exact_dense(anywhere, len(y0))
     return _Side(even_pieces(start, end, longest), dense, anywhere, broken, lambda: cost)
-
-
-def _taylor(motion: "Motion") -> Any:
-    assert motion.library is not None
-    start = (motion.taylor_parameters, motion.plan.initial_state, motion.start)
-    return taylor.task(motion.library, *start, motion.tolerance)
-
-
-def _dop853(motion: "Motion") -> Any:
-    if hasattr(motion, "task"):  # one with a torque that is no formula
-        return motion.task()
-    assert motion.library is not None
-    start = (motion.rate_parameters, motion.plan.initial_state, motion.start)
-    return dop853.task(motion.library, *start, motion.tolerance)
-
-
-STEPPED: dict[str, Callable[["Motion"], Any]] = {"taylor": _taylor, "dop853": _dop853}
 
 
 def _cost(task: Any) -> tuple[int, int, int]:

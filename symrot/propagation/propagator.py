@@ -20,6 +20,7 @@ from symrot.propagation.dop853 import Stats
 from symrot.propagation.invariants import invariant_parameters
 from symrot.propagation.kernels import compiled, error_blocks, scene_kernel, taylor_library
 from symrot.propagation.smoothness import roughness
+from symrot.propagation.stepping import Task
 from symrot.propagation.trajectory import ARRAY_FUNCTIONS, Trajectory
 from symrot.scene import Initial, Scene, load_scene
 from symrot.scene_kernel import SceneKernel, bind
@@ -140,6 +141,15 @@ class Motion:
         return bind(self.kernel.rate_parameters, self.plan.constants)
 
     @cached_property
+    def stepping(self) -> Task:
+        """The motion as its stepper in C follows it: checked once, followed as often as asked."""
+        assert self.library is not None
+        if self.choice.method == "taylor":
+            start = (self.taylor_parameters, self.plan.initial_state, self.start)
+            return taylor.task(self.library, *start, self.tolerance)
+        return dop853.task(self.library, self.rate_parameters, self.plan.initial_state, self.start, self.tolerance)
+
+    @cached_property
     def taylor_parameters(self) -> list[float]:
         """Those of the rates, then those of the invariants."""
         return [*self.rate_parameters, *invariant_parameters(self.kernel, self.plan)]
@@ -219,9 +229,7 @@ class Motion:
             return lambda t: _exact(self, t)[0]
         start = (self.rate_parameters, self.plan.initial_state, self.start)
         if self.library is not None:
-            if self.choice.method == "taylor":
-                return taylor.record(self.library, self.taylor_parameters, *start[1:], span, self.tolerance)
-            return dop853.record(self.library, *start, span, self.tolerance)
+            return self.stepping.again().record(span)
         from symrot.propagation import fallback
 
         return fallback.record(self.rates, *start, span, self.tolerance, **self.scipy_options)
@@ -238,17 +246,8 @@ def _keep(motion: Motion, times: Floats) -> tuple[Floats, Stats]:
     return np.empty((len(times), 0)), Stats(0, 0, 0, 0.0)
 
 
-def _dop853(motion: Motion, times: Floats) -> tuple[Floats, Stats]:
-    assert motion.library is not None
-    return dop853.integrate(
-        motion.library, motion.rate_parameters, motion.plan.initial_state, motion.start, times, motion.tolerance
-    )
-
-
-def _taylor(motion: Motion, times: Floats) -> tuple[Floats, Stats]:
-    assert motion.library is not None
-    start = (motion.taylor_parameters, motion.plan.initial_state, motion.start)
-    return taylor.integrate(motion.library, *start, times, motion.tolerance)
+def _stepped(motion: Motion, times: Floats) -> tuple[Floats, Stats]:
+    return motion.stepping.again().sample(times)
 
 
 def _exact(motion: Motion, times: Floats) -> tuple[Floats, Stats]:
@@ -270,8 +269,8 @@ def _scipy(motion: Motion, times: Floats) -> tuple[Floats, Stats]:
 INTEGRATORS: dict[str, Callable[[Motion, Floats], tuple[Floats, Stats]]] = {
     "constant": _keep,
     "exact": _exact,
-    "taylor": _taylor,
-    "dop853": _dop853,
+    "taylor": _stepped,
+    "dop853": _stepped,
     "scipy": _scipy,
 }
 
