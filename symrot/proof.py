@@ -4,14 +4,14 @@ A :class:`Derivation` is built step by step. A step whose two sides are not equa
 (:mod:`symrot.exact`) raises :class:`ProofError`, so whatever a derivation shows has been proven while it was built.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from sympy import Expr, ImmutableMatrix, Matrix, MatrixBase, MatrixExpr, Ne, S, factor, sympify
+from sympy import Expr, ImmutableMatrix, Matrix, MatrixBase, MatrixExpr, Mul, Ne, S, factor, fraction, sympify
 
 from symrot.errors import SymrotError
-from symrot.exact.decide import Verdict, decide, normal_form
+from symrot.exact.decide import Verdict, decide, is_zero, normal_form
 from symrot.exact.ring import as_zero
 
 __all__ = ["Derivation", "Passage", "ProofError", "Section", "Step"]
@@ -62,6 +62,9 @@ class Step:
         Book and page, where the step is printed elsewhere.
     via : tuple of (str, Expr, Expr)
         Proven equations on the way, (words, left, right), for a reader who asks for detail.
+    printed : (bool, bool)
+        Of each side: whether the page shows what was proven, printed from it or read back and decided; otherwise it
+        shows a name, or words in LaTeX, that stand for it.
     """
 
     claim: str
@@ -75,6 +78,7 @@ class Step:
     shown: Any = None
     source: str = ""
     via: tuple[tuple[str, Any, Any], ...] = ()
+    printed: tuple[bool, bool] = (True, True)
 
 
 @dataclass
@@ -92,6 +96,8 @@ class Derivation:
         What it shows and what it is for, one paragraph.
     first : int
         The number of the first step; not 1 on a page that shows a part of a derivation.
+    names, rates : dict
+        What names on the page mean, and how fast variables change (:meth:`notation`).
     """
 
     name: str
@@ -101,11 +107,28 @@ class Derivation:
     items: list[Section | Passage | Step] = field(default_factory=list)
     assumed: list[Expr] = field(default_factory=list)
     first: int = 1
+    names: dict[str, Any] = field(default_factory=dict)
+    rates: dict[Expr, Expr] = field(default_factory=dict)
 
     @property
     def steps(self) -> tuple[Step, ...]:
         """The proven steps, in order."""
         return tuple(item for item in self.items if isinstance(item, Step))
+
+    def notation(self, names: Mapping[str, Any], rates: Mapping[Expr, Expr] | None = None) -> None:
+        """Say what names on the page mean, so that the LaTeX of the steps after it is read back and decided.
+
+        Parameters
+        ----------
+        names : mapping
+            LaTeX of a name -> Expr, Matrix, or a function of what is in parentheses after it.
+        rates : mapping, optional
+            Variable -> its rate, for dots and time derivatives.
+        """
+        from symrot.proof_pages.reading import key
+
+        self.names |= {key(name): meaning for name, meaning in names.items()}
+        self.rates |= rates or {}
 
     def section(self, title: str) -> None:
         """Begin a section."""
@@ -114,6 +137,8 @@ class Derivation:
     def given(self, text: str, *equations: tuple[Any, Any]) -> None:
         """State what is assumed, in words and perhaps in equations ``(left, right)``; text in a pair is LaTeX."""
         self.items.append(Passage(text, tuple(equations)))
+        for left, right in equations:
+            self._note(left, right)
 
     def nonzero(self, text: str, expression: Expr, named: str) -> None:
         """State once that an expression (LaTeX ``named``) is not zero; the steps after it do not repeat that."""
@@ -122,7 +147,7 @@ class Derivation:
 
     def define(self, text: str, left: Any, right: Any) -> Any:
         """Give something a name, ``left`` (a symbol, or LaTeX), and return what it stands for."""
-        self.items.append(Passage(text, ((left, right),)))
+        self.given(text, (left, right))
         return right
 
     def step(
@@ -167,11 +192,16 @@ class Derivation:
         for words, before, after in via:
             self._proven(f"{claim} {words}", before, after, relations)
         hypotheses = tuple(zero for zero in map(as_zero, relations) if zero != 0)
-        conditions = tuple(condition for condition in verdict.conditions if not self._is_assumed(condition))
+        conditions = tuple(condition for condition in _tidied(verdict.conditions) if not self._is_assumed(condition))
         right = Matrix.zeros(*left.shape) if right == 0 and isinstance(left, MatrixBase) else right
         left, right = _frozen(left), _frozen(right)
+        sides = left, right
+        printed = (
+            self._is_shown(claim, named or None, left, sides, relations),
+            self._is_shown(claim, shown, right, sides, relations),
+        )
         return self._add(
-            Step(claim, left, right, because, "=", hypotheses, conditions, named, shown, source, tuple(via))
+            Step(claim, left, right, because, "=", hypotheses, conditions, named, shown, source, tuple(via), printed)
         )
 
     def positive(self, claim: str, expression: Any, *, because: str, named: str = "") -> Step:
@@ -197,6 +227,69 @@ class Derivation:
                 f"{_short(verdict.residual)}{where}"
             )
         return verdict
+
+    def _is_shown(self, claim: str, shown: Any, side: Any, sides: tuple[Any, Any], relations: Sequence[Any]) -> bool:
+        """Return whether what is shown for a side is read back; ``ProofError`` where it is and is something else."""
+        from symrot.proof_pages.reading import Unread
+
+        if shown is None:
+            return True
+        try:
+            values = self._read(shown, sides) if isinstance(shown, str) else [shown]
+        except Unread:
+            return False
+        values = [_as_side(value, side) for value in values]
+        if any(_shape(value) != _shape(side) for value in values):
+            return False
+        for value in values:
+            if value != side:
+                self._proven(f"{claim} as it is shown, {shown}", value, side, relations)
+        return True
+
+    def _read(self, text: str, sides: tuple[Any, Any] = (S.Zero, S.Zero)) -> list[Any]:
+        """Return what a text for one side means, in each of the forms it gives, ``X = Y``.
+
+        The equations beside it, ``, \\quad a = b``, say what a name means, or must hold themselves.
+        """
+        from symrot.proof_pages.printer import formula
+        from symrot.proof_pages.reading import Unread, key, parts, read
+
+        used = {symbol for side in sides for symbol in side.free_symbols}
+        names = {key(formula(symbol)): symbol for symbol in used} | self.names
+        chains = parts(text)
+        main = chains.pop(-1 if len(chains) > 1 and len(chains[-1]) == 1 else 0)
+        for chain in chains:
+            *others, last = (read(side, names, self.rates) if n or key(side) in names else None
+                             for n, side in enumerate(chain))  # fmt: skip
+            names.setdefault(key(chain[0]), last)
+            if any(other is not None and not is_zero(other - last) for other in others):
+                raise ProofError(f"{self.name}: {text} does not hold where it is shown")
+        found = []
+        for number, side in enumerate(main):
+            try:
+                found.append(read(side, names, self.rates))
+            except Unread:
+                if number or len(main) == 1:
+                    raise
+        if len(found) < len(main):
+            self.names[key(main[0])] = found[0]
+        return found
+
+    def _note(self, left: Any, right: Any) -> None:
+        """Remember what a name stands for, if the right side says it in a formula, or in LaTeX that can be read."""
+        from symrot.proof_pages.printer import formula
+        from symrot.proof_pages.reading import Unread, key
+
+        if isinstance(right, str):
+            try:
+                right = self._read(right)[-1]
+            except Unread:
+                self.names.pop(key(left) if isinstance(left, str) else "", None)
+                return
+        if isinstance(left, str) and left:
+            self.names[key(left)] = right
+        elif isinstance(left, Expr) and left.is_Symbol:
+            self.names[key(formula(left))] = right
 
     def _is_assumed(self, condition: Any) -> bool:
         if not isinstance(condition, Ne):
@@ -237,6 +330,36 @@ class Derivation:
         from symrot.proof_pages import excerpt
 
         return excerpt(self, number, detail)
+
+
+def _tidied(conditions: Sequence[Any]) -> list[Any]:
+    """Return conditions without those that others imply: a root is zero where its radicand is, a product by factor."""
+    found: dict[Any, Any] = {}
+    for condition in conditions:
+        if not isinstance(condition, Ne):
+            found.setdefault((type(condition), normal_form(condition.lhs)), condition)
+            continue
+        for piece in Mul.make_args(condition.lhs):
+            base = piece.base if piece.is_Pow and piece.exp.is_Rational else piece
+            for part in fraction(base):
+                value = normal_form(part)
+                if not (part.is_number or part.is_nonzero or (Ne, -value) in found):
+                    found.setdefault((Ne, value), Ne(part, 0))
+    return list(found.values())
+
+
+def _shape(side: Any) -> Any:
+    return side.shape if isinstance(side, MatrixBase) else None
+
+
+def _as_side(shown: Any, side: Any) -> Any:
+    """Return what is shown in the shape of the side it stands for: a number for that multiple of the unit matrix."""
+    shown = _frozen(shown)
+    if isinstance(side, MatrixBase) and not isinstance(shown, MatrixBase):
+        if shown == 0:
+            return ImmutableMatrix.zeros(*side.shape)
+        return ImmutableMatrix.eye(side.rows) * shown if side.is_square else shown
+    return shown
 
 
 def _frozen(side: Any) -> Any:

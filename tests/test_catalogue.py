@@ -4,6 +4,7 @@ import os
 import re
 import subprocess
 import sys
+from importlib import import_module
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -15,6 +16,7 @@ from symrot.cli import main
 from symrot.conventions import SEQUENCES
 from symrot.errors import InputError
 from symrot.exact import is_zero
+from symrot.proof import Derivation, ProofError
 
 ROOT = Path(__file__).parents[1]
 
@@ -33,7 +35,8 @@ ASKED = {  # what a course asks for, and the derivation that has it
     "particle sum": "angular_momentum", "energy": "kinetic_energy", "solids": "standard_solids", "Poinsot": "poinsot",
     "Lagrange": "lagrange_and_euler", "top": "heavy_top", "wheel": "gyroscopic_wheel", "Jacobi": "free_asymmetric_body",
     "power": "work_and_power", "blow": "impulse_and_momentum", "rolling": "rolling", "Willis": "gear_trains",
-    "slider": "planar_linkages",
+    "slider": "planar_linkages", "theta functions": "free_body_attitude", "pendulum": "pendulum",
+    "nutation in time": "heavy_top_motion", "rotor": "symmetric_gyrostat", "motor and brake": "driven_rotation",
 }  # fmt: skip
 
 
@@ -81,6 +84,33 @@ def test_a_page_is_a_page(derived, name):
     for step in found.steps:
         assert step.claim[0].isupper() and step.claim[-1] in ".:,", step.claim
         assert step.reason and not step.reason.endswith("."), step.reason
+
+
+IN_WORDS = {  # right sides that are typed in words or names beside what was proven: fewer is better, more is a fault
+    "euler_body_rates": 24, "euler_parameters": 13, "euler_singularities": 12, "rotation_matrices": 5,
+    "angular_momentum": 4, "quaternion_rates": 3, "rotation_vector": 3, "rodrigues": 3, "symmetric_top": 3,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", catalogue.names())
+def test_what_is_shown_is_what_was_proven(derived, name):
+    """A side of an equation is printed from the proof, or its LaTeX is read back and decided when it is built."""
+    words = [step.shown for step in derived[name].steps if not step.printed[1]]
+    assert len(words) <= IN_WORDS.get(name, 2), words
+
+
+def test_a_tampered_page_cannot_be_derived(monkeypatch):
+    """One sign changed in what a catalogue page shows, and in nothing that it proves."""
+    add = Derivation.step
+
+    def tampered(page, claim, left, right, *, shown=None, **others):
+        changed = shown.replace("+", "-", 1) if isinstance(shown, str) else shown
+        return add(page, claim, left, right, shown=changed, **others)
+
+    monkeypatch.setattr(Derivation, "step", tampered)
+    for name in ("kinetic_energy", "relative_motion", "free_body_attitude", "rodrigues", "tensor_rotation"):
+        with pytest.raises(ProofError, match="as it is shown"):
+            import_module(f"symrot.catalogue.{name}").derive()
 
 
 def test_every_sequence_has_its_rates(derived):

@@ -10,6 +10,7 @@ from symrot.exact.decide import decide, is_zero
 from symrot.exact.stages import chains
 from symrot.proof import Derivation, Passage, ProofError, Section, Step
 from symrot.proof_pages.mathml import mathml, rows
+from symrot.proof_pages.reading import Unread, read
 from symrot.symbols import A, B, C, delta_1, dphi, omega_1, omega_b, phi, q0, q1, q2, q3, theta, x
 
 UNIT = q0**2 + q1**2 + q2**2 + q3**2 - 1
@@ -205,3 +206,71 @@ def test_equations_on_the_way_are_proven_and_shown_in_detail(page):
     with pytest.raises(ProofError, match=r"It is not.*First.*does not hold"):
         page.step("It is not.", x, x, because="of nothing", via=[("First:", x, 2 * x)])
     assert len(page.steps) == 1
+
+
+V, DV = Matrix(omega_b), Matrix([dphi, 0, 0])
+
+
+@pytest.mark.parametrize(
+    "text, value",
+    [
+        (r"\omega \times I\,\omega", V.cross(Matrix.diag(A, B, C) * V)),
+        (r"\tfrac12\,\omega \cdot I\,\omega", V.dot(Matrix.diag(A, B, C) * V) / 2),
+        (r"|\omega|^2\,\mathbf{1} - \omega\,\omega^{\mathsf T}", V.dot(V) * eye(3) - V * V.T),
+        (r"[\omega]_\times^2 + 1", Matrix([[0, -V[2], V[1]], [V[2], 0, -V[0]], [-V[1], V[0], 0]]) ** 2 + eye(3)),
+        (r"\left. \frac{\partial}{\partial x} \sin^2 x \right|_{x = 0} + \frac{A}{2 B}", A / (2 * B)),
+        (r"\begin{bmatrix} \omega \\ x \end{bmatrix}", Matrix([*V, x])),
+        (r"\mathrm{tr}\,I - \det I / (A B)", A + B),
+        (r"\dot\omega", DV),
+    ],
+)
+def test_what_a_page_shows_is_read_as_a_person_reads_it(text, value):
+    names = {r"\omega": V, "I": Matrix.diag(A, B, C), "A": A, "B": B, "x": x}
+    assert decide(read(text, names, {omega_1: dphi}), value).verdict == "true"
+
+
+@pytest.mark.parametrize(
+    "text", [r"\omega \times", r"f(t)", "y", r"x + \omega", r"\omega I", r"\frac{x}{0}", "x_", "{x", ""]
+)
+def test_what_has_no_meaning_is_not_read(text):
+    with pytest.raises(Unread):
+        read(text, {r"\omega": V, "I": Matrix.diag(A, B, C), "x": x})
+
+
+@pytest.mark.parametrize(
+    "named, shown",
+    [
+        (r"\omega \times u", r"u \times \omega"),
+        (r"\omega \times u", r"\omega \times \omega"),
+        (r"u \times \omega", r"-u \times \omega"),
+        (r"u", ""),
+        (r"w", r"w \times u, \quad w = 2\,\omega"),
+    ],
+)
+def test_a_page_cannot_show_what_was_not_proven(page, named, shown):
+    """The proven sides are right; what would be printed for them is not."""
+    u = Matrix([q1, q2, q3])
+    page.notation({r"\omega": V, "u": u})
+    good = {"because": "the product is antisymmetric", "named": r"\omega \times u"}
+    step = page.step("It turns.", V.cross(u), -u.cross(V), shown=r"-u \times w, \quad w = \omega", **good)
+    assert step.printed == (True, True)
+    with pytest.raises(ProofError, match=r"as it is shown|where it is shown"):
+        page.step("It turns.", V.cross(u), -u.cross(V), because="of nothing", named=named, shown=shown or None)
+    assert len(page.steps) == 1
+
+
+def test_a_matrix_shown_as_a_product_is_that_product(page):
+    with pytest.raises(ProofError, match="as it is shown"):
+        page.step("No.", V, Matrix(omega_b), because="of nothing", shown=MatMul(2 * eye(3), V))
+
+
+def test_a_name_is_said_to_be_one(page):
+    step = page.step("It is.", 2 * x, x + x, because="of sums", named="\\text{twice}")
+    assert step.printed == (False, True)
+    assert "Of the 2 sides, 1 are shown as proven" in page.markdown()
+
+
+def test_a_condition_is_said_once(page):
+    root = sqrt(x**2 + phi**2)
+    step = page.step("It is.", x / root / (x**2 + phi**2), x / root**3, because="of powers")
+    assert [str(c) for c in step.conditions] == ["Ne(phi**2 + x**2, 0)"]

@@ -34,6 +34,7 @@ def derive() -> Derivation:
 def _one_particle(d: Derivation) -> None:
     d.section("One particle")
     mass, point = symbols.m, PLACE
+    d.notation({"r": point, r"\omega": OMEGA})
     momentum = point.cross(mass * OMEGA.cross(point))
     d.step(
         r"The angular momentum of a particle at $r$ that turns with $\omega$.",
@@ -66,6 +67,7 @@ def _sum(d: Derivation) -> None:
         shown=rf"\Bigl( {COUNT} m_i \left( |r_i|^2\,\mathbf{{1}} - r_i\,r_i^{{\mathsf T}} \right) \Bigr) \omega = "
         rf"I\,\omega",
     )
+    d.notation({"I": tensor})
     d.step(
         "The tensor is symmetric.",
         tensor - tensor.T,
@@ -100,7 +102,9 @@ def _center(d: Derivation) -> None:
 
 def _properties(d: Derivation) -> None:
     d.section("What every inertia tensor obeys")
+    d.notation({r"\omega": OMEGA})
     tensor = sum((Matrix(inertia_of_point(m, p)) for m, p in zip(MASSES, POINTS, strict=True)), zeros(3))
+    d.notation({"I": tensor})
     d.step(
         r"The product $\omega \cdot I\,\omega$ is a sum of squares: the principal moments are not negative, and zero "
         r"only for "

@@ -34,6 +34,7 @@ def derive() -> Derivation:
 
 def _forward(d: Derivation) -> None:
     d.section("From axis and angle to the matrix")
+    d.notation({"n": N, "v": V, "R": Matrix(dcm_of_axis_angle())})
     along = N * N.dot(V)
     across = V - along
     d.define("The part of a vector along the axis, and", r"v_\parallel", along)
@@ -88,6 +89,7 @@ def _forward(d: Derivation) -> None:
 def _back(d: Derivation) -> None:
     d.section("From the matrix to axis and angle")
     matrix = dcm_of_axis_angle()
+    d.notation({"R": Matrix(dcm_of())})
     d.step(
         "Every rotation has an axis (Euler): the matrix, here of a unit quaternion, has the eigenvalue 1.",
         (Matrix(dcm_of()) - eye(3)).det(),
@@ -96,6 +98,7 @@ def _back(d: Derivation) -> None:
         relations=[unit_relation()],
         named=r"\det (R - 1)",
     )
+    d.notation({"R": Matrix(matrix)})
     d.step(
         "The trace gives the cosine.",
         (matrix.trace() - 1) / 2,
@@ -129,6 +132,7 @@ def _back(d: Derivation) -> None:
 def _half_turn(d: Derivation) -> None:
     d.section("At half a turn")
     half = dcm_of_axis_angle().subs(ALPHA, pi)
+    d.notation({"R": Matrix(half)})
     d.given(r"At $\alpha = \pi$ the skew part is zero, and $n = s / \sin\alpha$ has no meaning.")
     d.step(
         "But then the symmetric part is the axis alone.",
@@ -156,6 +160,7 @@ def _half_turn(d: Derivation) -> None:
         named=r"R(-n, \pi) - R(n, \pi)",
     )
     matrix = dcm_of_axis_angle()
+    d.notation({"R": Matrix(matrix)})
     symmetric = matrix + matrix.T + (1 - matrix.trace()) * eye(3)
     d.step(
         "The same works at every angle, with no loss of digits near half a turn.",

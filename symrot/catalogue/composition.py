@@ -36,6 +36,13 @@ def derive() -> Derivation:
 
 def _product(d: Derivation) -> None:
     d.section("The product")
+    d.notation(
+        {
+            "p": Matrix(P), "q": Matrix(Q), "n": N, "k": K,
+            "R": lambda *of: dcm_of(of[0]) if len(of) == 1 else dcm_of_axis_angle(*of),
+            "R_z": lambda angle: elementary_rotation("Z", angle), "R_x": lambda angle: elementary_rotation("X", angle),
+        }
+    )  # fmt: skip
     units = [unit_relation(P), unit_relation(Q)]
     d.step(
         "The product of two unit quaternions has unit norm.",

@@ -1,6 +1,6 @@
 """Constant torque and linear damping about one axis, in closed form."""
 
-from sympy import Expr, Matrix, Rational, cos, diag, exp, sin
+from sympy import Expr, Matrix, Rational, S, cos, diag, exp, sin
 
 from symrot import symbols
 from symrot.catalogue._elliptic import I, imaginary
@@ -60,6 +60,7 @@ def _pushed(d: Derivation) -> None:
         shown=r"\omega_3(t)",
     )
     q = Matrix(symbols.quaternion)
+    d.notation({"q": q, "e_3": AXIS, r"\theta": ANGLE}, {T: S.One})
     turn = Matrix([cos(ANGLE / 2), 0, 0, sin(ANGLE / 2)])
     attitude = Matrix(qmul(q, turn))
     d.step(
@@ -84,10 +85,9 @@ def _braked(d: Derivation) -> None:
     speed, angle, decay = _decay()
     d.given(
         r"A brake adds the torque $-b_3\,\omega_3$. The rate tends to $\tau_3 / b_3$:",
-        (r"\omega_3(t)", r"\frac{\tau_3}{b_3} + \left( \omega_3 - \frac{\tau_3}{b_3} \right) e^{-b_3 t / C}"),
-        (r"\theta(t)", r"\frac{\tau_3}{b_3}\,t + \left( \omega_3 - \frac{\tau_3}{b_3} \right) \frac{C}{b_3} \left( 1 - "
-                       r"e^{-b_3 t / C} \right)"),
-    )  # fmt: skip
+        (r"\omega_3(t)", speed),
+        (r"\theta(t)", angle),
+    )
     d.step(
         "The rate obeys the equation of motion.",
         C * speed.diff(T),
@@ -120,6 +120,8 @@ def _braked(d: Derivation) -> None:
         (exp(-DRAG * T / C) - 1) / (-DRAG * T / C),
         (exp(-DRAG * T / C) - 1 + DRAG * T / C) / (DRAG * T / C) ** 2,
     )
+    power = -DRAG * T / C
+    d.notation({"x": power, "f_1": (exp(power) - 1) / power, "f_2": (exp(power) - 1 - power) / power**2})
     d.step(
         "The same, in a form that holds without damping too.",
         Matrix([speed, angle]),
@@ -143,11 +145,14 @@ def _across(d: Derivation) -> None:
     d.section("A symmetric body that turns across the axis as well")
     first, second = symbols.omega_1, symbols.omega_2
     turn = (C - A) / A * symbols.theta
+    d.notation({r"\theta": symbols.theta})
     omega = Matrix([first * cos(turn) - second * sin(turn), first * sin(turn) + second * cos(turn), symbols.Omega])
     d.given(
         r"Moments $A, A, C$; $\Omega$ is the rate $\omega_3(t)$ and $\theta$ its angle, of either section above. From "
         r"$\omega_1, \omega_2$ at the start:",
         (r"\omega(t)", omega),
+        (r"\omega_1(t)", omega[0]),
+        (r"\omega_2(t)", omega[1]),
     )
     d.step(
         "Across the axis Euler's equations hold, whatever the rate: the torque is along the axis.",
@@ -157,6 +162,7 @@ def _across(d: Derivation) -> None:
         named=r"\begin{bmatrix} \dot\omega_1(t) \\ \dot\omega_2(t) \end{bmatrix}",
         shown=r"\frac{C - A}{A}\,\Omega \begin{bmatrix} -\omega_2(t) \\ \omega_1(t) \end{bmatrix}",
     )
+    d.notation({r"\theta(t)": ANGLE})
     d.step(
         "With a constant torque the phase is quadratic in time: integrals over it are those of Fresnel.",
         ((C - A) / A * ANGLE).diff(T, 2),
@@ -180,6 +186,7 @@ def _attitude(d: Derivation) -> None:
     speeds = quaternion_rates("body") * Matrix([across, 0, sweep])
     motion = pairs(symbols.quaternion, speeds) | {sweep: growth}
     first, second = q0 + I * q3, q1 + I * q2
+    d.notation({r"\alpha": first, r"\beta": second, "i": I}, motion)
     d.step(
         "They obey the equations of a two-level system that is swept through resonance.",
         rate(Matrix([first, second]), motion),

@@ -35,6 +35,12 @@ def derive() -> Derivation:
 
 def _definition(d: Derivation) -> None:
     d.section("Definition")
+    d.notation(
+        {"u": Symbol("u"), r"\mathrm sn": SN, r"\mathrm cn": CN, r"\mathrm dn": DN, r"\mu": MU}
+        | {"time": "u"}
+        | {rf"\mathrm {name}_w": value for name, value in zip(("sn", "cn", "dn"), W_VALUES, strict=True)},
+        derivatives(),
+    )
     d.given(
         r"The functions $\mathrm{sn}, \mathrm{cn}, \mathrm{dn}$ of $u$, with the parameter $\mu = k^2$, start at "
         "$0, 1, 1$ for $u = 0$, and obey",
@@ -60,6 +66,9 @@ def _sums(d: Derivation) -> None:
         (r"\hat D", dn),
     )
     along = derivatives()
+    other = shifted(-1)
+    for name, here, there in zip(("sn", "cn", "dn"), (s, c, dn), other, strict=True):
+        d.notation({rf"\mathrm{{{name}}}(u + w)": here, rf"\mathrm{{{name}}}(u - w)": there, r"\Delta": BELOW})
     for claim, name, left, right, value in (
         ("They obey the same three equations in $u$. The first:", "S", s, c * dn, r"\hat C\,\hat D"),
         ("The second:", r"\hat C", c, -s * dn, r"-S\,\hat D"),
@@ -167,6 +176,8 @@ def _imaginary(d: Derivation) -> None:
         r"transformation is that at $i a$, for the parameter $\mu$, the functions are",
         (r"\begin{bmatrix} \mathrm{sn}_w \\ \mathrm{cn}_w \\ \mathrm{dn}_w \end{bmatrix}_{w = i a}", values),
     )
+    d.notation({rf"\mathrm{{{name}}}_w": value for name, value in zip(("sn", "cn", "dn"), values, strict=True)})
+    d.notation({"i": I, "time": "a"}, along)
     d.step(
         r"They obey the three equations, multiplied by $i$ for $d/da$, and start at $0, 1, 1$.",
         Matrix([rate(value, along) for value in values]),

@@ -6,7 +6,7 @@ from symrot import symbols
 from symrot.catalogue._motion import pairs, rate
 from symrot.conventions import SEQUENCES
 from symrot.kinematics.euler import dcm, rate_jacobian
-from symrot.kinematics.rotations import skew
+from symrot.kinematics.rotations import skew, vee
 from symrot.proof import Derivation
 
 RATES = Matrix(symbols.angle_rates)
@@ -42,19 +42,21 @@ def _sequence(d: Derivation, sequence: str) -> None:
     d.define("The direction cosine matrix, body to space:", "R", dcm_sb)
     d.step(
         "The angular velocity in the body.",
-        dcm_rate,
-        dcm_sb * skew(body * RATES),
+        vee(dcm_sb.T * dcm_rate),
+        body * RATES,
         because=r"$\dot R = R\,[\omega_b]_\times$, all nine entries",
         named=r"\omega_b",
         shown=MatMul(body.as_immutable(), RATES),
+        via=[("The rate of the matrix, all nine entries:", dcm_rate, dcm_sb * skew(body * RATES))],
     )
     d.step(
         "The angular velocity in space.",
-        dcm_rate,
-        skew(space * RATES) * dcm_sb,
+        vee(dcm_rate * dcm_sb.T),
+        space * RATES,
         because=r"$\dot R = [\omega_s]_\times R$, all nine entries",
         named=r"\omega_s",
         shown=MatMul(space.as_immutable(), RATES),
+        via=[("The rate of the matrix, all nine entries:", dcm_rate, skew(space * RATES) * dcm_sb)],
     )
     d.step(
         "The rates from the angular velocity in the body.",

@@ -32,6 +32,7 @@ def derive() -> Derivation:
     )
     momentum_b = TENSOR * OMEGA
     motion = attitude_rates() | pairs(symbols.omega_b, DOMEGA)
+    d.notation({"R": dcm_sb, r"\omega_b": OMEGA, r"\dot\omega_b": DOMEGA, "L_s": dcm_sb * momentum_b}, motion)
     moving = TENSOR * DOMEGA + OMEGA.cross(momentum_b)
     d.step(
         "The rate of angular momentum in space, with its components along the axes of the body.",
@@ -54,6 +55,7 @@ def derive() -> Derivation:
     )
     d.section("Special axes and bodies")
     principal = angular_acceleration(diag(*symbols.principal), OMEGA, TORQUE)
+    d.notation({r"\dot\omega_b": principal, r"\dot\omega_3": principal[2]})
     a, b, c = symbols.principal
     w1, w2, w3 = OMEGA
     first, second, third = TORQUE
@@ -81,6 +83,7 @@ def derive() -> Derivation:
         named=r"\dot\omega_b",
     )
     d.section("Power")
+    d.notation({"I": TENSOR}, pairs(symbols.omega_b, acceleration))
     d.step(
         "The gyroscopic term does no work: the torque alone changes the kinetic energy.",
         rate(OMEGA.dot(momentum_b) / 2, pairs(symbols.omega_b, acceleration)),

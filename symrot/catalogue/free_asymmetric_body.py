@@ -43,6 +43,8 @@ def _elliptic(p: object, parameter: object) -> dict:  # type: ignore[type-arg]
 def _functions(d: Derivation) -> None:
     d.section("What is used of the elliptic functions")
     rates = _elliptic(P, MU)
+    d.notation({r"\mathrm{sn}": SN, r"\mathrm{cn}": CN, r"\mathrm{dn}": DN, r"\mu": MU, "A": A, "B": B, "C": C}, rates)
+    d.notation({"a_1": FIRST, "a_3": THIRD, "I": INERTIA})
     d.given(
         r"Let $\mathrm{sn}, \mathrm{cn}, \mathrm{dn}$ be those of the argument $p\,t$ and the parameter $\mu = k^2$. "
         r"They start "
@@ -81,6 +83,7 @@ def _solution(d: Derivation) -> None:
     amplitudes, p, parameter = _amplitudes()
     omega = Matrix([amplitudes[0] * DN, -amplitudes[1] * SN, amplitudes[2] * CN])
     rates = _elliptic(p, parameter)
+    d.notation({}, rates)
     d.given(
         r"Let the body start with $\omega = (a_1, 0, a_3)$, on the side of the separatrix where $L^2 > 2 T B$: the "
         r"polhode "
@@ -122,6 +125,7 @@ def _constants(d: Derivation) -> None:
     amplitudes, p, parameter = _amplitudes()
     twice = A * FIRST**2 + C * THIRD**2
     square = A**2 * FIRST**2 + C**2 * THIRD**2
+    d.notation({"T": twice / 2, "L": sqrt(square)})
     d.step(
         "The amplitudes.",
         amplitudes.multiply_elementwise(amplitudes),
@@ -186,6 +190,7 @@ def _attitude(d: Derivation) -> None:
         named=r"\begin{bmatrix} A \omega_1 \\ B \omega_2 \\ C \omega_3 \end{bmatrix}",
     )
     omega = INERTIA.inv() * momentum
+    d.notation({"H": h} | {rf"\omega_{n + 1}": omega[n] for n in range(3)})
     rates = rate_jacobian("ZXZ").inverse * omega
     expected = (A * OMEGA[0] ** 2 + B * OMEGA[1] ** 2) / (A**2 * OMEGA[0] ** 2 + B**2 * OMEGA[1] ** 2)
     d.step(

@@ -69,6 +69,15 @@ def _two_turns(d: Derivation) -> None:
     )
     smallest = smallest_turn()
     about = Matrix([[cos(PSI), -sin(PSI), 0], [sin(PSI), cos(PSI), 0], [0, 0, 1]])
+    along = pairs(symbols.momentum_b, MOMENTUM.cross(OMEGA))
+    energy = MOMENTUM.dot(OMEGA) / 2
+    speed = turning_rate().subs(T, energy)
+    d.notation(
+        {"H": H, "L": MOMENTUM, r"\omega": OMEGA, "e_3": Matrix([0, 0, 1]), "P": smallest, "R": about * smallest}
+        | {rf"\omega_{n + 1}": OMEGA[n] for n in range(3)}
+        | {r"R_3(\psi)": about},
+        along | {PSI: speed},
+    )
     d.step(
         "The smallest turn is a rotation.",
         smallest * smallest.T,
@@ -87,7 +96,6 @@ def _two_turns(d: Derivation) -> None:
         named=r"P\,L",
         shown=r"H\,e_3",
     )
-    along = pairs(symbols.momentum_b, MOMENTUM.cross(OMEGA))
     d.step(
         "In the body the angular momentum moves by Euler's equations, which keep its length and the energy.",
         Matrix([rate(squared(MOMENTUM), along), rate(MOMENTUM.dot(OMEGA), along)]),
@@ -95,8 +103,7 @@ def _two_turns(d: Derivation) -> None:
         because=r"$\dot L = L \times \omega$ is at right angles to both",
         named=r"\frac{d}{dt} \begin{bmatrix} L \cdot L \\ L \cdot \omega \end{bmatrix}",
     )
-    energy = MOMENTUM.dot(OMEGA) / 2
-    speed = turning_rate().subs(T, energy)
+    d.notation({"T": energy})
     d.given(
         "Let the turn have this rate, $T$ being the energy:",
         (r"\dot\psi", r"\frac{2 T + H\,\omega_3}{H + L_3}"),
@@ -110,6 +117,7 @@ def _two_turns(d: Derivation) -> None:
         named=r"\frac{d}{dt} \left( R_3(\psi)\,P \right)",
         shown=r"R\,[\omega]_\times",
     )
+    d.notation({"T": T, r"\dot\psi": turning_rate()})
     d.step(
         "In terms of the third component alone: a constant, and a part that depends on it.",
         turning_rate(),
@@ -117,6 +125,7 @@ def _two_turns(d: Derivation) -> None:
         because="the fraction is divided out",
         named=r"\dot\psi",
     )
+    d.notation({r"\dot\psi": speed})
     polar = rate(L2, along) * L1 - rate(L1, along) * L2
     precession = H * (L1**2 / A + L2**2 / B) / (L1**2 + L2**2)
     d.step(
@@ -148,10 +157,12 @@ def _momentum(d: Derivation) -> dict[str, Expr]:
         ("L", r"\begin{bmatrix} \ell_1\,\mathrm{cn} \\ \sigma \ell_2\,\mathrm{sn} \\ \ell_3\,\mathrm{dn} "
               r"\end{bmatrix}"),
     )  # fmt: skip
-    d.nonzero("The outer moments differ from the intermediate one,", C - B, "C - B")
-    d.nonzero("and from each other,", C - A, "C - A")
     along = derivatives(speed, parameter)
     omega = TENSOR.inv() * momentum
+    d.notation({r"\sigma": SIGN, "p": speed, r"\mu": parameter, "L": momentum, r"\omega": omega}, along)
+    d.nonzero("The outer moments differ from the intermediate one,", C - B, "C - B")
+    d.nonzero("and from each other,", C - A, "C - A")
+    d.notation({"H": sqrt(ONE**2 + THREE**2), "T": momentum.dot(omega) / 2})
     d.step(
         "Euler's equations hold, about either outer axis.",
         rate(momentum, along),
@@ -177,6 +188,7 @@ def _momentum(d: Derivation) -> dict[str, Expr]:
         relations=[SIGN**2 - 1, *squares(parameter)],
         named=r"2 T",
     )
+    d.notation({"T": (ONE**2 / A + THREE**2 / C) / 2})
     d.step(
         "The relation between the amplitudes.",
         two**2,
@@ -208,6 +220,7 @@ def _momentum(d: Derivation) -> dict[str, Expr]:
 def _third_kind(d: Derivation, found: dict[str, Expr]) -> None:
     d.section("The third angle as an integral of the third kind")
     two, parameter = found["two"], found["parameter"]
+    d.notation({"H": H, "T": (ONE**2 / A + THREE**2 / C) / 2, r"\ell_2": two})
     d.given(
         r"The turn $\psi$ grows at a rate that depends on $L_3 = \ell_3\,\mathrm{dn}$ alone. Made free of the sum in "
         "its denominator, it is a rational function of sn and dn."
@@ -232,10 +245,13 @@ def _third_kind(d: Derivation, found: dict[str, Expr]) -> None:
         shown=r"\sigma\,p\,\frac{\ell_1 \ell_2}{\ell_3}",
     )
     below = 1 + MU * THREE**2 / ONE**2 * SN**2
+    d.notation({"p": symbols.p, r"\mu": MU, r"\ell_2": TWO, r"\Delta": below})
     energy = (SIGN * symbols.p * ONE * TWO / THREE + H**2 / C) / 2
+    rate_of_turn = turning_rate().subs({T: energy, L3: THREE * DN})
+    d.notation({r"\dot\psi": rate_of_turn})
     d.step(
         r"Hence the rate, $\ell_2$ and $p$ kept as they are,",
-        turning_rate().subs({T: energy, L3: THREE * DN}),
+        rate_of_turn,
         H / C + SIGN * symbols.p * TWO / (ONE * THREE) * (H - THREE * DN) / below,
         because=r"both steps before are put in",
         relations=[H**2 - ONE**2 - THREE**2, *squares()],
@@ -313,8 +329,10 @@ def _theta(d: Derivation, found: dict[str, Expr]) -> None:
 
 def _special(d: Derivation) -> None:
     d.section("Equal moments")
+    d.notation({"L_3": L3, "H": H})
     energy = MOMENTUM.dot(OMEGA) / 2
     speed = turning_rate().subs(T, energy)
+    d.notation({r"\dot\psi": speed, r"\dot L": MOMENTUM.cross(OMEGA)})
     d.step(
         "With $B = A$ the third component is constant, and the third angle grows evenly: "
         "[regular precession](symmetric_top.md).",

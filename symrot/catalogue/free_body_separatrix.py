@@ -50,6 +50,7 @@ def derive() -> Derivation:
     momentum = _momentum()
     tensor = diag(A, MIDDLE, C)
     omega = tensor.inv() * momentum
+    d.notation({"p": P, "h": tanh(P * TIME / 2)}, {TIME: Integer(1)})
     d.step(
         r"It changes at this rate.",
         tanh(P * TIME / 2).diff(TIME),
@@ -58,14 +59,17 @@ def derive() -> Derivation:
         named=r"\dot h",
         shown=r"\tfrac{p}{2} \left( 1 - h^2 \right)",
     )
+    rising, falling = 2 * h / (1 + h**2), (1 - h**2) / (1 + h**2)
+    d.notation({"h": h, r"\tanh p\,t": rising, r"\mathrm{sech}\,p\,t": falling}, _share(P))
     d.step(
         r"The hyperbolic functions are these fractions: they start and change as $\tanh$ and $\mathrm{sech}$ do.",
-        rate(Matrix([2 * h / (1 + h**2), (1 - h**2) / (1 + h**2)]), _share(P)),
-        P * Matrix([((1 - h**2) / (1 + h**2)) ** 2, -2 * h * (1 - h**2) / (1 + h**2) ** 2]),
+        rate(Matrix([rising, falling]), _share(P)),
+        P * Matrix([falling**2, -rising * falling]),
         because=r"$\dot h = \tfrac{p}{2} (1 - h^2)$",
         named=r"\frac{d}{dt} \begin{bmatrix} \tanh p\,t \\ \mathrm{sech}\,p\,t \end{bmatrix}",
         shown=r"p \begin{bmatrix} \mathrm{sech}^2\,p\,t \\ -\tanh p\,t\;\mathrm{sech}\,p\,t \end{bmatrix}",
     )
+    d.notation({"p": SPEED, "L": momentum, r"\omega": omega, "B": MIDDLE, "H": H}, _share(SPEED))
     d.step(
         "Euler's equations hold.",
         rate(momentum, _share(SPEED)),
@@ -97,6 +101,10 @@ def _attitude(d: Derivation, momentum: Matrix, omega: Matrix) -> None:
     h = SHARE
     values = pairs(symbols.momentum_b, momentum)
     speed = turning_rate().subs(T, momentum.dot(omega) / 2).subs(values)
+    about = Matrix([[cos(PSI), -sin(PSI), 0], [sin(PSI), cos(PSI), 0], [0, 0, 1]])
+    d.notation(
+        {"T": momentum.dot(omega) / 2, "L_1": momentum[0], "L_3": momentum[2], r"\omega_3": omega[2], r"\sigma": SIGN}
+    )
     d.step(
         "The turn about the angular momentum: its rate.",
         speed,
@@ -106,6 +114,7 @@ def _attitude(d: Derivation, momentum: Matrix, omega: Matrix) -> None:
         named=r"\dot\psi = \frac{2 T + H\,\omega_3}{H + L_3}",
         shown=r"\frac{H}{B} - \sigma\,p\,\frac{L_1}{H + L_3}",
     )
+    d.notation({"p": P}, {TIME: Integer(1)} | _share(P))
     turned = H / MIDDLE * TIME - 2 * SIGN * atan(ONE * h / (H + THREE))
     d.step(
         "Its angle: even growth, and in all one step from the one steady rotation to the other.",
@@ -116,7 +125,10 @@ def _attitude(d: Derivation, momentum: Matrix, omega: Matrix) -> None:
         named=r"\frac{d}{dt} \left( \frac{H}{B}\,t - 2 \sigma \arctan \frac{\ell_1\,h}{H + \ell_3} \right)",
         shown=r"\frac{H}{B} - \sigma\,p\,\frac{L_1}{H + L_3}",
     )
-    rotation = _rotation(momentum)
+    rotation = about * smallest_turn().subs(values)
+    d.notation(
+        {"R": rotation, "p": SPEED}, _share(SPEED) | {PSI: H / MIDDLE - SIGN * SPEED * momentum[0] / (H + momentum[2])}
+    )
     d.step(
         r"The attitude satisfies its equation, all nine entries: $R = R_3(\psi)\,P$, with both put in.",
         rate(rotation, _share(SPEED) | {PSI: H / MIDDLE - SIGN * SPEED * momentum[0] / (H + momentum[2])}),
@@ -133,11 +145,6 @@ def _attitude(d: Derivation, momentum: Matrix, omega: Matrix) -> None:
         because=r"$h \to \pm 1$",
         named=r"\begin{bmatrix} L(\infty) \\ L(-\infty) \end{bmatrix}",
     )
-
-
-def _rotation(momentum: Matrix) -> Matrix:
-    about = Matrix([[cos(PSI), -sin(PSI), 0], [sin(PSI), cos(PSI), 0], [0, 0, 1]])
-    return about * smallest_turn().subs(pairs(symbols.momentum_b, momentum))
 
 
 def _share(speed: Expr) -> dict[Symbol, Expr]:

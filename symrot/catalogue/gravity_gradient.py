@@ -39,6 +39,7 @@ def derive() -> Derivation:
     place = R + epsilon * P
     pull = -mass * n**2 * place * squared(place) ** Rational(-3, 2)
     tidal = pull.diff(epsilon).subs(epsilon, S.Zero)
+    d.notation({"r": R, r"\rho": P, "I": TENSOR, "m": mass, "n": n, r"\omega": OMEGA, "k": K})
     d.step(
         "To first order in the size of the body, the tidal force stretches along the radius and squeezes across it.",
         tidal,
@@ -49,6 +50,7 @@ def derive() -> Derivation:
         shown=r"m\,n^2 \left( 3\,(r \cdot \rho)\,r - \rho \right)",
     )
     tensor = Matrix(inertia_of_point(mass, P))
+    d.notation({r"I_\rho": tensor})
     d.step(
         "Its moment is that of the tensor of inertia of the point; summed over the body, of the whole tensor.",
         P.cross(tidal),
@@ -59,6 +61,7 @@ def derive() -> Derivation:
         shown=r"3 n^2\, r \times I_\rho\, r",
     )
     torque = 3 * n**2 * R.cross(TENSOR * R)
+    d.notation({r"\tau": torque})
     d.step(
         "It has no component along the radius.",
         torque.dot(R),
@@ -71,6 +74,7 @@ def derive() -> Derivation:
     space_radius = elementary_rotation(2, n * symbols.t) * Matrix([1, 0, 0])
     dcm_sb = Matrix(dcm_of())
     seen, normal_s = dcm_sb.T * space_radius, Matrix([0, 0, 1])
+    d.notation({"r": seen, "k": dcm_sb.T * normal_s}, attitude_rates() | {symbols.t: S.One})
     d.step(
         r"Seen from the body, the radius turns with the orbit less the body; $k$ is the normal of the orbit.",
         rate(seen, attitude_rates() | {symbols.t: S.One}),
@@ -85,6 +89,7 @@ def derive() -> Derivation:
         | pairs(symbols.radius, R.cross(OMEGA - n * K))
         | pairs(symbols.normal, K.cross(OMEGA))
     )
+    d.notation({"r": R, "k": K}, motion)
     kinetic, potential = OMEGA.dot(TENSOR * OMEGA) / 2, Rational(3, 2) * n**2 * R.dot(TENSOR * R)
     d.step(
         "Energy alone is not kept: the orbit does work.",

@@ -46,6 +46,7 @@ def _torque(d: Derivation, torque: Matrix, line: Matrix, momentum: Matrix, motio
         "axle would tilt, is",
         ("e", line),
     )
+    d.notation({r"\dot L_s": torque, "L_s": momentum, "e_z": Matrix([0, 0, 1]), "A": A, "C": C})
     total = (C * (SPIN + PRECESSION * cos(THETA)) - A * PRECESSION * cos(THETA)) * PRECESSION * sin(THETA)
     d.step(
         "The rate of angular momentum is along the line of nodes: this torque keeps the precession going.",
@@ -80,6 +81,7 @@ def _level(d: Derivation, torque: Matrix, line: Matrix, momentum: Matrix) -> Non
     d.section("A level axle")
     level = {THETA: pi / 2}
     axle = Matrix(dcm("ZXZ")).subs(level)[:, 2]
+    d.notation({"a": axle, r"\dot L_s": torque.subs(level), "c_3": ARM, "W": W})
     d.step(
         "With the axle level the term with $A$ is gone: spin times precession times the moment of the wheel.",
         torque.subs(level),

@@ -88,6 +88,22 @@ def _potential(d: Derivation, kinetic: Expr, lagrangian: Expr) -> Expr:
     potential = (
         (P_PHI - P_PSI * cos(THETA)) ** 2 / (2 * A * sin(THETA) ** 2) + P_PSI**2 / (2 * C) + W * ARM * cos(THETA)
     )
+    d.notation(
+        {
+            r"\\dot\\theta": DTHETA,
+            r"\\ddot\\theta": symbols.ddtheta,
+            r"\\theta": THETA,
+            r"p_\\phi": P_PHI,
+            r"p_\\psi": P_PSI,
+            "A": A,
+            "C": C,
+            "W": W,
+            "c_3": ARM,
+            "U": potential,
+            r"U(\\theta)": potential,
+            "T": kinetic.subs(rates),
+        }
+    )
     d.step(
         "Energy: one angle is left.",
         (kinetic + W * ARM * cos(THETA)).subs(rates),
@@ -114,6 +130,7 @@ def _potential(d: Derivation, kinetic: Expr, lagrangian: Expr) -> Expr:
     cubic = (2 * energy - P_PSI**2 / C - 2 * W * ARM * height) * (1 - height**2) / A - (
         P_PHI - P_PSI * height
     ) ** 2 / A**2
+    d.notation({"u": cos(THETA), "E": energy})
     d.step(
         r"In $u = \cos\theta$ the square of its rate is a cubic: nutation is an elliptic function of time, between "
         r"two of the "
@@ -139,6 +156,7 @@ def _steady(d: Derivation, potential: Expr) -> None:
     d.section("Steady precession")
     slope = A * RATE**2 * cos(THETA) - P_PSI * RATE + W * ARM
     steady = {P_PHI: P_PSI * cos(THETA) + A * RATE * sin(THETA) ** 2}
+    d.names.pop("U")
     d.given(
         r"Let the axis keep its angle and precess at the rate $n$:",
         (r"p_\phi", r"p_\psi \cos\theta + A\,n \sin^2\theta"),

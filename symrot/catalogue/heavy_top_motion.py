@@ -7,6 +7,7 @@ from symrot.catalogue._elliptic import CN, DN, MU, SN, W_VALUES, I, derivatives,
 from symrot.catalogue._motion import rate
 from symrot.kinematics.euler import dcm
 from symrot.kinematics.quaternion import dcm_of
+from symrot.kinematics.rotations import elementary_rotation
 from symrot.proof import Derivation
 
 A, C, W, ARM = symbols.A, symbols.C, symbols.W, symbols.c_3
@@ -57,6 +58,8 @@ def _nutation(d: Derivation) -> None:
         (r"(p_\phi - p_\psi)^2", DIFFERENCE**2),
         (r"2 E - \frac{p_\psi^2}{C}", r"2 W c_3 (u_1 + u_2 + u_3) - \frac{p_\psi^2}{A}"),
     )
+    d.notation({"u": u, r"p_\phi": momentum, r"p_\psi": spin, r"2 E - \frac{p_\psi^2}{C}": energy})
+    d.notation({"E": (energy + spin**2 / C) / 2})
     d.step(
         "With these constants the cubic of energy and momenta has these zeros.",
         (energy - 2 * W * ARM * u) * (1 - u**2) / A - (momentum - spin * u) ** 2 / A**2,
@@ -75,6 +78,7 @@ def _nutation(d: Derivation) -> None:
     )
     along = derivatives(SPEED, PARAMETER)
     speed = rate(HEIGHT, along)
+    d.notation({"u": HEIGHT}, along)
     d.step(
         "This height has the rate that the cubic asks for.",
         speed**2,
@@ -100,6 +104,8 @@ def _rates(d: Derivation) -> None:
     u = cos(THETA)
     dphi = (P_PHI - P_PSI * u) / (A * sin(THETA) ** 2)
     dpsi = P_PSI / C - u * dphi
+    rates = {r"\dot\phi": dphi, r"\dot\psi": dpsi}
+    d.notation({r"p_\phi": P_PHI, r"p_\psi": P_PSI} | rates)
     d.step(
         "Their sum and their difference are simpler than each: one fails only upside down, the other only upright.",
         Matrix([dphi + dpsi, dphi - dpsi]),
@@ -136,6 +142,8 @@ def _attitude(d: Derivation) -> None:
         r"$\beta = \sin\tfrac\theta2\,e^{i (\phi - \psi)/2}$. The quaternion is "
         r"$(\mathrm{Re}\,\alpha, \mathrm{Re}\,\beta, \mathrm{Im}\,\beta, \mathrm{Im}\,\alpha)$."
     )
+    turns = {f"R_{n}": lambda angle, axis=axis: elementary_rotation(axis, angle) for n, axis in ((1, "X"), (3, "Z"))}
+    d.notation({"R": dcm_of, "q": Matrix(quaternion)} | turns)
     d.step(
         "It gives the rotation of the angles of ZXZ.",
         dcm_of(quaternion),
@@ -148,6 +156,7 @@ def _attitude(d: Derivation) -> None:
     u = cos(THETA)
     logarithm = Matrix([rate(cos(THETA / 2), {THETA: symbols.dtheta}) / cos(THETA / 2),
                         rate(sin(THETA / 2), {THETA: symbols.dtheta}) / sin(THETA / 2)])  # fmt: skip
+    d.notation({"u": u, r"\dot u": du})
     d.step(
         "How fast their lengths change, as logarithms.",
         logarithm,
@@ -162,6 +171,10 @@ def _theta(d: Derivation) -> None:
     d.section("No integral")
     s, c, dn = W_VALUES
     at_sum, c_sum, d_sum = shifted()
+    names = {r"\mathrm{sn}": SN, r"\mathrm{cn}": CN, r"\mathrm{dn}": DN, r"\mathrm{sn}_w": s}
+    d.notation(
+        names | {r"\mathrm{sn}(u + w)": at_sum, r"\mathrm{cn}(u + w)": c_sum, r"\mathrm{dn}(u + w)": d_sum, r"\mu": MU}
+    )
     d.given(
         r"The quotient $\mathrm{H}(u + w) / \Theta(u)$ of [theta functions](elliptic_functions.md) has the logarithmic "
         r"derivative $Z(u + w) + \frac{\mathrm{cn}\,\mathrm{dn}}{\mathrm{sn}}(u + w) - Z(u)$, which is $Z(w)$ plus "
@@ -173,7 +186,7 @@ def _theta(d: Derivation) -> None:
         (SN * CN * DN - s * c * dn) / (SN**2 - s**2),
         because="the addition theorems are put in",
         relations=[*squares(), *squares(fixed=True)],
-        named=r"\frac{\mathrm{cn}\,\mathrm{dn}}{\mathrm{sn}}(u + w) - \mu\,\mathrm{sn}_w\,\mathrm{sn}\,"
+        named=r"\frac{\mathrm{cn}(u + w)\,\mathrm{dn}(u + w)}{\mathrm{sn}(u + w)} - \mu\,\mathrm{sn}_w\,\mathrm{sn}\,"
         r"\mathrm{sn}(u + w)",
     )
     along = derivatives(SPEED, PARAMETER)
@@ -181,8 +194,11 @@ def _theta(d: Derivation) -> None:
         (r"\alpha", 1, -(1 + U1) / (U2 - U1), (1 + U2) / (U2 - U1), (1 + U3) / (U3 - U1), SUM, "+"),
         (r"\beta", -1, (1 - U1) / (U2 - U1), -(1 - U2) / (U2 - U1), (U3 - 1) / (U3 - U1), DIFFERENCE, "-"),
     )
+    d.notation({"p": SPEED, "u": HEIGHT, r"\dot u": rate(HEIGHT, along), r"\mu": PARAMETER, "i": I, "A": A})
+    d.notation({r"p_\phi": (SUM + DIFFERENCE) / 2, r"p_\psi": (SUM - DIFFERENCE) / 2})
     for name, side, s2, c2, d2, momentum, sign in cases:
         shown = sign if sign == "-" else "+"
+        d.notation({r"\mathrm{sn}_w": sqrt(s2), r"\mathrm{cn}_w": sqrt(c2), r"\mathrm{dn}_w": sqrt(d2)})
         d.step(
             rf"For ${name}$ let $w$ be where $1 {shown} u$ would vanish, $\mathrm{{sn}}_w^2 = {_latex(s2)}$. Then "
             r"$\mathrm{cn}_w^2$ and $\mathrm{dn}_w^2$ are these.",

@@ -34,6 +34,8 @@ def derive() -> Derivation:
     )
     struck = V + OMEGA.cross(PLACE)
     change = dv + domega.cross(PLACE)
+    d.notation({"m": M, "I": INERTIA, "d": PLACE, "J": J, "K": MOBILITY, "n": N, r"\omega": OMEGA})
+    d.notation({r"\Delta v": dv, r"\Delta\omega": domega, "v_d": struck, r"\Delta v_d": change})
     _place(d, change)
     _energy(d, dv, domega, struck, change)
     _wall(d, struck)

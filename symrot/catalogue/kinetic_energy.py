@@ -37,6 +37,7 @@ def derive() -> Derivation:
 def _sum(d: Derivation) -> None:
     d.section("From the sum over particles")
     point = Matrix(symbols.position)
+    d.notation({"r": point, r"\omega": OMEGA, "c": ARM})
     d.step(
         r"A particle at $r$ that turns with $\omega$.",
         HALF * symbols.m * squared(OMEGA.cross(point)),
@@ -53,6 +54,7 @@ def _sum(d: Derivation) -> None:
     )
     balance = sum((m * p for m, p in zip(MASSES, POINTS, strict=True)), zeros(3, 1))
     tensor = sum((Matrix(inertia_of_point(m, p)) for m, p in zip(MASSES, POINTS, strict=True)), zeros(3))
+    d.notation({"I": tensor, "v": V, "M": sum(MASSES)})
     d.step(
         "König's theorem: the energy of the centre, and the energy of turning about it.",
         HALF * sum(m * squared(V + OMEGA.cross(p)) for m, p in zip(MASSES, POINTS, strict=True)),
@@ -62,6 +64,7 @@ def _sum(d: Derivation) -> None:
         named=rf"\tfrac12 {COUNT} m_i\,|v + \omega \times r_i|^2",
         shown=r"\tfrac12\,M\,|v|^2 + \tfrac12\,\omega \cdot I\,\omega",
     )
+    d.notation({"I": TENSOR, "I_O": Matrix(about_point(TENSOR, symbols.m, ARM))})
     d.step(
         "If a point of the body is fixed, all energy is of turning about it, with the tensor about that point.",
         HALF * symbols.m * squared(OMEGA.cross(ARM)) + HALF * OMEGA.dot(TENSOR * OMEGA),
@@ -75,6 +78,7 @@ def _sum(d: Derivation) -> None:
 def _forms(d: Derivation) -> None:
     d.section("Its forms")
     energy = HALF * OMEGA.dot(TENSOR * OMEGA)
+    d.notation({"T": energy, "I": TENSOR, r"\omega": OMEGA, "n": Matrix(symbols.axis), r"\Omega": symbols.Omega})
     d.step(
         "Its gradient is the angular momentum.",
         Matrix([energy.diff(w) for w in OMEGA]),
@@ -94,6 +98,7 @@ def _forms(d: Derivation) -> None:
     )
     dcm_sb = Matrix(dcm_of())
     turned = dcm_sb * TENSOR * dcm_sb.T
+    d.notation({r"\omega_s": dcm_sb * OMEGA, r"\omega_b": OMEGA, "I_s": turned, "I_b": TENSOR})
     d.step(
         "It is the same in the axes of space, where the tensor changes with time.",
         HALF * (dcm_sb * OMEGA).dot(turned * dcm_sb * OMEGA),
@@ -105,6 +110,7 @@ def _forms(d: Derivation) -> None:
     )
     principal = diag(*symbols.principal)
     momentum = principal * OMEGA
+    d.notation({f"L_{n + 1}": momentum[n] for n in range(3)})
     d.step(
         "Along principal axes, in angular velocity and in angular momentum.",
         HALF * OMEGA.dot(momentum),
@@ -122,6 +128,7 @@ def _angles(d: Derivation) -> None:
     a, b, c = symbols.principal
     _, theta, psi = symbols.angles
     dphi, dtheta, dpsi = symbols.angle_rates
+    d.names.pop("T")
     d.step(
         "Three different moments.",
         HALF * omega.dot(diag(a, b, c) * omega),

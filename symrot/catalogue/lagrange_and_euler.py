@@ -47,6 +47,7 @@ def _transposition(d: Derivation) -> None:
     for sequence in INTRINSIC_SEQUENCES:
         body = rate_jacobian(sequence)
         omega = body * RATES
+        d.notation({"B": body.as_immutable(), r"\omega": omega, r"\mu": MOMENTUM})
         d.step(
             f"{sequence}.",
             lagrange(MOMENTUM.dot(omega)),
@@ -66,6 +67,8 @@ def _equations(d: Derivation) -> None:
     d.section("The whole equation, ZXZ")
     body = rate_jacobian("ZXZ")
     omega = body * RATES
+    d.notation({"B": body.as_immutable(), r"\omega": omega, "I": TENSOR}, MOTION)
+    d.notation({f"omega_{n + 1}".replace("omega", r"\omega"): omega[n] for n in range(3)})
     d.step(
         "Lagrange's operator on the kinetic energy, full tensor.",
         lagrange(omega.dot(TENSOR * omega) / 2),
@@ -88,6 +91,7 @@ def _equations(d: Derivation) -> None:
 def _torques(d: Derivation) -> None:
     d.section("Torques and generalised forces")
     body = rate_jacobian("ZXZ")
+    d.notation({r"\tau": TORQUE, r"\dot q": RATES, "Q": body.T * TORQUE, r"\omega": body * RATES})
     d.step(
         "The generalised forces are the torques about the axes of the turns.",
         TORQUE.dot(body * RATES),

@@ -79,6 +79,7 @@ def _holds(d: Derivation, claim: str, motion: tuple[Expr, ...], along: dict[Symb
     """Add the step that sine and cosine of the half angle, and the rate, are those of a pendulum."""
     s, c, speed = motion
     half = Rational(1, 2)
+    d.notation({"s": s, "c": c, r"\dot\theta": speed, r"\ddot\theta": rate(speed, along), "p": P}, along)
     d.step(
         claim,
         rate(Matrix([s, c, speed]), along),
@@ -93,6 +94,7 @@ def _holds(d: Derivation, claim: str, motion: tuple[Expr, ...], along: dict[Symb
 def _turning(d: Derivation) -> None:
     d.section("As a heavy top")
     flat = {U1: -1, U3: 1}
+    d.notation({"u": symbols.gamma_3, r"\dot u": sqrt(cubic(symbols.gamma_3).subs(flat))})
     d.step(
         r"The cubic of the [heavy top](heavy_top_motion.md) with both momenta zero has the zeros $-1$, $1$ and the "
         "height of the highest place.",
@@ -102,6 +104,7 @@ def _turning(d: Derivation) -> None:
         named=r"\dot u^2",
         shown=r"\frac{2 W c_3}{A} (u_2 - u)(1 - u^2)",
     )
+    d.notation({"u": HEIGHT.subs(flat), r"\mu": PARAMETER.subs(flat), "p": SPEED.subs(flat)})
     d.step(
         r"Its solution is that of the swing: with $u = -\cos\theta$ for the angle from the lowest place, "
         r"$\sin^2\tfrac\theta2$ is this.",
@@ -130,8 +133,10 @@ def _spherical(d: Derivation) -> None:
         ("u_3", highest),
     )
     d.nonzero("Not both are level,", U1 + U2, "u_1 + u_2")
+    d.notation({"u": u})
     square = -2 * A * W * ARM * (1 - U1**2) * (1 - U2**2) / (U1 + U2)
     energy = 2 * W * ARM * (U1 + U2 + highest)
+    d.notation({"E": energy / 2, r"p_\phi": sqrt(square)})
     d.step(
         r"The cubic of energy and momentum, with $p_\phi^2$ as below, has these zeros.",
         energy * (1 - u**2) / A - 2 * W * ARM * u * (1 - u**2) / A - square / A**2,

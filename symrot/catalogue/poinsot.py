@@ -39,6 +39,11 @@ def derive() -> Derivation:
 
 def _rolling(d: Derivation) -> None:
     d.section("An ellipsoid that rolls on a plane")
+    d.notation(
+        {"I": INERTIA, "L": MOMENTUM, r"\omega": OMEGA, "T": TWICE_ENERGY / 2, "R": Matrix(dcm_of())},
+        attitude_rates() | FREE,
+    )
+    d.notation({"n": Matrix(symbols.axis)})
     d.step(
         r"The normal of the ellipsoid $2 T = \text{constant}$ at the end of $\omega$ is the angular momentum.",
         Matrix([TWICE_ENERGY.diff(w) / 2 for w in OMEGA]),
@@ -118,6 +123,9 @@ def _polhode(d: Derivation) -> None:
     )
     one, two = symbols.excess
     ordered = {B: C + one, A: C + one + two}
+    d.notation(
+        {"A": A.subs(ordered), "B": B.subs(ordered), "T": TWICE_ENERGY.subs(ordered) / 2, "L": MOMENTUM.subs(ordered)}
+    )
     d.step(
         r"With $A > B > C$, that is $B = C + \delta_1$ and $A = B + \delta_2$, the first two are sums of squares: "
         r"$2 T C \le L^2 \le 2 T A$.",
@@ -133,6 +141,7 @@ def _polhode(d: Derivation) -> None:
         shown=r"\begin{bmatrix} A (\delta_1 + \delta_2)\,\omega_1^2 + B\,\delta_1 \omega_2^2 \\ "
         r"B\,\delta_2 \omega_2^2 + C (\delta_1 + \delta_2)\,\omega_3^2 \end{bmatrix}",
     )
+    d.notation({"A": A, "B": B, "T": TWICE_ENERGY / 2, "L": MOMENTUM})
     d.step(
         r"At $L^2 = 2 T B$ the hyperbola is two planes through axis 2, the separatrices.",
         (SQUARE - TWICE_ENERGY * B).subs(w3, w1 * symbols.epsilon),

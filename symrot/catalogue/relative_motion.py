@@ -38,7 +38,9 @@ def derive() -> Derivation:
 
 def _fixed(d: Derivation, dcm_sb: Matrix, place: Matrix, body: dict) -> None:  # type: ignore[type-arg]
     d.section("Two points of one body")
+    d.notation({"R": dcm_sb, "x": PLACE, "d": D, "v": V, r"\omega_b": OMEGA, r"\dot\omega_b": DOMEGA}, body)
     velocity = rate(place, body)
+    d.notation({"v_P": V, "v_Q": velocity, "a_P": A, "a_Q": rate(velocity, body)})
     d.step(
         "The velocity.",
         velocity,
@@ -73,6 +75,9 @@ def _fixed(d: Derivation, dcm_sb: Matrix, place: Matrix, body: dict) -> None:  #
         named=r"\omega_b \times (\omega_b \times d)",
         shown=r"\omega_b\,(\omega_b \cdot d) - |\omega_b|^2\,d",
     )
+    d.notation(
+        {r"\omega": OMEGA, "v_P": V, "v_Q": V + OMEGA.cross(D), "r": Matrix([symbols.r_1, symbols.r_2, symbols.r_3])}
+    )
     offset = Matrix([symbols.r_1, symbols.r_2, symbols.r_3])
     d.step(
         "The angular velocity does not depend on which point is called $P$.",
@@ -88,6 +93,7 @@ def _moving(d: Derivation, dcm_sb: Matrix, place: Matrix, body: dict) -> None:  
     d.section("A point that moves through the body")
     moving = body | pairs(symbols.offset, U) | pairs(symbols.relative_velocity, W)
     velocity = rate(place, moving)
+    d.notation({"u": U, "w": W, "v_P": V, "v_Q": velocity, "a_P": A, "a_Q": rate(velocity, moving)}, moving)
     d.given(
         r"Seen from the body, let the point move with $u$ and accelerate with $w$:", (r"\dot d", "u"), (r"\dot u", "w")
     )
@@ -121,6 +127,7 @@ def _moving(d: Derivation, dcm_sb: Matrix, place: Matrix, body: dict) -> None:  
 def _axis(d: Derivation) -> None:
     d.section("The axis of the motion")
     center = OMEGA.cross(V) / squared(OMEGA)
+    d.notation({r"\omega": OMEGA, "v": V, "d_0": center, "d": D})
     d.given(r"Let now all components be in one frame, and take the point at $d_0$ from $P$:",
             ("d_0", r"\frac{\omega \times v}{|\omega|^2}"))  # fmt: skip
     d.step(
@@ -132,6 +139,7 @@ def _axis(d: Derivation) -> None:
         shown=r"\frac{\omega \cdot v}{|\omega|^2}\,\omega",
     )
     plane = {symbols.omega_1: 0, symbols.omega_2: 0, symbols.v_z: 0}
+    d.notation({r"\omega": OMEGA.subs(plane), "v": V.subs(plane), "d_0": center.subs(plane)})
     d.step(
         "In plane motion that point is at rest: the instantaneous centre.",
         (V + OMEGA.cross(center)).subs(plane),

@@ -92,6 +92,12 @@ def _projection(d: Derivation, which: Projection, form: Form) -> None:
     dcm_rate = rate(dcm_sb, pairs(which.parameters, form.rates))
     body, space = which.rate_matrix("body"), which.rate_matrix("space")
     opposite: dict[Expr, Expr] = {p: -p for p in which.parameters}
+    d.notation(
+        {
+            "R": dcm_sb, form.letter: Matrix(which.parameters), "B_b": body.as_immutable(), "B_s": space.as_immutable(),
+        },
+        pairs(which.parameters, form.rates),
+    )  # fmt: skip
     d.section(form.title)
     d.step(
         "The direction cosine matrix is rational.",

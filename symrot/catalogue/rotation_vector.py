@@ -24,6 +24,7 @@ def derive() -> Derivation:
     )
     v, size, dcm_sb = skew(V), length(V), dcm(V)
     body, space = jacobian("body"), jacobian("space")
+    d.notation({"R": dcm_sb, "v": V, "B_b": body, "B_s": space}, pairs(symbols.rotation_vector, DV))
     d.define("Rodrigues' formula, from the eigenvalues $0, \\pm i a$ of the skew matrix; with", "a", size)
     d.step("The powers of a skew matrix repeat.", v**3, -(size**2) * v, because="Cayley and Hamilton",
            named=r"[v]_\times^3", shown=r"-a^2\,[v]_\times")  # fmt: skip

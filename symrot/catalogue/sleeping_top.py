@@ -83,12 +83,10 @@ def _separatrix(d: Derivation) -> None:
     both = {U2: Integer(1), U3: Integer(1)}
     speed = SPEED.subs(both)
     d.given(
-        r"Where $u_2 = u_3 = 1$ the parameter $\mu$ is 1, and the motion is elementary. The top rises from $u_1$, with",
-        ("p", speed),
+        r"Where $u_2 = u_3 = 1$ the parameter $\mu$ is 1, and the motion is elementary. All of it is in one hyperbolic "
+        "tangent:",
         ("h", tanh(P * T)),
-        ("u", r"1 - (1 - u_1)\,\mathrm{sech}^2\,p\,t = 1 - (1 - u_1)(1 - h^2)"),
     )
-    along = {h: speed * (1 - h**2)}
     d.step(
         r"The hyperbolic tangent changes at the rate $p\,(1 - h^2)$.",
         tanh(P * T).diff(T),
@@ -97,6 +95,13 @@ def _separatrix(d: Derivation) -> None:
         named=r"\dot h",
         shown=r"p \left( 1 - h^2 \right)",
     )
+    d.given(
+        "The top rises from $u_1$, with",
+        ("p", speed),
+        ("u", r"1 - (1 - u_1)(1 - h^2) = 1 - (1 - u_1)\,\mathrm{sech}^2\,p\,t"),
+    )
+    along = {h: speed * (1 - h**2)}
+    d.notation({"u": height, "h": h}, along)
     d.step(
         "The height has the rate that the cubic asks for.",
         rate(height, along) ** 2,
@@ -114,6 +119,7 @@ def _separatrix(d: Derivation) -> None:
         shown=r"\frac{W c_3}{A} \frac{\partial}{\partial u} (u - u_1)(u - 1)^2",
     )
     momentum = SUM.subs(both) / 2
+    d.notation({r"p_\psi": momentum}, {T: Integer(1)})
     turned = momentum / (2 * A) * T + atan(2 * A * speed / momentum * h)
     d.step(
         r"Both momenta are equal, and less than the [bound](heavy_top.md) $p_\psi^2 = 4 A W c_3$ of sleep, which they "

@@ -35,6 +35,7 @@ def derive() -> Derivation:
 def _skewness(d: Derivation) -> None:
     d.section("Why there is a vector")
     moving = pairs(symbols.rotation_entries, symbols.rotation_entry_rates)
+    d.notation({"R": MATRIX, r"\omega": OMEGA_S, "u": U}, moving)
     spin = MATRIX_RATE * MATRIX.T
     d.given(r"Let $R$ be any matrix that changes with time, and", (r"W", r"\dot R\,R^{\mathsf T}"))
     d.step(
@@ -74,6 +75,7 @@ def _skewness(d: Derivation) -> None:
 def _frames(d: Derivation) -> None:
     d.section("In space and in the body")
     unit, dcm_sb = [unit_relation()], Matrix(dcm_of())
+    d.notation({"R": dcm_sb, r"\omega_b": OMEGA, "R_1": dcm_sb, "R_2": dcm_of(P)}, attitude_rates())
     d.step(
         r"The skew matrix of a turned vector is the turned skew matrix; so with $\omega_s = R\,\omega_b$ the two forms "
         r"$\dot R = [\omega_s]_\times R = R\,[\omega_b]_\times$ are one.",
@@ -97,6 +99,7 @@ def _frames(d: Derivation) -> None:
     inner = pairs(P, quaternion_rates("space", P) * Matrix(symbols.vertical))
     outer = pairs(Q, quaternion_rates("space") * OMEGA_S)
     product = dcm_sb * dcm_of(P)
+    d.notation({r"\gamma": Matrix(symbols.vertical)}, inner | outer)
     d.step(
         r"Angular velocities add: if $R_1$ turns with $\omega$ and $R_2$, seen from there, with $\gamma$, the product "
         r"$R_1 R_2$ turns with $\omega + R_1 \gamma$.",
@@ -114,6 +117,7 @@ def _points(d: Derivation) -> None:
     unit, dcm_sb = [unit_relation()], Matrix(dcm_of())
     point, moving = Matrix(symbols.offset), Matrix(symbols.relative_velocity)
     motion = attitude_rates() | pairs(symbols.omega_b, symbols.omega_rates)
+    d.notation({"d": point, r"\omega_s": dcm_sb * OMEGA}, motion)
     d.step(
         "The velocity of a point of the body.",
         rate(dcm_sb * point, motion),
@@ -123,6 +127,7 @@ def _points(d: Derivation) -> None:
         named=r"\frac{d}{dt}\,(R\,d)",
         shown=r"\omega_s \times R\,d",
     )
+    d.notation({}, pairs(symbols.offset, moving))
     d.step(
         "The rate of any vector, seen from space and seen from the body.",
         dcm_sb.T * rate(dcm_sb * point, motion | pairs(symbols.offset, moving)),

@@ -1,6 +1,6 @@
 """A symmetric body with a rotor along its axis (Hughes, Spacecraft Attitude Dynamics, chapter 6)."""
 
-from sympy import Matrix, cos, diag, sin
+from sympy import Matrix, S, cos, diag, sin, sqrt
 
 from symrot import symbols
 from symrot.catalogue._motion import OMEGA, attitude_rates, pairs, rate, squared
@@ -36,6 +36,8 @@ def derive() -> Derivation:
         "No torque acts. The angular momentum is",
         ("L", momentum),
     )
+    d.notation({r"\omega": OMEGA, "e_3": AXIS, "R": Matrix(dcm_of())})
+    d.notation({r"\dot\omega_b": alpha_b})
     _body(d, alpha_b)
     d.section("Two steady rotations")
     d.step(
@@ -47,6 +49,7 @@ def derive() -> Derivation:
         shown=r"\frac{L}{A} + \nu\,e_3, \quad \nu = \frac{(A - C)\,\omega_3 - h_3}{A}",
     )
     along = attitude_rates() | pairs(symbols.omega_b, alpha_b)
+    d.notation({"L": momentum}, along)
     d.step(
         "The angular momentum is fixed in space.",
         rate(Matrix(dcm_of()) * momentum, along),
@@ -74,14 +77,17 @@ def _body(d: Derivation, alpha_b: Matrix) -> None:
     angle = rates[1] * T
     first, second = symbols.omega_1, symbols.omega_2
     solution = Matrix([first * cos(angle) - second * sin(angle), first * sin(angle) + second * cos(angle), SPIN])
+    acceleration = angular_acceleration(TENSOR, solution, 0 * solution, Matrix([0, 0, A * rates[1] - (C - A) * SPIN]))
+    d.notation({"p": rates[1], r"\dot\omega_b": acceleration}, {T: S.One})
     d.step(
         r"So at any time, from $\omega_1, \omega_2$ at the start and with $p = ((C - A)\,\omega_3 + h_3)/A$,",
-        angular_acceleration(TENSOR, solution, 0 * solution, Matrix([0, 0, A * rates[1] - (C - A) * SPIN])),
+        acceleration,
         solution.diff(T),
         because="sine and cosine are each other's rates",
         named=r"\dot\omega_b",
-        shown=r"\frac{d}{dt} \begin{bmatrix} \omega_1 \cos p\,t - \omega_2 \sin p\,t \\ \omega_1 \sin p\,t + \omega_2 "
-        r"\cos p\,t \\ \omega_3 \end{bmatrix}",
+        shown=r"\frac{d}{dt} \begin{bmatrix} \omega_1 \cos(p\,t) - \omega_2 \sin(p\,t) \\ \omega_1 \sin(p\,t) + "
+        r"\omega_2 "
+        r"\cos(p\,t) \\ \omega_3 \end{bmatrix}",
     )
 
 
@@ -97,8 +103,14 @@ def _attitude(d: Derivation) -> None:
         r"Let $n$ be the direction of the angular momentum in space, $H$ its length, $q$ the attitude at the start, "
         r"and "
         r"$p = H/(2 A)$, $\Omega = \nu/2$. Then at any time the attitude is",
-        (r"q(t)", r"(\cos p\,t,\ n \sin p\,t)\;q\;(\cos \Omega t,\ e_3 \sin \Omega t)"),
+        (r"q(t)", r"(\cos(p\,t),\ n \sin(p\,t))\;q\;(\cos(\Omega t),\ e_3 \sin(\Omega t))"),
     )
+    d.notation(
+        {
+            "q": START, "n": direction, "p": symbols.p, r"\Omega": symbols.Omega, "R(t)": Matrix(dcm_of(attitude)),
+            "R": dcm_of, "n_b": turned, "q(t)": attitude,
+        }
+    )  # fmt: skip
     d.step(
         r"It obeys the quaternion equation with the angular velocity $\frac{H}{A}\,n_b + \nu\,e_3$, $n_b$ being the "
         "direction $n$ as seen from the body.",
@@ -107,7 +119,7 @@ def _attitude(d: Derivation) -> None:
         because=r"a rotation from the left turns about an axis of space, one from the right about an axis of the body",
         relations=relations,
         named=r"\dot q(t)",
-        shown=r"\tfrac12\,q(t)\,(0,\ 2 p\,n_b + 2 \Omega\,e_3), \quad n_b = R(t)^{\mathsf T} n",
+        shown=r"\tfrac12\,q(t)\,(0,\ 2 p\,n_b + 2 \Omega\,e_3)",
     )
     d.step(
         r"The turn about $n$ itself does not matter for it.",
@@ -116,12 +128,13 @@ def _attitude(d: Derivation) -> None:
         because="the axis of a rotation stays where it is",
         relations=relations,
         named=r"R(t)^{\mathsf T} n",
-        shown=r"R\left( q\,(\cos \Omega t,\ e_3 \sin \Omega t) \right)^{\mathsf T} n",
+        shown=r"R\left( q\,(\cos(\Omega t),\ e_3 \sin(\Omega t)) \right)^{\mathsf T} n",
     )
 
 
 def _rotor(d: Derivation, momentum: Matrix, own: object) -> None:
     d.section("What the rotor does")
+    d.notation({r"\nu": own, "H": sqrt(squared(momentum))})
     d.step(
         r"With $h_3 = (A - C)\,\omega_3$ the body does not turn about its axis relative to the precession: a "
         "dual-spin satellite keeps its face.",

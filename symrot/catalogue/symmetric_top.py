@@ -63,6 +63,7 @@ def derive() -> Derivation:
     d.section("In space")
     momentum = inertia * OMEGA
     spin = (a - c) / a * symbols.omega_3
+    d.notation({r"\omega": OMEGA, "L": momentum, "e_3": AXIS, r"\lambda": turning}, along)
     d.step(
         "The angular velocity is one part along the angular momentum and one along the axis.",
         OMEGA,
@@ -76,7 +77,7 @@ def derive() -> Derivation:
         OMEGA.cross(AXIS),
         (momentum / a).cross(AXIS),
         because="the other part is along the axis and does not move it",
-        named=r"\dot e_3 = \omega \times e_3",
+        named=r"\omega \times e_3",
         shown=r"\frac{L}{A} \times e_3",
     )
     d.step(
@@ -140,6 +141,10 @@ def _angles(d: Derivation) -> None:
     momentum = Matrix(dcm("ZXZ")).T * Matrix([0, 0, h])
     omega = diag(a, a, c).inv() * momentum
     rates = rate_jacobian("ZXZ").inverse * omega
+    d.notation(
+        {r"\omega_3": omega[2], r"\dot\phi": rates[0], r"\dot\psi": rates[2], "R": Matrix(dcm("ZXZ")), "e_3": AXIS}
+    )
+    d.notation({r"\omega": omega, r"\omega_b": omega})
     d.step(
         "Precession and spin are constant, and there is no nutation.",
         rates,

@@ -33,6 +33,9 @@ def derive() -> Derivation:
         shown=r"R\,I(r)\,R^{\mathsf T}",
     )
     turned = dcm_sb * TENSOR * dcm_sb.T
+    d.notation(
+        {"R": dcm_sb, r"\omega_s": dcm_sb * OMEGA, r"\omega_b": OMEGA, "I_s": turned, "I_b": TENSOR}, attitude_rates()
+    )
     d.step(
         "The kinetic energy does not depend on the axes.",
         (dcm_sb * OMEGA).dot(turned * dcm_sb * OMEGA),
@@ -64,6 +67,7 @@ def derive() -> Derivation:
         shown=r"[\omega_s]_\times I_s - I_s\,[\omega_s]_\times",
     )
     motion = attitude_rates() | pairs(symbols.omega_b, symbols.omega_rates)
+    d.notation({}, motion)
     d.step(
         "In the rate of angular momentum the changing tensor makes the gyroscopic term: Euler's equations, in axes of "
         "space.",
@@ -75,6 +79,7 @@ def derive() -> Derivation:
         named=r"\dot I_s\,\omega_s + I_s\,\dot\omega_s",
         shown=r"I_s\,\dot\omega_s + \omega_s \times I_s\,\omega_s",
     )
+    d.notation({"I_s": dcm_sb * (symbols.A * eye(3)) * dcm_sb.T})
     d.step(
         "It stays constant if the body is spherical.",
         rate(dcm_sb * (symbols.A * eye(3)) * dcm_sb.T, attitude_rates()),

@@ -33,6 +33,8 @@ def derive() -> Derivation:
 
 def _forces(d: Derivation) -> None:
     d.section("The power of forces on a body")
+    d.notation({"F": FORCE, "v": V, r"\omega": OMEGA, "r": POINT, "d": OTHER, "v_r": V + OMEGA.cross(POINT)})
+    d.notation({"v_d": V + OMEGA.cross(OTHER)})
     second = Matrix(symbols.torque_b)
     d.step(
         "A force at $r$ from a point that moves with $v$.",
@@ -58,6 +60,9 @@ def _forces(d: Derivation) -> None:
         named=r"\epsilon\,(r - d) \cdot \left( \omega \times r - \omega \times d \right)",
     )
     dcm_sb = Matrix(dcm_of())
+    d.notation(
+        {r"\tau_b": second, r"\omega_b": OMEGA, r"\tau_s": dcm_sb * second, r"\omega_s": dcm_sb * OMEGA}
+    )  # fmt: skip
     d.step(
         "Power is the same in body and space components.",
         (dcm_sb * second).dot(dcm_sb * OMEGA),
@@ -73,6 +78,7 @@ def _energy(d: Derivation) -> None:
     d.section("It is the rate of the kinetic energy")
     d.nonzero("The tensor of inertia has an inverse,", TENSOR.det(), r"\det I")
     motion = pairs(symbols.omega_b, angular_acceleration(TENSOR, OMEGA, TORQUE))
+    d.notation({"I": TENSOR, r"\tau": TORQUE}, motion)
     d.step(
         "Of turning: the torque's power, for any tensor.",
         rate(HALF * OMEGA.dot(TENSOR * OMEGA), motion),
@@ -82,6 +88,7 @@ def _energy(d: Derivation) -> None:
         shown=r"\tau \cdot \omega",
     )
     falling = pairs(symbols.velocity, FORCE / symbols.m)
+    d.notation({}, falling)
     d.step(
         "Of the centre of mass: the force's power.",
         rate(HALF * symbols.m * squared(V), falling),
@@ -106,6 +113,7 @@ def _kinds(d: Derivation) -> None:
     d.section("Torques that keep energy, and torques that take it")
     fixed, arm, dcm_sb = Matrix(symbols.normal), Matrix(symbols.center_of_mass), Matrix(dcm_of())
     down = dcm_sb.T * fixed
+    d.notation({"c": arm, r"\gamma": down}, attitude_rates())
     d.step(
         "A weight: its power is the loss of potential energy, so their sum is kept.",
         rate(-symbols.W * arm.dot(down), attitude_rates()),
@@ -115,6 +123,7 @@ def _kinds(d: Derivation) -> None:
         named=r"\dot V = -\frac{d}{dt}\,W\,c \cdot \gamma",
         shown=r"-\left( W\,c \times \gamma \right) \cdot \omega",
     )
+    d.notation({"h": Matrix(symbols.rotor)})
     rotor = Matrix(symbols.rotor)
     d.step(
         "A rotor that turns at a constant rate relative to the body: no power.",
