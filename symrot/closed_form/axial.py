@@ -1,11 +1,11 @@
 """Rotation driven and damped about one axis, at any time, in closed form: C dw/dt = N - c w.
 
 About a principal axis that nothing else disturbs this is the whole motion. In a symmetric body that also turns across
-its axis, the transverse angular velocity follows by a turn through ``(C - A)/A`` of the angle about the axis, and decays
-by its own damping. Its attitude then takes parabolic cylinder functions of complex order (the equation of a two-level
-system swept linearly: Zener, Proc. R. Soc. A 137 (1932) 696). No one series of them holds in double precision for all
-orders and times: mpmath takes 0.4 ms to 3 s for a value, while Taylor steps follow 20 s of such a motion to 6e-16 in
-70 us. The attitude is left to them.
+its axis, the transverse angular velocity follows by a turn through ``(C - A)/A`` of the angle about the axis, and
+decays by its own damping. Its attitude then takes parabolic cylinder functions of complex order (the equation of a
+two-level system swept linearly: Zener, Proc. R. Soc. A 137 (1932) 696). No one series of them holds in double
+precision for all orders and times: mpmath takes 0.4 ms to 3 s for a value, while Taylor steps follow 20 s of such a
+motion to 6e-16 in 70 us. The attitude is left to them.
 
 With no damping, angles are carried in turns as double-doubles: errors of the attitude stay at a few 1e-16 however many
 turns have passed. With damping, so is the steady part ``N t/c`` once the transient is over.
