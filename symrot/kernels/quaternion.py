@@ -89,11 +89,13 @@ def _larger(left: Branch, right: Branch) -> Branch:
 
 
 def _rotation(matrix: Matrix) -> tuple[Expr, ...]:
-    """Return what vanishes for a rotation: the columns are a right-handed orthonormal frame."""
+    """Return what vanishes for a rotation: its rows and its columns are right-handed orthonormal frames."""
     columns = [matrix[:, i] for i in range(3)]
     cyclic = [*columns, columns[0]]
     crossed = [a.cross(b) - columns[(k + 2) % 3] for k, (a, b) in enumerate(pairwise(cyclic))]
-    return (*(matrix.T * matrix - Matrix.eye(3)), *(entry for vector in crossed for entry in vector))
+    products = [matrix.T * matrix - Matrix.eye(3), matrix * matrix.T - Matrix.eye(3)]
+    normal = [product[i, j] for product in products for i in range(3) for j in range(i, 3)]
+    return (*normal, *(entry for vector in crossed for entry in vector))
 
 
 def _rates(frame: str, name: str) -> Definition:
