@@ -20,7 +20,7 @@ from symrot.kernel import Program
 __all__ = ["lane_definitions", "multiplications"]
 
 ONE: Node = ("number", 1)
-SLOTS_PER_LOOP = 4  # two accumulators each, so that they and their factors stay in 16 registers
+LOAD_OF_LOOP = 18  # accumulators and factors that a loop may hold: about the 16 registers of a processor
 
 
 class Convolution(NamedTuple):
@@ -299,31 +299,46 @@ class _Jet:
 
     def loops(self) -> list[str]:
         """Return the sums over what is known for orders n (even) and m = n + 1: a over k + j = n, b over k + j = m."""
-        lines: list[str] = []
-        for square in (False, True):
-            chosen = [i for i, slot in enumerate(self.slots) if slot.square == square]
-            for start in range(0, len(chosen), SLOTS_PER_LOOP):
-                lines += self._loop(chosen[start : start + SLOTS_PER_LOOP], square)
-        return lines
+        return [line for group in self._groups() for line in self._loop(group)]
 
-    def _loop(self, group: Sequence[int], square: bool) -> list[str]:
+    def _groups(self) -> list[list[int]]:
+        """Return the slots of each loop: those that share factors together, as far as registers go."""
+        left = list(range(len(self.slots)))
+        groups: list[list[int]] = []
+        while left:
+            group = [left.pop(0)]
+            alike = [i for i in left if self.slots[i].square == self.slots[group[0]].square]
+            while (
+                alike
+                and self._load([*group, best := min(alike, key=lambda i: self._load([*group, i]))]) <= LOAD_OF_LOOP
+            ):
+                group.append(best)
+                alike.remove(best)
+                left.remove(best)
+            groups.append(group)
+        return groups
+
+    def _load(self, group: Sequence[int]) -> int:
+        """Return how many registers a loop would like: two accumulators for each slot, its factors at two orders."""
+        terms = [c for i in group for _, c in self.slots[i].terms]
+        return 2 * len(group) + 2 * len({c.a for c in terms}) + len({c.b for c in terms})
+
+    def _loop(self, group: Sequence[int]) -> list[str]:
+        square = self.slots[group[0]].square
         terms = [(i, sign, c) for i in group for sign, c in self.slots[i].terms]
-        left, right = sorted({c.a for _, _, c in terms}), sorted({c.b for _, _, c in terms})
+        left, right = sorted({c.a for *_, c in terms}), sorted({c.b for *_, c in terms})
         lines = [f"symrot_v a{i} = V_ALL(0.0), b{i} = a{i};" for i in group]
         lines.append(f"for (int64_t k = 1; k < {'n/2' if square else 'n - 1'}; ++k) {{")
         lines += [f"    const symrot_v h{i} = {self.at(i, 'n - k')};" for i in right]
         lines += [f"    const symrot_v f{i} = {self.at(i, 'k')}, g{i} = {self.at(i, 'k + 1')};" for i in left]
         for i, sign, (a, b, _) in terms:
-            lines.append(f"    a{i} = V_{'FMA' if sign > 0 else 'FNMA'}(f{a}, h{b}, a{i});")
-            lines.append(f"    b{i} = V_{'FMA' if sign > 0 else 'FNMA'}(g{a}, h{b}, b{i});")
+            lines.append(f"    {_add(f'a{i}', sign, f'f{a}, h{b}')}")
+            lines.append(f"    {_add(f'b{i}', sign, f'g{a}, h{b}')}")
         lines.append("}")
         if square:
-            lines += [f"a{i} = V_ADD(a{i}, a{i}); b{i} = V_ADD(b{i}, b{i});" for i in group]
-        at = "n/2" if square else "n - 1"
-        for i, sign, (a, b, _) in terms:
-            other = at if square else "1"
-            kind = "FMA" if sign > 0 else "FNMA"
-            lines.append(f"a{i} = V_{kind}({self.at(a, at)}, {self.at(b, other)}, a{i});")
+            lines += [f"{sums}{i} = V_ADD({sums}{i}, {sums}{i});" for i in group for sums in "ab"]
+        first, second = ("n/2", "n/2") if square else ("n - 1", "1")
+        lines += [_add(f"a{i}", sign, f"{self.at(c.a, first)}, {self.at(c.b, second)}") for i, sign, c in terms]
         return lines
 
     def between(self) -> list[str]:
@@ -331,13 +346,12 @@ class _Jet:
         lines: list[str] = []
         for i, slot in enumerate(self.slots):
             for sign, (a, b, _) in slot.terms:
-                kind = "FMA" if sign > 0 else "FNMA"
+                one = self.at(a, "1")
                 if a == b:
-                    one = self.at(a, "1")
-                    lines.append(f"b{i} = V_{kind}(V_ADD({one}, {one}), {self.at(a, 'n')}, b{i});")
+                    lines.append(_add(f"b{i}", sign, f"V_ADD({one}, {one}), {self.at(a, 'n')}"))
                 else:
-                    lines.append(f"b{i} = V_{kind}({self.at(a, '1')}, {self.at(b, 'n')}, b{i});")
-                    lines.append(f"b{i} = V_{kind}({self.at(a, 'n')}, {self.at(b, '1')}, b{i});")
+                    lines.append(_add(f"b{i}", sign, f"{one}, {self.at(b, 'n')}"))
+                    lines.append(_add(f"b{i}", sign, f"{self.at(a, 'n')}, {self.at(b, '1')}"))
         return lines
 
     def text(self) -> str:
@@ -381,6 +395,11 @@ def _plus(value: str, sign: int, factors: str) -> str:
     if value:
         return f"V_{'FMA' if sign > 0 else 'FNMA'}({factors}, {value})"
     return f"V_MUL({factors})" if sign > 0 else f"V_SUB(V_ALL(0.0), V_MUL({factors}))"
+
+
+def _add(name: str, sign: int, factors: str) -> str:
+    """Return the statement that adds a product to a sum, or takes it away."""
+    return f"{name} = V_{'FMA' if sign > 0 else 'FNMA'}({factors}, {name});"
 
 
 def _called(s: Series, first: int) -> str:
