@@ -1,5 +1,6 @@
 """From a name or a path to the table of a scene file: which file, is it text, is it TOML."""
 
+import re
 from decimal import Decimal
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,9 @@ __all__ = ["LARGEST_FILE", "SHIPPED", "find_scene", "read_toml", "shipped_names"
 SHIPPED = Path(__file__).parent / "scenes"
 LARGEST_FILE = 1_000_000
 """Bytes of the largest scene file that is read."""
+
+MOST_PARTS = 100
+_KEY = re.compile(r"[A-Za-z0-9_-]+|\"[^\"\n]*\"|'[^'\n]*'")
 
 
 def shipped_names() -> list[str]:
@@ -82,9 +86,20 @@ def read_toml(path: Path, label: str, what: str = "scene") -> dict[str, Any]:
     return _parse(text, label)
 
 
+def _longest_key(text: str) -> int:
+    """Return the number of parts of the longest dotted key; tomllib needs the square of that, in time and memory."""
+    longest = run = 0
+    for part in text.split("."):
+        run = run + 1 if _KEY.fullmatch(part.strip(" \t")) else 1
+        longest = max(longest, run)
+    return longest
+
+
 def _parse(text: str, label: str) -> dict[str, Any]:
     import tomllib  # compiles its patterns when imported
 
+    if _longest_key(text) > MOST_PARTS:
+        raise InputError(f"{label}: expected keys of at most {MOST_PARTS} parts, got a longer one")
     try:
         return tomllib.loads(text, parse_float=Decimal)
     except tomllib.TOMLDecodeError as reason:

@@ -1,10 +1,14 @@
 """Files of claims: what they may hold, what is refused, and the command that reads them."""
 
 import json
+import re
+from collections import Counter
+from pathlib import Path
 
 import pytest
 
 import symrot
+from symrot.checker.interface import RefusedClaims
 from symrot.cli import main
 from symrot.errors import InputError
 
@@ -120,6 +124,107 @@ def test_a_fault_in_a_file_is_named_with_its_claim(tmp_path, old, new, words):
 def test_contradicting_hypotheses_prove_nothing(tmp_path):
     with pytest.raises(InputError, match="contradict"):
         symrot.check("x == y", assume=["x == 1", "x == 2"])
+
+
+# -- the files of an author ------------------------------------------------------------------------------------------
+
+TWENTY = Path(__file__).parent / "data" / "rotation_claims.toml"
+FAULT_OF_AN_AUTHOR = ("+ I2*(I2 - I3)*w2**2", "- I2*(I2 - I3)*w2**2")
+
+
+def test_twenty_claims_of_an_author_hold():
+    found = symrot.check_file(TWENTY)
+    assert len(found) == 20
+    assert [verdict.id for verdict in found if not verdict] == []
+    assert all(verdict.notes == () for verdict in found)
+
+
+def author(tmp_path, *faults):
+    text = TWENTY.read_text(encoding="utf-8")
+    for old, new in faults:
+        assert old in text
+        text = text.replace(old, new, 1)
+    return write(tmp_path, text)
+
+
+def test_one_wrong_sign_among_twenty_fails_and_is_repaired(tmp_path, capsys):
+    assert main(["check", str(author(tmp_path, FAULT_OF_AN_AUTHOR))]) == 1
+    out = capsys.readouterr().out
+    assert "20 claims: 19 true, 1 false" in out
+    assert sum(line.startswith("true ") for line in out.splitlines()) == 19
+    assert "false       polhode (eq. (14))" in out
+    assert "[sign_of_term]" in out
+    assert max(map(len, out.splitlines())) <= 110
+
+
+def test_a_bad_claim_leaves_the_verdicts_of_the_others(tmp_path, capsys):
+    path = author(tmp_path, ("trace(dcm_of(q0, q1, q2, q3)) ==", "trace(dcm_of(q0, q1, q2)) =="), FAULT_OF_AN_AUTHOR)
+    assert main(["check", str(path), "--no-repair"]) == 2
+    shown = capsys.readouterr()
+    assert "20 claims: 18 true, 1 false, 1 refused" in shown.out
+    (sentence,) = shown.err.splitlines()
+    assert "claims.toml" in sentence and "trace-and-scalar-part" in sentence and "4 components" in sentence
+    with pytest.raises(RefusedClaims, match="trace-and-scalar-part") as refusal:
+        symrot.check_file(path, repair=False)
+    assert Counter(verdict.verdict for verdict in refusal.value.verdicts) == {"true": 18, "false": 1, "refused": 1}
+
+
+FIELDS = {
+    "id": str, "verdict": str, "entry": list | None, "conditions": list, "counterexample": dict | None,
+    "diagnosis": dict, "repairs": list, "seconds": float,
+}  # fmt: skip
+"""What a machine may rely on, in this order (DESIGN, section 6)."""
+
+
+def test_json_has_the_fields_that_were_promised_and_is_the_same_twice(tmp_path, capsys):
+    path = author(tmp_path, FAULT_OF_AN_AUTHOR)
+    printed = []
+    for _ in range(2):
+        assert main(["check", str(path), "--json"]) == 1
+        printed.append(re.sub(r'"seconds": [0-9.e-]+', '"seconds": 0', capsys.readouterr().out))
+    assert printed[0] == printed[1]
+    found = json.loads(printed[0])
+    assert len(found) == 20
+    for entry in found:
+        assert list(entry)[: len(FIELDS)] == list(FIELDS)
+        assert all(isinstance(entry[name], kind) for name, kind in FIELDS.items() if name != "seconds")
+        assert list(entry["diagnosis"]) == ["code", "text"]
+        assert all(list(repair) == ["text", "code", "cost", "proven"] for repair in entry["repairs"])
+    (wrong,) = (entry for entry in found if entry["verdict"] == "false")
+    assert list(wrong["counterexample"]) == ["values", "lhs", "rhs", "entry"]
+    assert wrong["diagnosis"]["code"] == wrong["repairs"][0]["code"] == "sign_of_term"
+
+
+READINGS = """
+schema = 1
+[[claim]]
+id = "read-again"
+symbols = ["x"]
+claim = "cos(2*x) == 1 - sin(x)**2"
+alternatives = ["cos(2*x) == 1 + 2*sin(x)**2", '\\cos 2x = 1 - 2\\sin^2 x']
+
+[[claim]]
+id = "only-alternatives"
+symbols = ["x"]
+alternatives = ["x == 2*x", "x + x == 2*x"]
+
+[[claim]]
+id = "none-holds"
+symbols = ["x"]
+claim = "x == 2*x"
+alternatives = ["x == 3*x"]
+"""
+
+
+def test_any_reading_of_a_claim_may_be_the_true_one(tmp_path, capsys):
+    path = write(tmp_path, READINGS)
+    first, second, third = symrot.check_file(path)
+    assert (first.verdict, first.text) == ("true", "cos(2*x) == 1 - 2*sin(x)**2")
+    assert first.notes == ("this is another reading of the claim; the first, cos(2*x) == 1 - sin(x)**2, is false",)
+    assert (second.verdict, second.text) == ("true", "x + x == 2*x")
+    assert (third.verdict, third.text) == ("false", "x == 2*x")
+    assert main(["check", str(path)]) == 1
+    assert "3 claims: 2 true, 1 false" in capsys.readouterr().out
 
 
 # -- the command ------------------------------------------------------------------------------------------------------

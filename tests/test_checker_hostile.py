@@ -1,0 +1,172 @@
+"""Hostile input: one sentence within a counted budget, through text, LaTeX and TOML, from Python and the command line.
+
+Nothing here measures time; the budgets are counts, and a guard of a minute on a subprocess only catches a hang.
+"""
+
+import subprocess
+import sys
+
+import pytest
+
+import symrot
+from symrot.checker.size import MOST_PRODUCTS, products_of_determinant
+from symrot.cli import main
+from symrot.errors import InputError
+
+
+def full_matrix(size):
+    return "Matrix([" + ", ".join("[" + ", ".join(f"a{i}{j}" for j in range(size)) + "]" for i in range(size)) + "])"
+
+
+TEXTS = {
+    "a megabyte": ("x + " * 250_000 + "x == 1", "at most 20000 characters"),
+    "nested 10 000 deep": ("(" * 10_000 + "x" + ")" * 10_000 + " == x", "at most"),
+    "functions nested 1000 deep": ("sin(" * 1_000 + "x" + ")" * 1_000 + " == x", "nested"),
+    "4500 signs": ("-" * 4_500 + "(" * 61 + "x" + ")" * 61 + " == x", "nested"),
+    "10 000 symbols": ("+".join(f"x{n}" for n in range(10_000)) + " == 1", "at most"),
+    "a tower": ("x**x**x == 1", "a number as an exponent"),
+    "a tower of numbers": ("9**9**9 == x", "exponent up to 64"),
+    "a high power": ("(a + b)**1000 == 1", "exponent up to 64"),
+    "a high power of a matrix": (f"{full_matrix(6)}**60 == 0", "at most 200000 symbols"),
+    "powers of powers of a matrix": ("(Matrix([[a, b], [c, d]])**64)**64 == 0", "at most 200000 symbols"),
+    "a large determinant": (f"det({full_matrix(12)}) == 0", "instead of 479001600"),
+    "a large inverse": (f"inverse({full_matrix(6)}) == 0", "instead of 720"),
+    "many derivatives": ("diff(sin(x*y)**40*cos(x)**40, x, 9, y, 9, x, 9) == 0", "at most 3000 symbols"),
+    "a sum of thirty angles": ("sin(" + "+".join(f"x{n}" for n in range(30)) + ") == 1", "at most 2000 terms"),
+    "a product that cannot be factored": (f"sqrt({(10**60 + 7) * (10**61 + 9)}) == x", "at most 64 bits"),
+    "a long number": ("9" * 300 + " == x", "at most 200 characters"),
+    "beyond doubles": ("1e400 == x", "power of ten"),
+    "not a number": ("nan == nan", "means something else"),
+    "infinity": ("oo == x", "means something else"),
+    "division by zero": ("1/0 == 1", "not zero"),
+    "division by a hidden zero": ("x/(y - y) == 1", "not zero"),
+    "division by an identity": ("x/(sin(y)**2 + cos(y)**2 - 1) == 1", "zero everywhere"),
+    "Python": ("__import__('os').system('true') == 0", "position 1"),
+    "attributes": ("x.__class__ == 1", "position 3"),
+    "eval": ("eval(1) == 1", "'eval'"),
+    "a lambda": ("lambda: 1 == 1", "position 7"),
+    "a Cyrillic letter": ("х == 1", "position 1"),
+    "a wide letter": ("ｘ == 1", "position 1"),
+    "a Greek letter": ("ω == 1", "position 1"),
+    "a mathematical minus": ("x − y == 0", "write - for a minus"),
+    "a hidden letter": ("x\u200b == 1", "position 2"),
+    "a turned text": ("x\u202e == 1", "position 2"),
+    "a null": ("x\0 == 1", "position 2"),
+    "ragged rows": ("Matrix([[1, 2], [3]]) == 1", "equal length"),
+    "wrong shapes": ("eye(2)*eye(3) == 1", "3 x 3"),
+    "a derivative by a number": ("diff(x, 4) == 0", "differentiate"),
+    "a derivative of a list": ("diff((x, y), x) == 0", "list"),
+    "a derivative by a product": ("diff(x**2, x*y) == 0", "differentiate"),
+    "nothing": ("   ", "empty"),
+}
+
+
+@pytest.mark.parametrize(("text", "words"), TEXTS.values(), ids=TEXTS)
+def test_a_hostile_text_is_refused_in_one_sentence(text, words):
+    with pytest.raises(InputError, match=words) as refusal:
+        symrot.check(text)
+    assert "\n" not in str(refusal.value)
+    assert len(str(refusal.value)) < 600
+
+
+@pytest.mark.parametrize(("text", "words"), TEXTS.values(), ids=TEXTS)
+def test_a_hostile_hypothesis_is_refused_too(text, words):
+    with pytest.raises(InputError):
+        symrot.check("x == x", assume=[text])
+
+
+def test_a_file_of_hostile_claims_refuses_each_and_decides_the_rest(tmp_path, capsys):
+    """Exit code 2, one sentence for each with file and id; the verdicts of the others are there."""
+    texts = [text for text, _ in TEXTS.values() if "\0" not in text and len(text) < 100_000]
+    bad = "".join(f"[[claim]]\nid = 'bad-{n}'\nsymbols = ['x', 'y']\nclaim = '''{t}'''\n" for n, t in enumerate(texts))
+    path = tmp_path / "hostile.toml"
+    path.write_text("schema = 1\n[[claim]]\nid = 'good'\nsymbols = ['x']\nclaim = 'x + x == 2*x'\n" + bad, "utf-8")
+    assert main(["check", str(path)]) == 2
+    shown = capsys.readouterr()
+    assert shown.out.splitlines()[0] == "true        good"
+    sentences = shown.err.splitlines()
+    assert len(sentences) == len(texts)
+    assert all("hostile.toml" in line and f"bad-{n}" in line for n, line in enumerate(sentences))
+    assert "Traceback" not in shown.err
+
+
+LATEX = {
+    "a megabyte": r"\alpha " * 150_000 + "= 1",
+    "nested deep": r"\sqrt{" * 3_000 + "x" + "}" * 3_000 + "= x",
+    "left open": r"\frac{1}{x = 1",
+    "fractions nested deep": r"\frac{1}{" * 3_000 + "x" + "}" * 3_000 + "= x",
+    "a macro": r"\def\x{\x\x}\x = 1",
+    "an input": r"\input{/etc/passwd} = 1",
+    "a write": r"\immediate\write18{true} = 1",
+    "division by zero": r"\frac{1}{0} = x",
+    "a tower": r"\alpha^{\alpha^{\alpha}} = 1",
+}
+
+
+@pytest.mark.parametrize("text", LATEX.values(), ids=LATEX)
+def test_hostile_latex_is_refused_in_one_sentence(text):
+    with pytest.raises(InputError) as refusal:
+        symrot.check(text)
+    assert "\n" not in str(refusal.value)
+    assert len(str(refusal.value)) < 600
+
+
+CLAIM = "schema = 1\n[[claim]]\nid = 'a'\n"
+FILES = {
+    "empty": (b"", "empty"),
+    "blank": (b"\n \n", "empty"),
+    "binary": (bytes(range(256)) * 64, "UTF-8"),
+    "nulls": (b"\0" * 1000, "TOML"),
+    "two megabytes": (b"#" * 2_000_000, "at most 1 MB"),
+    "nested tables": (b"a = " + b"[" * 100_000 + b"]" * 100_000, "TOML"),
+    "a dotted key without end": (("a." * 400_000 + "b = 1\n").encode(), "keys of at most"),
+    "an inline key without end": (("x = {" + "a . " * 200_000 + "b = 1}\n").encode(), "keys of at most"),
+    "many claims": (("schema = 1\n" + "[[claim]]\nclaim = '1 == 1'\n" * 3_000).encode(), "at most 2000 claims"),
+    "claims of another kind": (b"schema = 1\nclaim = 3\n", r"\[\[claim\]\]"),
+    "another key": (b"schema = 1\nrun = 'true'\n[[claim]]\nclaim = '1 == 1'\n", "'run'"),
+    "10 000 symbols": ((CLAIM + f"symbols = {[f'x{n}' for n in range(10_000)]}\nclaim = 'x1 == 1'").encode(), "500 names"),
+    "a definition of itself": ((CLAIM + 'define = [["f", "f + 1"]]\nclaim = "f == 1"').encode(), "declared"),
+    "definitions of each other": (
+        (CLAIM + 'define = [["f", "g"], ["g", "f"]]\nclaim = "f == 1"').encode(), "declared",
+    ),
+    "definitions that double": (
+        (CLAIM + f"symbols = ['x']\ndefine = {[['f0', 'eye(3)*x']] + [[f'f{n + 1}', f'f{n}*f{n} + f{n}'] for n in range(30)]}"
+         "\nclaim = 'f30 == 0'").encode(), "at most 200000 symbols",
+    ),
+    "a name of Python": ((CLAIM + "symbols = ['__class__']\nclaim = 'x == 1'").encode(), "letters, digits"),
+    "a number for a claim": ((CLAIM + "claim = 3").encode(), "expected text"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("content", "words"), FILES.values(), ids=FILES)
+def test_a_hostile_file_is_refused_in_one_sentence(content, words, tmp_path, capsys):
+    path = tmp_path / "claims.toml"
+    path.write_bytes(content)
+    with pytest.raises(InputError, match=words) as refusal:
+        symrot.check_file(path)
+    assert "\n" not in str(refusal.value)
+    assert "claims.toml" in str(refusal.value)
+    assert len(str(refusal.value)) < 600
+    assert main(["check", str(path)]) == 2
+    assert len(capsys.readouterr().err.splitlines()) == 1
+
+
+def test_nothing_is_evaluated_as_python(tmp_path):
+    """In a process of its own, with a guard against hanging only."""
+    mark = tmp_path / "mark"
+    attacks = [f"__import__('pathlib').Path('{mark}').touch() == 1", f"open('{mark}', 'w') == 1", "exec('1') == 1"]
+    for attack in attacks:
+        done = subprocess.run([sys.executable, "-m", "symrot", "check", attack], capture_output=True, text=True,
+                              timeout=60, check=False)  # fmt: skip
+        assert done.returncode == 2
+        assert len(done.stderr.splitlines()) == 1
+    assert not mark.exists()
+
+
+def test_a_determinant_is_counted_before_it_is_multiplied_out():
+    from sympy import eye, ones, zeros
+
+    assert products_of_determinant(ones(5, 5)) == 120
+    assert products_of_determinant(eye(12)) == 1
+    assert products_of_determinant(zeros(3, 3)) == 0
+    assert products_of_determinant(ones(12, 12)) > MOST_PRODUCTS
