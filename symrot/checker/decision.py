@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from sympy import Derivative, Expr, Mul, Pow, zeros
+from sympy import Derivative, Expr, Mul, Pow, pi, zeros
 from sympy.polys.rings import PolyElement
 from sympy.printing.str import StrPrinter
 
@@ -13,8 +13,9 @@ from symrot.checker.grounds import Grounds
 from symrot.checker.real_points import ATTEMPTS
 from symrot.checker.verdict import Counterexample
 from symrot.errors import InputError
-from symrot.exact import domain
+from symrot.exact import cyclotomic, domain
 from symrot.exact.branches import lifts, proof
+from symrot.exact.congruence import proof_by_congruence
 from symrot.exact.counterexample import Counterexample as Witness
 from symrot.exact.counterexample import closed_form_witness, rational_witness
 from symrot.exact.decide import flatten
@@ -83,7 +84,10 @@ def decide_problem(problem: Problem) -> Decision:
     relations = [as_zero(relation) for relation in problem.hypotheses]
     for formula in [*lefts, *rights, *relations, *problem.divisors, *problem.radicands]:
         _affordable(formula)
-    ring = FormulaRing([*lefts, *rights, *problem.divisors, *problem.nonzero], relations, problem.radicands)
+    try:
+        ring = FormulaRing([*lefts, *rights, *problem.divisors, *problem.nonzero], relations, problem.radicands)
+    except TooLarge as reason:
+        return Decision("undecided", reason=str(reason))
     try:
         return _decided(ring, problem, lefts, rights, shape)
     except TooLarge as reason:
@@ -119,7 +123,7 @@ def _decided(
         if grounds.imply(numerators):
             return Decision("true", conditions, notes=grounds.notes())
         grounds.refuse_if_empty()
-        rest = [_within(ring, grounds.witness), closed_form]
+        rest = [_within(ring, grounds.witness), *([closed_form] if ring.hypotheses else [])]
         witness = _witness(rest, ring, lefts, rights, wrong[:4], shape)
     needed = requirements(ring, numerators, [(lefts[n], rights[n]) for n in wrong], len(lefts))
     needed = [requirement for requirement in needed if grounds.allow(requirement.zeros)] or branches or []
@@ -129,6 +133,11 @@ def _decided(
         return Decision("conditional", (*texts, *conditions), tuple(needed), counterexample)
     if witness:
         return Decision("false", conditions, (), counterexample)
+    congruent = [proof_by_congruence(lefts[n], rights[n], ring.hypotheses, ring.domain) for n in wrong]
+    if None not in congruent:
+        lift = tuple(other for found in congruent if found for other in found)
+        conditions = _conditions([ring, *further, *lift], granted, problem.radicands)
+        return Decision("true", conditions, notes=grounds.notes())
     return Decision("undecided", conditions, (), None, _stopped_by(ring))
 
 
@@ -171,8 +180,9 @@ def _multiple(argument: Expr) -> int:
     """Return how many base angles an argument of a sine is made of, at least roughly."""
     total = 0
     for term in argument.as_ordered_terms() if argument.is_Add else [argument]:
-        number, _ = term.as_coeff_Mul()
-        total += abs(int(number.p)) * int(number.q) if number.is_Rational else 1
+        number, atom = term.as_coeff_Mul()
+        constant = atom is pi and cyclotomic.is_fine(int(number.q))
+        total += abs(int(number.p)) * int(number.q) if number.is_Rational and not constant else 1
     return total
 
 

@@ -36,11 +36,6 @@ class Lift:
     ring: FormulaRing
     numerators: tuple[PolyElement, ...]
 
-    @property
-    def holds(self) -> bool:
-        """Whether they are all zero."""
-        return not any(self.numerators)
-
 
 def vanishes(ring: FormulaRing, numerator: PolyElement) -> bool:
     """Return whether a numerator is proven to be zero: by the relations, or by a factor that is."""
@@ -55,7 +50,11 @@ def proof(ring: FormulaRing, numerator: PolyElement) -> tuple[FormulaRing, ...] 
     numerator = ring.reduce(numerator)
     if not numerator:
         return ()
-    return next(((lift.ring,) for lift in lifts(ring, numerator) if lift.holds), None)
+    for lift in lifts(ring, numerator):
+        further = [proof(lift.ring, poly) for poly in lift.numerators]
+        if None not in further:
+            return (lift.ring, *(other for found in further if found for other in found))
+    return None
 
 
 def lifts(ring: FormulaRing, numerator: PolyElement) -> Iterator[Lift]:

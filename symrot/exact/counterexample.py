@@ -16,6 +16,7 @@ from sympy import Expr, Rational, Symbol, acos, asin, atan, atan2, cos, pi, preo
 from sympy.core.function import AppliedUndef
 from sympy.polys.rings import PolyElement
 
+from symrot.errors import InputError
 from symrot.exact.angles import base_angle
 from symrot.exact.intervals import enclosure, surely_nonnegative_number
 from symrot.exact.ratio import Ratio
@@ -184,8 +185,11 @@ def _shortest(number: Expr) -> Expr:
     """Return a number as a rational where it is one."""
     if number.is_Rational or not number.is_number:
         return number
-    own = FormulaRing([number])
-    found = own.expression(own.ratio(number))
+    try:
+        own = FormulaRing([number])
+        found = own.expression(own.ratio(number))
+    except InputError:  # beyond the budget
+        return number
     return found if found.is_Rational else number
 
 

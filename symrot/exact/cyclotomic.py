@@ -11,7 +11,7 @@ from functools import cache
 from sympy import Poly, cyclotomic_poly, totient
 from sympy.abc import x
 
-__all__ = ["LARGEST_DEGREE", "degree", "doubled_cosine", "minimal_polynomial", "multiples", "order"]
+__all__ = ["LARGEST_DEGREE", "degree", "doubled_cosine", "is_fine", "minimal_polynomial", "multiples", "order"]
 
 LARGEST_DEGREE = 160
 """Of the minimal polynomial: multiples of pi/180 need 48, of pi/360 need 96; beyond it a constant stays a symbol."""
@@ -20,6 +20,11 @@ LARGEST_DEGREE = 160
 def order(denominator: int) -> int:
     """Return the even N such that sines and cosines of multiples of pi/denominator are polynomials in 2 cos(pi/N)."""
     return denominator if denominator % 2 == 0 else 2 * denominator
+
+
+def is_fine(denominator: int) -> bool:
+    """Return whether sines of multiples of pi/denominator are within the limit."""
+    return order(denominator) <= 12 * LARGEST_DEGREE and degree(order(denominator)) <= LARGEST_DEGREE
 
 
 def degree(n: int) -> int:

@@ -18,6 +18,7 @@ from sympy import Expr, Ge, Integer, Matrix, MatrixBase, MatrixExpr, Ne, sympify
 
 from symrot.errors import InputError
 from symrot.exact.branches import proof, vanishes
+from symrot.exact.congruence import proof_by_congruence
 from symrot.exact.counterexample import Counterexample, closed_form_witness, rational_witness
 from symrot.exact.domain import divisors, radicands
 from symrot.exact.ring import FormulaRing, as_zero
@@ -120,8 +121,16 @@ def decide(left: Any, right: Any, relations: Sequence[Any] = ()) -> Verdict:
             found = search(ring, lefts[place], rights[place], entry)
             if found is not None:
                 return Verdict("false", residual, conditions, found)
+    lifted = [_congruent(ring, lefts[place], rights[place]) for place in wrong]
+    if all(found is not None for found in lifted):
+        conditions = _conditions([ring, *(lift for found in lifted if found for lift in found)])
+        return Verdict("true", _shaped([Integer(0)] * len(lefts), shape), conditions)
     stopped_by = (*ring.outside_scope, *(root.expression for root in ring.roots), *ring.hypotheses)
     return Verdict("undecided", residual, conditions, None, stopped_by)
+
+
+def _congruent(ring: FormulaRing, left: Expr, right: Expr) -> tuple[FormulaRing, ...] | None:
+    return proof_by_congruence(left, right, ring.hypotheses, ring.domain)
 
 
 def flatten(expression: Any) -> tuple[list[Expr], tuple[int, int] | None]:

@@ -32,34 +32,26 @@ def _atan2(y: Expr, x: Expr) -> Pair:
     return x / sqrt(x**2 + y**2), y / sqrt(x**2 + y**2)
 
 
-def _half_of(whole: Callable[..., Pair]) -> Callable[..., Pair]:
+def _half(cosine: Expr, sine: Expr) -> Pair:
     """Return the (cosine, sine) of half an angle strictly between -pi and pi."""
-
-    def half(*arguments: Expr) -> Pair:
-        cosine, sine = whole(*arguments)
-        below = sqrt(HALF + cosine / 2)
-        return below, sine / (2 * below)
-
-    return half
+    below = sqrt(HALF + cosine / 2)
+    return below, sine / (2 * below)
 
 
-def _half_acos(u: Expr) -> Pair:
-    return sqrt(HALF + u / 2), sqrt(HALF - u / 2)
+INVERSE: dict[type, Callable[..., Pair]] = {asin: _asin, acos: _acos, atan: _atan, atan2: _atan2}
+"""Function -> (cosine, sine) of its value."""
 
 
-INVERSE: dict[type, tuple[Callable[..., Pair], Callable[..., Pair]]] = {
-    asin: (_asin, _half_of(_asin)),
-    acos: (_acos, _half_acos),
-    atan: (_atan, _half_of(_atan)),
-    atan2: (_atan2, _half_of(_atan2)),
-}
-"""Function -> (cosine, sine) of its value, and of half its value."""
-
-
-def cosine_sine(angle: Expr, half: bool) -> Pair:
-    """Return the cosine and sine of a value of an inverse function, or of half of it."""
-    found: Pair = INVERSE[type(angle)][half](*angle.args)
-    return found
+def cosine_sine(angle: Expr, halvings: int) -> Pair:
+    """Return the cosine and sine of a value of an inverse function, halved so many times."""
+    pair = INVERSE[type(angle)](*angle.args)
+    if halvings and isinstance(angle, acos):  # the half of pi too
+        (u,) = angle.args
+        pair = sqrt(HALF + u / 2), sqrt(HALF - u / 2)
+        halvings -= 1
+    for _ in range(halvings):
+        pair = _half(*pair)
+    return pair
 
 
 Range = tuple[Fraction, Fraction, bool, bool]

@@ -6,8 +6,9 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
-from sympy import Abs, Expr, Integer, factorint
+from sympy import Abs, Expr, Rational
 from sympy.polys.domains import ZZ
 from sympy.polys.rings import PolyElement
 
@@ -66,55 +67,59 @@ def _irreducible(poly: PolyElement) -> list[tuple[PolyElement, int]]:
 
 @dataclass(frozen=True)
 class Dependence:
-    """A root that is ``product(roots) / product(factor^n)``, the factors as those outside a radical."""
+    """A root that is ``sqrt(number) * product(roots) / product(factor^n)``, the factors as those outside a radical."""
 
+    number: Rational
     roots: tuple[Root, ...]
     divisors: tuple[tuple[Root | Expr, int], ...]
 
 
-def dependences(roots: Sequence[Root]) -> dict[Root, Dependence]:
+def dependences(radicands: Mapping[Root, PolyElement], generators: Sequence[Expr]) -> dict[Root, Dependence]:
     """Return the square roots that are products of others, by what they are.
 
-    Linear algebra over the field of two elements: a root is the set of irreducible factors, -1 and primes among them,
-    that its radicand has an odd number of times.
+    Linear algebra over the field of two elements: a root is the set of irreducible factors that its radicand has an
+    odd number of times.
+
+    Parameters
+    ----------
+    radicands : mapping
+        What stands under each square root, in one ring.
+    generators : sequence of Expr
+        Of that ring.
     """
-    plain = [root for root in roots if root.index == 2 and not isinstance(root.expression, Abs)]
-    plain = [root for root in plain if not root.power_expression.is_number]
-    if len(plain) < 2:
-        return {}
-    powers = {root: _factors(root.power_expression) for root in plain}
-    plain.sort(key=lambda root: (len(powers[root]), str(root.expression)))
-    basis: list[tuple[frozenset[Expr], frozenset[Root]]] = []
+    factored = {root: _factored(poly) for root, poly in radicands.items()}
+    odd = {root: frozenset(f for f, n in powers.items() if n % 2) for root, (_, powers) in factored.items()}
+    candidates = [root for root in radicands if odd[root] or not isinstance(root.expression, Abs)]
+    candidates.sort(key=lambda root: (-isinstance(root.expression, Abs), len(odd[root]), str(root.expression)))
+    basis: list[tuple[frozenset[PolyElement], frozenset[Root]]] = []
     found: dict[Root, Dependence] = {}
-    for root in plain:
-        left, used = frozenset(f for f, n in powers[root].items() if n % 2), frozenset([root])
+    for root in candidates:
+        left, used = odd[root], frozenset([root])
         for factors, members in basis:
             if min(factors, key=str) in left:
                 left, used = left ^ factors, used ^ members
         if left:
             basis.append((left, used))
-        else:
-            found[root] = _dependence(root, sorted(used - {root}, key=lambda other: str(other.expression)), powers)
+            continue
+        others = sorted(used - {root}, key=lambda other: str(other.expression))
+        number, total = factored[root][0], {f: -n for f, n in factored[root][1].items()}
+        for other in others:
+            number /= factored[other][0]
+            for factor, n in factored[other][1].items():
+                total[factor] = total.get(factor, 0) + n
+        if number > 0:  # else they are real together at isolated points only
+            divisors = ((absolute(f.as_expr(*generators)), n // 2) for f, n in sorted(total.items(), key=str) if n)
+            found[root] = Dependence(number, tuple(others), tuple(divisors))
     return found
 
 
-def _dependence(root: Root, others: Sequence[Root], powers: Mapping[Root, Mapping[Expr, int]]) -> Dependence:
-    total: dict[Expr, int] = {}
-    for member, sign in [*((other, 1) for other in others), (root, -1)]:
-        for factor, n in powers[member].items():
-            total[factor] = total.get(factor, 0) + sign * n
-    divisors = tuple((absolute(factor), n // 2) for factor, n in sorted(total.items(), key=str) if n)
-    return Dependence(tuple(others), divisors)
+def _factored(poly: PolyElement) -> tuple[Rational, dict[PolyElement, int]]:
+    """Return a polynomial as a rational number times powers of irreducible factors; of itself where it is large."""
+    if poly.is_ground or len(poly) > MOST_TERMS:
+        return (_rational(poly.LC), {}) if poly.is_ground else (Rational(1), {poly: 1})
+    constant, pairs = poly.factor_list()
+    return _rational(constant), {factor: int(n) for factor, n in pairs}
 
 
-def _factors(formula: Expr) -> dict[Expr, int]:
-    """Return the irreducible factors of a polynomial over the integers with their powers; itself where it is large."""
-    poly = formula.as_poly()
-    if poly is None or not (poly.domain.is_ZZ or poly.domain.is_QQ) or len(poly.terms()) > MOST_TERMS:
-        return {formula: 1}
-    constant, factors = poly.factor_list()
-    if not constant.is_Integer:
-        return {formula: 1}
-    powers = {factor.as_expr(): int(n) for factor, n in factors}
-    powers |= {Integer(prime): n for prime, n in factorint(abs(int(constant))).items()}
-    return powers | ({Integer(-1): 1} if constant < 0 else {})
+def _rational(value: Any) -> Rational:
+    return Rational(int(value.numerator), int(value.denominator))

@@ -16,7 +16,7 @@ from fractions import Fraction
 from typing import Any
 
 import sympy
-from sympy import Derivative, Expr, I, Integer, Rational, S, cos, pi, preorder_traversal, sin
+from sympy import Abs, Derivative, Expr, I, Integer, Rational, S, cos, pi, preorder_traversal, sin
 from sympy.core.function import AppliedUndef
 from sympy.matrices.expressions.matexpr import MatrixElement
 from sympy.polys.domains import QQ, ZZ
@@ -35,12 +35,18 @@ from symrot.exact.angles import (
 )
 from symrot.exact.constants import Number, cosine_number, root_number, vanishes
 from symrot.exact.inverse import INVERSE, cosine_sine
-from symrot.exact.radicands import dependences, take_squares
-from symrot.exact.ratio import Ratio, Ratios
+from symrot.exact.radicands import Dependence, dependences, take_squares
+from symrot.exact.ratio import Ratio, Ratios, TooLarge
 from symrot.exact.relations import Relations, Rule, relate
-from symrot.exact.roots import Radical, Radicand, Root, is_root, radical
+from symrot.exact.roots import Radical, Radicand, Root, is_root, radical, square_root_of_number
 
 __all__ = ["FormulaRing", "as_zero"]
+
+MOST_MULTIPLES = 240
+"""Of a base angle."""
+
+MOST_NESTED_TERMS = 40
+"""Of a radicand that holds roots itself: each further nesting multiplies the work."""
 
 REWRITTEN = {
     sympy.sinh: lambda u: (sympy.exp(u) - sympy.exp(-u)) / 2,
@@ -82,6 +88,10 @@ def as_zero(relation: Any) -> Expr:
     return relation
 
 
+class NeedsFractions(ArithmeticError):
+    """A relation has coefficients that are no integers."""
+
+
 class FormulaRing:
     """The polynomial ring, its relations and its known denominators, for a fixed set of expressions.
 
@@ -116,10 +126,27 @@ class FormulaRing:
         self.bases = base_coefficients(map(_unbound, self.forms.values()))
         self.fine = self._take_fine_constants()
         self.exponent_bases = base_coefficients(self.exponents.values())
+        self.dependences: dict[Root, Dependence] = {}
+        roots = {root for found in self.radicals.values() for root in found.generators}
+        while True:
+            self._number_generators(sorted(roots - set(self.dependences), key=_depth))
+            relations_found = self._relate(ZZ) or self._relate(QQ)
+            assert relations_found is not None  # the rationals suffice for any polynomial
+            self.relations: Relations = relations_found
+            found = self._dependences()
+            if not found:
+                break
+            self.dependences |= found
+            for dependence in found.values():
+                roots |= {factor for factor, _ in dependence.divisors if isinstance(factor, Root)}
+                roots |= set(square_root_of_number(dependence.number)[1])
+        if self.relations.contradictory:
+            raise InputError(f"the hypotheses contradict each other: {', '.join(map(str, self.hypotheses))}")
+
+    def _number_generators(self, roots: Sequence[Root]) -> None:
         atoms = sorted(self.bases, key=_order)
         exponents = sorted(self.exponent_bases, key=_order)
         leaves = sorted(self.leaves, key=_order)
-        roots = self._independent_roots()
         self.generators: list[Expr] = []
         self.roots = self._number((root, root.expression) for root in roots)
         self.sines = self._number((atom, sin(base_angle(atom, self.bases[atom]))) for atom in atoms)
@@ -130,11 +157,6 @@ class FormulaRing:
         self.cosines = self._number((atom, cos(base_angle(atom, self.bases[atom]))) for atom in atoms)
         if self.fine:
             (self.fine_place,) = self._number([(pi, 2 * cos(pi / self.fine))]).values()
-        relations_found = self._relate(ZZ) or self._relate(QQ)
-        assert relations_found is not None  # the rationals suffice for any polynomial
-        self.relations: Relations = relations_found
-        if self.relations.contradictory:
-            raise InputError(f"the hypotheses contradict each other: {', '.join(map(str, self.hypotheses))}")
 
     def _number(self, named: Iterable[tuple[Any, Expr]]) -> dict[Any, int]:
         """Append generators; return their numbers by what they stand for."""
@@ -171,7 +193,7 @@ class FormulaRing:
                     stack.extend(constant_cosine_sine(form.half_turns))
                 for atom, coefficient in form.terms:
                     if _is_bound(atom, coefficient):
-                        stack.extend(part for pair in _pairs_of(atom, coefficient) for part in pair)
+                        stack.extend(_parts_of(atom, coefficient))
             elif isinstance(node, sympy.exp) and node.args[0].is_extended_real is not False:
                 self.exponents[node.args[0]] = linear_form(node.args[0], turns=False)
             elif type(node) in REWRITTEN:
@@ -187,26 +209,26 @@ class FormulaRing:
         plain = [relation for relation in self.hypotheses if not any(map(is_root, preorder_traversal(relation)))]
         inner = FormulaRing([base], plain)
         content, above, below = inner.lowest_polynomials(inner.ratio(base))
+        if inner.roots and len(above) + len(below) > MOST_NESTED_TERMS:
+            raise TooLarge(f"a root of a formula with roots and more than {MOST_NESTED_TERMS} terms is not taken apart")
         if index != 2:
             return Radicand(content, above.as_expr(*inner.generators), below.as_expr(*inner.generators))
         rest, outside = take_squares(above, below, inner.generators)
         return Radicand(content, rest, Integer(1), outside)
 
-    def _independent_roots(self) -> list[Root]:
-        """Return the roots that become generators, outer ones first; note how others are products of these."""
-        roots = {root for found in self.radicals.values() for root in found.generators}
-        self.dependences = dependences(sorted(roots, key=_depth))
-        for dependence in self.dependences.values():
-            roots |= {factor for factor, _ in dependence.divisors if isinstance(factor, Root)}
-        return sorted(roots - set(self.dependences), key=_depth)
+    def _dependences(self) -> dict[Root, Dependence]:
+        """Return the square roots that are products of other generators, if there are several."""
+        places = {root: n for root, n in self.roots.items() if root.index == 2 and not root.power_expression.is_number}
+        plain = [root for root in places if not isinstance(root.expression, Abs)]
+        if not plain or len(places) < 2:
+            return {}
+        return dependences({root: self._polynomial(root) for root in places}, self.generators)
 
     def _take_fine_constants(self) -> int:
         """Return N of the generator 2 cos(pi/N) for constants of angles that are no multiples of pi/24; 0 for none."""
-        n = cyclotomic.order(self.bases[pi].denominator) if pi in self.bases else 0
-        if not n or cyclotomic.degree(n) > cyclotomic.LARGEST_DEGREE:
+        if pi not in self.bases or not cyclotomic.is_fine(self.bases[pi].denominator):
             return 0
-        del self.bases[pi]
-        return n
+        return cyclotomic.order(self.bases.pop(pi).denominator)
 
     @property
     def outside_scope(self) -> tuple[Expr, ...]:
@@ -229,19 +251,26 @@ class FormulaRing:
             *low, _ = cyclotomic.minimal_polynomial(self.fine)
             rules.append(Rule(self.fine_place, len(low), -self._in_generator(self.fine_place, low), minimal=True))
             self.relations = Relations(tuple(rules[-1:]))
-        rules += [Rule(number, root.index, self._polynomial(root)) for root, number in self.roots.items()]
+        try:
+            rules += [Rule(number, root.index, self._polynomial(root)) for root, number in self.roots.items()]
+        except NeedsFractions:
+            return None
         self.relations = Relations(tuple(sorted(rules, key=lambda rule: rule.generator)))
         self.hypothesis_numerators = [self.ratio(hypothesis).numerator for hypothesis in self.hypotheses]
         self.numbers = self._tangled_numbers(rules)
         return relate(rules, self.hypothesis_numerators)
 
     def _polynomial(self, root: Root) -> PolyElement:
-        """Return the polynomial to which a power of a root is equal."""
+        """Return the polynomial to which a power of a root is equal; ``NeedsFractions`` if the integers do not do."""
         value = self.ratio(root.power_expression)
-        above, below = value.numerator.cancel(self.ratios.denominator(value))
-        if not below.is_ground or abs(below.LC) != 1:
+        above, below = self.reduce(value.numerator).cancel(self.ratios.denominator(value))
+        if not below.is_ground:
             raise InputError(f"the square root {root.expression} has a radicand that is no polynomial: {above}/{below}")
-        return above.mul_ground(below.LC)
+        if abs(below.LC) == 1:
+            return above.mul_ground(below.LC)
+        if self.ring.domain is ZZ:
+            raise NeedsFractions
+        return above.quo_ground(below.LC)
 
     def _tangled_numbers(self, rules: Sequence[Rule]) -> dict[int, Number]:
         """Return the generators that are numbers if relations may hold between them; square roots of primes have none.
@@ -329,7 +358,9 @@ class FormulaRing:
         if dependence is None:
             return Ratio(self.ring.gens[self.roots[root]])
         divisors = self._outside((factor, -times) for factor, times in dependence.divisors)
-        return self.ratios.multiply([*map(self._root, dependence.roots), *divisors])
+        rational, primes = square_root_of_number(dependence.number)
+        number = self.ratios.number(int(rational.p), int(rational.q))
+        return self.ratios.multiply([number, *map(self._root, (*primes, *dependence.roots)), *divisors])
 
     def _outside(self, factors: Iterable[tuple[Root | Expr, int]]) -> Iterator[Ratio]:
         """Yield the powers of absolute values, and of what is not negative, in front of roots."""
@@ -364,6 +395,8 @@ class FormulaRing:
                 pairs.append(self._fine_constant(coefficient))
                 continue
             multiple = int(coefficient / self.bases[atom])
+            if abs(multiple) > MOST_MULTIPLES // (1 + 7 * (atom is pi)):
+                raise TooLarge(f"an angle of more than {MOST_MULTIPLES} times another is not expanded: {argument}")
             first, second = chebyshev(abs(multiple))
             c = self._in_generator(self.cosines[atom], first)
             s = self._in_generator(self.cosines[atom], second) * self.ring.gens[self.sines[atom]]
@@ -387,8 +420,8 @@ class FormulaRing:
 
     def _known_angle(self, atom: Expr, coefficient: Fraction) -> Iterator[tuple[Ratio, Ratio]]:
         """Yield the cosines and sines of angles that sum to a multiple of an inverse trigonometric function."""
-        for (cosine, sine), times in zip(_pairs_of(atom, coefficient), _split(coefficient), strict=False):
-            c, s = self.ratio(cosine), self.ratio(sine)
+        for halvings, times in _split(coefficient):
+            c, s = map(self.ratio, cosine_sine(atom, halvings))
             if times < 0:
                 s = self.ratios.multiply([self.ratios.number(-1), s])
             for _ in range(abs(times)):
@@ -429,23 +462,27 @@ class FormulaRing:
 
 
 def _is_bound(atom: Expr, coefficient: Fraction) -> bool:
-    """Return whether the sine and cosine of a multiple of an atom are known: of whole and half inverse functions."""
-    return type(atom) in INVERSE and coefficient.denominator <= 2
+    """Return whether the sine and cosine of a multiple of an atom are known: of inverse functions, whole and halved."""
+    return type(atom) in INVERSE and coefficient.denominator in (1, 2, 4, 8)
 
 
 def _unbound(form: LinearForm) -> LinearForm:
     return LinearForm(tuple(term for term in form.terms if not _is_bound(*term)), form.half_turns)
 
 
-def _split(coefficient: Fraction) -> tuple[int, int]:
-    """Return how many whole angles and how many half angles make up a multiple."""
-    whole = int(coefficient)
-    return whole, int(2 * (coefficient - whole))
+def _split(coefficient: Fraction) -> Iterator[tuple[int, int]]:
+    """Yield (number of halvings, how many such angles) that make up a multiple."""
+    left, halvings = coefficient, 0
+    while left:
+        times = int(left)
+        if times:
+            yield halvings, times
+        left, halvings = 2 * (left - times), halvings + 1
 
 
-def _pairs_of(atom: Expr, coefficient: Fraction) -> list[tuple[Expr, Expr]]:
-    """Return (cosine, sine) of an inverse function and, where a half is needed, of its half."""
-    return [cosine_sine(atom, half) for half in (False, True) if not half or coefficient.denominator == 2]
+def _parts_of(atom: Expr, coefficient: Fraction) -> list[Expr]:
+    """Return the cosines and sines by which those of a multiple of an inverse function are read."""
+    return [part for halvings, _ in _split(coefficient) for part in cosine_sine(atom, halvings)]
 
 
 def _occurring(poly: PolyElement) -> set[int]:

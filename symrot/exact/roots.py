@@ -12,11 +12,12 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from math import prod
 
-from sympy import Abs, Expr, I, Integer, Pow, Rational, factorint, sqrt
+from sympy import Abs, Expr, I, Integer, Pow, Rational, Symbol, factorint, sqrt
+from sympy.core.function import AppliedUndef
 
 from symrot.errors import InputError
 
-__all__ = ["Radical", "Radicand", "Root", "absolute", "is_root", "radical"]
+__all__ = ["Radical", "Radicand", "Root", "absolute", "is_root", "radical", "square_root_of_number"]
 
 
 @dataclass(frozen=True)
@@ -101,7 +102,7 @@ def radical(node: Expr, radicand: Callable[[Expr, int], Radicand]) -> Radical:
         above, below = content.p * above, content.q * below
         rational = Integer(1)
     else:
-        rational, roots = _square_root_of_number(content)
+        rational, roots = square_root_of_number(content)
     if above == -1 and below == 1 and index == 2:
         roots.append(_imaginary_unit())
     elif above != 1 or below != 1:
@@ -124,14 +125,18 @@ def is_root(node: Expr) -> bool:
     """Return whether the node is a fractional power, ``i``, or the absolute value of something real."""
     if isinstance(node, Pow):
         return bool(node.exp.is_Rational and not node.exp.is_Integer)
-    return node is I or (isinstance(node, Abs) and bool(node.args[0].is_extended_real))
+    return node is I or (isinstance(node, Abs) and _is_real_where_defined(node.args[0]))
+
+
+def _is_real_where_defined(value: Expr) -> bool:
+    return bool(value.is_extended_real) or all(leaf.is_extended_real for leaf in value.atoms(Symbol, AppliedUndef))
 
 
 def _imaginary_unit() -> Root:
     return Root(I, Integer(-1), 2, 1)
 
 
-def _square_root_of_number(value: Rational) -> tuple[Rational, list[Root]]:
+def square_root_of_number(value: Rational) -> tuple[Rational, list[Root]]:
     """Return the square root of a positive rational as rational * product of square roots of primes."""
     powers = factorint(int(value.p) * int(value.q))
     outside = prod(prime ** (power // 2) for prime, power in powers.items())
