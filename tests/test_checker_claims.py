@@ -129,7 +129,7 @@ def test_contradicting_hypotheses_prove_nothing(tmp_path):
 # -- the files of an author ------------------------------------------------------------------------------------------
 
 TWENTY = Path(__file__).parent / "data" / "rotation_claims.toml"
-FAULT_OF_AN_AUTHOR = ("+ I2*(I2 - I3)*w2**2", "- I2*(I2 - I3)*w2**2")
+FAULT_OF_AN_AUTHOR = ("dot(w, L)/2 == (I1*w1**2 + I2", "dot(w, L)/2 == (I1*w1**2 - I2")
 
 
 def test_twenty_claims_of_an_author_hold():
@@ -152,7 +152,7 @@ def test_one_wrong_sign_among_twenty_fails_and_is_repaired(tmp_path, capsys):
     out = capsys.readouterr().out
     assert "20 claims: 19 true, 1 false" in out
     assert sum(line.startswith("true ") for line in out.splitlines()) == 19
-    assert "false       polhode (eq. (14))" in out
+    assert "false       kinetic-energy (eq. (11))" in out
     assert "[sign_of_term]" in out
     assert max(map(len, out.splitlines())) <= 110
 

@@ -60,7 +60,7 @@ def requirements(
         itself = entries == 1 and _associated(factor, numerators[0])
         if itself and (requirement.code != "requires_unit_norm" or any(side.is_number for side in sides[0])):
             continue
-        if requirement.code == "requires_unit_norm" or _left_out(requirement, sides):
+        if requirement.code == "requires_unit_norm" or _left_out(requirement, sides, ring.hypotheses):
             found.append(requirement)
     return found or _no_products(ring, numerators, sides)
 
@@ -74,14 +74,19 @@ def _shared_factors(ring: FormulaRing, numerators: Sequence[PolyElement]) -> lis
     return [] if shared.is_ground else [factor for factor, _ in shared.factor_list()[1]]
 
 
-def _left_out(requirement: Requirement, sides: Sequence[tuple[Expr, Expr]]) -> bool:
+def _left_out(requirement: Requirement, sides: Sequence[tuple[Expr, Expr]], hypotheses: Sequence[Expr]) -> bool:
     """Return whether some side of each wrong entry knows nothing of one of the symbols.
 
     Whoever takes ``A = B`` for granted leaves one of them out. A text that has both, ``(A - B) w`` against
-    ``(B - A) w``, is wrong in another way.
+    ``(B - A) w``, is wrong in another way. A side knows of what hypotheses say about its symbols.
     """
     (formula,) = requirement.zeros
-    return all(any(not side.has(symbol) for side in pair for symbol in formula.free_symbols) for pair in sides)
+
+    def knows(side: Expr, symbol: Expr) -> bool:
+        own = side.free_symbols
+        return symbol in own or any(symbol in h.free_symbols and own & h.free_symbols for h in hypotheses)
+
+    return all(any(not knows(side, symbol) for side in pair for symbol in formula.free_symbols) for pair in sides)
 
 
 def _associated(first: PolyElement, second: PolyElement) -> bool:
