@@ -9,6 +9,8 @@ motion to 6e-16 in 70 us. The attitude is left to them.
 
 With no damping, angles are carried in turns as double-doubles: errors of the attitude stay at a few 1e-16 however many
 turns have passed. With damping, so is the steady part ``N t/c`` once the transient is over.
+
+Proof: ``derivations/driven_rotation.md``.
 """
 
 from collections.abc import Sequence

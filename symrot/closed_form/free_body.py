@@ -5,6 +5,8 @@ of a few 1e-16, since the constants of the motion are found to 31 digits and pha
 are in :file:`free_body.c`.
 
 Source: Whittaker, Analytical Dynamics, 4th ed., section 69; van Zon & Schofield, J. Comput. Phys. 225 (2007) 145.
+
+Proof: ``derivations/free_body_attitude.md``, ``derivations/free_body_separatrix.md``.
 """
 
 from collections.abc import Sequence

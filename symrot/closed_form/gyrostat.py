@@ -1,6 +1,8 @@
 """A free symmetric body with a constant rotor along its axis, at any time, exactly: two steady rotations.
 
 The formulas are in :file:`gyrostat.c`. Source: Landau & Lifshitz, Mechanics, 3rd ed., section 33, for no rotor.
+
+Proof: ``derivations/symmetric_gyrostat.md``.
 """
 
 from collections.abc import Sequence

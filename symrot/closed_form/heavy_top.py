@@ -5,6 +5,8 @@ sample costs the same however far it lies from the start and carries an error of
 :file:`heavy_top.c`.
 
 Source: Klein & Sommerfeld, Theory of the Top, vol. 2, chapter 6; Whittaker, Analytical Dynamics, 4th ed., section 72.
+
+Proof: ``derivations/heavy_top_motion.md``, ``derivations/pendulum.md``, ``derivations/sleeping_top.md``.
 """
 
 from collections.abc import Sequence
