@@ -10,6 +10,8 @@ from symrot.proof_pages.printer import formula
 
 __all__ = ["excerpt"]
 
+LONGEST_IN_TEXT = 100  # letters of LaTeX
+
 
 def excerpt(derivation: Derivation, number: int, detail: bool = False) -> Derivation:
     """Return a page with one step, and in detail every expression between its two sides.
@@ -73,8 +75,22 @@ def _chain(chain: Chain) -> list[Passage]:
     first, second = chain.links[0].expression, chain.links[1]
     passages = [Passage(f"{start} {_reason(second)}", ((first, second.expression),))]
     for link in chain.links[2:]:
-        passages.append(Passage(_spoken(_reason(link)), (("", link.expression),)))
+        passages.append(Passage(_spoken(_reason(link)), (*_taken(link), ("", link.expression))))
     return passages
+
+
+def _taken(link: Link) -> tuple[tuple[str, str], ...]:
+    """Return the multiples of hypotheses that a link takes away, where they are too long for a line of text."""
+    terms = _terms(link)
+    return () if _short(terms) else tuple((term, "0") for term in terms)
+
+
+def _terms(link: Link) -> list[str]:
+    return [rf"({formula(q)}) \cdot ({formula(b)})" for q, b in link.cofactors]
+
+
+def _short(terms: list[str]) -> bool:
+    return sum(map(len, terms)) <= LONGEST_IN_TEXT
 
 
 def _spoken(reason: str) -> str:
@@ -85,6 +101,7 @@ def _reason(link: Link) -> str:
     if link.rule:
         return f"with ${formula(link.rule[0])} = {formula(link.rule[1])}$:"
     if link.cofactors:
-        terms = ", ".join(f"$({formula(q)}) \\cdot ({formula(b)})$" for q, b in link.cofactors)
-        return f"{link.reason} are taken away, {terms}:"
+        terms = _terms(link)
+        return f"{link.reason} are taken away" + (f", {', '.join(f'${term}$' for term in terms)}:" if _short(terms) else
+                                                  ", each of which is zero:")  # fmt: skip
     return f"{link.reason}:"

@@ -199,7 +199,7 @@ class _Reader:
         shown = "".join(_letter(letter, variant) for letter in text)
         tag = "mtext" if " " in text else "mi"
         style = ' mathvariant="normal"' if tag == "mi" else ""
-        return Item("", f"<{tag}{style}>{escape(shown)}</{tag}>", 0.6 * len(text))
+        return Item("", f"<{tag}{style}>{escape(shown)}</{tag}>", 0.6 * len(text) + 0.4)
 
     # -- structures -------------------------------------------------------------------------------------------------
 

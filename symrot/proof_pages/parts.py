@@ -59,8 +59,8 @@ def footer(derivation: Derivation) -> str:
     count = len(derivation.steps)
     proven = f"{count} steps, each proven" if count != 1 else "One step, proven"
     sides = [side for step in derivation.steps for side in step.printed]
-    shown = f"Of the {len(sides)} sides, {sum(sides)} are shown as proven: printed from it, or read back and decided"
-    rest = "; the others are names, or words, for what was." if not all(sides) else "."
+    rest = "" if all(sides) else "; the others are names, or words, for what was proven"
+    shown = f"Printed from the proof, or read back and decided: {sum(sides)} of {len(sides)} sides{rest}."
     return (
         f"{proven} when this page was printed: the normal form of left minus right is zero. {shown}{rest} "
         f"Derived in `symrot/catalogue/{derivation.name}.py`, printed by `symrot derive "
