@@ -17,6 +17,7 @@ from symrot.expression import Node
 __all__ = ["LANES", "Address", "Column", "Layout", "Pack", "Row", "Slot", "Term", "lay_out"]
 
 LANES = 4
+MOST_USES = (1, 2)  # sums in which a product may stand without a row of its own
 ZERO: Node = ("number", Fraction(0))
 ONE: Node = ("number", Fraction(1))
 
@@ -84,8 +85,17 @@ class Layout(NamedTuple):
 
 
 def lay_out(system: Recurrences, edges: Sequence[int]) -> Layout:
-    """Return the layout of a system; ``edges`` are those of the blocks of states, which never share a row."""
-    return _Placer(_with_bundles(system), edges).layout()
+    """Return the layout of a system; ``edges`` are those of the blocks of states, which never share a row.
+
+    A product in two sums is computed once, or once in each: what is quicker is tried.
+    """
+    bundled = _with_bundles(system)
+    return min((_Placer(bundled, edges, uses).layout() for uses in MOST_USES), key=_cost)
+
+
+def _cost(layout: Layout) -> int:
+    """Return a measure of the time an order takes: convolutions, and rows that wait for one another."""
+    return len(layout.columns) + len(layout.rows)
 
 
 def _with_bundles(system: Recurrences) -> Recurrences:
@@ -128,7 +138,7 @@ def _with_bundles(system: Recurrences) -> Recurrences:
 
 
 class _Placer:
-    def __init__(self, system: Recurrences, edges: Sequence[int]) -> None:
+    def __init__(self, system: Recurrences, edges: Sequence[int], most_uses: int) -> None:
         self.system, self.series = system, system.series
         self.rows: list[Row] = []
         self.columns: list[Column] = []
@@ -141,7 +151,7 @@ class _Placer:
         ]
         for states in self.state_rows:
             self.put(Row("state", tuple(numbers.get(s) for s in states)))
-        self.inlined = self._inlined()
+        self.inlined = self._inlined(most_uses)
         self.levels: dict[int, int] = {}
 
     def put(self, row: Row) -> None:
@@ -151,14 +161,14 @@ class _Placer:
                 self.place.setdefault(series, Address(1, len(self.rows), lane))
         self.rows.append(row._replace(lanes=lanes))
 
-    def _inlined(self) -> set[int]:
-        """Return the products that stand in one sum and nowhere else: they need no coefficients of their own."""
+    def _inlined(self, most_uses: int) -> set[int]:
+        """Return the products that stand in so few sums and nowhere else: they need no coefficients of their own."""
         count: dict[int, int] = {}
         for s in (*self.series, *self.system.rates):
             for operand in s.operands:
                 if self.series[operand].rule == "product":
-                    count[operand] = count.get(operand, 0) + (1 if s.rule == "sum" else 2)
-        return {operand for operand, uses in count.items() if uses == 1}
+                    count[operand] = count.get(operand, 0) + (1 if s.rule == "sum" else most_uses + 1)
+        return {operand for operand, uses in count.items() if uses <= most_uses}
 
     def level(self, i: int) -> int:
         """Return in which round of one order a series can be computed: the states are there before the first."""

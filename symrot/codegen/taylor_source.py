@@ -240,7 +240,8 @@ class _Jet:
         rates = self.constant(tuple(s.weights[0] for s in series))  # type: ignore[misc]
         offsets = self.constant(row.constant) if row.constant and set(row.constant) != {("number", 0)} else ""
         turns = f"V_FMA({rates}, V_ALL(t), {offsets})" if offsets else f"V_MUL({rates}, V_ALL(t))"
-        lanes = ", ".join(f"{s.function}(V_LANE({name}, {lane}))" for lane, s in enumerate(series))
+        first = [series.index(s) for s in series]  # equal lanes take one call
+        lanes = ", ".join(f"{s.function}(V_LANE({name}, {lane}))" for lane, s in zip(first, series, strict=True))
         return [f"{name} = {turns};", f"{name} = V_SET({lanes});"]
 
     def _lane_of(self, series: int) -> str:
