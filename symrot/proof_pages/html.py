@@ -19,6 +19,7 @@ h1 { font-size: 1.9rem; line-height: 1.2; margin-bottom: 0.4rem; }
 h2 { font-size: 1.35rem; margin-top: 2.4rem; border-bottom: 1px solid #8886; padding-bottom: 0.2rem; }
 nav { font-size: 0.95rem; }
 math { font-size: 1.05em; }
+mover > mo { padding-bottom: 0.12em; }
 .display { overflow-x: auto; overflow-y: hidden; margin: 0.8rem 0; padding: 0.3rem 0; }
 .display math { margin: 0 auto; }
 .lines > mtr > mtd { text-align: left; padding-left: 0; padding-top: 0.25em; padding-bottom: 0.25em; }

@@ -45,7 +45,7 @@ FENCES = {"(": "(", ")": ")", "[": "[", "]": "]", "|": "|", "\\{": "{", "\\}": "
 TABLES = {"matrix": ("", ""), "bmatrix": ("[", "]"), "pmatrix": ("(", ")"), "vmatrix": ("|", "|"), "cases": ("{", "")}
 THIN = '<mspace width="0.17em"></mspace>'
 BAR = '<mo stretchy="false" form="prefix" lspace="0" rspace="0">|</mo>'
-WIDEST = 50  # letters to a line
+WIDEST = 42  # letters to a line
 SMALL = 0.75  # scripts, relative to the line
 
 
