@@ -227,6 +227,18 @@ def test_any_reading_of_a_claim_may_be_the_true_one(tmp_path, capsys):
     assert "3 claims: 2 true, 1 false" in capsys.readouterr().out
 
 
+def test_a_formula_of_a_paper_takes_its_functions_from_the_hypotheses():
+    given = ["I_1*diff(omega_1(t), t) == (I_2 - I_3)*omega_2(t)*omega_3(t)"]
+    assert symrot.check(r"I_1\dot\omega_1 = (I_2 - I_3)\omega_2\omega_3", assume=given).verdict == "true"
+    wrong = symrot.check(r"I_1\dot\omega_1 = (I_3 - I_2)\omega_2\omega_3", assume=given)
+    assert wrong.verdict == "false"
+    assert wrong.repairs
+
+
+def test_braces_mean_latex():
+    assert symrot.check("I_{xy} = -I_{yx}", assume=["I_xy == -I_yx"]).verdict == "true"
+
+
 # -- the command ------------------------------------------------------------------------------------------------------
 
 

@@ -137,16 +137,16 @@ def _hypothesis(source: str, where: str) -> Relation:
 
 
 def claim_of_text(source: str, given: Sequence[str] = (), units: Mapping[str, str] | None = None) -> Claim:
-    """Return the claim of a text ``left == right`` or of LaTeX, which is text with a backslash or a dollar sign.
+    """Return the claim of a text ``left == right`` or of LaTeX, text with a backslash, a brace or a dollar.
 
-    Its names are real symbols, or functions of time where they are written ``f(t)``.
+    Its names are real symbols, or functions of time where they are written ``f(t)``, in the hypotheses too.
     """
+    hypotheses = tuple(_hypothesis(text, "given") for text in given)
     if isinstance(source, str) and _is_latex(source):
-        source = read_latex(source).text
+        source = read_latex(source, names=Names(functions=_functions_of_time(hypotheses))).text
     relation = read_relation(source)
     if relation[0] != "==":
         raise InputError(f"expected a claim with '==', got '{relation[0]}' in {source[:60]!r}")
-    hypotheses = tuple(_hypothesis(text, "given") for text in given)
     sources = {"claim": source.strip(), **{f"given.{n}": text for n, text in enumerate(given)}}
     used = {str(node.value) for side in relation[1:] for _, node in walk(side) if node.kind in ("name", "call")}
     return Claim(
@@ -293,7 +293,18 @@ def _claim(entry: dict[str, Any], number: int, label: str) -> Claim:
 
 
 def _is_latex(source: str) -> bool:
-    return "\\" in source or "$" in source
+    return any(mark in source for mark in "\\${")
+
+
+def _functions_of_time(relations: Sequence[Relation]) -> set[str]:
+    """Return the names f of pieces ``f(t)``."""
+    return {
+        node.value
+        for relation in relations
+        for side in relation[1:]
+        for _, node in walk(side)
+        if node.kind == "call" and node.value not in BUILT_IN and [part.value for part in node.args] == ["t"]
+    }
 
 
 def _units(given: dict[str, str], known: set[str], place: str) -> dict[str, str]:
