@@ -1,15 +1,19 @@
 """A slice of the campaign: generated claims, no wrong verdict. ``python -m symrot.checker.campaign`` runs more of it."""
 
+import re
 from random import Random
 
 import pytest
 from mpmath import mp
 
-from symrot.checker.campaign import RULES, Outcome, campaign, claims, main
+from symrot.checker.campaign import RULES, UNDER, Outcome, campaign, claims, main
 from symrot.checker.judge import RationalPoint, Undefined, random_point, truth
-from symrot.checker.points import Meaningless, Point, agree
+from symrot.checker.judge_wider import HYPOTHESES, INVERSES, truth_under, wider_point
+from symrot.checker.points import Meaningless, Point
 from symrot.checker.reader import read_expression, read_relation
 from symrot.checker.tree import walk
+
+WIDER = ("exp", *INVERSES)
 
 
 def test_a_slice_of_the_campaign_has_no_wrong_verdict():
@@ -23,35 +27,80 @@ def test_a_slice_of_the_campaign_has_no_wrong_verdict():
 def test_generated_claims_are_repeatable_and_half_of_them_true():
     first, second = list(claims(20, seed=5)), list(claims(20, seed=5))
     assert first == second
-    assert sum(true for _, true in first) == 10
+    assert sum(true for _, _, true in first) == 10
+    assert {given for _, given, _ in claims(80, seed=5)} >= {(), ("x**2 + y**2 == 1",), ("z == x*y",)}
 
 
-def numbers(seed):
-    source = Random(seed)
-    scalars = {name: source.uniform(0.3, 1.3) for name in ("A", "B", "X", "Y", "Z", "a", "b", "c", "x", "y", "z", "t")}
-    vectors = {
-        name: read_expression(f"Matrix([{', '.join(str(source.randint(1, 9)) for _ in range(n))}])")
-        for name, n in (("U", 3), ("V", 3), ("P", 4), ("Q", 4))
-    }
-    return Point(scalars, {"F": (0.4, 0.7, 0.9)}, vectors)
+LETTERS = {
+    "A": "(a + b)", "B": "c/2", "X": "(x - z)", "Y": "y", "Z": "(z + 2)", "F": "phi(t)", "H": "(u - v)", "J": "u/2",
+    "U": "Matrix([x, 2, z])", "V": "Matrix([1, y, z])", "P": "(p0, p1, p2, p3)", "Q": "(q0, q1, q2, q3)",
+}  # fmt: skip
+
+
+def filled(side):
+    """Put formulas for the capital letters of a rule."""
+    return read_expression(re.sub(r"\b[ABXYZFHJUVPQ]\b", lambda letter: LETTERS[letter[0]], side))
 
 
 @pytest.mark.parametrize(("left", "right"), RULES)
-def test_every_rule_holds_in_numbers(left, right):
-    """The rules of the generator, in double precision; letters of functions of time are called as such."""
-    trees = [read_expression(side.replace("F", "F(t)")) for side in (left, right)]
-    if left.startswith("qmul"):
-        trees = [read_expression(side) for side in ("qmul(P, qmul(Q, P))", "qmul(qmul(P, Q), P)")]
-    for seed in range(3):
-        point = numbers(seed)
-        assert all(agree(*(point.value(tree) for tree in trees)))
+def test_every_rule_holds_exactly(left, right):
+    """The rules of the generator, with formulas for their letters, over the rationals."""
+    assert truth_under(filled(left), filled(right), (), Random(1)) is True
+
+
+@pytest.mark.parametrize(("given", "rules"), [(given, rules) for given, _, rules in UNDER], ids=str)
+def test_rules_under_hypotheses_hold_exactly_there_and_not_everywhere(given, rules):
+    for left, right in rules:
+        sides = filled(left), filled(right)
+        assert truth_under(*sides, given, Random(1)) is True
+    assert any(truth_under(filled(left), filled(right), (), Random(1)) is False for left, right in rules)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_points_obey_every_hypothesis_of_the_table(seed):
+    for hypothesis in HYPOTHESES:
+        point = wider_point(Random(seed), (hypothesis,))
+        _, left, right = read_relation(hypothesis)
+        assert point.value(left) == point.value(right)
+
+
+@pytest.mark.parametrize(("formula", "function"), [
+    ("sin(2*asin(k))", lambda k, n, u, v: mp.sin(2 * mp.asin(k))), ("cos(acos(k))", lambda k, n, u, v: k),
+    ("cos(a + acos(k))", None), ("sin(atan(l))*cos(atan(l))", lambda k, n, u, v: mp.sin(2 * mp.atan(n)) / 2),
+    ("exp(u)*exp(v/2)", lambda k, n, u, v: mp.exp(u + v / 2)),
+    ("abs(-k) + sqrt(l**2)", lambda k, n, u, v: abs(k) + abs(n)),
+])  # fmt: skip
+def test_wider_values_agree_with_thirty_digits(formula, function):
+    """Inverse functions, exponentials and roots over the rationals, against mpmath at the same point."""
+    mp.dps = 30
+    for seed in range(4):
+        point = wider_point(Random(seed))
+        k, n = (mp.mpf(point.values[name].numerator) / point.values[name].denominator for name in "kl")
+        u, v = (2 * mp.log(mp.mpf(point.bases[n].numerator) / point.bases[n].denominator) for n in "uv")
+        exact = point.value(read_expression(formula))
+        if function is None:
+            c, s = (mp.mpf(n.numerator) / n.denominator for n in point.halves["a"])
+            expected = mp.cos(2 * mp.atan2(s, c) + mp.acos(k))
+        else:
+            expected = function(k, n, u, v)
+        assert abs(mp.mpf(exact.numerator) / exact.denominator - expected) < mp.mpf(10) ** -25
+
+
+@pytest.mark.parametrize(
+    "formula", ["sqrt(2)", "sqrt(-1*abs(x))", "asin(x) + 0*x", "exp(x)", "exp(u/3)", "sin(acos(x))"]
+)
+def test_values_that_are_not_rational_are_undefined(formula):
+    with pytest.raises(Undefined):
+        wider_point(Random(0)).value(read_expression(formula))
 
 
 @pytest.mark.parametrize("seed", range(6))
 def test_the_exact_values_agree_with_fifty_digits(seed):
     """Claims evaluated over the rationals and, independently, in double precision at the same point."""
     source = Random(seed)
-    for claim, _ in claims(6, seed):
+    for claim, given, _ in claims(8, seed):
+        if given or any(name in claim for name in (*WIDER, "sqrt", "abs")):
+            continue
         exact = random_point(source)
         mp.dps = 30
         angles = {
@@ -86,7 +135,7 @@ def test_a_wrong_engine_is_caught(monkeypatch):
     from symrot.checker import campaign as module
     from symrot.checker.verdict import Verdict
 
-    monkeypatch.setattr(module, "check", lambda claim, repair: Verdict("true"))
+    monkeypatch.setattr(module, "check", lambda claim, assume, repair: Verdict("true"))
     found = module.campaign(10, seed=1)
     assert len(found.wrong) == 5
     assert isinstance(found, Outcome)
