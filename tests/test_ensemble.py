@@ -16,7 +16,7 @@ import pytest
 import symrot
 from symrot.bench import taylor as bench
 from symrot.codegen import library
-from symrot.codegen.ensemble_source import lane_definitions
+from symrot.codegen.ensemble_source import lane_definitions, multiplications
 from symrot.codegen.recurrences import coefficients, recurrences
 from symrot.ensemble import lanes
 from symrot.ensemble.variation import read_variation
@@ -71,13 +71,18 @@ def test_compiled_polynomial_systems(name):
     compare(SYSTEMS[name], None)
 
 
-def test_products_of_one_weight_share_an_accumulator():
-    """The rates of a quaternion are three products each, summed before they are weighed: seven sums, fifteen products."""
-    text = lane_definitions(problem("free asymmetric").kernel.rates, (0, 3, 7), (0.0, 1.0), 20)
-    loops = text.split("for (int64_t n = 2")[1].split("{\n        const symrot_v s")[0]
-    assert loops.count("b0 = a0") == 1 and "b6 = a6" in loops and "b7 = a7" not in loops
-    assert text.split("}\n        a0")[0].count("V_F") > 24
-    assert text == lane_definitions(problem("free asymmetric").kernel.rates, (0, 3, 7), (0.0, 1.0), 20)
+@pytest.mark.parametrize(("name", "sums", "products"), [("free asymmetric", 7, 15), ("heavy symmetric", 6, 12)])
+def test_products_of_one_weight_share_an_accumulator(name, sums, products):
+    """The rates of a quaternion are sums of products that are weighed once: fifteen products, seven sums."""
+    rates = problem(name).kernel.rates
+    text = lane_definitions(rates, problem(name).blocks, (0.0, 1.0), 20)
+    assert f"a{sums - 1} = V_" in text and f"a{sums} = V_" not in text
+    assert multiplications(rates, 20) == products * 20 * 21 // 2
+    assert text == lane_definitions(rates, problem(name).blocks, (0.0, 1.0), 20)
+
+
+def test_a_square_takes_half():
+    assert multiplications(program({"x": "x**2"}), 20) == 105
 
 
 # ------------------------------------------------------------------------------------------------ each as if alone

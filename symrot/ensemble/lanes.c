@@ -301,7 +301,7 @@ SYMROT_EXPORT void symrot_lanes_clear(symrot_lanes *lanes)
 SYMROT_EXPORT int symrot_lanes_run(symrot_lanes *lanes, symrot_job *job, int64_t attempts)
 {
     symrot_v c[SYMROT_CONSTANTS], x[N][SYMROT_ORDER + 1], carry[N], y1[N];
-    symrot_v t, low, unit, stop, side, allowed, steps, jets, halvings, tiny;
+    symrot_v t = V_ALL(0.0), low = t, unit, stop, side, allowed, steps, jets, halvings, tiny;
     symrot_bits active;
     int changed = 1, entered[L], busy[L];
 
