@@ -269,6 +269,15 @@ def _no_stepper(path: str, error: Exception) -> CompilerError:
     return CompilerError(f"the compiled kernel {path} cannot be loaded: {error}")
 
 
+def _address(array: Floats) -> int:
+    """Return where an array begins, by the quickest way there is."""
+    try:
+        return ctypes.addressof(ctypes.c_char.from_buffer(array))
+    except (TypeError, ValueError):  # it is read-only or empty
+        found: int = array.ctypes.data
+        return found
+
+
 def _rising(times: Floats) -> bool:
     """Return whether times never fall; a few are sooner compared one by one."""
     if len(times) > FEW:
@@ -353,7 +362,7 @@ class Task:
 
     def follow(self, times: Floats, states: Floats) -> None:
         """Write the states at times sorted away from t0, all on one side of it."""
-        count, done, first, out = len(times), 0, times.ctypes.data, states.ctypes.data
+        count, done, first, out = len(times), 0, _address(times), _address(states)
         row = 8 * self.stepper.states
         for run in self.runs(float(times[-1])):
             while self.advance(run, first + 8 * done, count - done, out + row * done, None, 0) != DONE:
