@@ -8,7 +8,21 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from sympy import Expr, ImmutableMatrix, Matrix, MatrixBase, MatrixExpr, Mul, Ne, S, factor, fraction, sympify
+from sympy import (
+    Abs,
+    Expr,
+    ImmutableMatrix,
+    Matrix,
+    MatrixBase,
+    MatrixExpr,
+    Mul,
+    Ne,
+    S,
+    factor,
+    factor_list,
+    fraction,
+    sympify,
+)
 
 from symrot.errors import SymrotError
 from symrot.exact.decide import Verdict, decide, is_zero, normal_form
@@ -341,11 +355,19 @@ def _tidied(conditions: Sequence[Any]) -> list[Any]:
             continue
         for piece in Mul.make_args(condition.lhs):
             base = piece.base if piece.is_Pow and piece.exp.is_Rational else piece
-            for part in fraction(base):
+            base = base.args[0] if isinstance(base, Abs) else base
+            for part in (part for side in fraction(base) for part in _factors(side)):
                 value = normal_form(part)
-                if not (part.is_number or part.is_nonzero or (Ne, -value) in found):
+                if not (part.is_nonzero or value.is_number or (Ne, -value) in found):
                     found.setdefault((Ne, value), Ne(part, 0))
     return list(found.values())
+
+
+def _factors(expression: Expr) -> list[Expr]:
+    """Return what must not vanish for a product not to: its factors, or the expression where it has none."""
+    plain = not expression.is_number and expression.is_polynomial(*expression.free_symbols)
+    factors = [base for base, _ in factor_list(expression)[1]] if plain else []
+    return factors if len(factors) > 1 else [expression]
 
 
 def _shape(side: Any) -> Any:
