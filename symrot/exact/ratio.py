@@ -19,8 +19,10 @@ from symrot.errors import InputError
 
 __all__ = ["Ratio", "Ratios", "TooLarge"]
 
-MOST_PRODUCTS = 5_000_000
-"""Products of two terms that one problem may need: some seconds of work, counted, so that all machines agree."""
+MOST_PRODUCTS = 1_000_000
+"""Products of two terms that one problem may need: seconds of work, counted, so that all machines agree.
+
+The claims of the four documents need 27 000 at most."""
 
 
 class TooLarge(InputError):
