@@ -65,8 +65,7 @@ class _Search:
         changes = sorted(self.changes(), key=lambda change: (change.cost, change.place))
         passed: list[Found] = [(c.cost, c.edit.code, (c,)) for c in changes if sieve.holds([c])]
         stages: Sequence[Callable[[], Iterable[Found]]] = (
-            lambda: sorted([*passed, *by_entries(sieve), *solved(sieve)], key=lambda found: found[0]),
-            lambda: renamed(sieve),
+            lambda: sorted([*passed, *by_entries(sieve), *renamed(sieve), *solved(sieve)], key=lambda found: found[0]),
             lambda: lacking_term(sieve),
             lambda: lacking_matrix(sieve),
         )

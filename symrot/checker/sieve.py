@@ -163,8 +163,7 @@ class Sieve:
             self.dependent[name] = self._dependent_on(name)
         forgotten = self.dependent[name]
         known = {key: value for key, value in point.known.items() if key not in forgotten}
-        definitions = {**point.definitions, name: tree}
-        return Point(point.symbols, point.functions, definitions, point.kept, point.spent, known)
+        return replace(point, definitions={**point.definitions, name: tree}, known=known, lifted={})
 
     def _dependent_on(self, name: str) -> set[int | str]:
         """Return the definitions, by name, and the pieces, by identity, whose values change with a definition."""

@@ -19,6 +19,9 @@ from symrot.checker.tree import Node, Path, negated, number, product, replaced, 
 
 __all__ = ["solved"]
 
+ONES = (1, -1)
+"""Numbers that people leave out of a sum."""
+
 HOLE = Node("name", "?")
 """The piece that is solved for: no name that a reader can read."""
 
@@ -29,7 +32,8 @@ MOST_SUMS = 24
 MOST_MATRICES = 40
 MOST_COLUMNS = 5
 LARGEST_RATIO = 60
-"""Largest numerator and denominator of a rational factor."""
+LARGEST_OF_SIDE = 1000
+"""Largest denominator of a rational factor, of a piece and of a whole term of a side."""
 
 Values = tuple[float, ...]
 """One value for each point."""
@@ -63,7 +67,9 @@ class Vocabulary:
         while degree < 5 and len(entries) < MOST_PRODUCTS and atoms:
             degree += 1
             entries += self._products(atoms, degree)[: MOST_PRODUCTS - len(entries)]
-        sums = self._valued(dict.fromkeys(n for n in written if n.kind == "sum" and not sieve.is_matrix(n)), MOST_SUMS)
+        whole = [sieve.left, sieve.right]  # taken away, it would leave nothing
+        brackets = dict.fromkeys(n for n in written if n.kind == "sum" and n not in whole and not sieve.is_matrix(n))
+        sums = self._valued(brackets, MOST_SUMS)
         entries += [Entry((a, s), _times(u, v)) for s, v in sums for a, u in [(number(1), v), *atoms] if a != number(1)]
         entries += [Entry((r, s), _times(u, v)) for (r, u), (s, v) in combinations_with_replacement(sums, 2)]
         entries += [Entry((node,), values) for node, values in sums]
@@ -145,11 +151,11 @@ def _times(left: Values, right: Values) -> Values:
     return tuple(a * b for a, b in zip(left, right, strict=True))
 
 
-def _rational(values: Sequence[float]) -> Fraction | None:
+def _rational(values: Sequence[float], largest: int = LARGEST_RATIO) -> Fraction | None:
     """Return the small rational that all values are, or None."""
-    near = Fraction(values[0]).limit_denominator(LARGEST_RATIO)
-    fits = all(abs(value - near) <= CLOSE * abs(near) for value in values)
-    return near if fits and near and abs(near.numerator) <= LARGEST_RATIO else None
+    near = Fraction(values[0]).limit_denominator(largest)
+    fits = all(abs(value - near) <= 1e-3 * CLOSE * abs(near) for value in values)
+    return near if fits and near and abs(near.numerator) <= LARGEST_RATIO * largest else None
 
 
 # -- what a piece would have to be ------------------------------------------------------------------------------------
@@ -157,8 +163,8 @@ def _rational(values: Sequence[float]) -> Fraction | None:
 
 def solved(sieve: Sieve) -> list[Found]:
     """Return repairs in which one piece has become something that makes the claim hold, the nearest first."""
-    if len(sieve.points) < 2:
-        return []
+    if len(sieve.points) < 2 or not (speaks(sieve.left) or speaks(sieve.right)):
+        return []  # of a bare number nobody can say what it should have been
     vocabulary = Vocabulary(sieve)
     found: list[Found] = []
     for place in sieve.places:
@@ -174,8 +180,9 @@ def solved(sieve: Sieve) -> list[Found]:
                 continue
             values = vocabulary.values(piece)
             needed = values and _needed(sieve, place, path, HOLE, values)
+            outer = place in SIDES and len(path) <= 1
             if values and needed:
-                for made, edit in _readings(sieve, vocabulary, piece, values, needed, term):
+                for made, edit in _readings(sieve, vocabulary, piece, values, needed, term, outer):
                     found.append(_found(sieve, place, path, made, edit))
     return [item for item in sorted(found, key=lambda item: item[0]) if _means(sieve, item[2][0])]
 
@@ -276,17 +283,19 @@ Reading = tuple[Node, tuple[str, float]]
 
 
 def _readings(
-    sieve: Sieve, vocabulary: Vocabulary, piece: Node, values: Values, needed: Values, term: bool
+    sieve: Sieve, vocabulary: Vocabulary, piece: Node, values: Values, needed: Values, term: bool, outer: bool
 ) -> Iterator[Reading]:
     """Yield what a piece may become, given the values it has and the values it needs."""
+    if all(abs(b) <= CLOSE * abs(a) for a, b in zip(values, needed, strict=True)):
+        return  # it would have to go
     ratios = tuple(b / a for a, b in zip(values, needed, strict=True))
-    plain = _rational(ratios)
+    plain = _rational(ratios, LARGEST_OF_SIDE if outer else LARGEST_RATIO)
     if plain is not None:
         if plain == -1:
             yield negated(piece), ("sign_of_term", 0.85)
         elif piece.kind != "neg":
             easy = plain in (2, Fraction(1, 2), -2, Fraction(-1, 2))
-            yield _scaled(piece, plain), ("factor", 1.12 if easy else 1.3)
+            yield _scaled(piece, plain), ("factor", 1.16 if easy else 1.3)
     constant = _rational(needed)
     if piece.kind in ("name", "call"):
         for entry, ratio in vocabulary.find(needed):
@@ -299,11 +308,13 @@ def _readings(
         for factors, upward in ((ratios, True), (tuple(1 / ratio for ratio in ratios if ratio), False)):
             if len(factors) == len(ratios):
                 for entry, ratio in vocabulary.find(factors):
-                    yield _multiplied(piece, entry, ratio, upward), ("factor", _weight(1.15 + bare, entry, ratio))
+                    yield _multiplied(piece, entry, ratio, upward), ("factor", _weight(1.22 + bare, entry, ratio))
                     break
     lacking = tuple(b - a for a, b in zip(values, needed, strict=True))
     if not term and piece.kind != "neg" and not (plain and not speaks(piece)):
         for entry, ratio in vocabulary.find(lacking):
+            if not entry.factors and ratio not in ONES:
+                continue
             made = sum_of([piece, _scaled(entry.node, ratio)])
             yield made, ("missing_term", _weight(1.5 if piece.kind == "sum" else 1.65, entry, ratio))
             break
@@ -352,7 +363,7 @@ def _of_matrix(sieve: Sieve, vocabulary: Vocabulary, place: str, path: Path, pie
     needed = _needed(sieve, place, path, product([HOLE, piece]), unit)
     for entry, ratio in vocabulary.find(needed or ()) if needed else ():
         made = _scaled(product([*entry.factors, piece]), ratio)
-        yield _found(sieve, place, path, made, ("factor", _weight(1.15, entry, ratio)))
+        yield _found(sieve, place, path, made, ("factor", _weight(1.22, entry, ratio)))
         break
     if piece.kind == "neg" or (path and piece.kind in ("name", "call")):
         return
