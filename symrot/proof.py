@@ -157,7 +157,7 @@ class Derivation:
     def nonzero(self, text: str, expression: Expr, named: str) -> None:
         """State once that an expression (LaTeX ``named``) is not zero; the steps after it do not repeat that."""
         self.items.append(Passage(f"{text} ${named} \\neq 0$."))
-        self.assumed.append(expression.expand())
+        self.assumed += [part.expand() for part in (expression, *_factors(expression))]
 
     def define(self, text: str, left: Any, right: Any) -> Any:
         """Give something a name, ``left`` (a symbol, or LaTeX), and return what it stands for."""
