@@ -1,57 +1,83 @@
 """Prove the laws of a kernel from its formulas, as polynomial identities with cofactors that anyone can multiply out.
 
-The outputs in a law are replaced by their formulas; sines and cosines of sums and multiples become polynomials in those
-of base angles, roots and absolute values become generators. What is left of each entry is a numerator, which is a sum
-of cofactors times relations: ``s^2 + c^2 - 1`` of a base angle, ``r^2 - P`` of a root, and the hypotheses of the law.
-Choices are followed one branch at a time.
+The outputs in a law are replaced by their formulas; what is left is a fraction of polynomials over the inputs and
+generators: cosine and sine of base angles, roots, signs, arc tangents. Its numerator is a sum of cofactors times
+relations: the hypotheses of the law, ``s^2 + c^2 - 1`` of a base angle, ``r^2 - P`` of a root, ``g^2 - 1`` of a sign.
+Nothing is reduced on the way, so that a second program gets the same fraction. Choices are followed one branch at a
+time; a law holds where no denominator that occurs vanishes.
 """
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
-from itertools import count
+from math import gcd, isqrt
 from typing import Any
 
-from sympy import Abs, Expr, Integer, Poly, Rational, Symbol, atan2, cos, fraction, sin, sqrt, together
+from sympy import Abs, Expr, atan2, cos, pi, sin
 from sympy.polys.domains import QQ
 from sympy.polys.matrices import DomainMatrix
 from sympy.polys.orderings import lex
 from sympy.polys.rings import PolyElement, PolyRing
 
 from symrot.errors import CertificateError
-from symrot.exact.angles import LinearForm, base_coefficients, chebyshev, constant_cosine_sine, linear_form
 from symrot.kernels.definition import Definition, Law
 from symrot.kernels.removable import explicit, select_ge
 
-__all__ = ["Entry", "Generator", "LawProof", "prove_laws"]
+__all__ = ["CaseProof", "Entry", "LawProof", "Root", "prove_law", "prove_laws"]
+
+Quotient = tuple[PolyElement, PolyElement]  # numerator, denominator, in lowest terms
+Cofactors = tuple[tuple[int, str], ...]  # number of a relation, polynomial; those that are zero left out
+Choice = tuple[str, str, str]  # left, ">=" or "<", right
+FEWEST = 8  # generators of the first attempt at a proof
 
 
 @dataclass(frozen=True)
-class Generator:
-    """What a symbol of a proof stands for: ``kind`` of ``of`` (text): sin, cos, root, sign or angle (an atan2)."""
+class Root:
+    """``sqrt(square)`` is ``value``, which is not negative: ``square - value^2`` over one denominator has cofactors.
 
-    symbol: str
-    kind: str
-    of: str
+    Both are fractions, (numerator, denominator).
+    """
+
+    square: tuple[str, str]
+    value: tuple[str, str]
+    cofactors: Cofactors
 
 
 @dataclass(frozen=True)
 class Entry:
-    """One entry of a law: ``numerator = sum of cofactor * relation``, all polynomials as text."""
+    """What vanishes, as a fraction: ``numerator = sum of cofactor * relation``."""
 
     numerator: str
-    cofactors: tuple[str, ...]
+    denominator: str
+    cofactors: Cofactors
+
+
+@dataclass(frozen=True)
+class CaseProof:
+    """The proof of a law in one case of its choices.
+
+    ``generators`` are, in the order in which later ones use earlier ones, tuples that begin with their kind::
+
+        ("turn", cosine, sine, angle)      ("root", symbol, radicand)
+        ("sign", symbol, of: numerator, denominator)
+        ("arc", symbol, y: numerator, denominator, x: numerator, denominator)
+    """
+
+    case: tuple[Choice, ...]
+    generators: tuple[tuple[str, ...], ...]
+    relations: tuple[str, ...]
+    roots: tuple[Root, ...]
+    entries: tuple[Entry, ...]
 
 
 @dataclass(frozen=True)
 class LawProof:
-    """The proof of one law in one case of its choices."""
+    """A law of a kernel, what vanishes and what is given as text, and its proof in every case of its choices."""
 
     text: str
-    case: tuple[str, ...]  # the conditions of the choices taken
-    generators: tuple[Generator, ...]
-    relations: tuple[str, ...]
-    entries: tuple[Entry, ...]
+    vanishing: tuple[str, ...]
+    given: tuple[str, ...]
+    cases: tuple[CaseProof, ...]
 
 
 def prove_laws(found: Definition) -> tuple[LawProof, ...]:
@@ -62,77 +88,365 @@ def prove_laws(found: Definition) -> tuple[LawProof, ...]:
     CertificateError
         For a law that does not follow.
     """
-    formulas = _formulas(found)
-    return tuple(
-        _Case(found.name, law, conditions).prove(entries, relations)
-        for law in found.laws()
-        for conditions, entries, relations in _cases(law, formulas)
-    )
+    formulas = {str(symbol): value for symbol, value in found.named} | dict(found.formulas)
+    return tuple(prove_law(found.name, law, formulas) for law in found.laws())
 
 
-def _formulas(found: Definition) -> dict[Symbol, Expr]:
-    """Return the outputs as formulas in the inputs alone."""
-    named: dict[Symbol, Expr] = {}
-    for symbol, value in found.named:
-        named[symbol] = value.xreplace(named)
-    return {
-        Symbol(name, **_assumptions(name, found)): explicit(formula.xreplace(named)) for name, formula in found.formulas
-    }
+def prove_law(name: str, law: Law, formulas: Mapping[str, Expr]) -> LawProof:
+    """Prove a law about quantities that have formulas, given by their names; others are free.
+
+    Raises
+    ------
+    CertificateError
+        If it does not follow.
+    """
+    names = _inputs(law, formulas)
+    fewest, bases, cases = FEWEST, {}, []
+    waiting: list[tuple[Choice, ...]] = [()]
+    while waiting:
+        decided = waiting.pop()
+        try:
+            cases.append(_Proof(name, law, formulas, PolyRing([*_pool(fewest), *names], QQ, lex), bases).run(decided))
+        except _Undecided as choice:
+            left, right = choice.args
+            waiting += [(*decided, (left, relation, right)) for relation in ("<", ">=")]
+        except _Coarse as angle:
+            monomial, base = angle.args
+            bases[monomial] = base
+            waiting.append(decided)
+        except _Full:
+            fewest *= 2
+            waiting.append(decided)
+    return LawProof(law.text, tuple(map(str, law.vanishing)), tuple(map(str, law.relations)), tuple(cases))
 
 
-def _assumptions(name: str, found: Definition) -> dict[str, bool]:
-    for law in found.laws():
-        for entry in law.vanishing:
-            for symbol in entry.free_symbols:
-                if str(symbol) == name:
-                    return dict(symbol.assumptions0)
-    return {"real": True}
+def _inputs(law: Law, formulas: Mapping[str, Expr]) -> list[str]:
+    """Return the names that are no formulas, in a fixed order."""
+    found: set[str] = set()
+    waiting, seen = [*law.vanishing, *law.relations], set()
+    while waiting:
+        for name in map(str, waiting.pop().free_symbols):
+            if name not in seen:
+                seen.add(name)
+                waiting += [formulas[name]] if name in formulas else []
+                found |= set() if name in formulas else {name}
+    return ["pi", *sorted(found)]
 
 
-Case = tuple[tuple[str, ...], tuple[Expr, ...], tuple[Expr, ...]]  # conditions, entries, relations
+def _pool(size: int) -> list[str]:
+    """Return names of generators, later ones first: those that are made later lead."""
+    return [f"g{k}_" for k in reversed(range(size))]
 
 
-def _cases(law: Law, formulas: dict[Symbol, Expr]) -> Iterator[Case]:
-    entries = tuple(explicit(entry).xreplace(formulas) for entry in law.vanishing)
-    yield from _split((), entries, law.relations)
+class _Undecided(Exception):
+    """A choice that the case at hand says nothing about: left, right."""
 
 
-def _split(conditions: tuple[str, ...], entries: tuple[Expr, ...], relations: tuple[Expr, ...]) -> Iterator[Case]:
-    """Follow both branches of the innermost choice that is left."""
-    choices = sorted(
-        {choice for entry in entries for choice in entry.atoms(select_ge)}, key=lambda e: (e.count_ops(), str(e))
-    )
-    choices = [choice for choice in choices if not any(argument.has(select_ge) for argument in choice.args)]
-    if not choices:
-        yield conditions, entries, relations
-        return
-    left, right, *_ = choices[0].args
-    same = [choice for choice in choices if choice.args[:2] == (left, right)]
-    for taken, relation in ((2, ">="), (3, "<")):
-        chosen = {choice: choice.args[taken] for choice in same}
-        yield from _split(
-            (*conditions, f"{left} {relation} {right}"), tuple(e.xreplace(chosen) for e in entries), relations
+class _Coarse(Exception):
+    """An angle that is no whole multiple of its base angle: what it is a multiple of, the base that is needed."""
+
+
+class _Full(Exception):
+    """More generators than the ring has room for."""
+
+
+@dataclass
+class _Proof:
+    """One attempt at the proof of a law, in one case, over one ring."""
+
+    name: str
+    law: Law
+    formulas: Mapping[str, Expr]
+    ring: PolyRing
+    bases: Mapping[str, Fraction]  # what an angle is a multiple of, as text -> least coefficient so far
+    generators: list[tuple[str, ...]] = field(default_factory=list)
+    values: dict[Expr, Quotient] = field(default_factory=dict)
+    hypotheses: list[PolyElement] = field(default_factory=list)
+    rules: list[PolyElement] = field(default_factory=list)  # each leads with a power of a generator of its own
+    roots: dict[Quotient, tuple[Quotient, Root]] = field(default_factory=dict)
+    radicals: dict[PolyElement, PolyElement] = field(default_factory=dict)  # a radicand -> its root
+    signs: dict[Quotient, PolyElement] = field(default_factory=dict)
+    arcs: dict[tuple[Quotient, Quotient], PolyElement] = field(default_factory=dict)
+    turns: dict[PolyElement, tuple[Quotient, Quotient]] = field(default_factory=dict)  # an angle -> cosine, sine
+    found: dict[str, Fraction] = field(default_factory=dict)
+    nonnegative: set[int] = field(default_factory=set)
+    made: int = 0
+
+    def __post_init__(self) -> None:
+        self.known = dict(zip(map(str, self.ring.symbols), self.ring.gens, strict=True))
+        self.pool = sum(name.endswith("_") and name[0] == "g" and name[1:-1].isdigit() for name in self.known)
+
+    def run(self, decided: Sequence[Choice]) -> CaseProof:
+        """Return the proof; ``CertificateError`` for an entry that is no combination of the relations."""
+        self.decided = {(left, right): relation for left, relation, right in decided}
+        self.hypotheses = [self.value(relation)[0] for relation in self.law.relations]
+        fractions = [self.value(entry) for entry in self.law.vanishing]
+        entries = []
+        for above, below in fractions:
+            cofactors = self.cofactors(above)
+            if cofactors is None:
+                raise CertificateError(f"{self.name}: expected the law {self.law.text!r} to follow, and it does not")
+            entries.append(Entry(str(above), str(below), cofactors))
+        return CaseProof(
+            tuple(decided), tuple(self.generators), tuple(map(str, (*self.hypotheses, *self.rules))),
+            tuple(root for _, root in self.roots.values()), tuple(entries),
+        )  # fmt: skip
+
+    # --- fractions ----------------------------------------------------------------------------------------------------
+
+    def lowest(self, above: PolyElement, below: PolyElement) -> Quotient:
+        if not below:
+            raise CertificateError(f"{self.name}: expected a law that is defined somewhere, got a division by zero")
+        if not below.is_ground:
+            above, below = above.cancel(below)
+        lead = below.LC
+        return (above, below) if lead == 1 else (above.quo_ground(lead), below.quo_ground(lead))
+
+    def add(self, a: Quotient, b: Quotient) -> Quotient:
+        if a[1] == b[1]:
+            return self.lowest(a[0] + b[0], a[1])
+        return self.lowest(a[0] * b[1] + b[0] * a[1], a[1] * b[1])
+
+    def multiply(self, a: Quotient, b: Quotient) -> Quotient:
+        return self.lowest(a[0] * b[0], a[1] * b[1])
+
+    def power(self, a: Quotient, exponent: int) -> Quotient:
+        above, below = a if exponent > 0 else (a[1], a[0])
+        return self.lowest(above ** abs(exponent), below ** abs(exponent))
+
+    def number(self, value: Fraction | int) -> Quotient:
+        value = Fraction(value)
+        return self.ring.ground_new(QQ(value.numerator, value.denominator)), self.ring.one
+
+    # --- expressions --------------------------------------------------------------------------------------------------
+
+    def value(self, expr: Expr) -> Quotient:
+        """Return an expression as a fraction; outputs are replaced by their formulas."""
+        if expr not in self.values:
+            self.values[expr] = self._value(expr)
+        return self.values[expr]
+
+    def _value(self, expr: Expr) -> Quotient:
+        if expr.is_Rational:
+            return self.number(Fraction(int(expr.p), int(expr.q)))
+        if expr.is_Symbol or expr is pi:
+            name = str(expr)
+            return self.value(self.formulas[name]) if name in self.formulas else (self.known[name], self.ring.one)
+        if expr.is_Add or expr.is_Mul:
+            combine = self.add if expr.is_Add else self.multiply
+            first, *rest = map(self.value, expr.args)
+            for value in rest:
+                first = combine(first, value)
+            return first
+        if expr.is_Pow and (2 * expr.exp).is_Integer:
+            base = self.value(expr.base)
+            whole = expr.exp.is_Integer
+            return self.power(base if whole else self.root(base), int(expr.exp if whole else 2 * expr.exp))
+        return self._function(expr)
+
+    def _function(self, expr: Expr) -> Quotient:
+        name = "abs" if isinstance(expr, Abs) else expr.func.__name__
+        if isinstance(expr, (cos, sin)):
+            return self.turned(self.angle(expr.args[0]))[isinstance(expr, sin)]
+        if isinstance(expr, atan2):
+            return self.arc(self.value(expr.args[0]), self.value(expr.args[1])), self.ring.one
+        if name == "abs":
+            value = self.value(expr.args[0])
+            return self.multiply((self.sign(value), self.ring.one), value)
+        if name == "copysign" and expr.args[0] == 1:
+            return self.sign(self.value(expr.args[1])), self.ring.one
+        if name == "select_ge":
+            return self.value(expr.args[2 if self.is_taken(expr) else 3])
+        plain = explicit(expr)
+        if plain == expr:
+            raise CertificateError(f"{self.name}: expected functions of kernels in a law, got {name}")
+        return self.value(plain)
+
+    def is_taken(self, choice: Expr) -> bool:
+        """Tell whether the case at hand takes the first branch of a choice."""
+        left, right = (_text(self.value(argument)) for argument in choice.args[:2])
+        if (left, right) not in self.decided:
+            raise _Undecided(left, right)
+        return self.decided[left, right] == ">="
+
+    def generator(self, kind: str) -> PolyElement:
+        if self.made == self.pool:
+            raise _Full
+        self.made += 1
+        return self.known[f"g{self.made - 1}_"]
+
+    def root(self, square: Quotient) -> Quotient:
+        """Return the square root of a fraction: of its rest by the relations, a product if that is a square."""
+        if square not in self.roots:
+            above, below = self.lowest(self.rest(square[0]), self.rest(square[1]))
+            if not self.is_nonnegative(below):
+                raise CertificateError(f"{self.name}: expected a root over a sum of squares, got one over {below}")
+            value = self.lowest(self.radical(above * below), below)
+            cofactors = self.cofactors(square[0] * value[1] ** 2 - value[0] ** 2 * square[1])
+            if cofactors is None:
+                raise CertificateError(f"{self.name}: expected the square of a root to be what it is the root of")
+            self.roots[square] = value, Root(*(tuple(map(str, each)) for each in (square, value)), cofactors)
+        return self.roots[square][0]
+
+    def radical(self, inside: PolyElement) -> PolyElement:
+        if inside not in self.radicals:
+            found = self.perfect(inside)
+            if found is None:
+                found = self.generator("root")
+                self.generators.append(("root", str(found), str(inside)))
+                self.rules.append(found**2 - inside)
+                self.nonnegative.add(self.ring.gens.index(found))
+            self.radicals[inside] = found
+        return self.radicals[inside]
+
+    def perfect(self, inside: PolyElement) -> PolyElement | None:
+        """Return the root of the square of something that is not negative; None for anything else."""
+        content, factors = inside.factor_list()
+        roots = [isqrt(abs(int(number))) for number in (content.numerator, content.denominator)]
+        if content < 0 or roots[0] ** 2 != content.numerator or roots[1] ** 2 != content.denominator:
+            return None
+        value = self.ring.ground_new(QQ(*roots))
+        for base, power in factors:
+            if power % 2 or (power % 4 and not self.is_nonnegative(base)):
+                return None
+            value *= base ** (power // 2)
+        return value
+
+    def is_nonnegative(self, value: PolyElement) -> bool:
+        """Tell whether a polynomial is a sum of even powers, or of generators that are not negative."""
+        return all(
+            coefficient > 0 and all(not n % 2 or place in self.nonnegative for place, n in enumerate(monomial))
+            for monomial, coefficient in value.items()
         )
 
+    def sign(self, value: Quotient) -> PolyElement:
+        """Return the generator of the sign of a value: 1 or -1, which times the value is its absolute value."""
+        if value not in self.signs:
+            made = self.signs[value] = self.generator("sign")
+            self.generators.append(("sign", str(made), *map(str, value)))
+            self.rules.append(made**2 - 1)
+        return self.signs[value]
 
-def _cofactors(polynomial: PolyElement, basis: Sequence[PolyElement], rules: int) -> list[PolyElement] | None:
-    """Return the cofactors of relations whose sum of products is a polynomial; None if none are found.
+    def arc(self, y: Quotient, x: Quotient) -> PolyElement:
+        """Return the generator of ``atan2(y, x)``, with its cosine and sine."""
+        if (y, x) not in self.arcs:
+            radius = self.root(self.add(self.power(x, 2), self.power(y, 2)))
+            made = self.arcs[y, x] = self.generator("arc")
+            self.generators.append(("arc", str(made), *map(str, (*y, *x))))
+            inverse = self.power(radius, -1)
+            self.turns[made] = self.multiply(x, inverse), self.multiply(y, inverse)
+            if self.is_nonnegative(y[0]) and self.is_nonnegative(y[1]):
+                self.nonnegative.add(self.ring.gens.index(made))
+        return self.arcs[y, x]
 
-    Leading powers of the first ``rules`` relations are those of different generators: they are divided by. Where
-    dividing by the other relations as well leaves a rest, constants and then linear polynomials are tried as their
-    cofactors, by linear algebra.
-    """
-    if not basis:
-        return None if polynomial else []
-    found, rest = polynomial.div(list(basis))
-    if not rest:
-        return list(found)
-    by_rules, rest = polynomial.div(list(basis[:rules])) if rules else ([], polynomial)
-    for degree in (0, 1):
-        rest_of = _combination(rest, basis[rules:], degree)
-        if rest_of is not None:
-            return [*by_rules, *rest_of]
-    return None
+    # --- angles -------------------------------------------------------------------------------------------------------
+
+    def angle(self, expr: Expr) -> Quotient:
+        """Return an angle, up to whole turns: a choice between angles that differ by them is either one."""
+        while str(expr) in self.formulas and expr.is_Symbol:
+            expr = self.formulas[str(expr)]
+        if isinstance(expr, select_ge):
+            first, second = (self.angle(argument) for argument in expr.args[2:])
+            turns, rest = self.known["pi"], self.add(first, (-second[0], second[1]))
+            if rest[1] == 1 and not rest[0].rem(2 * turns) and (rest[0] / (2 * turns)).is_ground:
+                if QQ.denom((rest[0] / (2 * turns)).coeff(1)) == 1:
+                    return first
+        return self.value(expr)
+
+    def turned(self, angle: Quotient) -> tuple[Quotient, Quotient]:
+        """Return cosine and sine of a sum of multiples of base angles and right angles."""
+        above, below = angle
+        if below != 1:
+            raise CertificateError(f"{self.name}: expected a sum of angles under a sine, got {_text(angle)}")
+        right_angles = Fraction(0)
+        result = self.number(1), self.number(0)
+        for monomial, coefficient in above.terms():
+            coefficient = Fraction(int(coefficient.numerator), int(coefficient.denominator))
+            unit = self.ring({monomial: QQ(1)})
+            if unit == self.known["pi"]:
+                right_angles = 2 * coefficient
+            elif unit != 1:
+                result = self._rotated(result, self._multiple(unit, coefficient))
+        if right_angles.denominator != 1:
+            raise CertificateError(f"{self.name}: expected right angles beside angles under a sine, got {above}")
+        quarter = int(right_angles) % 4
+        return self._rotated(result, (self.number((1, 0, -1, 0)[quarter]), self.number((0, 1, 0, -1)[quarter])))
+
+    def _rotated(self, a: tuple[Quotient, Quotient], b: tuple[Quotient, Quotient]) -> tuple[Quotient, Quotient]:
+        def negative(value: Quotient) -> Quotient:
+            return -value[0], value[1]
+
+        return (
+            self.add(self.multiply(a[0], b[0]), negative(self.multiply(a[1], b[1]))),
+            self.add(self.multiply(a[1], b[0]), self.multiply(a[0], b[1])),
+        )
+
+    def _multiple(self, unit: PolyElement, coefficient: Fraction) -> tuple[Quotient, Quotient]:
+        base = self._base(unit, coefficient)
+        cosine, sine = self._pair(unit, base)
+        times = int(coefficient / base)
+        turn = (cosine, sine) if times > 0 else (cosine, (-sine[0], sine[1]))
+        result = turn
+        for _ in range(abs(times) - 1):
+            result = self._rotated(result, turn)
+        return result
+
+    def _base(self, unit: PolyElement, coefficient: Fraction) -> Fraction:
+        if unit in self.turns and unit in self.arcs.values():
+            if coefficient.denominator != 1:
+                raise CertificateError(f"{self.name}: expected whole multiples of an arc tangent under a sine")
+            return Fraction(1)
+        known = self.bases.get(str(unit), self.found.setdefault(str(unit), abs(coefficient)))
+        if (coefficient / known).denominator != 1:
+            finer = Fraction(
+                gcd(known.numerator * coefficient.denominator, coefficient.numerator * known.denominator),
+                known.denominator * coefficient.denominator,
+            )
+            raise _Coarse(str(unit), finer)
+        return known
+
+    def _pair(self, unit: PolyElement, base: Fraction) -> tuple[Quotient, Quotient]:
+        if unit not in self.turns:
+            cosine, sine = self.generator("cos"), self.generator("sin")
+            self.generators.append(("turn", str(cosine), str(sine), str(unit * QQ(base.numerator, base.denominator))))
+            self.rules.append(sine**2 + cosine**2 - 1)
+            self.turns[unit] = (cosine, self.ring.one), (sine, self.ring.one)
+        return self.turns[unit]
+
+    # --- cofactors ----------------------------------------------------------------------------------------------------
+
+    def rest(self, value: PolyElement) -> PolyElement:
+        """Return what the rules, and a hypothesis that stands alone, leave of a polynomial."""
+        basis = [*self.rules, *(self.hypotheses if len(self.hypotheses) == 1 else ())]
+        return value.rem(basis) if basis else value
+
+    def cofactors(self, value: PolyElement) -> Cofactors | None:
+        """Return the cofactors of the relations whose sum of products is a polynomial; None if none are found.
+
+        The rules lead with powers of different generators: they are divided by. Where dividing by the hypotheses as
+        well leaves a rest, constants and then linear polynomials are tried as their cofactors, by linear algebra.
+        """
+        if not value:
+            return ()
+        count, basis = len(self.rules), [*self.rules, *self.hypotheses]
+        found, rest = value.div(basis) if basis else ([], value)
+        attempts: list[Callable[[], Any]] = [lambda degree=degree: self._combined(value, degree) for degree in (0, 1)]  # type: ignore[misc]
+        while rest and attempts and len(self.hypotheses) > 1:
+            found, rest = attempts.pop(0)()
+        if rest:
+            return None
+        by_relation = [*found[count:], *found[:count]]  # hypotheses first: their numbers stay while rules are added
+        return tuple((place, str(cofactor)) for place, cofactor in enumerate(by_relation) if cofactor)
+
+    def _combined(self, value: PolyElement, degree: int) -> tuple[list[PolyElement], PolyElement]:
+        by_rules, rest = value.div(self.rules) if self.rules else ([], value)
+        found = _combination(rest, self.hypotheses, degree)
+        return (list(by_rules), rest) if found is None else ([*by_rules, *found], self.ring.zero)
+
+
+def _text(value: Quotient) -> str:
+    above, below = value
+    return str(above) if below == 1 else f"({above})/({below})"
 
 
 def _combination(polynomial: PolyElement, relations: Sequence[PolyElement], degree: int) -> list[PolyElement] | None:
@@ -159,189 +473,3 @@ def _combination(polynomial: PolyElement, relations: Sequence[PolyElement], degr
         k, factor, _ = products[column]
         found[k] += factor * reduced[row, len(products)].element
     return found
-
-
-@dataclass
-class _Case:
-    """The symbols of one proof, made as they are met."""
-
-    name: str
-    law: Law
-    conditions: tuple[str, ...]
-    generators: list[Generator] = field(default_factory=list)
-    known: dict[Expr, Expr] = field(default_factory=dict)
-    rules: list[tuple[Symbol, Expr]] = field(default_factory=list)  # generator whose power leads, what is zero
-    nonnegative: set[Symbol] = field(default_factory=set)
-    angles: dict[Symbol, tuple[Expr, Expr]] = field(default_factory=dict)  # an atan2 -> its cosine and sine
-    pairs: dict[Expr, tuple[Symbol, Symbol]] = field(default_factory=dict)  # a base angle -> its cosine and sine
-    roots: dict[Expr, Expr] = field(default_factory=dict)  # a radicand -> its root
-    numbers: Iterator[int] = field(default_factory=count)
-
-    def prove(self, entries: Iterable[Expr], relations: Sequence[Expr]) -> LawProof:
-        """Return the proof; ``CertificateError`` for an entry that is not a combination of the relations."""
-        read = [self.rewrite(entry) for entry in (*entries, *relations)]
-        forms = [
-            self._form(angle) for entry in read for f in (sin, cos) for node in entry.atoms(f) for angle in node.args
-        ]
-        self.bases = base_coefficients(forms)
-        read = [self.expand(entry) for entry in read]
-        vanishing, hypotheses = read[: len(read) - len(relations)], read[len(read) - len(relations) :]
-        numerators = [self._numerator(entry) for entry in vanishing]
-        zero = [self._numerator(entry) for _, entry in self.rules] + [self._numerator(entry) for entry in hypotheses]
-        ring = self._ring([*numerators, *zero])
-        basis = [ring.from_expr(entry) for entry in zero]
-        proven = []
-        for numerator in numerators:
-            polynomial = ring.from_expr(numerator)
-            cofactors = _cofactors(polynomial, basis, len(self.rules))
-            if cofactors is None:
-                raise CertificateError(f"{self.name}: expected the law {self.law.text!r} to follow, and it does not")
-            proven.append(Entry(str(polynomial), tuple(map(str, cofactors))))
-        return LawProof(self.law.text, self.conditions, tuple(self.generators), tuple(map(str, basis)), tuple(proven))
-
-    def _numerator(self, entry: Expr) -> Expr:
-        return fraction(together(entry))[0].expand()
-
-    def _ring(self, polynomials: Sequence[Expr]) -> PolyRing:
-        """Return a ring whose leading powers are those of the rules: roots first, later ones before earlier ones."""
-        leading = [symbol for symbol, _ in reversed(self.rules)]
-        others = sorted({s for p in polynomials for s in p.free_symbols} - set(leading), key=str)
-        return PolyRing([*leading, *others], QQ, lex)
-
-    def symbol(self, kind: str, of: Expr, letter: str) -> Symbol:
-        """Return a new generator."""
-        made = Symbol(f"{letter}{next(self.numbers)}_", real=True)
-        self.generators.append(Generator(str(made), kind, str(of)))
-        return made
-
-    def rewrite(self, expr: Expr) -> Expr:
-        """Return an expression with roots, absolute values, signs and arc tangents as generators."""
-        if expr.is_Atom:
-            return self.known.get(expr, expr)
-        if expr not in self.known:
-            self.known[expr] = self._rewritten(expr)
-        return self.known[expr]
-
-    def _rewritten(self, expr: Expr) -> Expr:
-        arguments = [self.rewrite(argument) for argument in expr.args]
-        if expr.is_Pow and not expr.exp.is_Integer:
-            return self.root(arguments[0]) ** (2 * expr.exp)
-        if isinstance(expr, Abs):
-            return self.root(arguments[0] ** 2)
-        if isinstance(expr, atan2):
-            return self.arc(*arguments)
-        if getattr(expr.func, "__name__", "") == "copysign":
-            return self.sign(arguments[1])
-        return expr.func(*arguments)
-
-    def root(self, radicand: Expr) -> Expr:
-        """Return the square root: a product of what is not negative where it is one, else a generator."""
-        above, below = fraction(together(self._reduced(radicand)))
-        inside = (above * below).expand()
-        if inside not in self.roots:
-            self.roots[inside] = self._perfect(inside) or self._new_root(inside)
-        return self.roots[inside] / below
-
-    def _new_root(self, inside: Expr) -> Symbol:
-        made = self.symbol("root", inside, "r")
-        self.rules.append((made, made**2 - inside))
-        self.nonnegative.add(made)
-        return made
-
-    def _perfect(self, inside: Expr) -> Expr | None:
-        """Return the root of the square of something that is not negative; None for anything else."""
-        if not inside.free_symbols:
-            return sqrt(inside)
-        content, factors = Poly(inside, *sorted(inside.free_symbols, key=str), domain=QQ).factor_list()
-        value = sqrt(content)
-        if not value.is_Rational:
-            return None
-        for factor, power in factors:
-            base = factor.as_expr()
-            if power % 2 or (power % 4 and not self._is_nonnegative(base)):
-                return None
-            value *= base ** (power // 2)
-        return value
-
-    def _reduced(self, radicand: Expr) -> Expr:
-        """Return a radicand reduced by the rules and the hypotheses, as far as they lead with a square."""
-        above, below = fraction(together(radicand))
-        hypotheses = [(None, entry) for entry in self.law.relations if len(self.law.relations) == 1]
-        relations = [entry.expand() for _, entry in (*self.rules, *hypotheses)]
-        ring = self._ring([above.expand(), below.expand(), *relations])
-        basis = [ring.from_expr(entry) for entry in relations]
-        if not basis:
-            return radicand
-        return ring.from_expr(above.expand()).rem(basis).as_expr() / ring.from_expr(below.expand()).rem(basis).as_expr()
-
-    def _is_nonnegative(self, base: Expr) -> bool:
-        """Tell whether a polynomial is a sum of even powers, or of generators that are not negative."""
-        for term in base.as_ordered_terms():
-            coefficient, rest = term.as_coeff_Mul()
-            powers = rest.as_powers_dict()
-            if coefficient < 0 or not all(
-                s in self.nonnegative or s.is_positive or n % 2 == 0 for s, n in powers.items() if s != 1
-            ):
-                return False
-        return True
-
-    def arc(self, y: Expr, x: Expr) -> Symbol:
-        """Return the generator of ``atan2(y, x)``, with its cosine and sine."""
-        key = atan2(y, x, evaluate=False)
-        if key not in self.known:
-            made = self.symbol("angle", key, "a")
-            radius = self.root((x**2 + y**2).expand())
-            self.angles[made] = (x / radius, y / radius)
-            if self._is_nonnegative(y):
-                self.nonnegative.add(made)
-            self.known[key] = made
-        return self.known[key]
-
-    def sign(self, value: Expr) -> Symbol:
-        """Return the generator of the sign of a value, 1 or -1, which times its absolute value is the value."""
-        made = self.symbol("sign", value, "g")
-        size = self.root(value**2)
-        self.rules.append((made, made**2 - 1))
-        if value.is_Symbol:
-            self.known[value] = made * size
-        return made
-
-    def _form(self, angle: Expr) -> LinearForm:
-        return linear_form(angle)
-
-    def expand(self, expr: Expr) -> Expr:
-        """Return an expression with sines and cosines as polynomials in those of base angles."""
-        replaced: dict[Expr, Expr] = {}
-        for node in expr.atoms(sin, cos):
-            cosine, sine = self._turned(linear_form(node.args[0]))
-            replaced[node] = cosine if isinstance(node, cos) else sine
-        return expr.xreplace(replaced)
-
-    def _turned(self, form: LinearForm) -> tuple[Expr, Expr]:
-        cosine, sine = constant_cosine_sine(form.half_turns) if form.half_turns else (Integer(1), Integer(0))
-        for atom, coefficient in form.terms:
-            c, s = self._multiple(atom, coefficient)
-            cosine, sine = cosine * c - sine * s, sine * c + cosine * s
-        return cosine, sine
-
-    def _multiple(self, atom: Expr, coefficient: Fraction) -> tuple[Expr, Expr]:
-        base = self.bases[atom]
-        if atom in self.angles:
-            if base.denominator != 1:
-                raise CertificateError(f"{self.name}: expected whole multiples of an arc tangent in a law")
-            base = Fraction(1)
-        times = int(coefficient / base)
-        c, s = self._pair(atom, base)
-        first, second = chebyshev(abs(times))
-        cosine = sum(k * c**n for n, k in enumerate(first))
-        sine = s * sum(k * c**n for n, k in enumerate(second))
-        return cosine, sine if times > 0 else -sine
-
-    def _pair(self, atom: Expr, base: Fraction) -> tuple[Expr, Expr]:
-        if atom in self.angles:
-            return self.angles[atom]
-        angle = Rational(base.numerator, base.denominator) * atom
-        if angle not in self.pairs:
-            c, s = self.pairs[angle] = self.symbol("cos", angle, "c"), self.symbol("sin", angle, "s")
-            self.rules.append((s, s**2 + c**2 - 1))
-        return self.pairs[angle]
