@@ -299,7 +299,7 @@ def campaign(count: int, seed: int = 0, progress: Callable[[int], None] = lambda
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run a campaign; exit code 1 when a verdict is wrong, a claim is refused, or more than 1 % stay undecided."""
+    """Run a campaign; exit code 1 when a verdict is wrong, or more than 1 % stay undecided or are refused as too large."""
     parser = ArgumentParser(prog="python -m symrot.checker.campaign", description=__doc__.splitlines()[0])
     parser.add_argument("--count", type=int, default=1000, help="claims (default: 1000)")
     parser.add_argument("--seed", type=int, default=0)
@@ -311,7 +311,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     print(f"{found.seconds:.1f} s, slowest claim {found.slowest:.2f} s")
     for line in (*found.wrong, *found.refused)[:20]:
         print(line)
-    return int(bool(found.wrong or found.refused) or found.undecided > options.count / 100)
+    return int(bool(found.wrong) or found.undecided + len(found.refused) > options.count / 100)
 
 
 def _shown_progress(done: int) -> None:

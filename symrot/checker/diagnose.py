@@ -30,6 +30,9 @@ MOST_PAIRS_OF = 90
 MOST_PROOFS = 10
 MOST_REPAIRS = 3
 
+AS_NEAR = 0.35
+"""Cost by which another way of writing may exceed the nearest repair."""
+
 
 def diagnose(claim: Claim, decision: Decision) -> tuple[Diagnosis, tuple[Repair, ...]]:
     """Return what is probably wrong, and at most three proven repairs, the nearest first.
@@ -41,7 +44,7 @@ def diagnose(claim: Claim, decision: Decision) -> tuple[Diagnosis, tuple[Repair,
     decision : Decision
         Its outcome, ``"false"`` or ``"conditional"``.
     """
-    repairs = _Search(claim).repairs()
+    repairs = _Search(claim, conditional=bool(decision.requires)).repairs()
     if decision.requires:
         needed = decision.requires[0]
         return Diagnosis(needed.code, f"{TEXTS[needed.code]}: {needed.text}"), repairs
@@ -51,8 +54,9 @@ def diagnose(claim: Claim, decision: Decision) -> tuple[Diagnosis, tuple[Repair,
 
 
 class _Search:
-    def __init__(self, claim: Claim) -> None:
+    def __init__(self, claim: Claim, conditional: bool) -> None:
         self.sieve = Sieve(claim)
+        self.conditional = conditional  # what it lacks is the condition, then, not a term
         self.seen: set[tuple[float, ...]] = set()
         self.alike: list[Found] = []  # what has the values of something that was tried before
         self.offered: list[Found] = []
@@ -75,6 +79,7 @@ class _Search:
                 repairs += self.proven(stage(), MOST_REPAIRS - len(repairs))
         if not repairs:
             repairs = self.proven(self.pairs(changes), MOST_REPAIRS)
+        repairs.sort(key=lambda repair: repair.cost)
         if 0 < len(repairs) < MOST_REPAIRS:
             repairs += self.others(repairs)
         return tuple(sorted(repairs, key=lambda repair: repair.cost))
@@ -85,7 +90,7 @@ class _Search:
         found: list[Repair] = []
         for cost, code, changes in self.alike:
             now = self.written(changes)
-            if now in written:
+            if now in written or cost > repairs[0].cost + AS_NEAR:
                 continue
             written.add(now)
             self.seen.discard(self.sieve.fingerprint(changes))
@@ -144,6 +149,8 @@ class _Search:
         for cost, code, changes in passed:
             if attempts >= MOST_PROOFS or len(repairs) == most:
                 break
+            if self.conditional and code == "missing_term":
+                continue
             try:
                 values = self.sieve.fingerprint(changes)
             except Meaningless:

@@ -3,14 +3,14 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from sympy import factor
+from sympy import Add, factor
 
 from symrot.checker.decision import shown
 from symrot.checker.edits import Edit
 from symrot.checker.entries import always
 from symrot.checker.reader import read_expression
 from symrot.checker.sieve import SIDES, Change, Found, Sieve, at, cells_of, pieces, speaks
-from symrot.checker.tree import Node, Path, number, product, replaced, sum_of, walk
+from symrot.checker.tree import Node, Path, number, product, replaced, sum_of, text, walk
 from symrot.errors import InputError
 from symrot.exact.decide import flatten, normal_form
 from symrot.exact.ratio import TooLarge
@@ -55,7 +55,8 @@ def _whole(sieve: Sieve, place: str, lacking: Mapping[Path, Any]) -> Iterator[Fo
     """Yield a side with what each of its entries lacks, where that is one term."""
     made = sieve.tree_at(place)
     for path, residual in lacking.items():
-        term, piece = _term(residual), at(made, path)
+        piece = at(made, path)
+        term = _term(residual, piece)
         if term is None or piece is None:
             return
         whole = term if piece == number(0) else sum_of([piece, term])
@@ -75,7 +76,7 @@ def _inside(sieve: Sieve, place: str, cell: Path, residual: Any, hypotheses: Seq
     for path, piece in [found for found in brackets if found[0]][:most]:
         ends = [meaning.read(replaced(whole, path, always(number(value)))) for value in (0, 1)]
         try:
-            term = _term(normal_form(residual / (ends[1] - ends[0]), hypotheses))
+            term = _term(normal_form(residual / (ends[1] - ends[0]), hypotheses), whole)
         except (TooLarge, InputError):
             continue
         if term is not None:
@@ -112,14 +113,20 @@ def renamed(sieve: Sieve) -> Iterator[Found]:
                     yield 1.3, "wrong_symbol", (change,)
 
 
-def _term(residual: Any) -> Node | None:
-    """Return a residual as a term that was left out: one product, of brackets too, short and without a divisor."""
+def _term(residual: Any, piece: Node | None) -> Node | None:
+    """Return a residual as a term that a piece lacks: one product, short and without a divisor.
+
+    One of brackets must be much shorter than the piece: to add the difference of the sides repairs anything.
+    """
     above, below = residual.as_numer_denom()
     if not below.is_number or not residual.free_symbols:
         return None
     if above.is_Add:
         residual = factor(residual) if len(above.args) <= MOST_TERMS else above
-    if residual.is_Add or len(shown(residual)) > MOST_LETTERS:
+    letters = len(shown(residual))
+    if residual.is_Add or letters > MOST_LETTERS:
+        return None
+    if residual.has(Add) and piece != number(0) and (piece is None or letters > len(text(piece)) // 2):
         return None
     return read_expression(shown(residual))
 

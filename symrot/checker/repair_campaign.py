@@ -160,16 +160,15 @@ def _written(claim: Claim) -> tuple[Node, ...]:
 
 
 def _same(original: Claim, found: Claim) -> bool:
-    """Return whether two true claims have the same sides and definitions, proven entry by entry."""
+    """Return whether two claims have the same sides and definitions, proven entry by entry."""
     assert original.relation is not None and found.relation is not None
     hypotheses = original.problem().hypotheses
     if _written(original) == _written(found):
         return True
     first, second = original.meaning(), found.meaning()
     pairs = [(first.values[name], second.values[name]) for name, _ in original.define]
-    # the claims are true: where one side is the same, so is the other
-    pairs.append((first.read(original.relation[1]), second.read(found.relation[1])))
     try:
+        pairs += [(first.read(original.relation[n]), second.read(found.relation[n])) for n in (1, 2)]
         return all(a == b or decide(a, b, hypotheses).verdict == "true" for a, b in pairs)
     except (InputError, ValueError):
         return False

@@ -311,6 +311,8 @@ def _readings(
                     yield _multiplied(piece, entry, ratio, upward), ("factor", _weight(1.22 + bare, entry, ratio))
                     break
     lacking = tuple(b - a for a, b in zip(values, needed, strict=True))
+    if _is_there(vocabulary, piece, lacking):
+        return
     if not term and piece.kind != "neg" and not (plain and not speaks(piece)):
         for entry, ratio in vocabulary.find(lacking):
             if not entry.factors and ratio not in ONES:
@@ -318,6 +320,15 @@ def _readings(
             made = sum_of([piece, _scaled(entry.node, ratio)])
             yield made, ("missing_term", _weight(1.5 if piece.kind == "sum" else 1.65, entry, ratio))
             break
+
+
+def _is_there(vocabulary: Vocabulary, piece: Node, lacking: Values) -> bool:
+    """Return whether what is lacking is a multiple of a term that is there: then that term has another fault."""
+    for node in piece.args if piece.kind == "sum" else (piece,):
+        values = vocabulary.values(node)
+        if values and _rational([a / b for a, b in zip(lacking, values, strict=True)]) is not None:
+            return True
+    return False
 
 
 def _exchanged(sieve: Sieve, piece: Node, other: Node) -> tuple[str, float]:
