@@ -299,7 +299,7 @@ def campaign(count: int, seed: int = 0, progress: Callable[[int], None] = lambda
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run a campaign; exit code 1 when a verdict is wrong, or more than 1 % stay undecided or are refused as too large."""
+    """Run a campaign; exit code 1 when a verdict is wrong, or more than 1 % are undecided or refused as too large."""
     parser = ArgumentParser(prog="python -m symrot.checker.campaign", description=__doc__.splitlines()[0])
     parser.add_argument("--count", type=int, default=1000, help="claims (default: 1000)")
     parser.add_argument("--seed", type=int, default=0)

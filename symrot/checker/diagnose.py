@@ -14,6 +14,7 @@ from symrot.checker.edits import TEXTS, Edit, neat, single_edits
 from symrot.checker.entries import by_entries, merged
 from symrot.checker.missing import lacking_matrix, lacking_term, renamed
 from symrot.checker.points import Meaningless
+from symrot.checker.reader import read_relation
 from symrot.checker.sieve import Change, Found, Sieve
 from symrot.checker.solved import solved
 from symrot.checker.tree import Node
@@ -163,12 +164,14 @@ class _Search:
                 continue
             self.seen.add(values)
             attempts += 1
+            offered = self.sieve.text(shown)
             try:
+                read_relation(offered.partition(" with ")[0])  # it may have outgrown the reader
                 decision = decide_problem(self.sieve.edited(shown).problem())
             except InputError:
                 continue
             if decision.verdict == "true":
-                repairs.append(Repair(self.sieve.text(shown), code, round(cost, 3)))
+                repairs.append(Repair(offered, code, round(cost, 3)))
                 self.offered.append((cost, code, shown))
         return repairs
 
