@@ -168,7 +168,8 @@ def _same(original: Claim, found: Claim) -> bool:
     first, second = original.meaning(), found.meaning()
     pairs = [(first.values[name], second.values[name]) for name, _ in original.define]
     try:
-        pairs += [(first.read(original.relation[n]), second.read(found.relation[n])) for n in (1, 2)]
+        sides = zip(original.relation[1:], found.relation[1:], strict=True)
+        pairs += [(first.read(before), second.read(after)) for before, after in sides]
         return all(a == b or decide(a, b, hypotheses).verdict == "true" for a, b in pairs)
     except (InputError, ValueError):
         return False
