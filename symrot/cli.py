@@ -69,7 +69,7 @@ def _run(options: Namespace) -> int:
     scene = symrot.load_scene(options.scene)
     _progress("preparing the kernel ..")
     start = perf_counter()
-    propagator = symrot.propagator(scene, method=options.method, tolerance=options.tolerance)
+    propagator = symrot.propagator(scene, options.method, options.tolerance, state=options.state)
     propagator.prepare()
     preparation = perf_counter() - start
     _progress("propagating ..")
@@ -242,6 +242,7 @@ def _run_arguments(parser: ArgumentParser) -> None:
     _scene_argument(parser)
     parser.add_argument("--method", default="auto", metavar="NAME", help="auto, exact, taylor, dop853 or scipy:NAME")
     parser.add_argument("--tolerance", metavar="X", help="error to aim for, 1e-15 to 1e-2 (default: the scene's own)")
+    parser.add_argument("--state", default="quaternion", metavar="SEQUENCE", help="step Euler angles, such as ZXZ")
     parser.add_argument("--out", type=Path, metavar="FILE", help="write the quantities asked for: FILE.npz or FILE.csv")
     parser.add_argument("--plot", type=Path, metavar="FILE", help="draw the motion on one page: FILE.png, .pdf or .svg")
     _json_option(parser)

@@ -18,13 +18,14 @@ from symrot.kernel import Argument, Program, Signature
 from symrot.kinematics.quaternion import dcm_of
 from symrot.scene_kernel import Conserved, Parameters, SceneKernel, bind
 
-__all__ = ["derive_scene_kernel", "rates_program", "scene_description", "with_values"]
+__all__ = ["derive_scene_kernel", "rates_program", "rates_source", "scene_description", "with_values"]
 
 MEANING = {
     **{f"omega_{i + 1}": f"angular velocity about body axis {i + 1}" for i in range(3)},
     **{f"q{i}": "attitude, body to space" for i in range(4)},
-    "theta": "angle turned since the start",
+    **{name: f"Euler angle {i + 1}" for i, name in enumerate(("phi", "theta", "psi"))},
 }
+PLANAR_MEANING = "angle turned since the start"
 RATES = "symrot_rates"  # the name of the kernel in a compiled library
 TIME = Argument("t", "in", (("t", "s", "time"),), is_scalar=True)
 
@@ -33,8 +34,12 @@ def _unit(symbol: Symbol) -> str:
     return "rad" if symbol == PLANAR_ANGLE else symbols.UNIT[symbol]
 
 
+def _meaning(symbol: Symbol) -> str:
+    return PLANAR_MEANING if symbol == PLANAR_ANGLE else MEANING[str(symbol)]
+
+
 def _state_argument(equations: Equations) -> Argument:
-    return Argument("y", "in", tuple((str(s), _unit(s), MEANING[str(s)]) for s in equations.states))
+    return Argument("y", "in", tuple((str(s), _unit(s), _meaning(s)) for s in equations.states))
 
 
 def rates_program(equations: Equations, name: str) -> Lowered:
@@ -74,7 +79,7 @@ def derive_scene_kernel(
     """
     equations = equations_of_motion(structure)
     rates = rates_program(equations, RATES)
-    source = _with_parameters(rates)
+    source = rates_source(rates)
     on_source(source, len(rates.parameters))
     invariants = find_invariants(equations, structure)
     kept = {f"conserved_{i}": item.value for i, item in enumerate(invariants) if item.kept}
@@ -86,7 +91,7 @@ def derive_scene_kernel(
     return SceneKernel.of(rates.program, rates.parameters, quantities.program, quantities.parameters, conserved, source)
 
 
-def _with_parameters(rates: Lowered) -> str:
+def rates_source(rates: Lowered) -> str:
     """Return the C text of the rates under one calling convention: ``(t, y, p, dy)``, with or without parameters."""
     source = c_function(rates.program, "static inline ")
     if rates.parameters:

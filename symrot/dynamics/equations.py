@@ -16,6 +16,7 @@ from sympy import Expr, Integer, Matrix, S, Symbol, cos, diag, eye, sin, zeros
 from symrot import symbols
 from symrot.dynamics.torques import Motion, TorqueLaw, collected_cross, torque_law
 from symrot.errors import InputError
+from symrot.kinematics.euler import dcm, quaternion_of_euler, rate_jacobian
 from symrot.kinematics.quaternion import qmul, quaternion_rates, unit_relation
 from symrot.symbols import constant
 
@@ -23,6 +24,17 @@ __all__ = ["Equations", "angular_acceleration", "equations_of_motion", "euler_eq
 
 PLANAR_ANGLE = constant("theta")
 TENSOR_NAMES = (("I_xx", "I_xy", "I_xz"), ("I_xy", "I_yy", "I_yz"), ("I_xz", "I_yz", "I_zz"))
+
+
+@dataclass(frozen=True)
+class AngleMotion(Motion):
+    """A motion whose attitude is a set of Euler angles: vectors are turned by the matrix of the sequence itself."""
+
+    sequence: str
+
+    def to_body(self, vector_s: Matrix) -> Matrix:
+        """Return the body components of a vector given in space components."""
+        return dcm(self.sequence).T * vector_s
 
 
 @dataclass(frozen=True)
@@ -151,6 +163,8 @@ def _motion(structure: Mapping[str, Any]) -> tuple[Motion, tuple[Symbol, ...], l
         omega_b = Matrix(turning)
         if not structure["attitude"]:
             return Motion(omega_b, None, inertia), (), []
+        if sequence := structure.get("sequence"):
+            return AngleMotion(omega_b, tuple(quaternion_of_euler(sequence)), inertia, sequence), symbols.angles, []
         return Motion(omega_b, symbols.quaternion, inertia), symbols.quaternion, [unit_relation(symbols.quaternion)]
     omega_b = Matrix([w if i == axis else 0 for i, w in enumerate(turning)])
     if not structure["attitude"]:
@@ -175,7 +189,8 @@ def equations_of_motion(structure: Mapping[str, Any]) -> Equations:
         ``inertia`` (``form`` and the pattern of equal moments or zero entries), ``torques`` (see
         :func:`symrot.dynamics.torques.torque_law`), ``attitude`` (whether it is computed), ``planar`` (the axis
         number of a motion about one body axis, else None, with ``initial_quaternion``), ``constant`` (for the numbers
-        of the components of omega_b that keep their value, ``"*"`` or, where that is zero, ``"0"``).
+        of the components of omega_b that keep their value, ``"*"`` or, where that is zero, ``"0"``); ``sequence``, if
+        the attitude is to be Euler angles of that sequence in place of a quaternion.
     """
     motion, attitude, relations = _motion(structure)
     laws = tuple(torque_law(torque, motion) for torque in structure["torques"])
@@ -193,7 +208,9 @@ def equations_of_motion(structure: Mapping[str, Any]) -> Equations:
     moving = [i for i in range(3) if i not in structure["constant"] and structure["planar"] in (None, i)]
     states = [symbols.omega_b[i] for i in moving]
     rates = [acceleration[i] for i in moving]
-    if structure["planar"] is None:
+    if isinstance(motion, AngleMotion):
+        rates += list(rate_jacobian(motion.sequence).inverse * motion.omega_b)
+    elif structure["planar"] is None:
         rates += list(quaternion_rates("body") * motion.omega_b) if attitude else []
     elif attitude:
         rates.append(motion.omega_b[structure["planar"]])

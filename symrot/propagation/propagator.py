@@ -412,6 +412,8 @@ def propagator(
     torque: Any = None,
     switching_times: ArrayLike = (),
     torque_frame: str = "body",
+    state: str = "quaternion",
+    switching: bool = True,
 ) -> Propagator:
     """Return the propagator of a scene: derived, specialised, emitted and compiled, or taken from the cache.
 
@@ -434,6 +436,12 @@ def propagator(
         asked just inside them; a table has two samples at each, before and after the jump.
     torque_frame : str
         ``"body"`` or ``"space"``: whose components that torque has.
+    state : str
+        ``"quaternion"``, or an Euler sequence such as ``"ZXZ"`` to step its angles instead, for teaching; see
+        :mod:`symrot.propagation.euler_state`.
+    switching : bool
+        Whether such angles are exchanged for those of a regular sequence before they reach gimbal lock; ``stats``
+        counts how often.
 
     Raises
     ------
@@ -445,6 +453,12 @@ def propagator(
     if not isinstance(scene, Scene):
         scene = load_scene(scene)
     aim = float(scene.tolerance) if tolerance is None else _tolerance(tolerance)
+    if state != "quaternion":
+        if torque is not None:
+            raise InputError(f"state: expected 'quaternion' for a torque that is no formula, got {state!r}")
+        from symrot.propagation.euler_state import EulerPropagator
+
+        return EulerPropagator(scene, method, aim, state, switching)
     if torque is None:
         return Propagator(scene, method, aim)
     if method not in ("auto", "dop853"):

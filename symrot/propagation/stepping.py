@@ -52,12 +52,16 @@ NOT_FINITE_SENTENCE = "its rate of change is not finite there"
 
 
 class Stats(NamedTuple):
-    """What a propagation cost: steps kept and tried again, evaluations of the kernel, seconds in all."""
+    """What a propagation cost: steps kept and tried again, evaluations of the kernel, seconds in all.
+
+    ``switches`` counts changes of the sequence of Euler angles, where angles are the state.
+    """
 
     accepted: int
     rejected: int
     evaluations: int
     seconds: float
+    switches: int = 0
 
 
 # ------------------------------------------------------------------------------------------------ checks and sentences

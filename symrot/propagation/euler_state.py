@@ -1,0 +1,260 @@
+"""Euler angles as state, for teaching: what textbooks step, where it fails, and the way around.
+
+The states are omega_b and the three angles of a sequence, with ``dq/dt = B(q)^-1 omega_b``. B is singular at gimbal
+lock: near it the angles turn ever faster, steps shrink, and at it the motion cannot be followed. With switching the
+angles are exchanged, a good way before, for those of a sequence that is at its best there (:func:`partner`).
+
+The result is an ordinary trajectory, its quaternion rebuilt from the angles: what is compared is the motion.
+"""
+
+import json
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import closing
+from dataclasses import replace
+from functools import cached_property
+from time import perf_counter
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from symrot.codegen import library
+from symrot.conventions import parse_sequence
+from symrot.errors import InputError, PropagationError
+from symrot.kinematics import conversions
+from symrot.planner import Plan
+from symrot.propagation import dop853, taylor
+from symrot.propagation.kernels import ATTITUDE_SCALE, RATE_SCALE, kernel_key
+from symrot.propagation.propagator import Choice, Motion, Propagator
+from symrot.propagation.smoothness import roughness
+from symrot.propagation.stepping import Stats, Task, both_sides
+from symrot.propagation.trajectory import Trajectory
+from symrot.scene import Scene
+from symrot.scene_kernel import SceneKernel, bind
+
+__all__ = ["SWITCH", "EulerMotion", "EulerPropagator", "partner", "regularity"]
+
+Floats = NDArray[np.float64]
+
+SWITCH = 0.3  # |det B| below which the sequence is changed; the partner then has sqrt(1 - 0.3^2) = 0.95 or more
+METHODS = ("auto", "taylor", "dop853")
+ROWS = 8  # steps between looks at the regularity
+NAMES = ("phi", "theta", "psi")
+SPACE: dict[str, Any] = {"attitude": True, "initial_quaternion": None, "planar": None}
+
+
+def partner(sequence: str) -> str:
+    """Return the sequence to change to near gimbal lock: the same first two turns and the other third one.
+
+    The two lock where entries of one row (extrinsic: column) of the attitude matrix are 1 or -1. Their squares add up
+    to 1 at most, so that where one locks the other is perfectly regular, and one of them always has
+    ``|det B| >= sqrt(1/2)``.
+    """
+    axes, intrinsic = parse_sequence(sequence)
+    other = ({0, 1, 2} - {axes[1], axes[2]}).pop()
+    return sequence[:2] + ("XYZ" if intrinsic else "xyz")[other]
+
+
+def regularity(sequence: str, angles: ArrayLike) -> Floats:
+    """Return ``|det B|``, from 0 at gimbal lock to 1, of angles of shape (..., 3)."""
+    axes, _ = parse_sequence(sequence)
+    middle = np.asarray(angles, dtype=np.float64)[..., 1]
+    found: Floats = np.abs(np.sin(middle) if axes[0] == axes[2] else np.cos(middle))
+    return found
+
+
+class _Kernel(NamedTuple):
+    """Equations of motion in the angles of one sequence, compiled with a stepper, and their parameters."""
+
+    library: Any
+    parameters: list[float]
+
+
+class _Block(NamedTuple):
+    """Some steps in one sequence: from, to, and omega and quaternion in between."""
+
+    first: float
+    last: float
+    states: Callable[[Floats], Floats]
+
+
+class EulerMotion(Motion):
+    """The motion of a scene with Euler angles in place of the quaternion."""
+
+    def __init__(self, plan: Plan, method: str, tolerance: float, sequence: str, switching: bool) -> None:
+        if plan.structure["planar"] is not None:
+            plan = replace(plan, structure=plan.structure | {"constant": {}})
+        plan = replace(plan, structure=plan.structure | SPACE)
+        for name in NAMES:
+            if name in plan.constants:
+                raise InputError(f"state: expected a scene without a constant {name!r}, which is the name of an angle")
+        if method == "auto":
+            method = "dop853" if roughness(plan) else "taylor"
+        other = f", {partner(sequence)} near its gimbal lock" if switching else ", without switching"
+        self.plan, self.tolerance, self.library = plan, tolerance, None
+        self.choice = Choice(method, f"the state is the Euler angles {sequence}{other}")
+        self.start = float(plan.scene.span.start)
+        self.sequence, self.switching = sequence, switching
+        self._kernels: dict[str, _Kernel] = {}
+        self._count = [0, 0, 0, 0]  # accepted, rejected, evaluations, switches
+
+    @cached_property
+    def _moving(self) -> int:
+        return sum(name.startswith("omega") for name in self.plan.states)
+
+    def _kernel_of(self, sequence: str) -> _Kernel:
+        if sequence not in self._kernels:
+            structure = self.plan.structure | {"sequence": sequence}
+            key = f"angles {kernel_key(replace(self.plan, structure=structure))}"
+            saved = library.fetch(key)
+            if saved is None:
+                saved = json.dumps(_derived(structure))
+                library.store(key, saved)
+            kernel, count = SceneKernel(json.loads(saved)), self._moving
+            edges, scales = [0, *([count] if count else []), count + 3], [RATE_SCALE] * (count > 0) + [ATTITUDE_SCALE]
+            if self.choice.method == "taylor":
+                text = taylor.translation_unit(kernel.rates, edges, scales, taylor.order_for(self.tolerance))
+            else:
+                sizes = count + 3, len(kernel.rate_parameters)
+                text = dop853.translation_unit(kernel.source, "symrot_rates", *sizes, edges, scales)
+            found = _Kernel(library.build(text, "angles"), bind(kernel.rate_parameters, self.plan.constants))
+            self._kernels[sequence] = found
+        return self._kernels[sequence]
+
+    def _task(self, sequence: str, t: float, state: Floats) -> Task:
+        kernel = self._kernel_of(sequence)
+        follow = taylor.task if self.choice.method == "taylor" else dop853.task
+        return follow(kernel.library, kernel.parameters, state, t, self.tolerance)
+
+    def _blocks(self, end: float) -> Iterator[_Block]:
+        """Yield the motion from its start to an end, piece by piece; what it costs is added to the counts."""
+        count, t, sequence = self._moving, self.start, self.sequence
+        whole = np.array(self.plan.initial_state)
+        while t != end:
+            angles = conversions.quaternion_to_euler(whole[count:], sequence)[0]
+            if self.switching and regularity(sequence, angles) < SWITCH:
+                sequence = partner(sequence)
+                self._count[3] += 1
+                angles = conversions.quaternion_to_euler(whole[count:], sequence)[0]
+            sign = 1.0 if conversions.euler_to_quaternion(angles, sequence) @ whole[count:] > 0.0 else -1.0
+            task = self._task(sequence, t, np.concatenate([whole[:count], angles]))
+            for first, last, rows in self._steps(task, sequence, end):
+                block = _Block(first, last, self._states_of(task, sequence, sign, rows))
+                yield block
+                t = last
+            if t != end:
+                whole = block.states(np.array([t]))[0]
+
+    def _steps(self, task: Any, sequence: str, end: float) -> Iterator[tuple[float, float, Floats]]:
+        """Yield the recorded steps of a task, up to the end or to where the sequence is to be changed."""
+        count, broken = self._moving, None
+        try:
+            with closing(task.runs(end)) as runs:
+                run = next(runs)
+                run.pace = abs(end - self.start) * task.pace  # one allowance for the whole motion
+                while run.t != run.stop:
+                    first, rows = run.t, np.empty((ROWS, task.stepper.row))
+                    try:
+                        task.advance(run, None, 0, None, rows.ctypes.data, ROWS)
+                    except PropagationError as error:
+                        broken = error
+                    rows = rows[: run.recorded]
+                    ends = np.append(rows[1:, 0], run.t) if len(rows) else np.empty(0)
+                    if self.switching and len(rows):
+                        near = regularity(sequence, task.stepper.dense(rows, ends)[:, count:]) < SWITCH
+                        if near.any():
+                            place = int(np.argmax(near))
+                            yield first, float(ends[place]), rows[: place + 1]
+                            return
+                    if broken is not None:
+                        raise self._said(broken, sequence)
+                    yield first, float(run.t), rows
+        finally:
+            self._count[:3] = (a + b for a, b in zip(self._count, task.stats()[:3], strict=False))
+
+    def _said(self, error: PropagationError, sequence: str) -> PropagationError:
+        hint = f"the Euler angles {sequence} are the state, which fail at gimbal lock"
+        return PropagationError(f"{error} ({hint}{'' if self.switching else '; switching=True goes around it'})")
+
+    def _states_of(self, task: Task, sequence: str, sign: float, rows: Floats) -> Callable[[Floats], Floats]:
+        count = self._moving
+
+        def states(times: Floats) -> Floats:
+            found = task.stepper.dense(rows, times)
+            quaternion = sign * conversions.euler_to_quaternion(found[:, count:], sequence)
+            return np.hstack([found[:, :count], quaternion])
+
+        return states
+
+    def integrate(self, times: Floats) -> tuple[Floats, Stats]:
+        """Return omega and quaternion at the times, shape (n, N), and what it cost."""
+        began = perf_counter()
+        self._count = [0, 0, 0, 0]
+        states = np.empty((len(times), len(self.plan.states)))
+        states[times == self.start] = self.plan.initial_state
+        for part in both_sides(times, self.start):
+            asked = np.abs(times[part] - self.start)
+            for block in self._blocks(float(times[part[-1]])):
+                low, high = abs(block.first - self.start), abs(block.last - self.start)
+                inside = part[np.searchsorted(asked, low, "right") : np.searchsorted(asked, high, "right")]
+                if len(inside):
+                    states[inside] = block.states(times[inside])
+        accepted, rejected, evaluations, switches = self._count
+        return states, Stats(accepted, rejected, evaluations, perf_counter() - began, switches)
+
+    def _dense(self, span: tuple[float, float]) -> Callable[[Floats], Floats]:
+        """Return omega and quaternion as a function of time."""
+        sides = [list(self._blocks(end)) if end != self.start else [] for end in span]
+
+        def at(times: Floats) -> Floats:
+            states = np.empty((len(times), len(self.plan.states)))
+            states[times == self.start] = self.plan.initial_state
+            for blocks in sides:
+                for block in blocks:
+                    low, high = min(block.first, block.last), max(block.first, block.last)
+                    chosen = (times >= low) & (times <= high) & (times != self.start)
+                    if chosen.any():
+                        states[chosen] = block.states(times[chosen])
+            return states
+
+        return at
+
+
+def _derived(structure: dict[str, Any]) -> Mapping[str, Any]:
+    """Return the saved form of the equations of motion in Euler angles."""
+    from symrot.codegen.scene_kernels import RATES, rates_program, rates_source
+    from symrot.dynamics.equations import equations_of_motion
+
+    rates = rates_program(equations_of_motion(structure), RATES)
+    return SceneKernel.of(rates.program, rates.parameters, rates.program, (), (), rates_source(rates)).data
+
+
+class EulerPropagator(Propagator):
+    """Propagates a scene with Euler angles as state; made by :func:`symrot.propagator` with ``state``."""
+
+    def __init__(self, scene: Scene, method: str, tolerance: float, sequence: str, switching: bool) -> None:
+        try:
+            parse_sequence(sequence)
+        except InputError as error:
+            raise InputError(f"state: expected 'quaternion' or an Euler sequence; {error}") from None
+        if method not in METHODS:
+            raise InputError(f"method: expected one of {', '.join(METHODS)} for Euler angles as state, got {method!r}")
+        self._sequence, self._switching = sequence, switching
+        super().__init__(scene, method, tolerance)
+
+    def _prepare(self, plan: Plan) -> Motion:
+        return EulerMotion(plan, self._method, self.tolerance, self._sequence, self._switching)
+
+    def prepare(self) -> None:
+        """Compile now what otherwise waits for the first use, the partner of the sequence too."""
+        super().prepare()
+        motion = self._motion
+        assert isinstance(motion, EulerMotion)
+        for sequence in (self._sequence, partner(self._sequence)) if self._switching else (self._sequence,):
+            motion._kernel_of(sequence)
+
+    def __call__(self, t: ArrayLike | None = None, *, events: Any = None, **state: Any) -> Trajectory:
+        """Return the motion as :class:`symrot.propagation.propagator.Propagator` does; events are not sought."""
+        if events is not None:
+            raise InputError("events: expected the quaternion as state; events are not sought in Euler angles")
+        return super().__call__(t, **state)
