@@ -1,0 +1,433 @@
+"""Values of machine code as terms, equal exactly when they are one: bit-exact laws, applied on construction.
+
+A term is the bits of 32 or 64 places. Two terms with one index have the same bits on every input, in rounding to
+nearest; the bits of a NaN are not told apart, the sign of a zero is. The laws, all exact, overflow and underflow and
+signed zeros included::
+
+    a - b = a + (-b)      a + b = b + a      a*b = b*a      (-a)*b = -(a*b)      (-a)/b = a/(-b) = -(a/b)
+    a + a = 2*a           2^j*(2^k*a) = 2^(j+k)*a, j, k >= 0                     a/2^k = a*2^-k
+    1*a = a               a + (-0) = a       a*copysign(1, b) = a with its sign changed by that of b
+    a < b = b > a = -b < -a                  signs, magnitudes and masks as the bits they are
+
+``-(a + b) = (-a) + (-b)`` is not one: it fails in the sign of a sum that is zero; nor is any that moves a rounding.
+"""
+
+from collections.abc import Callable, Iterable, Mapping
+from fractions import Fraction
+from math import isfinite
+from struct import pack, unpack
+from typing import Any
+
+__all__ = [
+    "ANY",
+    "EQUAL",
+    "GREATER",
+    "LESS",
+    "RELATION",
+    "UNORDERED",
+    "Known",
+    "Outcomes",
+    "Pair",
+    "Term",
+    "Terms",
+    "value_of",
+]
+
+Term = tuple[Any, ...]
+Outcomes = frozenset[str]
+Pair = tuple[int, int]
+Known = Mapping[Pair, Outcomes]
+
+LESS, EQUAL, GREATER, UNORDERED = "<", "=", ">", "?"
+ANY: Outcomes = frozenset((LESS, EQUAL, GREATER, UNORDERED))
+RELATION: dict[str, Outcomes] = {
+    "<": frozenset("<"), "<=": frozenset("<="), ">": frozenset(">"), ">=": frozenset(">="), "==": frozenset("="),
+    "!=": frozenset("<>?"),
+}  # fmt: skip
+_TURNED = {LESS: GREATER, GREATER: LESS, EQUAL: EQUAL, UNORDERED: UNORDERED}
+_FORMATS = {32: ("<f", "<I"), 64: ("<d", "<Q")}
+_CHILDREN: dict[str, int] = {  # kind -> first of its operands that are terms; the rest of the tuple are terms
+    "mul": 2, "add": 2, "div": 2, "neg": 2, "abs": 2, "sqrt": 2, "sign": 2, "and": 2, "or": 2, "xor": 2, "andn": 2,
+    "fma": 2, "fnma": 2, "choose": 2, "mask": 3, "call": 3, "join": 2, "part": 3,
+}  # fmt: skip
+
+
+def value_of(bits: int, width: int) -> float:
+    """Return the number that 32 or 64 bits are."""
+    number, whole = _FORMATS[width]
+    return float(unpack(number, pack(whole, bits))[0])
+
+
+def _bits_of(value: float, width: int) -> int | None:
+    """Return the bits of the nearest number of that width; None for a NaN, or for one beyond the largest."""
+    number, whole = _FORMATS[width]
+    try:
+        return None if value != value else int(unpack(whole, pack(number, value))[0])
+    except OverflowError:
+        return None
+
+
+def turned(outcomes: Iterable[str]) -> Outcomes:
+    """Return the outcomes of a comparison with its sides exchanged."""
+    return frozenset(_TURNED[item] for item in outcomes)
+
+
+class Terms:
+    """A store of terms, each once; every method takes and returns indices."""
+
+    def __init__(self) -> None:
+        self.nodes: list[Term] = []
+        self.places: dict[Term, int] = {}
+
+    def _add(self, *term: Any) -> int:
+        if term not in self.places:
+            self.places[term] = len(self.nodes)
+            self.nodes.append(term)
+        return self.places[term]
+
+    def width(self, a: int) -> int:
+        return int(self.nodes[a][1])
+
+    def kind(self, a: int) -> str:
+        return str(self.nodes[a][0])
+
+    # --- leaves ---------------------------------------------------------------------------------------------------
+
+    def input(self, width: int, place: str) -> int:
+        return self._add("in", width, place)
+
+    def bits(self, width: int, value: int) -> int:
+        return self._add("bits", width, value & ((1 << width) - 1))
+
+    def number(self, width: int, value: Fraction) -> int:
+        """Return a constant that is exact at its width."""
+        bits = _bits_of(float(value), width)
+        if bits is None or Fraction(value_of(bits, width)) != value:
+            raise ValueError(f"expected a number of {width} bits, got {value}")
+        return self.bits(width, bits)
+
+    def unknown(self) -> int:
+        """Return 32 bits that nothing is known of."""
+        return self._add("unknown", 32, len(self.nodes))
+
+    def token(self, name: str) -> int:
+        """Return 64 bits that stand for themselves: what a register held before."""
+        return self._add("token", 64, name)
+
+    def address(self, base: str, offset: int) -> int:
+        return self._add("address", 64, base, offset)
+
+    def constant(self, a: int) -> int | None:
+        """Return the bits of a constant, or None."""
+        return self.nodes[a][2] if self.nodes[a][0] == "bits" else None
+
+    def _value(self, a: int) -> float | None:
+        bits = self.constant(a)
+        return None if bits is None else value_of(bits, self.width(a))
+
+    # --- words: a 64-bit term is two of 32 ------------------------------------------------------------------------
+
+    def word(self, a: int, part: int) -> int:
+        """Return the low (0) or high (1) half of 64 bits."""
+        node = self.nodes[a]
+        if node[0] == "bits":
+            return self.bits(32, node[2] >> 32 * part)
+        return int(node[2 + part]) if node[0] == "join" else self._add("part", 32, part, a)
+
+    def join(self, low: int, high: int) -> int:
+        """Return 64 bits of two halves."""
+        first, second = self.nodes[low], self.nodes[high]
+        if first[0] == "bits" and second[0] == "bits":
+            return self.bits(64, first[2] | second[2] << 32)
+        if first[0] == second[0] == "part" and (first[2], second[2]) == (0, 1) and first[3] == second[3]:
+            return int(first[3])
+        return self._add("join", 64, low, high)
+
+    # --- bits ---------------------------------------------------------------------------------------------------------
+
+    def _ones(self, a: int) -> int:
+        return (1 << self.width(a)) - 1
+
+    def _sign_bit(self, a: int) -> int:
+        return 1 << self.width(a) - 1
+
+    def bit_and(self, a: int, b: int) -> int:
+        if self.constant(b) is None:
+            a, b = b, a
+        mask, width = self.constant(b), self.width(a)
+        if mask is not None:
+            value = self.constant(a)
+            if value is not None:
+                return self.bits(width, value & mask)
+            special: dict[int, Callable[[], int]] = {
+                0: lambda: b, self._ones(a): lambda: a, self._sign_bit(a): lambda: self.sign(a),
+                self._sign_bit(a) - 1: lambda: self.abs(a),
+            }  # fmt: skip
+            if mask in special:
+                return special[mask]()
+        return a if a == b else self._add("and", width, *sorted((a, b)))
+
+    def bit_andn(self, a: int, b: int) -> int:
+        """Return ~a & b."""
+        mask = self.constant(a)
+        if mask is not None:
+            return self.bit_and(self.bits(self.width(a), ~mask), b)
+        if self.constant(b) == 0 or a == b:
+            return self.bits(self.width(a), 0)
+        return self._add("andn", self.width(a), a, b)
+
+    def bit_or(self, a: int, b: int) -> int:
+        if self.constant(b) is None:
+            a, b = b, a
+        mask, value = self.constant(b), self.constant(a)
+        if mask is not None and value is not None:
+            return self.bits(self.width(a), value | mask)
+        if mask == 0 or a == b:
+            return a
+        if mask == self._ones(a):
+            return b
+        return self._add("or", self.width(a), *sorted((a, b)))
+
+    def bit_xor(self, a: int, b: int) -> int:
+        if self.constant(b) is None:
+            a, b = b, a
+        mask, value, width = self.constant(b), self.constant(a), self.width(a)
+        if a == b:
+            return self.bits(width, 0)
+        if mask is not None:
+            if value is not None:
+                return self.bits(width, value ^ mask)
+            if mask == 0:
+                return a
+            if mask == self._sign_bit(a):
+                return self.neg(a)
+            if mask == self._ones(a) and self.kind(a) == "mask":
+                return self.mask(width, ANY - self.nodes[a][2], *self.nodes[a][3:])
+        return self._add("xor", width, *sorted((a, b)))
+
+    def neg(self, a: int) -> int:
+        node = self.nodes[a]
+        if node[0] == "bits":
+            return self.bits(node[1], node[2] ^ self._sign_bit(a))
+        return int(node[2]) if node[0] == "neg" else self._add("neg", node[1], a)
+
+    def abs(self, a: int) -> int:
+        node = self.nodes[a]
+        if node[0] == "bits":
+            return self.bits(node[1], node[2] & (self._sign_bit(a) - 1))
+        if node[0] == "abs":
+            return a
+        return self.abs(node[2]) if node[0] == "neg" else self._add("abs", node[1], a)
+
+    def sign(self, a: int) -> int:
+        """Return the sign bit, alone."""
+        node = self.nodes[a]
+        if node[0] == "bits":
+            return self.bits(node[1], node[2] & self._sign_bit(a))
+        if node[0] in ("abs", "sign"):
+            return a if node[0] == "sign" else self.bits(node[1], 0)
+        return self._add("sign", node[1], a)
+
+    def copysign(self, a: int, b: int) -> int:
+        return self.bit_or(self.abs(a), self.sign(b))
+
+    # --- rounded operations -------------------------------------------------------------------------------------------
+
+    def _folded(self, a: int, b: int, of: Callable[[float, float], float]) -> int | None:
+        """Return the constant of two constants: rounded once, for a double rounds floats without a second error."""
+        x, y = self._value(a), self._value(b)
+        if x is None or y is None or not (isfinite(x) and isfinite(y)):
+            return None
+        bits = _bits_of(of(x, y), self.width(a))
+        return None if bits is None else self.bits(self.width(a), bits)
+
+    def _signed(self, a: int) -> tuple[int, bool]:
+        """Return what is left of a factor without its minus, and whether it had one."""
+        if self.kind(a) == "neg":
+            return int(self.nodes[a][2]), True
+        value = self.constant(a)
+        return (self.neg(a), True) if value is not None and value & self._sign_bit(a) else (a, False)
+
+    def add(self, a: int, b: int) -> int:
+        folded = self._folded(a, b, lambda x, y: x + y)
+        if folded is not None:
+            return folded
+        if a == b:
+            return self.mul(self.number(self.width(a), Fraction(2)), a)
+        for first, second in ((a, b), (b, a)):
+            if self.constant(second) == self._sign_bit(second):
+                return first
+        return self._add("add", self.width(a), *sorted((a, b)))
+
+    def sub(self, a: int, b: int) -> int:
+        return self.add(a, self.neg(b))
+
+    def mul(self, a: int, b: int) -> int:
+        folded = self._folded(a, b, lambda x, y: x * y)
+        if folded is not None:
+            return folded
+        (a, first), (b, second) = self._signed(a), self._signed(b)
+        product = self._product(a, b)
+        return self.neg(product) if first != second else product
+
+    def _product(self, a: int, b: int) -> int:
+        if self.constant(b) is None:
+            a, b = b, a
+        factor, width = self._value(b), self.width(a)
+        if factor == 1.0:
+            return a
+        if factor is not None and factor >= 2.0 and _is_power_of_two(factor) and self.kind(a) == "mul":
+            for inner, other in (self.nodes[a][2:], self.nodes[a][:1:-1]):
+                scale = self._value(inner)
+                if scale is not None and scale >= 2.0 and _is_power_of_two(scale):
+                    both = _bits_of(scale * factor, width)
+                    if both is not None and isfinite(value_of(both, width)):
+                        return self._add("mul", width, *sorted((self.bits(width, both), other)))
+        one = self.number(width, Fraction(1))
+        for item, other in ((a, b), (b, a)):
+            if self.kind(item) == "or" and one in self.nodes[item][2:]:
+                (sign,) = [part for part in self.nodes[item][2:] if part != one] or [one]
+                if self.kind(sign) == "sign":
+                    return self.bit_xor(other, sign)
+        return self._add("mul", width, *sorted((a, b)))
+
+    def div(self, a: int, b: int) -> int:
+        if self._value(b) != 0.0:
+            folded = self._folded(a, b, lambda x, y: x / y)
+            if folded is not None:
+                return folded
+        (a, first), (b, second) = self._signed(a), self._signed(b)
+        divisor = self._value(b)
+        if divisor is not None and divisor != 0.0 and isfinite(divisor) and _is_power_of_two(divisor):
+            inverse = _bits_of(1.0 / divisor, self.width(a))
+            if inverse is not None and _is_inverse(value_of(inverse, self.width(a)), divisor):
+                return self.mul(self.neg(a) if first != second else a, self.bits(self.width(a), inverse))
+        quotient = self._add("div", self.width(a), a, b)
+        return self.neg(quotient) if first != second else quotient
+
+    def sqrt(self, a: int) -> int:
+        return self._add("sqrt", self.width(a), a)
+
+    def fma(self, a: int, b: int, c: int) -> int:
+        """Return a*b + c, rounded once."""
+        (a, first), (b, second) = self._signed(a), self._signed(b)
+        return self._add("fnma" if first != second else "fma", self.width(a), *sorted((a, b)), c)
+
+    def call(self, name: str, width: int, arguments: Iterable[int]) -> int:
+        return self._add("call", width, name, *arguments)
+
+    def opaque(self, name: str, width: int, *arguments: int) -> int:
+        """Return the value of an instruction that is known to round in another way than the C text can say."""
+        return self.call(f"[{name}]", width, arguments)
+
+    # --- choices ------------------------------------------------------------------------------------------------------
+
+    def compared(self, outcomes: Outcomes, a: int, b: int) -> tuple[Outcomes, int, int]:
+        """Return the same comparison as all its equals have it: a constant second, no minus on both sides."""
+        zero = self.bits(self.width(a), 0)
+        a, b = (zero if self._value(item) == 0.0 else item for item in (a, b))
+        if self.constant(a) is not None and self.constant(b) is None:
+            a, b, outcomes = b, a, turned(outcomes)
+        if self.kind(a) == "neg" and (self.kind(b) == "neg" or self.constant(b) is not None):
+            a, b, outcomes = int(self.nodes[a][2]), self.neg(b), turned(outcomes)
+            b = zero if self._value(b) == 0.0 else b
+        if self.constant(b) is None and b < a:
+            a, b, outcomes = b, a, turned(outcomes)
+        return outcomes, a, b
+
+    def mask(self, width: int, outcomes: Outcomes, a: int, b: int) -> int:
+        """Return all ones where the comparison of two numbers has one of the outcomes, else zero."""
+        outcomes, a, b = self.compared(outcomes, a, b)
+        x, y = self._value(a), self._value(b)
+        if x is not None and y is not None:
+            outcome = UNORDERED if x != x or y != y else EQUAL if x == y else LESS if x < y else GREATER
+            return self.bits(width, -1 if outcome in outcomes else 0)
+        if outcomes in (frozenset(), ANY):
+            return self.bits(width, -1 if outcomes else 0)
+        return self._add("mask", width, outcomes, a, b)
+
+    def choose(self, mask: int, x: int, y: int) -> int:
+        """Return x where the mask is ones, y where it is zero."""
+        decided = self.constant(mask)
+        if decided is not None and decided in (0, self._ones(mask)):
+            return x if decided else y
+        return x if x == y else self._add("choose", self.width(x), mask, x, y)
+
+    # --- the whole graph ----------------------------------------------------------------------------------------------
+
+    def operands(self, a: int) -> tuple[int, ...]:
+        node = self.nodes[a]
+        return tuple(node[_CHILDREN[node[0]] :]) if node[0] in _CHILDREN else ()
+
+    def order(self, roots: Iterable[int]) -> list[int]:
+        """Return all terms below some, operands first."""
+        seen: set[int] = set()
+        found: list[int] = []
+        stack = [(root, False) for root in reversed(list(roots))]
+        while stack:
+            index, ready = stack.pop()
+            if ready:
+                found.append(index)
+            elif index not in seen:
+                seen.add(index)
+                stack.append((index, True))
+                stack += [(operand, False) for operand in reversed(self.operands(index))]
+        return found
+
+    def rebuilt(self, roots: Iterable[int], known: Known, fused: bool = True) -> list[int]:
+        """Return terms as they are where comparisons have known outcomes; without ``fused``, a*b + c rounds twice."""
+        roots = list(roots)
+        new: dict[int, int] = {}
+        for index in self.order(roots):
+            node, first = self.nodes[index], _CHILDREN.get(self.kind(index))
+            if first is None:
+                new[index] = index
+                continue
+            taken = [new[operand] for operand in node[first:]]
+            if node[0] in ("fma", "fnma") and not fused:
+                product = self.mul(*taken[:2])
+                new[index] = self.add(product if node[0] == "fma" else self.neg(product), taken[2])
+            elif node[0] == "mask":
+                new[index] = self._decided(node[1], node[2], taken, known)
+            else:
+                new[index] = self._again(node, taken)
+        return [new[root] for root in roots]
+
+    def _decided(self, width: int, outcomes: Outcomes, taken: list[int], known: Known) -> int:
+        mask = self.mask(width, outcomes, *taken)
+        if self.kind(mask) == "mask":
+            _, _, outcomes, a, b = self.nodes[mask]
+            possible = known.get((a, b), ANY)
+            if possible <= outcomes or not possible & outcomes:
+                return self.bits(width, -1 if possible <= outcomes else 0)
+        return mask
+
+    def _again(self, node: Term, taken: list[int]) -> int:
+        kind = node[0]
+        if kind == "call":
+            return self.call(node[2], node[1], taken)
+        if kind == "part":
+            return self.word(taken[0], node[2])
+        if kind == "fnma":
+            return self.fma(self.neg(taken[0]), *taken[1:])
+        return int(_AGAIN[kind](self, *taken))
+
+    def undecided(self, roots: Iterable[int]) -> int | None:
+        """Return a mask below some terms that no other mask is below, or None."""
+        return next((index for index in self.order(roots) if self.kind(index) == "mask"), None)
+
+
+def _is_power_of_two(value: float) -> bool:
+    top, bottom = Fraction(value).as_integer_ratio()
+    return top & (top - 1) == 0 and bottom & (bottom - 1) == 0 and top > 0
+
+
+def _is_inverse(value: float, divisor: float) -> bool:
+    return isfinite(value) and Fraction(value) * Fraction(divisor) == 1
+
+
+_AGAIN: dict[str, Callable[..., int]] = {
+    "mul": Terms.mul, "add": Terms.add, "div": Terms.div, "neg": Terms.neg, "abs": Terms.abs, "sqrt": Terms.sqrt,
+    "sign": Terms.sign, "and": Terms.bit_and, "or": Terms.bit_or, "xor": Terms.bit_xor, "andn": Terms.bit_andn,
+    "fma": Terms.fma, "choose": Terms.choose, "join": Terms.join,
+}  # fmt: skip
