@@ -293,7 +293,8 @@ SYMROT_EXPORT int symrot_taylor(symrot_run *run, const double *p, const double *
         memcpy(&x[r][0], run->y + symrot_starts[r], (size_t)symrot_sizes[r]*sizeof(double));
         memcpy(&carry[r], run->carry + symrot_starts[r], (size_t)symrot_sizes[r]*sizeof(double));
     }
-    for (; next < count && times[next] == t; ++next) memcpy(states + next*SYMROT_STATES, run->y, sizeof run->y);
+    for (; next < count && times[next] == t && t_low == 0.0; ++next)
+        memcpy(states + next*SYMROT_STATES, run->y, sizeof run->y);
     if (t == stop) status = SYMROT_DONE;
     else if (unit == 0.0) {
         unit = side*symrot_first_unit(c, t, fabs(stop - t), x);
@@ -346,7 +347,7 @@ SYMROT_EXPORT int symrot_taylor(symrot_run *run, const double *p, const double *
             carry[r] = V_ADD(V_SUB(y, V_SUB(new_y, rise)), V_SUB(d, rise));  /* Knuth's sum: goes into the next step */
             x[r][0] = y1[r] = new_y;
         }
-        for (; next < count && times[next] == t1; ++next) symrot_write(y1, states + next*SYMROT_STATES);
+        for (; next < count && times[next] == t1 && low1 == 0.0; ++next) symrot_write(y1, states + next*SYMROT_STATES);
         ++accepted;
         halvings = 0;
         t = t1;
