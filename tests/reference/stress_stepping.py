@@ -1,0 +1,433 @@
+"""Stress tests S17, S24 to S34 and S39 to S42: the steppers against exact motions and 50-digit series."""
+
+import ctypes
+import math
+from fractions import Fraction as F
+from time import perf_counter
+
+import numpy as np
+
+from symrot.bench import taylor as race
+from symrot.codegen import library
+from symrot.errors import CompilerError
+from symrot.planner import make_plan
+from symrot.propagation import dop853, taylor
+from symrot.propagation.invariants import invariant_parameters, invariant_source
+from symrot.propagation.kernels import error_blocks, library_source, scene_kernel
+from symrot.propagation.propagator import propagator
+from symrot.propagation.stepping import Task
+from symrot.scene_kernel import bind
+from tests.reference import taylor as series
+from tests.reference.figures import Figure, apart, body, largest, propagated
+from tests.test_closed_form_heavy_top import S18, tilted
+
+TILT = {"quaternion": [str(x) for x in tilted(F(1, 2))]}
+GRAVITY = {"kind": "gravity", "weight": 1}
+PLATE, PLATE_STATES = (1, 3, 4), (  # a flat body: its coefficients (B - C)/A and so on are exact in doubles
+    ("3/8", 1, "1/2"), (1, "1/4", "1/8"), ("1/4", "3/8", 1), ("5/8", "3/4", "-1/2"), ("1/2", "1/2", "1/2"),
+    ("-1/4", 1, "3/8"), ("7/8", "-1/8", "3/4"), ("1/8", "5/8", "1/4"),
+)  # fmt: skip
+
+
+def symmetric_top(omega=S18["loops"], attitude=TILT):
+    return body((1, 1, "1/2"), [str(w) for w in omega], [{**GRAVITY, "center_of_mass": [0, 0, 1]}], attitude)
+
+
+def asymmetric_top():
+    arm = {**GRAVITY, "center_of_mass": ["1/10", "1/5", "9/10"]}
+    return body((1, "3/2", "7/10"), ("1/2", "3/10", 4), [arm], TILT)
+
+
+class Stepped:
+    """A scene's Taylor stepper, bound to numbers; the carry is projected onto the invariants if asked."""
+
+    def __init__(self, scene, order=20, flags=library.FLAGS):
+        self.plan = plan = make_plan(scene)
+        self.kernel = kernel = scene_kernel(plan)
+        source = taylor.translation_unit(
+            kernel.rates, *error_blocks(plan), order, invariant_source(kernel, plan.states)
+        )
+        self.path = library.build(source, "taylor", flags)
+        self.p = [*bind(kernel.rate_parameters, plan.constants), *invariant_parameters(kernel, plan)]
+        self.start = [float(value) for value in plan.initial_state]
+
+    def task(self, tolerance=1e-15, every=0, **more):
+        found = taylor.task(self.path, self.p, self.start, 0.0, tolerance, **more)
+        found.fields["every"] = every
+        return found
+
+    def at(self, t, tolerance=1e-15, every=0, **more):
+        return self.task(tolerance, every, **more).sample(np.atleast_1d(np.asarray(t, dtype=float)))
+
+    def drift(self, state):
+        """Return the largest change of a kept quantity, in exact arithmetic, relative to the largest of them."""
+        values = bind(self.kernel.quantity_parameters, self.plan.constants)
+        known = {name: F(v) for (name, _), v in zip(self.kernel.quantity_parameters, values, strict=True)}
+        outputs = [item.output for item in self.kernel.conserved if item.kept]
+        both = [
+            self.kernel.quantities.evaluate(
+                known | {n: F(float(v)) for n, v in zip(self.plan.states, y, strict=True)}, {}, F, outputs
+            )
+            for y in (state, self.start)
+        ]
+        size = max(abs(value) for value in both[1].values())
+        return max(float(abs(both[0][name] - both[1][name]) / size) for name in outputs)
+
+
+def s17(long):
+    found = []
+    for speed in (1, 1000, 1000000):
+        scene = body((1, "3/2", 2), ("1/1000", "1/1000", speed))
+        pair = [propagated(scene, m, 1e-9, [1000.0 / speed]).quaternion for m in ("taylor", "exact")]
+        found.append(Figure("taylor", f"attitude, W = {speed:.0e}", 1e-8, largest(*pair, sign=True)))
+    return found
+
+
+def s24(long):
+    problem, exact = race._Problem("heavy asymmetric", 1.0), race.reference("heavy asymmetric")
+    path, errors = problem.taylor_library(), {}
+    for tolerance in [10.0**-k for k in range(4, 16)]:
+        errors[tolerance] = problem.error(
+            taylor.integrate(path, problem.taylor_p, problem.y0, 0.0, [200.0], tolerance)[0][0], exact
+        )
+    worst = max(error / tolerance for tolerance, error in errors.items() if tolerance >= 1e-13)
+    return [Figure("taylor", "error over tolerance, 1e-4 to 1e-13", 10, worst),
+            Figure("taylor", "least error", 7e-14, min(errors.values()))]  # fmt: skip
+
+
+def s25(long):
+    """Fixed steps: orders p = 8 to 20, where the error lies between 1e-5 and 1e-12."""
+    stop, scene = F(5), asymmetric_top()
+    torque = (F(1), [F(1, 10), F(1, 5), F(9, 10)], [F(0), F(0), F(-1)])
+    omega = [F(1, 2), F(3, 10), F(4)]
+    exact = series.trajectory([F(1), F(3, 2), F(7, 10)], omega, tilted(F(1, 2)), [stop], torque)[0][0]
+    found = []
+    for order in (8, 12, 16, 20):
+        stepped, points = Stepped(scene, order), []
+        for count in sorted({int(10 * 1.13**k) for k in range(45)}):
+            states, stats = stepped.at(float(stop), 0.9, max_step=float(stop) / count)
+            error = largest(states[0, :3], [float(w) for w in exact]) / 4
+            if stats.accepted in (count, count + 1) and 1e-12 < error < 1e-5:
+                points.append((math.log(float(stop) / count), math.log(error)))
+        slope = float(np.polyfit(*np.transpose(points), 1)[0])
+        found.append(Figure("taylor", f"p = {order}: slope {slope:.2f} over {len(points)} steps", 0.3, abs(slope - order)))
+    return found
+
+
+def s26(long):
+    free = body((1, 2, 3), ("3/10", 1, "1/2"))
+    found = [Figure("taylor", "S1 to t = 1000", 2e-13, apart(
+        *(propagated(free, m, 1e-15, np.linspace(100, 1000, 10)) for m in ("taylor", "exact"))))]  # fmt: skip
+    for name in ("cusps", "loops", "waves"):
+        pair = [propagated(symmetric_top(S18[name]), m, 1e-15, np.linspace(20, 200, 10)) for m in ("taylor", "exact")]
+        found.append(Figure("taylor", f"S18 {name} to t = 200", 2e-13, apart(*pair)))
+    return found
+
+
+def _long_runs(states, revolutions, every):
+    """Return relative errors of the energy and attitude errors in rad of plates, shapes (states, revolutions)."""
+    energies, attitudes = [], []
+    for omega in states:
+        scene = body(PLATE, omega, attitude={"quaternion": [1, 0, 0, 0]})
+        stepped = Stepped(scene)
+        times = np.array(revolutions) * 2 * math.pi / np.linalg.norm(stepped.start[:3])
+        found, _ = stepped.at(times, every=every)
+        exact = propagated(scene, "exact", 1e-15, times)
+        moments = [F(m) for m in PLATE]
+        before = sum(m * F(w) ** 2 for m, w in zip(moments, stepped.start[:3], strict=True))
+        energies.append([abs(float(sum(m * F(float(w)) ** 2 for m, w in zip(moments, y[:3], strict=True)) / before - 1))
+                         for y in found])  # fmt: skip
+        q = found[:, 3:] / np.linalg.norm(found[:, 3:], axis=1, keepdims=True)
+        half = np.minimum(*(np.linalg.norm(q - s * exact.quaternion, axis=1) for s in (1, -1))) / 2
+        attitudes.append(4 * np.arcsin(half))
+    return np.array(energies), np.array(attitudes)
+
+
+def s27(long):
+    count, top = (8, 5) if long else (4, 4)
+    revolutions = 10.0 ** np.linspace(2, top, 4 * (top - 2) + 1)
+    energies, attitudes = _long_runs(PLATE_STATES[:count], revolutions, 0)
+    slopes = [float(np.polyfit(np.log(revolutions), np.median(np.log(each + 1e-18), axis=0), 1)[0])
+              for each in (energies, attitudes)]  # fmt: skip
+    span = f"to 1e{top} rev, {count} states"
+    return [Figure("taylor, plain", f"slope of the energy, {span}", 0.7, slopes[0]),
+            Figure("taylor, plain", f"slope of the attitude, {span}", 1.7, slopes[1]),
+            Figure("taylor, plain", f"attitude at 1e{top} rev, rad", 1e-8, float(np.median(attitudes[:, -1])))]  # fmt: skip
+
+
+def s28(long):
+    stepped = Stepped(body((1, 2, 3), ("3/10", 1, "1/2")))
+    task = stepped.task(1e-12)
+    run = next(task.runs(1000.0))
+    task.advance(run, None, 0, None, None, 0)
+    refused = 0
+    for flags in (("-ffast-math",), ("-fassociative-math", "-fno-signed-zeros", "-fno-trapping-math")):
+        try:
+            Stepped(body((1, 2, 3), ("3/10", 1, "1/2")), flags=(*library.FLAGS, *flags)).at(1.0)
+        except CompilerError:
+            refused += 1
+    return [Figure("taylor", f"carries that are zero after {run.accepted} steps", 0, sum(c == 0.0 for c in run.carry)),
+            Figure("taylor", "builds without a carry that are refused, of 2", 2, refused, at_least=True)]  # fmt: skip
+
+
+def s29(long):
+    scenes = {"free": body((1, 2, 3), ("3/10", 1, "1/2")), "symmetric top": symmetric_top(), "heavy": asymmetric_top()}
+    broken, worst = 0, 0.0
+    for scene in scenes.values():
+        stepped = Stepped(scene)
+        for tolerance in [10.0**-k for k in range(1, 16)]:
+            on, off = (stepped.at(200.0, tolerance, every)[0][0] for every in (4, 0))
+            broken += int((~np.isfinite(on)).sum())
+            worst = max(worst, stepped.drift(on) / max(stepped.drift(off), 4e-16))
+    return [Figure("taylor, projected", "not finite, tolerances 1e-1 to 1e-15", 0, broken),
+            Figure("taylor, projected", "drift over that without projection", 1, worst)]  # fmt: skip
+
+
+def s30(long):
+    top = 5 if long else 3
+    energies, attitudes = _long_runs(PLATE_STATES[: 4 if long else 2], [10.0**top], 16)
+    return [Figure("taylor, projected", f"relative energy at 1e{top} rev", 3e-16, float(energies.max())),
+            Figure("taylor, projected", f"attitude at 1e{top} rev, rad", 1e-10, float(np.median(attitudes)))]  # fmt: skip
+
+
+def s31(long):
+    revolutions = 1e4 if long else 1e3
+    found = []
+    for name, scene in (("symmetric top: E, L_z, L_3", symmetric_top()), ("asymmetric top: E, L_z", asymmetric_top()),
+                        ("free: E, L in space", body((1, 2, 3), ("3/10", 1, "1/2")))):  # fmt: skip
+        stepped = Stepped(scene)
+        speed = float(np.linalg.norm([float(w) for w in scene.initial.omega_b]))
+        drift = stepped.drift(stepped.at(revolutions * 2 * math.pi / speed)[0][0])
+        found.append(Figure("taylor, plain", f"{name}, {revolutions:.0e} rev", 1e-13, drift))
+    return found
+
+
+def s32(long):
+    scene = symmetric_top()
+    stop = (1e3 if long else 1e2) * 2 * math.pi / 4.4
+    stepped, exact = Stepped(scene), propagated(scene, "exact", 1e-15, [stop])
+    task = stepped.task()
+    runs = task.runs(stop)
+    run = next(runs)
+    while task.advance(run, None, 0, None, None, 0):
+        pass
+    moving = sum(name.startswith("omega") for name in stepped.plan.states)
+    forward = largest(np.array(run.y[moving:]), exact.quaternion[0], sign=True)
+    run.stop, run.next, run.unit = 0.0, 0, 0.0  # back, the carry kept
+    while task.advance(run, None, 0, None, None, 0):
+        pass
+    back = largest(run.y, stepped.start)
+    return [Figure("taylor, plain", f"return error over forward error {forward:.0e}", 100, back / max(forward, 1e-16))]
+
+
+def _rates_by_coefficients(gyro, omega, stop, bits=200, order=40):
+    """Return omega at a time, by series in whole numbers, of Euler's equations with these very coefficients."""
+
+    def fixed(x):
+        return round(F(x) * 2**bits)
+
+    g, w, now = [fixed(x) for x in gyro], [fixed(x) for x in omega], F(0)
+    while now < stop:
+        terms = [[x] for x in w]
+        for n in range(order):
+            for i in range(3):
+                a, b = terms[(i + 1) % 3], terms[(i + 2) % 3]
+                total = sum(x * y for x, y in zip(a[: n + 1], b[n::-1], strict=True)) >> bits
+                terms[i].append((g[i] * total >> bits) // (n + 1))
+        step = min(F(1, 8), stop - now)
+        h, w = fixed(step), []
+        for one in terms:
+            total = 0
+            for coefficient in reversed(one):
+                total = (total * h >> bits) + coefficient
+            w.append(total)
+        now += step
+    return [x / 2**bits for x in w]
+
+
+def s33(long):
+    stop, omega, found = F(120), [F(3, 10), F(1), F(1, 2)], []
+    revolutions = float(stop) * float(np.linalg.norm([float(w) for w in omega])) / (2 * math.pi)
+    for moments in ((1, 2, 3), PLATE):
+        scene, (a, b, c) = body(moments, omega), moments
+        exact = [F(b - c, a), F(c - a, b), F(a - b, c)]
+        rounded = [F(float(x)) for x in exact]
+        stepped = Stepped(scene).at(float(stop))[0][0, :3]
+        closed = propagated(scene, "exact", 1e-15, [float(stop)]).omega[0]
+        with_exact, with_rounded = (_rates_by_coefficients(g, omega, stop) for g in (exact, rounded))
+        found += [
+            Figure("exact", f"{moments}, {revolutions:.0f} rev, exact coefficients", 1e-15, largest(closed, with_exact)),
+            Figure("taylor", f"{moments}, per rev, rounded coefficients", 1e-15,
+                   largest(stepped, with_rounded) / revolutions),
+            Figure("", f"{moments}, per rev, what rounding them changes", 0,
+                   largest(with_exact, with_rounded) / revolutions, judged=False),
+        ]  # fmt: skip
+    return found
+
+
+def s34(long):
+    t, steps, errors = np.linspace(-3, 8, 45), [], {"quaternion": [], "ZXZ": []}
+    sizes = ["1/10", "1/1000", "1/1000000", "1/10000000000", 0]
+    for theta in sizes:
+        attitude = {"sequence": "ZXZ", "angles": ["1/5", theta, "3/10"]}
+        scene = body((1, "6/5", 2), (0, "2/5", 1), attitude=attitude)
+        exact = propagated(scene, "exact", 1e-15, t)
+        for state, kept in errors.items():
+            trajectory = propagated(scene, "taylor", 1e-14, t, state=state)
+            kept.append(apart(trajectory, exact))
+            if state == "quaternion":
+                steps.append(trajectory.stats.accepted)
+    return [Figure("taylor", "quaternion as state, passes at 1e-1 .. 0", 1e-13, max(errors["quaternion"])),
+            Figure("taylor", f"spread of its {min(steps)} steps", 1, max(steps) - min(steps)),
+            Figure("taylor", "angles as state, with switching", 1e-13, max(errors["ZXZ"]))]  # fmt: skip
+
+
+def s39(long):
+    scene, random = symmetric_top(), np.random.default_rng(39)
+    count = 200_000 if long else 20_000
+    stepper = propagator(scene, "taylor", 1e-9)
+    t = random.uniform(-50, 50, count)
+    t[:50], t[50:100] = 0.0, t[100]
+    exact = propagator(scene, "exact")
+    errors = {}
+    for name, times in (("random", t), ("sorted", np.sort(t)), ("ends", np.array([-50.0, 50.0]))):
+        errors[name] = apart(stepper(times), exact(times))
+    start = stepper([0.0])
+    changed = int((start.y[:, 0] != stepper.plan.initial_state).sum())
+    ratio = max(errors["random"], errors["sorted"]) / errors["ends"]
+    fast = symmetric_top((0, 0, 500))
+    times = np.linspace(10, 200, 20)
+    stepped, same = Stepped(fast), propagated(fast, "exact", 1e-15, times)
+    states, _ = stepped.at(times, max_step=200 / 122880)  # every sample time is a step's end, to rounding
+    q = states[:, -4:] / np.linalg.norm(states[:, -4:], axis=1, keepdims=True)
+    return [Figure("taylor", f"{count} samples, error over that of the ends", 2, ratio),
+            Figure("taylor", "states at t = 0 that changed a bit", 0, changed),
+            Figure("taylor", "samples at step ends, spin 500", 1e-12, largest(q, same.quaternion, sign=True))]  # fmt: skip
+
+
+def s40(long):
+    """Speed against heyoka in one interleaved run; needs heyoka."""
+    import heyoka
+
+    from symrot.bench import ensemble
+
+    name, found = "heavy asymmetric", []
+    runs = race.measure(name, rounds=9)
+    ratios = []
+    for decade in (1e-6, 1e-9, 1e-12):
+        ours, theirs = (race.best_of(runs, decade, [each]) for each in ("taylor", "heyoka"))
+        ratios.append(min(theirs.seconds) / min(ours.seconds))
+    found.append(Figure("taylor", "one trajectory, times heyoka's speed, 1e-6 to 1e-12", 2, min(ratios), at_least=True))
+    problem = ensemble.Problem(name, 1.0)
+    runs = ensemble.measure(ensemble.prepare(name, 8, problem.stop, problem), 9)
+    peers = sorted({run.name for run in runs} - {"lanes"})
+    ratios = []
+    for decade in (1e-6, 1e-9, 1e-12):
+        ours, theirs = ensemble.best_of(runs, decade, ["lanes"]), ensemble.best_of(runs, decade, peers)
+        ratios.append(min(theirs.seconds) / min(ours.seconds))
+    found.append(Figure("lanes", "batch of 8, times heyoka's speed", 1.7, min(ratios), at_least=True))
+    times = np.linspace(0, problem.stop, 20_000)
+    motion = taylor.task(problem.taylor_library(), problem.taylor_p, problem.y0, 0.0, 1e-12)
+    values = dict(zip((n for n, _ in problem.kernel.rate_parameters), problem.p, strict=True))
+    from symrot.bench.peers import heyoka_system
+
+    peer = heyoka.taylor_adaptive(heyoka_system(problem.kernel.rates, values), problem.y0, tol=1e-12)
+
+    def dense():
+        peer.time = 0.0
+        peer.state[:] = problem.y0
+        peer.propagate_grid(times)
+
+    plain, slp = (Stepped(asymmetric_top(), flags=flags) for flags in (library.FLAGS, (*library.FLAGS, "-O3")))
+    best = _raced([lambda: motion.again().sample(times), dense, *(
+        (lambda s=s: s.at(200.0, 1e-12)) for s in (plain, slp))])  # fmt: skip
+    found.append(Figure("taylor", "20 000 samples, times heyoka's speed", 5, best[1] / best[0], at_least=True))
+    found.append(Figure("taylor", "time with -O3 over that of our flags", 1.3, max(best[3] / best[2], best[2] / best[3])))
+    return found
+
+
+def _raced(runs, rounds=15):
+    """Return the least time of each, s, of interleaved rounds."""
+    best = [math.inf] * len(runs)
+    for _ in range(rounds):
+        for i, run in enumerate(runs):
+            began = perf_counter()
+            run()
+            best[i] = min(best[i], perf_counter() - began)
+    return best
+
+
+def _instruction_sets():
+    """Return the sets of this processor by name: flags that hold the compiler to each."""
+    try:
+        has = open("/proc/cpuinfo", encoding="utf-8").read()  # noqa: SIM115
+    except OSError:
+        has = ""
+    sets = {"SSE2": ("-march=x86-64",), "plain C": ("-march=x86-64", "-DSYMROT_PLAIN")}
+    if " avx2 " in has:
+        sets = {"AVX2": ("-march=haswell",), **sets}
+    if " avx512vl " in has:
+        sets = {"AVX-512": ("-march=skylake-avx512",), **sets}
+    return sets
+
+
+def s41(long):
+    scene = asymmetric_top()
+    plan = make_plan(scene)
+    kernel = scene_kernel(plan)
+    sets, ends, runs = _instruction_sets(), {}, []
+    hairer_source = library_source(plan, kernel.source, len(kernel.rate_parameters))
+    p = bind(kernel.rate_parameters, plan.constants)
+    for name, flags in sets.items():
+        flags = tuple(flag for flag in library.FLAGS if not flag.startswith("-march")) + flags
+        stepped = Stepped(scene, flags=flags)
+        hairer = library.build(hairer_source, "motion", flags)
+        own, steps = stepped.at(20.0, 1e-13)
+        other, tries = dop853.integrate(hairer, p, stepped.start, 0.0, [5.0], 1e-10)
+        ends[name] = (own[0], steps.accepted, other[0], tries.accepted)
+        runs.append(lambda stepped=stepped: stepped.at(200.0, 1e-12))
+    first, *others = ends
+    found = []
+    for name in others:
+        ulps = [largest(ends[name][k] / np.maximum(1, np.abs(ends[first][k])), ends[first][k] / np.maximum(
+            1, np.abs(ends[first][k]))) / 2.0**-52 / ends[first][k + 1] for k in (0, 2)]  # fmt: skip
+        found += [Figure("taylor", f"{name} against {first}, ulp per step", 4, ulps[0]),
+                  Figure("dop853", f"{name} against {first}, ulp per step", 4, ulps[1])]  # fmt: skip
+    if long:
+        best = dict(zip(sets, _raced(runs), strict=True))
+        found += [Figure("taylor", f"time with {name} over {first}", 1.5, best[name] / best[first], judged=name == "AVX2")
+                  for name in others]  # fmt: skip
+    return found
+
+
+def s42(long):
+    """A square wave, a wave with several jumps inside a step, and a blow: constant between, so that q is known."""
+
+    def wave(t, omega, quaternion):
+        return (0.0, 0.0, 1.0 if t % 1.0 < 0.5 else -1.0)
+
+    scene, t = body((1, 1, 1), (0, 0, 0), attitude={"quaternion": [1, 0, 0, 0]}), np.array([0.3, 1.2, 2.75, 4.0])
+    jumps, found = np.arange(0.5, 4.0, 0.5), []
+    phase = t % 1.0
+    rate = np.where(phase < 0.5, phase, 1.0 - phase)
+    angle = np.floor(t) / 4 + np.where(phase < 0.5, phase**2 / 2, 0.25 - (1 - phase) ** 2 / 2)
+    tried = {}
+    for tolerance in (1e-6, 1e-9, 1e-12):
+        trajectory = propagator(scene, tolerance=tolerance, torque=wave, switching_times=jumps)(t)
+        error = max(largest(trajectory.omega[:, 2], rate), largest(trajectory.quaternion[:, 3], np.sin(angle / 2)))
+        tried[tolerance] = (error / tolerance, trajectory.stats)
+    worst, rejected = max(each[0] for each in tried.values()), sum(each[1].rejected for each in tried.values())
+    found.append(Figure("dop853", "square wave, error over tolerance", 1, worst))
+    found.append(Figure("dop853", "rejected steps at declared switches", 0, rejected))
+    steps = [each[1].accepted for each in tried.values()]
+    order = 3 * math.log(1e3) / math.log(max(steps[-1] / steps[0], 1.0) + 1e-9) / 3 if steps[-1] > steps[0] else math.inf
+    found.append(Figure("dop853", f"steps {steps} for 1e-6, 1e-9, 1e-12", 0, order, at_least=True, judged=False))
+    width = 1e-3
+
+    def blow(t, omega, quaternion):
+        return (0.0, 0.0, 1.0 / width if 2.0 < t < 2.0 + width else 0.0)
+
+    struck = propagator(scene, tolerance=1e-12, torque=blow, switching_times=[2.0, 2.0 + width])([1.0, 2.0, 4.0])
+    error = largest(struck.omega[:, 2], [0, 0, ((2.0 + width) - 2.0) / width])
+    found.append(Figure("dop853", "a blow of 1 ms: omega after it", 1e-12, error))
+    return found
