@@ -1,0 +1,410 @@
+"""The rounding error of one output on many boxes at once: the sum of local errors times derivatives, all enclosed.
+
+Let the operations 1 .. k be computed and the rest be exact, for k from 0 to all: the output moves from the exact value
+to the computed one, by one local error at a time. By the mean value theorem,
+
+    computed - exact = sum over operations of (derivative of the output by its value) * (its own rounding error),
+
+where the derivatives are taken at values between exact and computed ones. Enclosures of all such values come from
+intervals, the derivatives from one pass backwards over them, the errors from half a unit in the last place. No term
+of second order is left out.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from math import inf, pi
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symrot.certify import rounding_functions as functions
+from symrot.certify import rounding_intervals as intervals
+from symrot.certify.operations import Node
+from symrot.certify.rounding_cone import Cone, is_short, places_of
+from symrot.certify.rounding_intervals import DIGITS, Array
+
+__all__ = ["LIBM_ULP", "Evaluation", "Region", "evaluate"]
+
+LIBM_ULP = 1.0  # error of sin, cos and atan2, in units in the last place of the exact value
+UNIT_NORM = 2.0**-20  # how far the squared norm of a unit quaternion may be from 1: that of rounded components is nearer
+
+
+@dataclass(frozen=True)
+class Region:
+    """What holds in a box beyond its sides.
+
+    ``unit`` are groups of places whose squares add up to 1, but for 2^-20; ``clearance`` is the least length of the
+    arguments (y, x) of every atan2, so that the angle is defined.
+    """
+
+    unit: tuple[tuple[str, ...], ...] = ()
+    clearance: float = 0.0
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """Of each box: the bound (infinite where none was found, -1 where the region is empty), what is in the way
+    (node, -1 if nothing), the condition that is not decided (-1 if none), and the largest value of the output."""
+
+    bound: Array
+    obstacle: NDArray[np.int64]
+    undecided: NDArray[np.int64]
+    value: Array
+
+
+@dataclass
+class _State:
+    """One pass over the nodes of a cone."""
+
+    cone: Cone
+    boxes: Array  # (2, inputs, n)
+    decided: NDArray[np.int8]  # (conditions, n)
+    region: Region
+    libm_ulp: float
+    values: list[Array]
+    errors: list[Array | None]
+    outside: NDArray[np.bool_]
+
+    def __post_init__(self) -> None:
+        self.precision = self.cone.precision
+        self.unit = 2.0 ** -DIGITS[self.precision]
+
+    def rounded(self, exact: Array, factor: float = 1.0) -> tuple[Array, Array]:
+        """Return what is computed for exact results, and its error: to the nearest, or ``factor`` half units."""
+        error = intervals.half_ulp(intervals.magnitude(exact), self.precision) * factor
+        if factor != 1.0:
+            return intervals.widened(exact, error), error
+        return intervals.rounded_to(exact, self.precision), error
+
+    def relative(self, exact: Array, units: float, least: float) -> tuple[Array, Array]:
+        """Return what is computed with a relative error, in unit roundoffs, and that error."""
+        error = intervals.magnitude(exact) * (units * self.unit * (1 + 2.0**-20)) + least
+        return intervals.widened(exact, error), error
+
+
+Forward = Callable[[_State, Node, Sequence[Array]], tuple[Array, Array | None]]
+
+
+def _input(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Array | None]:
+    return state.boxes[:, node[1]], None
+
+
+def _constant(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Array | None]:
+    value = intervals.point(float(node[1]), state.boxes.shape[2])
+    if is_short(node[1]):
+        return value, None
+    error = intervals.half_ulp(np.nextafter(intervals.magnitude(value), inf), state.precision)
+    return intervals.widened(value, error), error
+
+
+def _sum(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Array | None]:
+    a, b = taken[0], taken[1] if node[0] == "add" else intervals.negative(taken[1])
+    value, error = state.rounded(intervals.add(a, b))
+    error = np.minimum(error, np.minimum(intervals.magnitude(a), intervals.magnitude(b)))  # RN(a+b) is as near as a, b
+    near = (a[0] > 0) & (b[1] < 0) & (-2 * b[1] >= a[1]) & (2 * a[0] >= -b[0])  # Sterbenz: b/2 <= a <= 2b is exact
+    near |= (b[0] > 0) & (a[1] < 0) & (-2 * a[1] >= b[1]) & (2 * b[0] >= -a[0])
+    return value, np.where(near, 0.0, error)
+
+
+def _power_of_two(node: Node) -> bool:
+    if node[0] != "const" or not node[1]:
+        return False
+    above, below = abs(node[1].numerator), node[1].denominator
+    return above & (above - 1) == 0 and below & (below - 1) == 0
+
+
+def _product(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Array | None]:
+    value, error = state.rounded(intervals.multiply(*taken))
+    factors = [state.cone.nodes[i] for i in node[1:]]
+    scaled = [factor for factor in factors if _power_of_two(factor)]
+    if scaled:  # exact, but for results below the least normal number
+        return value, np.full_like(error, intervals.ETA) if abs(scaled[0][1]) < 1 else None
+    return value, error
+
+
+def _square(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Array | None]:
+    return state.rounded(intervals.square(taken[0]))
+
+
+def _quotient(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Array | None]:
+    return state.rounded(intervals.divide(*taken))
+
+
+def _root(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Array | None]:
+    return state.rounded(intervals.square_root(taken[0]))
+
+
+def _sign(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Array | None]:
+    a = taken[0]
+    if node[0] == "neg":
+        return intervals.negative(a), None
+    size = np.stack([np.where(intervals.contains_zero(a), 0.0, np.abs(a).min(axis=0)), np.abs(a).max(axis=0)])
+    if node[0] == "abs":
+        return size, None
+    b = taken[1]
+    either = np.stack([-size[1], size[1]])
+    return np.where(b[0] > 0, size, np.where(b[1] < 0, intervals.negative(size), either)), None
+
+
+def _circular(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Array | None]:
+    enclosure = functions.sine if node[0] == "sin" else functions.cosine
+    value, error = state.rounded(enclosure(taken[0]), 2 * state.libm_ulp)
+    return np.clip(value, -1.0, 1.0), error
+
+
+def _angle(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Array | None]:
+    y, x = taken
+    if state.region.clearance:
+        length = intervals.add(intervals.square(y), intervals.square(x))
+        state.outside |= length[1] < state.region.clearance**2
+    value, error = state.rounded(np.clip(functions.arc_tangent(y, x), -pi, pi), 2 * state.libm_ulp)
+    return value, error
+
+
+def _norm(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Array | None]:
+    total = intervals.square(taken[0])
+    for part in taken[1:]:
+        total = intervals.add(total, intervals.square(part))
+    least = {"binary64": 1e-161, "binary32": 1e-22}[state.precision]  # squares below the least normal number
+    root = intervals.square_root(total)
+    value, error = state.relative(root, node[1] / 2, least)
+    rounding = intervals.half_ulp(intervals.magnitude(value), state.precision)
+    value = intervals.rounded_to(intervals.widened(value, rounding), state.precision)
+    return np.stack([np.maximum(value[0], 0.0), value[1]]), error + rounding
+
+
+def _sinc(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Array | None]:
+    exact = functions.sinc(taken[0])
+    sine = intervals.magnitude(functions.sine(taken[0]))
+    size = np.where(intervals.contains_zero(taken[0]), 0.0, np.abs(taken[0]).min(axis=0))
+    with np.errstate(divide="ignore"):
+        of_sine = 2 * state.libm_ulp * intervals.half_ulp(sine, state.precision) / size
+    of_sine = np.fmin(of_sine, intervals.magnitude(exact) * (2 * state.libm_ulp * state.unit)) * (1 + 2.0**-20)
+    value = intervals.widened(exact, of_sine)
+    rounding = intervals.half_ulp(intervals.magnitude(value), state.precision)
+    return intervals.widened(value, rounding), of_sine + rounding
+
+
+def _arc_ratio(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Array | None]:
+    value, _, _ = functions.arc_ratio_terms(*taken, _length(*taken))
+    return state.relative(value, 2 * state.libm_ulp + 1, 0.0)
+
+
+def _length(a: Array, b: Array) -> Array:
+    return intervals.square_root(intervals.add(intervals.square(a), intervals.square(b)))
+
+
+def _choice(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Array | None]:
+    decision = state.decided[node[1]]
+    value = np.where(decision == 1, taken[0], np.where(decision == 0, taken[1], intervals.hull(*taken)))
+    if state.cone.conditions[node[1]][0] != "<":
+        return value, None
+    left_out = intervals.magnitude(taken[0]) * _left_out(state.precision)
+    return intervals.widened(value, left_out), np.where(decision == 0, 0.0, left_out)
+
+
+def _left_out(precision: str) -> float:
+    """Return what a series leaves out at most, relative to its value: link 3 proves it for each."""
+    return 2.0 ** -(DIGITS[precision] + 2) * (1 + 2.0**-20)
+
+
+FORWARD: dict[str, Forward] = {
+    "in": _input, "const": _constant, "add": _sum, "sub": _sum, "mul": _product, "square": _square, "div": _quotient,
+    "sqrt": _root, "neg": _sign, "abs": _sign, "copysign": _sign, "sin": _circular, "cos": _circular, "atan2": _angle,
+    "norm": _norm, "sinc": _sinc, "arc_ratio": _arc_ratio, "select": _choice,
+}  # fmt: skip
+
+_times = intervals.multiply_loosely
+
+
+def _from_sum(state: _State, index: int, adjoint: Array) -> list[Array]:
+    return [adjoint, adjoint if state.cone.nodes[index][0] == "add" else intervals.negative(adjoint)]
+
+
+def _from_product(state: _State, index: int, adjoint: Array) -> list[Array]:
+    a, b = state.cone.nodes[index][1:]
+    return [_times(adjoint, state.values[b]), _times(adjoint, state.values[a])]
+
+
+def _from_square(state: _State, index: int, adjoint: Array) -> list[Array]:
+    return [_times(adjoint, 2 * state.values[state.cone.nodes[index][1]])]
+
+
+def _from_quotient(state: _State, index: int, adjoint: Array) -> list[Array]:
+    a, b = (state.values[i] for i in state.cone.nodes[index][1:])
+    by_above = intervals.divide(adjoint, b)
+    return [by_above, intervals.negative(_times(by_above, intervals.divide(a, b)))]
+
+
+def _from_root(state: _State, index: int, adjoint: Array) -> list[Array]:
+    root = intervals.square_root(state.values[state.cone.nodes[index][1]])
+    return [intervals.divide(adjoint, 2 * root)]
+
+
+def _from_sign(state: _State, index: int, adjoint: Array) -> list[Array]:
+    node = state.cone.nodes[index]
+    if node[0] == "neg":
+        return [intervals.negative(adjoint)]
+    size = intervals.magnitude(adjoint)
+    either = np.stack([-size, size])
+    a = state.values[node[1]]
+    if node[0] == "abs":
+        return [np.where(a[0] >= 0, adjoint, np.where(a[1] <= 0, intervals.negative(adjoint), either))]
+    return [either, np.zeros_like(adjoint)]
+
+
+def _from_sine(state: _State, index: int, adjoint: Array) -> list[Array]:
+    return [_times(adjoint, functions.cosine(state.values[state.cone.nodes[index][1]]))]
+
+
+def _from_cosine(state: _State, index: int, adjoint: Array) -> list[Array]:
+    return [intervals.negative(_times(adjoint, functions.sine(state.values[state.cone.nodes[index][1]])))]
+
+
+def _from_angle(state: _State, index: int, adjoint: Array) -> list[Array]:
+    y, x = (state.values[i] for i in state.cone.nodes[index][1:])
+    scaled = intervals.divide(adjoint, intervals.add(intervals.square(y), intervals.square(x)))
+    return [_times(scaled, x), intervals.negative(_times(scaled, y))]
+
+
+def _from_norm(state: _State, index: int, adjoint: Array) -> list[Array]:
+    taken = [state.values[i] for i in state.cone.nodes[index][2:]]
+    total = intervals.square(taken[0])
+    for part in taken[1:]:
+        total = intervals.add(total, intervals.square(part))
+    root = intervals.square_root(total)
+    found = []
+    for part in taken:
+        slope = intervals.divide(part, root)
+        bounded = np.where(np.isfinite(slope), np.clip(slope, -1.0, 1.0), np.array([[-1.0], [1.0]]))
+        found.append(_times(adjoint, bounded))
+    return found
+
+
+def _from_sinc(state: _State, index: int, adjoint: Array) -> list[Array]:
+    return [_times(adjoint, functions.sinc_slope(state.values[state.cone.nodes[index][1]]))]
+
+
+def _from_arc_ratio(state: _State, index: int, adjoint: Array) -> list[Array]:
+    s, c = (state.values[i] for i in state.cone.nodes[index][1:])
+    _, by_s, by_c = functions.arc_ratio_terms(s, c, _length(s, c))
+    return [_times(adjoint, by_s), _times(adjoint, by_c)]
+
+
+def _from_choice(state: _State, index: int, adjoint: Array) -> list[Array]:
+    decision = state.decided[state.cone.nodes[index][1]]
+    return [np.where(decision != 0, adjoint, 0.0), np.where(decision != 1, adjoint, 0.0)]
+
+
+BACKWARD: dict[str, Callable[[_State, int, Array], list[Array]]] = {
+    "add": _from_sum, "sub": _from_sum, "mul": _from_product, "square": _from_square, "div": _from_quotient,
+    "sqrt": _from_root, "neg": _from_sign, "abs": _from_sign, "copysign": _from_sign, "sin": _from_sine,
+    "cos": _from_cosine, "atan2": _from_angle, "norm": _from_norm, "sinc": _from_sinc, "arc_ratio": _from_arc_ratio,
+    "select": _from_choice,
+}  # fmt: skip
+
+_POSSIBLE: dict[str, Callable[[Array, Array], Any]] = {  # whether a relation may hold, and whether it may fail
+    "<": lambda a, b: (a[0] < b[1], a[1] >= b[0]),
+    "<=": lambda a, b: (a[0] <= b[1], a[1] > b[0]),
+    ">": lambda a, b: (a[1] > b[0], a[0] <= b[1]),
+    ">=": lambda a, b: (a[1] >= b[0], a[0] < b[1]),
+    "==": lambda a, b: ((a[0] <= b[1]) & (a[1] >= b[0]), (a[0] != a[1]) | (b[0] != b[1]) | (a[0] != b[0])),
+    "!=": lambda a, b: ((a[0] != a[1]) | (b[0] != b[1]) | (a[0] != b[0]), (a[0] <= b[1]) & (a[1] >= b[0])),
+}
+
+
+def evaluate(
+    cone: Cone, boxes: Array, decided: NDArray[np.int8], region: Region = Region(), libm_ulp: float = LIBM_ULP
+) -> Evaluation:
+    """Return bounds of the rounding error of an output on boxes.
+
+    Parameters
+    ----------
+    cone : Cone
+        The computation of the output.
+    boxes : ndarray, shape (2, inputs, n)
+        Least and largest value of each input.
+    decided : ndarray of int8, shape (conditions, n)
+        The branch that is taken: 1 where the relation holds, 0 where not, -1 for either.
+    region : Region
+        Restrictions; a box outside of them gets the bound -1.
+    libm_ulp : float
+        Largest error of sin, cos and atan2, in units in the last place.
+    """
+    count = boxes.shape[2]
+    state = _State(cone, boxes, decided.copy(), region, libm_ulp, [], [], np.zeros(count, bool))
+    undecided = np.full(count, -1, np.int64)
+    waiting: dict[int, list[int]] = {}
+    for number, (_, i, j) in enumerate(cone.conditions):
+        waiting.setdefault(max(i, j), []).append(number)
+    with np.errstate(all="ignore"):
+        _restrict(state)
+        for index, node in enumerate(cone.nodes):
+            value, error = FORWARD[node[0]](state, node, [state.values[i] for i in places_of(node)])
+            state.values.append(value)
+            state.errors.append(error)
+            for number in waiting.get(index, ()):
+                undecided = _decide(state, number, undecided)
+        bound, obstacle = _backwards(state)
+    bound = np.where((obstacle >= 0) | (undecided >= 0), inf, bound)
+    bound = np.where(state.outside, -1.0, bound)
+    return Evaluation(bound, obstacle, undecided, intervals.magnitude(state.values[-1]))
+
+
+def _restrict(state: _State) -> None:
+    for group in state.region.unit:
+        numbers = [state.cone.places.index(place) for place in group if place in state.cone.places]
+        if not numbers:
+            continue
+        total = intervals.point(0.0, state.boxes.shape[2])
+        for number in numbers:
+            total = intervals.add(total, intervals.square(state.boxes[:, number]))
+        state.outside |= total[0] > 1 + UNIT_NORM
+        if len(numbers) == len(group):
+            state.outside |= total[1] < 1 - UNIT_NORM
+
+
+def _decide(state: _State, number: int, undecided: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Take the branch that is the only possible one; note where both are."""
+    relation, i, j = state.cone.conditions[number]
+    holds, fails = _POSSIBLE[relation](state.values[i], state.values[j])
+    decision = state.decided[number]
+    state.outside |= ((decision == 1) & ~holds) | ((decision == 0) & ~fails)
+    open_ = decision < 0
+    decision[open_ & holds & ~fails] = 1
+    decision[open_ & fails & ~holds] = 0
+    return np.where((undecided < 0) & open_ & holds & fails, number, undecided)
+
+
+def _backwards(state: _State) -> tuple[Array, NDArray[np.int64]]:
+    """Return the sum of errors times derivatives, and the first node that is in the way of a finite one, or -1.
+
+    What no branch uses has the derivative zero, and may be anything.
+    """
+    nodes = state.cone.nodes
+    count = state.boxes.shape[2]
+    adjoints: list[Array | None] = [None] * len(nodes)
+    adjoints[-1] = intervals.point(1.0, count)
+    bound, of_value = np.zeros(count), np.full(count, -1, np.int64)
+    of_slope = of_value
+    for index in range(len(nodes) - 1, -1, -1):
+        adjoint, error = adjoints[index], state.errors[index]
+        if adjoint is None:
+            continue
+        unused = (adjoint == 0).all(axis=0)
+        of_value = np.where(~np.isfinite(state.values[index]).all(axis=0) & ~unused, index, of_value)
+        if error is not None:
+            term = np.where(unused | (error == 0), 0.0, intervals.magnitude(adjoint) * error)
+            of_slope = np.where(~np.isfinite(term), index, of_slope)
+            bound = bound + term
+        kind = nodes[index][0]
+        if kind not in BACKWARD:
+            continue
+        for place, part in zip(places_of(nodes[index]), BACKWARD[kind](state, index, adjoint), strict=True):
+            used = np.where(unused, 0.0, part) if state.cone.conditions else part
+            known = adjoints[place]
+            total = used if known is None else known + used
+            adjoints[place] = total if known is None else np.where(total == 0, 0.0, intervals.widened(total, 0.0))
+    whole = bound * (1 + 2.0**-52 * (2 * len(nodes) + 4)) + 1e-320 * len(nodes) * (bound > 0)
+    return whole, np.where(of_value >= 0, of_value, of_slope)

@@ -1,0 +1,249 @@
+"""What one output depends on, in the form in which its rounding error is bounded.
+
+The operations behind an output, renumbered so that equal computations look equal whatever their kernel: inputs are
+numbered by first use. Computations that have a finite derivative only as a whole are one node each:
+
+``norm``: the root of a sum of squares, whose derivative x/|x| is at most 1 at zero too;
+``sinc``: ``x == 0 ? 1 : sin(x)/x``;  ``arc_ratio``: ``s == 0 ? 1/c : atan2(s, c)/s`` with s a root and c not negative.
+"""
+
+import hashlib
+import json
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from typing import Any
+
+from symrot.certify.operations import Node, Operations, operands
+from symrot.certify.rounded import SHORT
+from symrot.errors import CertificateError
+
+__all__ = ["Cone", "cone_of"]
+
+CALLS = ("sin", "cos", "atan2")
+
+
+@dataclass(frozen=True)
+class Cone:
+    """The computation of one output: nodes with operands before them, the last node is the output.
+
+    Beside the kinds of :class:`Operations` there are ``("square", i)``, ``("sin", i)``, ``("cos", i)``,
+    ``("atan2", i, j)``, ``("norm", roundings, i, ...)``, ``("sinc", i)``, ``("arc_ratio", i, j)`` and
+    ``("select", condition, x, y)``; an input is ``("in", number)``. ``conditions`` are (relation, i, j).
+    """
+
+    precision: str
+    places: tuple[str, ...]  # of the inputs, by number
+    nodes: tuple[Node, ...]
+    conditions: tuple[tuple[str, int, int], ...]
+
+    @cached_property
+    def digest(self) -> str:
+        """The SHA-256 of what is computed, whatever the inputs are called."""
+        nodes = [[str(item) for item in node] for node in self.nodes]
+        text = json.dumps([self.precision, nodes, self.conditions], separators=(",", ":"))
+        return hashlib.sha256(text.encode()).hexdigest()
+
+    @cached_property
+    def inputs_of(self) -> tuple[frozenset[int], ...]:
+        """The inputs, by number, that each node depends on."""
+        found: list[frozenset[int]] = []
+        for node in self.nodes:
+            if node[0] == "in":
+                found.append(frozenset([node[1]]))
+                continue
+            taken = places_of(node)
+            if node[0] == "select":
+                taken = (*taken, *self.conditions[node[1]][1:])
+            found.append(frozenset().union(*(found[i] for i in taken)))
+        return tuple(found)
+
+    @cached_property
+    def exact(self) -> tuple[bool, ...]:
+        """Which nodes are computed without any error before them: inputs, their signs, short constants."""
+        found: list[bool] = []
+        for node in self.nodes:
+            kind = node[0]
+            own = kind in ("in", "neg", "abs", "copysign") or (kind == "const" and is_short(node[1]))
+            found.append(own and all(found[i] for i in places_of(node)))
+        return tuple(found)
+
+    @cached_property
+    def choices(self) -> tuple[tuple[str, bool], ...]:
+        """Each condition on what is rounded: its text, and whether its branches differ by whole turns only."""
+        found = []
+        for number, (relation, i, j) in enumerate(self.conditions):
+            if self.exact[i] and self.exact[j] or relation == "<":
+                continue
+            turns = all(
+                _turned(self, node[2]) == _turned(self, node[3])
+                for node in self.nodes
+                if node[0] == "select" and node[1] == number
+            )
+            found.append((f"{self._text(i)} {relation} {self._text(j)}", turns))
+        return tuple(found)
+
+    def _text(self, index: int, depth: int = 4) -> str:
+        node = self.nodes[index]
+        if node[0] == "in":
+            return self.places[node[1]]
+        if node[0] == "const":
+            return repr(float(node[1]))
+        if not depth:
+            return ".."
+        taken = [self._text(i, depth - 1) for i in places_of(node)]
+        if node[0] in _SIGNS:
+            return f"({f' {_SIGNS[node[0]]} '.join(taken)})"
+        return f"{node[0]}({', '.join(taken)})"
+
+    def text(self, index: int) -> str:
+        """Return a node as a short formula, for people."""
+        return self._text(index)
+
+
+_SIGNS = {"add": "+", "sub": "-", "mul": "*", "div": "/"}
+
+
+def places_of(node: Node) -> tuple[int, ...]:
+    """Return the operands of a node of a cone."""
+    if node[0] in ("in", "const"):
+        return ()
+    return tuple(node[2:]) if node[0] in ("norm", "select") else tuple(node[1:])
+
+
+def is_short(value: Fraction) -> bool:
+    """Tell whether a constant stands for itself: one of few significant bits, as link 3 reads it."""
+    above = abs(value.numerator)
+    odd = above // (above & -above) if above else 0
+    return odd.bit_length() <= SHORT and value.denominator & (value.denominator - 1) == 0
+
+
+def _turned(cone: Cone, index: int, sign: int = 1) -> tuple[int, int]:
+    """Return what a node is but for whole turns and sign: a sum with a constant near 2 pi is what is added to it."""
+    node = cone.nodes[index]
+    if node[0] == "neg":
+        return _turned(cone, node[1], -sign)
+    if node[0] == "select":
+        first, second = _turned(cone, node[2], sign), _turned(cone, node[3], sign)
+        return first if first == second else (index, sign)
+    if node[0] in ("add", "sub"):
+        left, right = node[1:]
+        if _is_turn(cone.nodes[right]):
+            return _turned(cone, left, sign)
+        if _is_turn(cone.nodes[left]):
+            return _turned(cone, right, sign if node[0] == "add" else -sign)
+    return index, sign
+
+
+def _is_turn(node: Node) -> bool:
+    return node[0] == "const" and abs(abs(float(node[1])) - 6.283185307179586) < 1e-6
+
+
+class _Reader:
+    """Copies the operations behind one output into a cone."""
+
+    def __init__(self, operations: Operations) -> None:
+        self.source = operations.nodes
+        self.nodes: list[Node] = []
+        self.known: dict[Any, int] = {}
+        self.numbers: dict[str, int] = {}
+        self.conditions: list[tuple[str, int, int]] = []
+        self.done: dict[int, int] = {}
+
+    def put(self, *node: Any) -> int:
+        if node not in self.known:
+            self.known[node] = len(self.nodes)
+            self.nodes.append(node)
+        return self.known[node]
+
+    def read(self, index: int) -> int:
+        if index not in self.done:
+            self.done[index] = self._read(self.source[index], index)
+        return self.done[index]
+
+    def _read(self, node: Node, index: int) -> int:
+        kind = node[0]
+        if kind == "in":
+            return self.put("in", self.numbers.setdefault(node[1], len(self.numbers)))
+        if kind == "const":
+            return self.put(*node)
+        if kind == "mul" and node[1] == node[2]:
+            return self.put("square", self.read(node[1]))
+        for pattern in _PATTERNS:
+            found = pattern(self, node)
+            if found is not None:
+                return found
+        if kind == "select":
+            left, right = self.read(node[2]), self.read(node[3])
+            condition = (node[1], left, right)
+            if condition not in self.conditions:
+                self.conditions.append(condition)
+            return self.put("select", self.conditions.index(condition), self.read(node[4]), self.read(node[5]))
+        if kind == "call":
+            if node[1] not in CALLS:
+                raise CertificateError(f"expected one of {', '.join(CALLS)} where an error is bounded, got {node[1]}")
+            return self.put(node[1], *(self.read(i) for i in node[2]))
+        return self.put(kind, *(self.read(i) for i in operands(node)))
+
+    def squares(self, index: int, depth: int = 0) -> list[tuple[int, int]] | None:
+        """Return (what is squared, roundings above it) of a sum of squares."""
+        node = self.source[index]
+        if node[0] == "mul" and node[1] == node[2]:
+            return [(node[1], depth + 1)]
+        if node[0] == "add":
+            left, right = (self.squares(i, depth + 1) for i in node[1:])
+            return left + right if left and right else None
+        return None
+
+
+def _norm(reader: _Reader, node: Node) -> int | None:
+    squares = reader.squares(node[1]) if node[0] == "sqrt" else None
+    if not squares:
+        return None
+    return reader.put("norm", max(depth for _, depth in squares), *(reader.read(i) for i, _ in squares))
+
+
+def _at_zero(reader: _Reader, node: Node) -> tuple[Node, Node] | None:
+    """Return both branches of a choice between a limit at zero and a quotient by what is compared."""
+    if node[0] != "select" or node[1] != "==" or reader.source[node[3]] != ("const", Fraction(0)):
+        return None
+    then, other = reader.source[node[4]], reader.source[node[5]]
+    return (then, other) if other[0] == "div" and other[2] == node[2] else None
+
+
+def _sinc(reader: _Reader, node: Node) -> int | None:
+    branches = _at_zero(reader, node)
+    if branches and branches[0] == ("const", Fraction(1)):
+        if reader.source[branches[1][1]] == ("call", "sin", (node[2],)):
+            return reader.put("sinc", reader.read(node[2]))
+    return None
+
+
+def _arc_ratio(reader: _Reader, node: Node) -> int | None:
+    branches = _at_zero(reader, node)
+    if not branches or branches[0][0] != "div" or reader.source[branches[0][1]] != ("const", Fraction(1)):
+        return None
+    s, c = node[2], branches[0][2]
+    if reader.source[branches[1][1]] != ("call", "atan2", (s, c)):
+        return None
+    if reader.source[s][0] != "sqrt" or reader.source[c][0] != "abs":
+        return None
+    return reader.put("arc_ratio", reader.read(s), reader.read(c))
+
+
+_PATTERNS: tuple[Callable[[_Reader, Node], int | None], ...] = (_norm, _sinc, _arc_ratio)
+
+
+def cone_of(operations: Operations, index: int) -> Cone:
+    """Return the computation of one node of a kernel.
+
+    Raises
+    ------
+    CertificateError
+        For a function whose rounding is not modelled.
+    """
+    reader = _Reader(operations)
+    root = reader.read(index)
+    places = tuple(sorted(reader.numbers, key=reader.numbers.__getitem__))
+    return Cone(operations.precision, places, tuple(reader.nodes), tuple(reader.conditions))

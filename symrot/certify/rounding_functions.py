@@ -1,0 +1,141 @@
+"""Enclosures of sines, arc tangents and their relatives on intervals, from ``+ - * / sqrt`` alone.
+
+The sine of the machine's own library differs between machines; bounds may not. Arguments are reduced by pi/2 in two
+parts and summed as Taylor series, to an absolute error below 1e-15 that every result is widened by.
+"""
+
+from collections.abc import Callable
+from fractions import Fraction
+from math import factorial, pi
+
+import numpy as np
+
+from symrot.certify.rounding_intervals import Array, contains_zero, divide, multiply_loosely, negative, widened
+
+__all__ = ["arc_ratio_terms", "arc_tangent", "cosine", "sinc", "sinc_slope", "sine"]
+
+SLACK = 2e-15  # absolute, many times what the series and the reduction lose
+FARTHEST = 2.0**20  # |x| beyond which nothing is reduced
+NEAR_CRITICAL = 1e-9  # in turns: an extremum this near counts as inside
+
+_HALF_PI = (float.fromhex("0x1.921fb544p+0"), float.fromhex("0x1.0b4611a626331p-34"))  # 33 bits, and the rest
+
+
+def _series(terms: list[Fraction]) -> tuple[float, ...]:
+    return tuple(float(term) for term in reversed(terms))
+
+
+_SINC = _series([Fraction((-1) ** n, factorial(2 * n + 1)) for n in range(10)])
+_COSINE = _series([Fraction((-1) ** n, factorial(2 * n)) for n in range(10)])
+_SINE_GAP = _series([Fraction((-1) ** n, factorial(2 * n + 3)) for n in range(10)])
+_TANGENT_GAP = _series([Fraction((-1) ** n * 2 * (n + 1), factorial(2 * n + 3)) for n in range(10)])
+_ARC = _series([Fraction((-1) ** n, 2 * n + 1) for n in range(9)])
+
+
+def _polynomial(coefficients: tuple[float, ...], t: Array) -> Array:
+    value = np.full_like(t, coefficients[0])
+    for coefficient in coefficients[1:]:
+        value = value * t + coefficient
+    return value
+
+
+def _sine_of(x: Array, quarter_turns: int) -> Array:
+    """Return sin(x + quarter_turns*pi/2) for |x| <= FARTHEST, to an absolute error below 1e-15."""
+    count = np.rint(x * (2 / pi))
+    rest = (x - count * _HALF_PI[0]) - count * _HALF_PI[1]
+    t = rest * rest
+    quadrant = (count.astype(np.int64) + quarter_turns) % 4
+    value = np.where(quadrant % 2 == 0, rest * _polynomial(_SINC, t), _polynomial(_COSINE, t))
+    return np.where(quadrant >= 2, -value, value)
+
+
+def _circular(x: Array, quarter_turns: int) -> Array:
+    far = np.maximum(np.abs(x[0]), np.abs(x[1])) > FARTHEST
+    ends = np.sort(_sine_of(np.where(far, 0.0, x), quarter_turns), axis=0)
+    found = np.clip(widened(ends, SLACK), -1.0, 1.0)
+    turns = x / (2 * pi) + 0.25 * quarter_turns
+    for row, peak in ((1, 0.25), (0, 0.75)):
+        inside = np.floor(turns[1] - peak + NEAR_CRITICAL) != np.floor(turns[0] - peak - NEAR_CRITICAL)
+        found[row] = np.where(inside | far, 1.0 if row else -1.0, found[row])
+    return found
+
+
+def sine(x: Array) -> Array:
+    """Return an enclosure of sin on intervals."""
+    return _circular(x, 0)
+
+
+def cosine(x: Array) -> Array:
+    """Return an enclosure of cos on intervals."""
+    return _circular(x, 1)
+
+
+def _size(x: Array) -> Array:
+    """Return the intervals of |x|."""
+    size = np.abs(x)
+    return np.stack([np.where(contains_zero(x), 0.0, size.min(axis=0)), size.max(axis=0)])
+
+
+def _falling(x: Array, near: tuple[float, ...], far: Callable[[Array], Array], end: float, crude: float) -> Array:
+    """Return an enclosure of an even function that falls for 0 <= x <= end, and is at most ``crude`` in size beyond."""
+    size = _size(x)
+    inside = np.minimum(size, end)
+    value = np.where(inside < 1.0, _polynomial(near, inside * inside), far(np.maximum(inside, 1.0)))
+    found = widened(value[::-1], 2 * SLACK)
+    beyond = size[1] > end
+    return np.where(beyond, np.array([[-crude], [crude]]), found)
+
+
+def sinc(x: Array) -> Array:
+    """Return an enclosure of sin(x)/x, which falls from 1 at 0 to x = 4.49, and is never below -0.2173."""
+    found = _falling(x, _SINC, lambda z: _sine_of(z, 0) / z, 4.4, 1.0)
+    return np.clip(found, -0.2173, 1.0)
+
+
+def _tangent_gap(x: Array) -> Array:
+    """(sin x - x cos x)/x^3 = j1(x)/x, which falls from 1/3 at 0 to x = 5.7."""
+    return _falling(x, _TANGENT_GAP, lambda z: (_sine_of(z, 0) / z - _sine_of(z, 1)) / (z * z), 4.4, 1 / 3)
+
+
+def _sine_gap(x: Array) -> Array:
+    """(x - sin x)/x^3, which falls from 1/6 at 0 and is positive."""
+    return _falling(x, _SINE_GAP, lambda z: (1 - _sine_of(z, 0) / z) / (z * z), 6.0, 1 / 6)
+
+
+def sinc_slope(x: Array) -> Array:
+    """Return an enclosure of the derivative of sin(x)/x, which is ``-x (sin x - x cos x)/x^3``."""
+    return negative(multiply_loosely(x, _tangent_gap(x)))
+
+
+def _arc(z: Array) -> Array:
+    """Return arctan of finite numbers, to an absolute error below 1e-15."""
+    size = np.abs(z)
+    inverted = size > 1
+    small = np.where(inverted, 1 / np.where(inverted, size, 1.0), size)
+    for _ in range(3):
+        small = small / (1 + np.sqrt(1 + small * small))
+    value = 8 * small * _polynomial(_ARC, small * small)
+    return np.copysign(np.where(inverted, pi / 2 - value, value), z)
+
+
+def arc_tangent(y: Array, x: Array) -> Array:
+    """Return an enclosure of atan2(y, x); the whole turn where y changes its sign and x may be negative."""
+    with np.errstate(all="ignore"):
+        right, up = divide(y, x), divide(x, y)
+        sloped = [_arc(np.where(np.isfinite(q), q, 0.0)) for q in (right, up[::-1])]
+    quarter = np.where(y[0] > 0, pi / 2, -pi / 2)
+    found = np.where(x[0] > 0, sloped[0], np.where(contains_zero(y), np.array([[-pi], [pi]]), quarter - sloped[1]))
+    return np.clip(widened(found, 2 * SLACK), -pi - SLACK, pi + SLACK)
+
+
+def arc_ratio_terms(s: Array, c: Array, radius: Array) -> tuple[Array, Array, Array]:
+    """Return enclosures of atan2(s, c)/s and of its derivatives by s and by c, for s >= 0, c >= 0, (s, c) not (0, 0).
+
+    With ``s = r sin(a)``, ``c = r cos(a)`` they are ``1/(r sinc a)``, ``-4 a sine_gap(2a)/(r sinc a)^2`` and ``-1/r^2``,
+    which are finite at ``a = 0``.
+    """
+    angle = np.clip(arc_tangent(s, c), 0.0, pi / 2 + SLACK)
+    one = np.ones_like(s)
+    value = divide(one, multiply_loosely(radius, sinc(angle)))
+    slope = multiply_loosely(multiply_loosely(4 * angle, _sine_gap(2 * angle)), multiply_loosely(value, value))
+    return value, negative(slope), negative(divide(one, multiply_loosely(radius, radius)))

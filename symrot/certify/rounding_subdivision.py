@@ -1,0 +1,214 @@
+"""The largest rounding error on a box: halve the worst parts until the bound is near what single points reach.
+
+Best first, in batches: of the parts with the largest bounds, each is halved in the input whose range, shrunk to its
+middle, lowers the bound most, or split into the two branches of a choice that is not decided on it. Parts whose bound
+is not above what a single point reaches (but for ``GAP``) are settled. The work is counted in evaluations of boxes,
+not in time: the same bytes come out everywhere.
+"""
+
+from dataclasses import dataclass
+from math import inf
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symrot.certify.rounding_adjoint import LIBM_ULP, Evaluation, Region, evaluate
+from symrot.certify.rounding_cone import Cone
+from symrot.certify.rounding_intervals import Array
+
+__all__ = ["Search", "search"]
+
+GAP = 1.02  # a bound within 2 % of what a point reaches is converged
+BATCH = 256  # parts that are halved at once
+CHUNK = 2048  # boxes evaluated at once
+NARROWEST = 2.0**-24  # of the width of the box: a part this narrow that has no bound is at a singular point
+
+
+@dataclass(frozen=True)
+class Search:
+    """What was found: no error in the box is larger than ``bound``; the method finds ``pointwise`` at ``worst``.
+
+    ``bound`` is infinite where none was found: then ``obstacle`` is the node in the way, near ``worst``.
+    """
+
+    bound: float
+    pointwise: float
+    worst: tuple[float, ...]
+    largest_value: float
+    evaluations: int
+    converged: bool
+    obstacle: int = -1
+
+
+@dataclass
+class _Parts:
+    boxes: Array  # (2, inputs, n)
+    decided: NDArray[np.int8]  # (conditions, n)
+    bound: Array
+    obstacle: NDArray[np.int64]
+    undecided: NDArray[np.int64]
+
+    def take(self, chosen: NDArray[np.intp] | NDArray[np.bool_]) -> "_Parts":
+        return _Parts(
+            self.boxes[:, :, chosen], self.decided[:, chosen], self.bound[chosen], self.obstacle[chosen],
+            self.undecided[chosen],
+        )  # fmt: skip
+
+    def join(self, other: "_Parts") -> "_Parts":
+        return _Parts(
+            np.concatenate([self.boxes, other.boxes], axis=2), np.concatenate([self.decided, other.decided], axis=1),
+            np.concatenate([self.bound, other.bound]), np.concatenate([self.obstacle, other.obstacle]),
+            np.concatenate([self.undecided, other.undecided]),
+        )  # fmt: skip
+
+
+class _Search:
+    def __init__(self, cone: Cone, box: Array, region: Region, libm_ulp: float) -> None:
+        self.cone, self.box, self.region, self.libm_ulp = cone, box, region, libm_ulp
+        self.width = box[1] - box[0]
+        self.evaluations = 0
+        self.pointwise, self.worst = -1.0, tuple(float(x) for x in box.mean(axis=0))
+        self.largest_value = 0.0
+
+    def evaluate(self, boxes: Array, decided: NDArray[np.int8]) -> Evaluation:
+        """Evaluate boxes, a chunk at a time."""
+        count = boxes.shape[2]
+        self.evaluations += count
+        found = [
+            evaluate(self.cone, boxes[:, :, k : k + CHUNK], decided[:, k : k + CHUNK], self.region, self.libm_ulp)
+            for k in range(0, count, CHUNK)
+        ]
+        return Evaluation(*(np.concatenate([getattr(part, name) for part in found]) for name in _FIELDS))
+
+    def parts(self, boxes: Array, decided: NDArray[np.int8]) -> tuple[_Parts, Evaluation]:
+        """Return the parts of the region among boxes, with their bounds."""
+        found = self.evaluate(boxes, decided)
+        inside = found.bound >= 0
+        parts = _Parts(boxes, decided, found.bound, found.obstacle, found.undecided)
+        return parts.take(inside), found
+
+    def look_at_points(self, parts: _Parts) -> None:
+        """Raise what single points reach by the middles and the outermost corners of parts."""
+        low, high = parts.boxes
+        outermost = np.where(np.abs(high) >= np.abs(low), high, low)
+        points = np.concatenate([(low + high) / 2, outermost], axis=1)
+        found = self.evaluate(np.stack([points, points]), np.concatenate([parts.decided] * 2, axis=1))
+        reached = np.where(np.isfinite(found.bound), found.bound, -1.0)
+        best = int(np.argmax(reached))
+        if reached[best] > self.pointwise:
+            self.pointwise, self.worst = float(reached[best]), tuple(float(x) for x in points[:, best])
+
+    def halves(self, parts: _Parts) -> tuple[Array, NDArray[np.int8]]:
+        """Return the halves of parts."""
+        choosing = parts.undecided >= 0
+        boxes, decided = [], []
+        if choosing.any():
+            chosen = parts.take(choosing)
+            for branch in (0, 1):
+                taken = chosen.decided.copy()
+                taken[chosen.undecided, np.arange(taken.shape[1])] = branch
+                boxes.append(chosen.boxes)
+                decided.append(taken)
+        if not choosing.all():
+            rest = parts.take(~choosing)
+            which = self.direction(rest)
+            column = np.arange(which.size)
+            middle = (rest.boxes[0, which, column] + rest.boxes[1, which, column]) / 2
+            for side in (1, 0):
+                half = rest.boxes.copy()
+                half[side, which, column] = middle
+                boxes.append(half)
+                decided.append(rest.decided)
+        return np.concatenate(boxes, axis=2), np.concatenate(decided, axis=1)
+
+    def direction(self, parts: _Parts) -> NDArray[np.int64]:
+        """Return the input in which to halve each part."""
+        inputs, count = parts.boxes.shape[1:]
+        relative = np.where(self.width[:, None] > 0, (parts.boxes[1] - parts.boxes[0]) / self.width[:, None], 0.0)
+        depends = np.array([[k in found for k in range(inputs)] for found in self.cone.inputs_of])
+        widest = np.argmax(relative * np.where(parts.obstacle < 0, True, depends[parts.obstacle].T), axis=0)
+        middle = parts.boxes.mean(axis=0)
+        shrunk = np.repeat(parts.boxes, inputs, axis=2).reshape(2, inputs, count, inputs)
+        for k in range(inputs):
+            shrunk[:, k, :, k] = middle[k]
+        found = self.evaluate(shrunk.reshape(2, inputs, -1), np.repeat(parts.decided, inputs, axis=1))
+        bounds = np.where(relative.T > 0, found.bound.reshape(count, inputs), inf)
+        bounds = np.where(bounds < 0, inf, bounds)  # the middle is outside of the region
+        best = np.argmin(bounds, axis=1)
+        helps = np.isfinite(bounds[np.arange(count), best]) & (bounds[np.arange(count), best] < parts.bound)
+        return np.where(helps & (relative[best, np.arange(count)] > 0), best, widest)
+
+
+_FIELDS = ("bound", "obstacle", "undecided", "value")
+
+
+def search(
+    cone: Cone, box: Array, region: Region = Region(), budget: int = 100_000, libm_ulp: float = LIBM_ULP,
+    target: float | None = None,
+) -> Search:  # fmt: skip
+    """Return the largest rounding error of an output on a box.
+
+    Parameters
+    ----------
+    cone : Cone
+        The computation of the output.
+    box : ndarray, shape (2, inputs)
+        Least and largest value of each input.
+    region : Region
+        What holds in the box beyond its sides.
+    budget : int
+        Boxes to evaluate, at most, but for the last batch.
+    libm_ulp : float
+        Largest error of sin, cos and atan2, in units in the last place.
+    target : float, optional
+        Stop as soon as it is known whether the bound is at most this.
+    """
+    run = _Search(cone, box, region, libm_ulp)
+    conditions = len(cone.conditions)
+    parts, first = run.parts(box[:, :, None].copy(), np.full((conditions, 1), -1, np.int8))
+    run.largest_value = float(first.value.max())
+    settled = -1.0
+    while parts.bound.size:
+        order = np.argsort(-parts.bound, kind="stable")
+        batch = parts.take(order[:BATCH])
+        run.look_at_points(batch.take(np.isfinite(batch.bound))) if np.isfinite(batch.bound).any() else None
+        enough = max(run.pointwise * GAP, settled)
+        if target is not None and run.pointwise <= target:
+            enough = max(enough, target)
+        if parts.bound.max() <= enough or run.evaluations >= budget:
+            break
+        if target is not None and run.pointwise > target:
+            break
+        narrow = _narrow(run, batch)
+        if narrow.any():
+            parts = batch.take(narrow)
+            break
+        done = parts.bound <= enough
+        settled = max(settled, float(parts.bound[done].max(initial=-1.0)))
+        working = np.zeros(done.size, bool)
+        working[order[:BATCH]] = True
+        halves, _ = run.parts(*run.halves(parts.take(working & ~done)))
+        parts = parts.take(~done & ~working).join(halves)
+    return _result(run, parts, settled)
+
+
+def _narrow(run: _Search, parts: _Parts) -> NDArray[np.bool_]:
+    """Tell which parts have no bound though what is in the way of one is all but a point there."""
+    width = np.where(run.width > 0, run.width, 1.0)
+    relative = (parts.boxes[1] - parts.boxes[0]) / width[:, None]
+    depends = np.array([[k in found for k in range(run.width.size)] for found in run.cone.inputs_of]).T
+    spread = (relative * depends[:, np.maximum(parts.obstacle, 0)]).max(axis=0, initial=0.0)
+    return np.isinf(parts.bound) & (parts.obstacle >= 0) & (parts.undecided < 0) & (spread < NARROWEST)
+
+
+def _result(run: _Search, parts: _Parts, settled: float) -> Search:
+    bound = max(settled, float(parts.bound.max(initial=-1.0)))
+    found = {"largest_value": run.largest_value, "evaluations": run.evaluations}
+    if bound < 0:
+        return Search(0.0, 0.0, run.worst, converged=True, **found)  # type: ignore[arg-type]
+    if np.isinf(bound):
+        worst = int(np.argmax(parts.bound))
+        place = tuple(float(x) for x in parts.boxes[:, :, worst].mean(axis=0))
+        return Search(inf, max(run.pointwise, 0.0), place, converged=False, obstacle=int(parts.obstacle[worst]), **found)  # type: ignore[arg-type]
+    pointwise = max(run.pointwise, 0.0)
+    return Search(bound, pointwise, run.worst, converged=bound <= max(GAP * pointwise, 0.0), **found)  # type: ignore[arg-type]
