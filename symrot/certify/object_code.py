@@ -44,8 +44,9 @@ class ObjectVerdict:
     """What was found of one function.
 
     ``verdict`` is one of "identical", "identical up to contraction" (each fused multiply-add is the product and the sum
-    of the C text with one rounding fewer), "differs" (``output`` is the first that does, ``reason`` says how) and
-    "not understood" (``reason`` names instruction and address). Only the first two are acceptance.
+    of the C text with one rounding fewer, the sign of a sum that is zero aside), "differs" (``output`` is the first
+    that does, ``reason`` says how) and "not understood" (``reason`` names instruction and address). Only the first two
+    are acceptance.
     """
 
     function: str
@@ -132,7 +133,7 @@ def _compare(text: Operations, function: Function, shown: Listing, start: tuple[
             instructions = max(instructions, way.instructions)
             got = _outputs(way, text, terms, width)
             got, known, split = _unfused(terms, got, way.known)
-            for output, reason in _cases(terms, text, wanted, got, known):
+            for output, reason in _cases(terms, text, wanted, got, known, known is not way.known):
                 cases += 1
                 if output or split:
                     reason = reason or f"the product {split} is rounded in one place and fused in another"
@@ -197,14 +198,14 @@ def _unfused(terms: Terms, got: list[int], known: Known) -> tuple[list[int], Kno
 
 
 def _cases(
-    terms: Terms, text: Operations, wanted: list[int], got: list[int], known: Known
+    terms: Terms, text: Operations, wanted: list[int], got: list[int], known: Known, fused: bool
 ) -> Iterable[tuple[str, str]]:
     """Compare outputs in all cases that comparisons leave: of each, the first that differs and how, or nothing."""
     waiting = [dict(known)]
     while waiting:
         case = waiting.pop()
         first, second = terms.rebuilt(wanted, case), terms.rebuilt(got, case)
-        if first == second:
+        if first == second or (fused and _apart_from_zeros(terms, first, second)):
             yield "", ""
             continue
         mask = terms.undecided(first + second)
@@ -215,6 +216,11 @@ def _cases(
         _, _, outcomes, a, b = terms.nodes[mask]
         possible = case.get((a, b), ANY)
         waiting += [case | {(a, b): possible - outcomes}, case | {(a, b): possible & outcomes}]
+
+
+def _apart_from_zeros(terms: Terms, first: list[int], second: list[int]) -> bool:
+    """Return whether outputs are equal but for signs of zeros: gcc fuses -(a*b + c) into (-a)*b + (-c)."""
+    return terms.without_signs_of_zero(first) == terms.without_signs_of_zero(second)
 
 
 def _split_product(terms: Terms, roots: list[int]) -> str:

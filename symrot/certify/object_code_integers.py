@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from symrot.certify.disassembly import RELATIVE, Constant, Instruction, Memory, Register
+from symrot.certify.disassembly import INDIRECT, RELATIVE, Constant, Instruction, Memory, Register
 from symrot.certify.object_code_state import GENERAL, STACK, NotUnderstood, State, Words
 from symrot.certify.object_code_terms import Outcomes
 
@@ -16,6 +16,7 @@ __all__ = [
     "popped",
     "read",
     "stack_of",
+    "symbol_of",
     "write",
 ]
 
@@ -59,6 +60,14 @@ def linked(state: State, instruction: Instruction, kinds: tuple[str, ...]) -> tu
     return (f"section {section}", offset + relocation.addend) if section else ("", relocation.addend)
 
 
+def symbol_of(state: State, instruction: Instruction) -> int:
+    """Return the address of what another file defines, as the table of the linker holds it."""
+    base, offset = linked(state, instruction, INDIRECT)
+    if base or offset or instruction.relocation is None:
+        raise NotUnderstood("an address that only the linker knows")
+    return state.context.terms.address(f"symbol {instruction.relocation.symbol}", 0)
+
+
 def read(state: State, instruction: Instruction, operand: object, size: int) -> Words:
     """Return the words of a general register, of memory or of a constant."""
     if isinstance(operand, Register):
@@ -71,6 +80,8 @@ def read(state: State, instruction: Instruction, operand: object, size: int) -> 
     assert isinstance(operand, Memory)
     if operand.segment == "fs" and (operand.base, operand.index, operand.offset) == ("", "", 0x28):
         return state.halves(state.context.terms.token("the guard of the stack"))
+    if operand.base == "rip" and instruction.relocation is not None and instruction.relocation.kind in INDIRECT:
+        return state.halves(symbol_of(state, instruction))
     if operand.size not in (size, 0) or size < 4:
         raise NotUnderstood(f"{operand.size} bytes of memory")
     return state.load(*place_of(state, instruction, operand), size // 4)
@@ -156,11 +167,10 @@ def _byte_test(state: State, instruction: Instruction, name: str) -> None:
 
 def _known_byte(state: State, name: str) -> int:
     whole, size = GENERAL.get(name, ("", 0))
-    low = state.context.terms.constant(state.general[whole][0]) if size == 1 else None
-    low = state.bytes.get(whole) if low is None else low
+    low = state.context.terms.lowest_byte(state.general[whole][0]) if size == 1 else None
     if low is None:
         raise NotUnderstood("single bytes")
-    return low & 0xFF
+    return low
 
 
 def _computed(state: State, name: str, first: Words, second: Words) -> tuple[Words, tuple[str, tuple[int, ...]]]:
@@ -295,8 +305,7 @@ def _set(condition: str) -> Callable[[State, Instruction], None]:
         low = terms.constant(state.general[whole][0])
         is_set = holds(state, condition)
         if low is None:
-            state.general[whole] = [terms.unknown(), terms.unknown()]
-            state.bytes[whole] = int(is_set)
+            state.general[whole][0] = terms.unknown(int(is_set))
         else:
             state.general[whole][0] = terms.bits(32, low & ~0xFF | is_set)
 

@@ -8,7 +8,7 @@ in a state that the calling convention (System V, x86-64) forbids, is not unders
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
-from symrot.certify.disassembly import INDIRECT, RELATIVE, Constant, Instruction, Memory, Register
+from symrot.certify.disassembly import RELATIVE, Constant, Instruction, Memory, Register
 from symrot.certify.object_code_integers import (
     CONDITIONS,
     INTEGERS,
@@ -16,6 +16,7 @@ from symrot.certify.object_code_integers import (
     linked,
     operands_of,
     popped,
+    read,
     stack_of,
 )
 from symrot.certify.object_code_moves import vector
@@ -142,19 +143,17 @@ def _run(state: State, instruction: Instruction) -> tuple[str, int]:
 def _target(state: State, instruction: Instruction) -> tuple[str, int] | str:
     """Return where a jump goes: a place of the file, or the name of what another file defines."""
     (operand,) = operands_of(instruction, 1)
-    if instruction.relocation is None:
-        if not isinstance(operand, Constant):
-            raise NotUnderstood("a jump to an address that is computed")
-        return instruction.section, operand.value
-    kinds = INDIRECT if isinstance(operand, Memory) and operand.base == "rip" else RELATIVE
-    if not isinstance(operand, Constant) and kinds is RELATIVE:
-        raise NotUnderstood("a jump to an address that is computed")
-    base, offset = linked(state, instruction, kinds)
-    if base and kinds is RELATIVE:
-        return base.removeprefix("section "), offset
-    if base or offset:
+    if isinstance(operand, Constant):
+        if instruction.relocation is None:
+            return instruction.section, operand.value
+        base, offset = linked(state, instruction, RELATIVE)
+        if base or not offset:
+            return (base.removeprefix("section "), offset) if base else instruction.relocation.symbol
         raise NotUnderstood("a jump to a place between others")
-    return instruction.relocation.symbol
+    node = state.context.terms.nodes[state.whole(read(state, instruction, operand, 8))]
+    if node[0] != "address" or not node[2].startswith("symbol ") or node[3]:
+        raise NotUnderstood("a jump to an address that is computed")
+    return str(node[2].removeprefix("symbol "))
 
 
 def _jump(state: State, instruction: Instruction, following: tuple[str, int]) -> tuple[str, int]:

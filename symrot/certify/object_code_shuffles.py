@@ -167,7 +167,9 @@ def _broadcast(count: int) -> Shuffle:
 
 
 def _broadcast_byte(state: State, sources: list[Words], _: int) -> Words:
-    byte = _constant(state, sources[-1][0]) & 0xFF
+    byte = state.context.terms.lowest_byte(sources[-1][0])
+    if byte is None:
+        raise NotUnderstood("a byte that is not known")
     return [state.context.terms.bits(32, byte * 0x01010101)] * 8
 
 

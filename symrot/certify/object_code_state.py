@@ -67,7 +67,6 @@ class State:
     memory: dict[tuple[str, int], int] = field(default_factory=dict)
     known: dict[Pair, Outcomes] = field(default_factory=dict)
     flags: tuple[str, tuple[int, ...]] = ("unknown", ())
-    bytes: dict[str, int] = field(default_factory=dict)  # registers of which only the lowest byte is known
 
     def branch(self, pair: Pair, outcomes: Outcomes) -> "State":
         """Return a copy that knows more of a comparison."""
@@ -76,7 +75,6 @@ class State:
             general={name: list(words) for name, words in self.general.items()},
             vector={name: list(words) for name, words in self.vector.items()},
             memory=dict(self.memory),
-            bytes=dict(self.bytes),
             known=self.known | {pair: outcomes},
         )
 
@@ -134,7 +132,6 @@ class State:
         if size < 4 or len(words) != size // 4:
             raise NotUnderstood(f"register {name}")
         self.general[whole] = words + self.zeros(2 - len(words))
-        self.bytes.pop(whole, None)
 
     def set_vector(self, name: str, words: Words, is_vex: bool) -> None:
         """Write the low words of a vector register; VEX instructions clear the rest."""

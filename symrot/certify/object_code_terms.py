@@ -106,9 +106,14 @@ class Terms:
             raise ValueError(f"expected a number of {width} bits, got {value}")
         return self.bits(width, bits)
 
-    def unknown(self) -> int:
-        """Return 32 bits that nothing is known of."""
-        return self._add("unknown", 32, len(self.nodes))
+    def unknown(self, byte: int | None = None) -> int:
+        """Return 32 bits that nothing is known of, but for the lowest byte where it is given."""
+        return self._add("unknown", 32, len(self.nodes), byte)
+
+    def lowest_byte(self, a: int) -> int | None:
+        """Return the lowest byte of a word, or None where it is not known."""
+        value = self.nodes[a][3] if self.kind(a) == "unknown" else self.constant(a)
+        return None if value is None else int(value) & 0xFF
 
     def token(self, name: str) -> int:
         """Return 64 bits that stand for themselves: what a register held before."""
@@ -411,6 +416,27 @@ class Terms:
         if kind == "fnma":
             return self.fma(self.neg(taken[0]), *taken[1:])
         return int(_AGAIN[kind](self, *taken))
+
+    def without_signs_of_zero(self, roots: Iterable[int]) -> list[int]:
+        """Return terms that are one where -(a + b) = (-a) + (-b), which fails in the sign of a sum that is zero.
+
+        Only where that sign stays one of a zero: divisors, angles of two sides and signs that are taken keep theirs.
+        """
+        roots = list(roots)
+        new: dict[int, int] = {}
+        for index in self.order(roots):
+            kind, taken = self.kind(index), [new[operand] for operand in self.operands(index)]
+            if kind == "add":
+                (a, first), (b, second) = sorted(map(self._signed, taken))
+                total = self.add(a, self.neg(b) if first != second else b)
+                new[index] = self.neg(total) if first else total
+            elif kind == "div":
+                new[index] = self.div(taken[0], self.operands(index)[1])
+            elif kind in ("mul", "neg", "abs", "sqrt"):
+                new[index] = self._again(self.nodes[index], taken)
+            else:
+                new[index] = index
+        return [new[root] for root in roots]
 
     def undecided(self, roots: Iterable[int]) -> int | None:
         """Return a mask below some terms that no other mask is below, or None."""
