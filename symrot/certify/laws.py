@@ -27,7 +27,8 @@ __all__ = ["CaseProof", "Entry", "LawProof", "Root", "prove_law", "prove_laws"]
 
 Quotient = tuple[PolyElement, PolyElement]  # numerator, denominator, in lowest terms
 Cofactors = tuple[tuple[int, str], ...]  # number of a relation, polynomial; those that are zero left out
-Choice = tuple[str, str, str]  # left, ">=" or "<", right
+Pair = tuple[str, str]  # numerator, denominator
+Choice = tuple[Pair, str, Pair]  # left, ">=" or "<", right
 FEWEST = 8  # generators of the first attempt at a proof
 
 
@@ -38,8 +39,8 @@ class Root:
     Both are fractions, (numerator, denominator).
     """
 
-    square: tuple[str, str]
-    value: tuple[str, str]
+    square: Pair
+    value: Pair
     cofactors: Cofactors
 
 
@@ -264,7 +265,7 @@ class _Proof:
 
     def is_taken(self, choice: Expr) -> bool:
         """Tell whether the case at hand takes the first branch of a choice."""
-        left, right = (_text(self.value(argument)) for argument in choice.args[:2])
+        left, right = (_texts(self.value(argument)) for argument in choice.args[:2])
         if (left, right) not in self.decided:
             raise _Undecided(left, right)
         return self.decided[left, right] == ">="
@@ -285,7 +286,7 @@ class _Proof:
             cofactors = self.cofactors(square[0] * value[1] ** 2 - value[0] ** 2 * square[1])
             if cofactors is None:
                 raise CertificateError(f"{self.name}: expected the square of a root to be what it is the root of")
-            self.roots[square] = value, Root(*(tuple(map(str, each)) for each in (square, value)), cofactors)
+            self.roots[square] = value, Root(_texts(square), _texts(value), cofactors)
         return self.roots[square][0]
 
     def radical(self, inside: PolyElement) -> PolyElement:
@@ -357,7 +358,7 @@ class _Proof:
         """Return cosine and sine of a sum of multiples of base angles and right angles."""
         above, below = angle
         if below != 1:
-            raise CertificateError(f"{self.name}: expected a sum of angles under a sine, got {_text(angle)}")
+            raise CertificateError(f"{self.name}: expected a sum of angles under a sine, got ({above})/({below})")
         right_angles = Fraction(0)
         result = self.number(1), self.number(0)
         for monomial, coefficient in above.terms():
@@ -365,7 +366,9 @@ class _Proof:
             unit = self.ring({monomial: QQ(1)})
             if unit == self.known["pi"]:
                 right_angles = 2 * coefficient
-            elif unit != 1:
+            elif unit == 1:
+                raise CertificateError(f"{self.name}: expected no radians beside angles under a sine, got {above}")
+            else:
                 result = self._rotated(result, self._multiple(unit, coefficient))
         if right_angles.denominator != 1:
             raise CertificateError(f"{self.name}: expected right angles beside angles under a sine, got {above}")
@@ -444,9 +447,8 @@ class _Proof:
         return (list(by_rules), rest) if found is None else ([*by_rules, *found], self.ring.zero)
 
 
-def _text(value: Quotient) -> str:
-    above, below = value
-    return str(above) if below == 1 else f"({above})/({below})"
+def _texts(value: Quotient) -> Pair:
+    return str(value[0]), str(value[1])
 
 
 def _combination(polynomial: PolyElement, relations: Sequence[PolyElement], degree: int) -> list[PolyElement] | None:
