@@ -143,7 +143,8 @@ static SYMROT_APART double symrot_first_step(const symrot_run *run, const double
         if (size > 0.0 && block > bend) bend = block;
     }
     const double fastest = rate > bend ? rate : bend;
-    const double h = pow(run->tolerance, 0.125)/fastest;
+    const double least = 64.0*DBL_EPSILON*fabs(run->t);  /* rates near zero ask for less than the clock has */
+    const double h = fmax(pow(run->tolerance, 0.125)/fastest, least);
     return side*fmin(fmin(h, run->max_step), span);  /* fmin passes over the NaN and infinity of a motion at rest */
 }
 
