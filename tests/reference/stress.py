@@ -69,14 +69,14 @@ def verdict(figure: Figure) -> str:
 def line(stress: Stress, figure: Figure) -> str:
     """Return one row of the table."""
     bar = f"{'>=' if figure.at_least else '<='} {figure.bar:.3g}" if figure.judged else ""
-    return (
-        f"{stress.id:5}{stress.name:29}{figure.method:19}{figure.what:58}{bar:>9}{figure.reached:10.2g}  {verdict(figure)}"
-    )
+    return f"{stress.id:5}{stress.name:29}{figure.method:19}{figure.what:58}{bar:>9}{figure.reached:10.2g}  {verdict(figure)}"
 
 
 def main(arguments: list[str] | None = None) -> int:
     """Run them and print the table."""
-    parser = argparse.ArgumentParser(prog="python -m tests.reference.stress", description=(__doc__ or "").split("\n")[0])
+    parser = argparse.ArgumentParser(
+        prog="python -m tests.reference.stress", description=(__doc__ or "").split("\n")[0]
+    )
     parser.add_argument("ids", nargs="*", metavar="S1 S2 ..", help="these only")
     parser.add_argument("--quick", action="store_true", help="the shorter form of each, as the test suite runs it")
     parser.add_argument("--json", action="store_true", help="print JSON")

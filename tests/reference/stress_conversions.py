@@ -27,9 +27,7 @@ def s35(long):
                             exact.exact_euler((first, mpf(lock) + inward * mpf(distance), third), sequence)
                         )
                         angles = cv.quaternion_to_euler(q, sequence)[0]
-                        worst = max(
-                            worst, exact.difference(exact.exact_euler(angles, sequence), exact.exact_unit(q))
-                        )
+                        worst = max(worst, exact.difference(exact.exact_euler(angles, sequence), exact.exact_unit(q)))
         found.append(Figure("conversions", f"{name}, 1e-3 to 1e-17 and 0 from lock", BAR, float(worst)))
     return found
 

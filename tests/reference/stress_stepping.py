@@ -1,23 +1,23 @@
 """Stress tests S17, S24 to S34 and S39 to S42: the steppers against exact motions and 50-digit series."""
 
-import ctypes
 import math
 from fractions import Fraction as F
+from pathlib import Path
 from time import perf_counter
 
 import numpy as np
+from mpmath import mp
 
 from symrot.bench import taylor as race
 from symrot.codegen import library
+from symrot.codegen.recurrences import coefficients, recurrences
 from symrot.errors import CompilerError
 from symrot.planner import make_plan
 from symrot.propagation import dop853, taylor
 from symrot.propagation.invariants import invariant_parameters, invariant_source
 from symrot.propagation.kernels import error_blocks, library_source, scene_kernel
 from symrot.propagation.propagator import propagator
-from symrot.propagation.stepping import Task
 from symrot.scene_kernel import bind
-from tests.reference import taylor as series
 from tests.reference.figures import Figure, apart, body, largest, propagated
 from tests.test_closed_form_heavy_top import S18, tilted
 
@@ -95,22 +95,39 @@ def s24(long):
             Figure("taylor", "least error", 7e-14, min(errors.values()))]  # fmt: skip
 
 
+def _exact_steps(stepped, order, step, count):
+    """Return the state after fixed steps of that order in 50 digits: what truncation alone makes of the motion."""
+    system, state = recurrences(stepped.kernel.rates), [mp.mpf(x) for x in stepped.start]
+    values = {name: mp.mpf(x) for name, x in zip(system.parameters, stepped.p, strict=False)} | {"t": mp.mpf(0)}
+    for _ in range(count):
+        values |= dict(zip(system.states, state, strict=True))
+        rows = coefficients(system, order, values, {}, lambda x: mp.mpf(x.numerator) / x.denominator)
+        state = [mp.polyval(row[::-1], mp.mpf(step.numerator) / step.denominator) for row in rows]
+    return state
+
+
 def s25(long):
-    """Fixed steps: orders p = 8 to 20, where the error lies between 1e-5 and 1e-12."""
-    stop, scene = F(5), asymmetric_top()
-    torque = (F(1), [F(1, 10), F(1, 5), F(9, 10)], [F(0), F(0), F(-1)])
-    omega = [F(1, 2), F(3, 10), F(4)]
-    exact = series.trajectory([F(1), F(3, 2), F(7, 10)], omega, tilted(F(1, 2)), [stop], torque)[0][0]
-    found = []
-    for order in (8, 12, 16, 20):
-        stepped, points = Stepped(scene, order), []
-        for count in sorted({int(10 * 1.13**k) for k in range(45)}):
-            states, stats = stepped.at(float(stop), 0.9, max_step=float(stop) / count)
-            error = largest(states[0, :3], [float(w) for w in exact]) / 4
-            if stats.accepted in (count, count + 1) and 1e-12 < error < 1e-5:
-                points.append((math.log(float(stop) / count), math.log(error)))
-        slope = float(np.polyfit(*np.transpose(points), 1)[0])
-        found.append(Figure("taylor", f"p = {order}: slope {slope:.2f} over {len(points)} steps", 0.3, abs(slope - order)))
+    """In doubles orders from 12 on meet rounding before their slope: there 50 digits show it, and doubles the rest.
+
+    The slope is that of fixed steps in 50 digits, once halved; the compiled steps have just that truncation error.
+    """
+    scene, found = asymmetric_top(), []
+    with mp.workdps(50):
+        for order in (8, 12, 16, 20):
+            stepped = Stepped(scene, order)
+            fine = _exact_steps(Stepped(scene), 30, F(1, 128), 32)
+            ends = [_exact_steps(stepped, order, F(1, n), n // 4) for n in (32, 64)]
+            halved = [max(abs(x - y) for x, y in zip(end[:3], fine[:3], strict=True)) for end in ends]
+            slope = float(mp.log(halved[0] / halved[1], 2))
+            found.append(Figure("50 digits", f"p = {order}: slope {slope:.2f}, off by", 0.3, abs(slope - order)))
+            count = 4 if order < 16 else 2
+            expected = _exact_steps(stepped, order, F(1, count), count)
+            close = _exact_steps(Stepped(scene), 30, F(1, 32), 32)
+            states, stats = stepped.at(1.0, 0.9, max_step=1 / count)
+            errors = [max(abs(x - y) for x, y in zip(end[:3], close[:3], strict=True))
+                      for end in ([mp.mpf(float(x)) for x in states[0]], expected)]  # fmt: skip
+            found.append(Figure("taylor", f"p = {order}: error {float(errors[0]):.0e} of {stats.accepted} steps over that",
+                                0.01, float(abs(errors[0] / errors[1] - 1))))  # fmt: skip
     return found
 
 
@@ -166,7 +183,7 @@ def s28(long):
             Stepped(body((1, 2, 3), ("3/10", 1, "1/2")), flags=(*library.FLAGS, *flags)).at(1.0)
         except CompilerError:
             refused += 1
-    return [Figure("taylor", f"carries that are zero after {run.accepted} steps", 0, sum(c == 0.0 for c in run.carry)),
+    return [Figure("taylor", f"largest carry after {run.accepted} steps", 2.0**-60, max(map(abs, run.carry)), at_least=True),
             Figure("taylor", "builds without a carry that are refused, of 2", 2, refused, at_least=True)]  # fmt: skip
 
 
@@ -180,7 +197,7 @@ def s29(long):
             broken += int((~np.isfinite(on)).sum())
             worst = max(worst, stepped.drift(on) / max(stepped.drift(off), 4e-16))
     return [Figure("taylor, projected", "not finite, tolerances 1e-1 to 1e-15", 0, broken),
-            Figure("taylor, projected", "drift over that without projection", 1, worst)]  # fmt: skip
+            Figure("taylor, projected", "drift over that without projection (1 % is chance)", 1.01, worst)]  # fmt: skip
 
 
 def s30(long):
@@ -342,7 +359,9 @@ def s40(long):
     best = _raced([lambda: motion.again().sample(times), dense, *(
         (lambda s=s: s.at(200.0, 1e-12)) for s in (plain, slp))])  # fmt: skip
     found.append(Figure("taylor", "20 000 samples, times heyoka's speed", 5, best[1] / best[0], at_least=True))
-    found.append(Figure("taylor", "time with -O3 over that of our flags", 1.3, max(best[3] / best[2], best[2] / best[3])))
+    found.append(
+        Figure("taylor", "time with -O3 over that of our flags", 1.3, max(best[3] / best[2], best[2] / best[3]))
+    )
     return found
 
 
@@ -360,7 +379,7 @@ def _raced(runs, rounds=15):
 def _instruction_sets():
     """Return the sets of this processor by name: flags that hold the compiler to each."""
     try:
-        has = open("/proc/cpuinfo", encoding="utf-8").read()  # noqa: SIM115
+        has = Path("/proc/cpuinfo").read_text(encoding="utf-8")
     except OSError:
         has = ""
     sets = {"SSE2": ("-march=x86-64",), "plain C": ("-march=x86-64", "-DSYMROT_PLAIN")}
@@ -407,7 +426,7 @@ def s42(long):
         return (0.0, 0.0, 1.0 if t % 1.0 < 0.5 else -1.0)
 
     scene, t = body((1, 1, 1), (0, 0, 0), attitude={"quaternion": [1, 0, 0, 0]}), np.array([0.3, 1.2, 2.75, 4.0])
-    jumps, found = np.arange(0.5, 4.0, 0.5), []
+    jumps, found = np.arange(0.5, 4.5, 0.5), []
     phase = t % 1.0
     rate = np.where(phase < 0.5, phase, 1.0 - phase)
     angle = np.floor(t) / 4 + np.where(phase < 0.5, phase**2 / 2, 0.25 - (1 - phase) ** 2 / 2)
@@ -419,9 +438,8 @@ def s42(long):
     worst, rejected = max(each[0] for each in tried.values()), sum(each[1].rejected for each in tried.values())
     found.append(Figure("dop853", "square wave, error over tolerance", 1, worst))
     found.append(Figure("dop853", "rejected steps at declared switches", 0, rejected))
-    steps = [each[1].accepted for each in tried.values()]
-    order = 3 * math.log(1e3) / math.log(max(steps[-1] / steps[0], 1.0) + 1e-9) / 3 if steps[-1] > steps[0] else math.inf
-    found.append(Figure("dop853", f"steps {steps} for 1e-6, 1e-9, 1e-12", 0, order, at_least=True, judged=False))
+    steps = [each[1].accepted for each in tried.values()]  # an order lost would multiply them by 1e3^(1/2) and more
+    found.append(Figure("dop853", f"steps {steps} for 1e-6, 1e-9, 1e-12: last ratio", 1e3**0.25, steps[-1] / steps[1]))
     width = 1e-3
 
     def blow(t, omega, quaternion):
