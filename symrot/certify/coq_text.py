@@ -1,0 +1,144 @@
+"""SymPy expressions and kernels as text of Coq: rational functions of real variables, their sines, cosines and roots.
+
+Terms and factors come in SymPy's canonical order, so that the same formula gives the same bytes everywhere.
+"""
+
+from collections.abc import Iterable, Sequence
+from textwrap import fill
+
+from sympy import Add, Expr, Integer, Mul, Pow, Rational, Symbol, cos, fraction, sin
+
+from symrot.errors import CertificateError
+from symrot.kernels.definition import Definition
+
+__all__ = ["comment", "coq_expression", "definition_text", "folded", "matrix_text", "variables"]
+
+WIDTH = 118
+_SHAPES = {1: "R", 3: "vector", 4: "quaternion", 9: "matrix"}  # number of components -> type in rotation.v
+
+_MAKERS = {3: "vec", 4: "quat", 9: "mat"}
+_FUNCTIONS = {sin: "sin", cos: "cos"}
+_SUM, _PRODUCT, _POWER, _ATOM = range(4)  # how tightly a text holds together
+
+
+def coq_expression(expression: Expr) -> str:
+    """Return the text of an expression over R.
+
+    Raises
+    ------
+    CertificateError
+        For anything but integers, fractions, symbols, sums, products, whole powers, square roots, sines and cosines.
+    """
+    return _print(expression)[0]
+
+
+def _print(expression: Expr) -> tuple[str, int]:
+    """Return the text of an expression and how tightly it holds together."""
+    if isinstance(expression, Symbol):
+        return str(expression), _ATOM
+    if isinstance(expression, Rational):
+        return _rational(expression)
+    if isinstance(expression, Add):
+        return _sum(expression), _SUM
+    if isinstance(expression, Mul):
+        return _product(expression)
+    if isinstance(expression, Pow):
+        return _power(expression)
+    if expression.func in _FUNCTIONS:
+        return f"{_FUNCTIONS[expression.func]} {_within(expression.args[0], _ATOM)}", _POWER
+    raise CertificateError(f"expected a rational function of variables, sines, cosines and roots, got {expression}")
+
+
+def _within(expression: Expr, least: int) -> str:
+    text, tightness = _print(expression)
+    return text if tightness >= least else f"({text})"
+
+
+def _rational(number: Rational) -> tuple[str, int]:
+    if number < 0:
+        return f"- {_rational(-number)[0]}", _SUM
+    return (str(number.p), _ATOM) if number.q == 1 else (f"{number.p} / {number.q}", _PRODUCT)
+
+
+def _sum(expression: Add) -> str:
+    text = ""
+    for term in expression.as_ordered_terms():
+        negative = term.could_extract_minus_sign() and term.as_coeff_Mul()[0] < 0
+        size = _within(-term if negative else term, _PRODUCT)
+        sign = "-" if negative else "+"
+        text += f" {sign} {size}" if text else (f"- {size}" if negative else size)
+    return text
+
+
+def _product(expression: Mul) -> tuple[str, int]:
+    if expression.as_coeff_Mul()[0] < 0:
+        return f"- {_within(-expression, _PRODUCT)}", _SUM
+    above, below = fraction(expression)
+    text = " * ".join(_within(factor, _POWER) for factor in _factors(above))
+    if below == 1:
+        return text, _PRODUCT
+    return f"{text} / {_within(below, _POWER)}", _PRODUCT
+
+
+def _factors(expression: Expr) -> list[Expr]:
+    return list(expression.as_ordered_factors()) if isinstance(expression, Mul) else [expression]
+
+
+def _power(expression: Pow) -> tuple[str, int]:
+    base, exponent = expression.args
+    if exponent == Rational(1, 2):
+        return f"sqrt {_within(base, _ATOM)}", _POWER
+    if exponent.is_negative:
+        return f"1 / {_within(base**-exponent, _POWER)}", _PRODUCT
+    if isinstance(exponent, Integer):
+        return f"{_within(base, _ATOM)} ^ {exponent}", _POWER
+    raise CertificateError(f"expected a whole power or a square root, got {expression}")
+
+
+def folded(text: str, indent: int = 0) -> str:
+    """Return a text in lines of at most :data:`WIDTH` letters, all but the first indented."""
+    return fill(text, WIDTH, subsequent_indent=" " * indent, break_long_words=False, break_on_hyphens=False)
+
+
+def comment(text: str) -> str:
+    """Return a comment, folded; what Coq would take for the end or beginning of one is set apart."""
+    return folded("(* " + text.replace("(*", "( *").replace("*)", "* )") + " *)", 3)
+
+
+def _record(formulas: Sequence[str]) -> str:
+    """Return a vector, quaternion or matrix of texts, folded with an indent of 2; a single formula as it is."""
+    if len(formulas) == 1:
+        return folded(f"  {formulas[0]}", 4)
+    lines = [folded(f"    ({formula})", 6) for formula in formulas]
+    return "\n".join([f"  {_MAKERS[len(formulas)]}", *lines])
+
+
+def matrix_text(name: str, given: Iterable[str], formulas: Sequence[Expr]) -> str:
+    """Return the definition of a function of real variables whose value is a record of formulas."""
+    return _defined(name, given, len(formulas), _record([coq_expression(formula) for formula in formulas]))
+
+
+def _defined(name: str, given: Iterable[str], size: int, body: str) -> str:
+    return folded(f"Definition {name} ({' '.join(given)} : R) : {_SHAPES[size]} :=", 4) + f"\n{body}."
+
+
+def definition_text(kernel: Definition, name: str, output: str | None = None) -> str:
+    """Return the definition of an output of a kernel, as a function of the components of its inputs in order.
+
+    Parameters
+    ----------
+    kernel : Definition
+    name : str
+        What it is called in Coq.
+    output : str, optional
+        Which of the kernel's outputs; the first when left out.
+    """
+    formulas = next(found for target, found in kernel.results if output in (None, target.name))
+    lines = [folded(f"  let {symbol} := {coq_expression(value)} in", 4) for symbol, value in kernel.named]
+    body = "\n".join([*lines, _record([coq_expression(formula) for formula in formulas])])
+    return _defined(name, variables(kernel), len(formulas), body)
+
+
+def variables(kernel: Definition) -> list[str]:
+    """Return the names of the components of a kernel's inputs, in order."""
+    return [component[0] for given in kernel.inputs for component in given.components]
