@@ -472,10 +472,10 @@ def _tolerance(tolerance: float) -> float:
     from symrot.scene import TOLERANCES
 
     low, high = TOLERANCES
-    found = number.read(tolerance, "tolerance")
-    if not low <= found <= high:
+    found = float(number.read(tolerance, "tolerance"))
+    if not float(low) <= found <= float(high):  # as doubles: 0.01 is above 1/100
         raise InputError(f"tolerance: expected a number from {float(low):g} to {float(high):g}, got {tolerance}")
-    return float(found)
+    return found
 
 
 def propagate(

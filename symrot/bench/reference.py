@@ -1,0 +1,289 @@
+"""Where a scene's motion really ends: computations that share neither numbers nor method, and their differences.
+
+===========================  =====================  ============================  ==========================
+reference                    equations              method                        arithmetic
+===========================  =====================  ============================  ==========================
+``taylor``                   the scene's own        Taylor series of order 28     mpmath, 40 digits
+``dop853 in long double``    most general: full     Dormand-Prince, fixed steps,  the C compiler's long
+                             tensor, no shortcut    halved until nothing changes  double, where it is longer
+``closed form``              none                   theta functions               double-double, double
+===========================  =====================  ============================  ==========================
+
+The first that can be had counts, the others are held against it. All start from the exact numbers of the scene, not
+from what rounding made of them: what a method loses by rounding its parameters is an error of that method. A result of
+minutes is kept in the cache of kernels.
+"""
+
+import ctypes
+import json
+import math
+import re
+from collections.abc import Callable, Iterable
+from fractions import Fraction
+from pathlib import Path
+from time import perf_counter
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from symrot import number
+from symrot.bench.problem import Problem, State
+from symrot.closed_form.choose import exact_form
+from symrot.codegen import library
+from symrot.codegen.recurrences import coefficients, recurrences
+from symrot.errors import SymrotError
+from symrot.expression import evaluate
+from symrot.planner import Plan, general_structure
+from symrot.propagation.propagator import propagator
+from symrot.propagation.smoothness import roughness
+from symrot.scene_kernel import EXACT_FUNCTIONS, Parameters
+
+__all__ = ["DIGITS", "Reference", "reference"]
+
+Say = Callable[[str], object]
+
+DIGITS, ORDER, TAIL = 40, 28, 1e-26
+MOST_SECONDS = 150.0  # for the series; a longer one is not begun
+MOST_STEPS = 2_000_000  # in long double
+FEWEST_STEPS = 64
+CONVERGED = 4e-19  # times the number of radians turned, at least one: what long double can hold
+LONG_DOUBLE_BITS = 63  # of its fraction, at least, for it to be worth the name
+LITERAL = re.compile(r"(?<![\w.])(\d+\.\d*(?:[eE][+-]?\d+)?|\d+[eE][+-]?\d+)(?![\w.])")
+CALLS = re.compile(r"\b(sqrt|sin|cos|tan|exp|log|fabs|sinh|cosh|tanh|asin|acos|atan|atan2|pow)\(")
+
+
+class Reference(NamedTuple):
+    """The last state of a motion, how it was found, and what the other computations say of it."""
+
+    state: State
+    name: str
+    others: tuple[tuple[str, float], ...]  # name, and its difference as errors are measured
+    seconds: float
+    skipped: tuple[str, ...]  # why a reference could not be had
+
+    @property
+    def doubt(self) -> float:
+        """The least difference from another computation: errors below it mean nothing; nan where there is no other."""
+        return min((difference for _, difference in self.others), default=math.nan)
+
+    def to_json(self) -> dict[str, Any]:
+        return {
+            "name": self.name, "others": [{"name": name, "difference": found} for name, found in self.others],
+            "seconds": self.seconds, "skipped": list(self.skipped), "omega": self.state.omega.tolist(),
+            "quaternion": None if self.state.quaternion is None else self.state.quaternion.tolist(),
+        }  # fmt: skip
+
+
+class _Unavailable(Exception):
+    """A reference that cannot be had here; the text says why."""
+
+
+def reference(problem: Problem, say: Say = lambda text: None, seconds: float = MOST_SECONDS) -> Reference:
+    """Return the last state of a scene's motion, from the first of the references, with the differences of the others.
+
+    Raises
+    ------
+    SymrotError
+        If none can be had: the motion ends before its span does, or there is neither series nor compiler.
+    """
+    began = perf_counter()
+    found: list[tuple[str, State]] = []
+    skipped = []
+    for name, compute in REFERENCES:
+        say(f"reference: {name} ..")
+        try:
+            found.append((name, compute(problem, say, seconds)))
+        except _Unavailable as reason:
+            skipped.append(f"{name}: {reason}")
+    if not found:
+        raise SymrotError(f"{problem.scene.name}: expected a motion with a reference solution; {'; '.join(skipped)}")
+    (name, state), *more = found
+    others = tuple((other, problem.error(end, state)) for other, end in more)
+    return Reference(state, name, others, perf_counter() - began, tuple(skipped))
+
+
+# ------------------------------------------------------------------------------------------------ Taylor, 40 digits
+
+
+def _as_mpf(value: Fraction) -> Any:
+    import mpmath
+
+    return mpmath.mpf(value.numerator) / value.denominator
+
+
+def _functions() -> dict[str, Callable[..., Any]]:
+    import mpmath
+
+    names = ("sqrt", "sin", "cos", "tan", "exp", "log", "sinh", "cosh", "tanh", "asin", "acos", "atan", "atan2")
+    return {name: getattr(mpmath, name) for name in names} | {"abs": abs}
+
+
+def _exact_parameters(parameters: Parameters, plan: Plan) -> dict[str, Fraction]:
+    values = {"pi": number.PI, **plan.constants}
+    return {name: Fraction(evaluate(node, values, EXACT_FUNCTIONS)) for name, node in parameters}
+
+
+def _exact_start(plan: Plan) -> list[Fraction]:
+    start = plan.scene.initial
+    values = {f"omega_{i + 1}": value for i, value in enumerate(start.omega_b)} | {"theta": Fraction(0)}
+    values |= {f"q{i}": value for i, value in enumerate(start.quaternion)}
+    return [Fraction(values[name]) for name in plan.states]
+
+
+def _taylor(problem: Problem, say: Say, seconds: float) -> State:
+    """Return the last state by Taylor series in 40 digits, from the cache if it is there."""
+    import mpmath
+
+    rough = roughness(problem.plan)
+    if rough:
+        raise _Unavailable(rough)
+    kernel, plan = problem.kernel, problem.plan
+    given = _exact_parameters(kernel.rate_parameters, plan), _exact_start(plan)
+    key = f"reference {DIGITS} {ORDER} {TAIL}\n{json.dumps(kernel.data['rates'])}\n{given}\n{plan.scene.span[:2]}"
+    kept = library.fetch(key)
+    with mpmath.workdps(DIGITS):
+        if kept is None:
+            last = _series(problem, given, say, seconds)
+            kept = json.dumps([mpmath.nstr(value, DIGITS) for value in last])
+            library.store(key, kept)
+        return _state(problem, [mpmath.mpf(value) for value in json.loads(kept)])
+
+
+def _series(problem: Problem, given: tuple[dict[str, Fraction], list[Fraction]], say: Say, seconds: float) -> list[Any]:
+    import mpmath
+
+    system, functions = recurrences(problem.kernel.rates), _functions()
+    values: dict[str, Any] = {name: _as_mpf(value) for name, value in given[0].items()}
+    state = [_as_mpf(value) for value in given[1]]
+    now, stop = (_as_mpf(Fraction(time)) for time in problem.scene.span[:2])
+    first, began, spent = now, perf_counter(), 0.0
+    sizes = _sizes(problem)
+    while now < stop:
+        values |= {"t": now, **dict(zip(system.states, state, strict=True))}
+        series = coefficients(system, ORDER, values, functions, _as_mpf)
+        step = stop - now
+        for n in (ORDER - 1, ORDER):
+            largest = max(abs(one[n]) / size for one, size in zip(series, sizes, strict=True))
+            if largest:
+                step = min(step, (TAIL / largest) ** (mpmath.mpf(1) / n))
+        state = [mpmath.polyval(one[::-1], step) for one in series]
+        now += step
+        spent = perf_counter() - began
+        whole = spent * float((stop - first) / (now - first))
+        if whole > 2.0 * seconds or spent > seconds:
+            raise _Unavailable(f"about {whole:.0f} s of work, more than the {seconds:.0f} s allowed")
+        say(f"reference: Taylor series in {DIGITS} digits, {spent:.0f} of about {whole:.0f} s")
+    return state
+
+
+def _sizes(problem: Problem) -> list[float]:
+    """Return what each state is measured by: the size of omega, and one for an attitude."""
+    spin = float(np.linalg.norm([float(value) for value in problem.scene.initial.omega_b])) or 1.0
+    return [spin if name.startswith("omega") else 1.0 for name in problem.plan.states]
+
+
+def _state(problem: Problem, last: list[Any]) -> State:
+    """Return the state of the body, evaluated in as many digits as it has."""
+    import mpmath
+
+    kernel, plan = problem.kernel, problem.plan
+    values: dict[str, Any] = dict(zip(plan.states, last, strict=True))
+    exact = _exact_parameters(kernel.quantity_parameters, plan)
+    values |= {name: _as_mpf(value) for name, value in exact.items()} | {"t": _as_mpf(Fraction(plan.scene.span.stop))}
+    found = kernel.quantities.evaluate(values, _functions(), _as_mpf, problem.names)
+    ordered = [found[name] for name in problem.names]
+    norm = mpmath.sqrt(sum(q * q for q in ordered[3:])) if len(ordered) > 3 else 1
+    rates, attitude = ([float(value) for value in part] for part in (ordered[:3], [q / norm for q in ordered[3:]]))
+    return State(np.array(rates), np.array(attitude) if attitude else None)
+
+
+# ------------------------------------------------------------------------------------------------ long double
+
+
+def longer(source: str) -> str:
+    """Return C text with every double, literal and function of the long kind."""
+    text = CALLS.sub(r"\1l(", LITERAL.sub(r"\1L", source))
+    return re.sub(r"\bdouble\b", "long double", text)
+
+
+def _long_double(problem: Problem, say: Say, seconds: float) -> State:
+    """Return the last state by fixed steps of DOP853 around the most general equations, until steps make no change."""
+    if library.missing():
+        raise _Unavailable("no C compiler")
+    if np.finfo(np.longdouble).nmant < LONG_DOUBLE_BITS or ctypes.sizeof(ctypes.c_longdouble) == 8:
+        raise _Unavailable("long double is no longer than double here")
+    general = Problem(problem.scene, Plan(problem.scene, general_structure(problem.scene), ()))
+    here = Path(__file__).parent
+    parts = [
+        general.kernel.source,
+        f"#define N {len(general.y0)}",
+        (here.parent / "propagation" / "dop853_tableau.h").read_text(encoding="utf-8"),
+        (here / "fixed_step.c").read_text(encoding="utf-8"),
+    ]
+    function = ctypes.CDLL(str(library.build(longer("\n".join(parts)), "long_double"))).dop853
+    real = ctypes.c_longdouble
+    function.argtypes, function.restype = (real, real, ctypes.c_long, ctypes.c_void_p, ctypes.c_void_p), None
+    given = _exact_parameters(general.kernel.rate_parameters, general.plan)
+    p, start = _long(given.values()), _long(_exact_start(general.plan))
+    began, stop = _long([Fraction(time) for time in problem.scene.span[:2]])
+    turned = max(1.0, float(abs(stop - began)) * _sizes(general)[0])
+    steps = max(FEWEST_STEPS, int(turned))
+    before, change, held = None, np.inf, None
+    clock = perf_counter()
+    while steps <= MOST_STEPS and perf_counter() - clock < seconds:
+        y = start.copy()
+        function(began, stop, steps, y.ctypes.data, p.ctypes.data)
+        if not np.isfinite(y.astype(float)).all():
+            steps *= 2
+            continue
+        if before is not None:
+            now = float(np.max(np.abs(y - before) / np.array(_sizes(general))))
+            if now >= change:  # rounding has taken over
+                break
+            held, change = y, now
+            if now <= CONVERGED * turned:
+                break
+        before = y
+        steps = int(steps * 1.5)
+    if held is None:
+        raise _Unavailable("its steps would have to be too small")
+    found = general.kernel.quantities.evaluate(
+        dict(zip(general.plan.states, held, strict=True))
+        | dict(zip((n for n, _ in general.kernel.quantity_parameters),
+                   _long(_exact_parameters(general.kernel.quantity_parameters, general.plan).values()), strict=True))
+        | {"t": stop},
+        {"sqrt": np.sqrt, "sin": np.sin, "cos": np.cos}, _long_number, problem.names,
+    )  # fmt: skip
+    ordered = np.array([found[name] for name in problem.names])
+    rates, attitude = ordered[:3].astype(float), ordered[3:]
+    if not len(attitude):
+        return State(rates, None)
+    return State(rates, (attitude / np.sqrt((attitude * attitude).sum())).astype(float))
+
+
+def _long_number(value: Fraction) -> Any:
+    """Return a number as long double, to its last bit: the nearest double and what that leaves out."""
+    first = float(value)
+    return np.longdouble(first) + np.longdouble(float(value - Fraction(first)))
+
+
+def _long(values: Iterable[Fraction]) -> Any:
+    return np.array([_long_number(value) for value in values] or [np.longdouble(0)], dtype=np.longdouble)
+
+
+# ------------------------------------------------------------------------------------------------ closed form
+
+
+def _closed_form(problem: Problem, say: Say, seconds: float) -> State:
+    if exact_form(problem.scene) is None:
+        raise _Unavailable("the motion has none")
+    found = propagator(problem.scene, method="exact")([problem.stop])
+    return State(found.omega[0], found.quaternion[0] if problem.plan.structure["attitude"] else None)
+
+
+REFERENCES: tuple[tuple[str, Callable[[Problem, Say, float], State]], ...] = (
+    (f"Taylor series in {DIGITS} digits", _taylor),
+    ("DOP853 in long double, general equations", _long_double),
+    ("closed form", _closed_form),
+)
+"""What a motion's end is taken from, the best first."""

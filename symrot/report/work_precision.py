@@ -1,0 +1,161 @@
+"""A work-precision study as lines for people, and two of them side by side."""
+
+import json
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from statistics import geometric_mean
+from typing import Any
+
+from symrot.errors import InputError
+from symrot.report.layout import columns, duration, fields, one_line
+
+__all__ = ["compared", "lines", "lines_of_comparison", "read_study"]
+
+FORMAT = "symrot work-precision 1"
+LARGEST_FILE = 50_000_000
+
+
+def _number(value: float) -> str:
+    if not math.isfinite(value):
+        return "-"
+    return f"{value:.2f}" if value < 10 else f"{value:.1f}" if value < 100 else f"{value:.0f}"
+
+
+def _decades(found: Mapping[str, Any]) -> list[str]:
+    names = list(dict.fromkeys(name for row in found["decades"] for name in row["methods"]))
+    short = [name.replace("high accuracy", "accurate").replace("fast math", "fast") for name in names]
+    rows = [["error <=", "fastest", "takes", *short]]
+    for row in found["decades"]:
+        ratios = [_number(row["methods"][name]["ratio"]) if name in row["methods"] else "-" for name in names]
+        rows.append([f"{row['error']:.0e}", row["fastest"], duration(row["seconds"]), *ratios])
+    return columns(rows, width=200, wrap=1, right=(0, 2, *range(3, len(rows[0]))))
+
+
+def _floors(runs: Sequence[Mapping[str, Any]]) -> list[str]:
+    rows = [["method", "least error", "at tolerance", "takes", "steps"]]
+    for name in dict.fromkeys(run["method"] for run in runs):
+        run = min((run for run in runs if run["method"] == name), key=lambda run: float(run["error"]))
+        tolerance = f"{run['tolerance']:.0e}" if run["tolerance"] else ""
+        rows.append(
+            [name, f"{run['error']:.1e}", tolerance, duration(run["seconds"]), str(run["steps"] or "none")]
+        )  # fmt: skip
+    return columns(rows, right=(1, 2, 3, 4))
+
+
+def _against(found: Mapping[str, Any]) -> list[str]:
+    rows = [["times the time of", "symrot's steppers", "at the least", "symrot", "at the least"]]
+    for row in found["against"]:
+        cells = [
+            _number(row[key][what]) if key in row else "-" for key in ("stepped", "all") for what in ("median", "least")
+        ]
+        rows.append([row["peer"], *cells])
+    return columns(rows, right=(1, 2, 3, 4)) if len(rows) > 1 else []
+
+
+def lines(found: Mapping[str, Any]) -> list[str]:
+    """Return the lines for people that say what :func:`symrot.bench.work_precision.study` found; first the title."""
+    scene, reference, machine = found["scene"], found["reference"], found["machine"]
+    others = [f"{other['name']} differs by {other['difference']:.0e}" for other in reference["others"]]
+    versions = [f"{name} {machine[name]}" for name in ("python", "numpy", "scipy", "heyoka") if machine[name]]
+    title = f"{one_line(scene['title'])} [{one_line(scene['name'])}]: time against error"
+    head = fields(
+        [
+            ("span", f"{scene['span'][0]:g} to {scene['span'][1]:g} s; the error is that of the last state, attitude "
+                     "in rad, angular velocity relative to its size"),
+            ("reference", "; ".join([reference["name"], *(others or ["no second one to hold it against"])])),
+            ("machine", f"{machine['processor']}; {', '.join(versions)}"),
+            ("times", "processor time of a call from Python, medians of turns; fastest run at least as good"),
+        ]
+    )  # fmt: skip
+    skipped = fields([(f"{item['method']}:", one_line(item["why"])) for item in found["skipped"]])
+    parts: list[Iterable[str]] = [[title], [f"  {line}" for line in head]]
+    parts += [["for each decade of the error: the fastest, and how many times its time the others take"]]
+    parts[-1] = [*parts[-1], *(f"  {line}" for line in _decades(found))]
+    for name, table in (("how many times longer, median over the decades", _against(found)),
+                        ("where each method ends", _floors(found["runs"])), ("left out", skipped)):  # fmt: skip
+        if table:
+            parts.append([name, *(f"  {line}" for line in table)])
+    return [line for number, part in enumerate(parts) for line in ([] if number == 0 else [""]) + list(part)]
+
+
+# --- two studies ------------------------------------------------------------------------------------------------------
+
+
+def read_study(path: Path) -> dict[str, Any]:
+    """Return a study from the file that ``symrot bench SCENE --out`` wrote.
+
+    Raises
+    ------
+    InputError
+        For a file that is none.
+    """
+    label = repr(str(path))
+    try:
+        if path.stat().st_size > LARGEST_FILE:
+            raise InputError(f"{label}: expected a study of `symrot bench`, got a file of {path.stat().st_size} bytes")
+        found = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as reason:
+        raise InputError(f"{label}: expected a study of `symrot bench`; {reason.strerror or reason}") from None
+    except (ValueError, RecursionError):
+        raise InputError(f"{label}: expected a study of `symrot bench` as JSON, got other text") from None
+    if not isinstance(found, dict) or found.get("format") != FORMAT:
+        raise InputError(f"{label}: expected a study of `symrot bench`, whose format is {FORMAT!r}")
+    try:
+        lines(found)
+    except (KeyError, TypeError, AttributeError, ValueError, IndexError):
+        raise InputError(f"{label}: expected a whole study of `symrot bench`, got one with parts missing") from None
+    return found
+
+
+def compared(first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the second study against the first: ratios of the seconds, decade by decade, and of the least errors.
+
+    Raises
+    ------
+    InputError
+        If they are of two scenes.
+    """
+    names = [study["scene"]["name"] for study in (first, second)]
+    if names[0] != names[1]:
+        raise InputError(f"--compare: expected two studies of one scene, got {names[0]!r} and {names[1]!r}")
+    before = {row["error"]: row["methods"] for row in first["decades"]}
+    methods: dict[str, Any] = {}
+    for row in second["decades"]:
+        for name, now in row["methods"].items():
+            then = before.get(row["error"], {}).get(name)
+            if then:
+                methods.setdefault(name, {})[f"{row['error']:.0e}"] = now["seconds"] / then["seconds"]
+    floors = [_least_errors(study) for study in (first, second)]
+    return {
+        "format": "symrot comparison 1",
+        "scene": second["scene"],
+        "machines": [study["machine"] for study in (first, second)],
+        "ratios": {
+            name: {
+                "decades": ratios, "mean": geometric_mean(ratios.values()),
+                "least errors": [floor[name] for floor in floors],
+            } for name, ratios in methods.items()
+        },
+    }  # fmt: skip
+
+
+def _least_errors(study: Mapping[str, Any]) -> dict[str, float]:
+    found: dict[str, float] = {}
+    for run in study["runs"]:
+        found[run["method"]] = min(run["error"], found.get(run["method"], math.inf))
+    return found
+
+
+def lines_of_comparison(found: Mapping[str, Any]) -> list[str]:
+    """Return the lines for people that say what :func:`compared` found."""
+    errors = sorted({error for item in found["ratios"].values() for error in item["decades"]}, key=float, reverse=True)
+    rows = [["method", *errors, "mean", "least error", "before"]]
+    for name, item in found["ratios"].items():
+        cells = [_number(item["decades"][error]) if error in item["decades"] else "-" for error in errors]
+        before, now = item["least errors"]
+        rows.append([name, *cells, _number(item["mean"]), f"{now:.1e}", f"{before:.1e}"])
+    title = f"{one_line(found['scene']['title'])} [{one_line(found['scene']['name'])}]: time of the second study over"
+    same = found["machines"][0]["processor"] == found["machines"][1]["processor"]
+    note = [] if same else ["", "The studies are of two machines."]
+    return [f"{title} that of the first", "", *columns(rows, width=200, wrap=0, right=range(1, len(rows[0]))), *note]
