@@ -15,7 +15,10 @@ from symrot.errors import CertificateError
 
 GENERATED = Path(__file__).parents[1] / "generated" / "c"
 KERNELS = sorted(GENERATED.rglob("*.c"))
-FUNCTIONS = {name: getattr(math, name) for name in ("sqrt", "sin", "cos", "tan", "exp", "log", "atan2", "asin", "acos")}
+FUNCTIONS = {
+    name: getattr(math, name)
+    for name in ("sqrt", "sin", "cos", "tan", "exp", "log", "atan2", "asin", "acos", "copysign")
+}
 
 PLAIN = """
 static inline double square(double x) { return x*x; }

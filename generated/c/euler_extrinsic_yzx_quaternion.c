@@ -25,24 +25,24 @@ void euler_extrinsic_yzx_quaternion(const double angles[3], double q[4])
     const double phi = angles[0];
     const double theta = angles[1];
     const double psi = angles[2];
-    const double x0 = 0.5*theta;
-    const double x1 = sin(x0);
-    const double x2 = 0.5*phi;
-    const double x3 = sin(x2);
-    const double x4 = 0.5*psi;
-    const double x5 = sin(x4);
-    const double x6 = x3*x5;
-    const double x7 = cos(x0);
-    const double x8 = cos(x2);
-    const double x9 = cos(x4);
-    const double x10 = x8*x9;
-    const double x11 = x3*x9;
-    const double x12 = x5*x8;
+    const double x0 = 0.5*phi;
+    const double x1 = cos(x0);
+    const double x2 = 0.5*psi;
+    const double x3 = cos(x2);
+    const double outer_1 = x1*x3;
+    const double x5 = 0.5*theta;
+    const double x6 = cos(x5);
+    const double x7 = sin(x0);
+    const double x8 = sin(x2);
+    const double outer_2 = x7*x8;
+    const double x10 = sin(x5);
+    const double outer_3 = x1*x8;
+    const double outer_4 = x3*x7;
 
-    q[0] = x1*x6 + x7*x10;
-    q[1] = x7*x12 - x1*x11;
-    q[2] = x7*x11 - x1*x12;
-    q[3] = x7*x6 + x1*x10;
+    q[0] = outer_1*x6 + outer_2*x10;
+    q[1] = outer_3*x6 - outer_4*x10;
+    q[2] = outer_4*x6 - outer_3*x10;
+    q[3] = outer_1*x10 + outer_2*x6;
 }
 
 void euler_extrinsic_yzx_quaternion_batch(
@@ -52,24 +52,24 @@ void euler_extrinsic_yzx_quaternion_batch(
         const double phi = angles[0*n + k];
         const double theta = angles[1*n + k];
         const double psi = angles[2*n + k];
-        const double x0 = 0.5*theta;
-        const double x1 = sin(x0);
-        const double x2 = 0.5*phi;
-        const double x3 = sin(x2);
-        const double x4 = 0.5*psi;
-        const double x5 = sin(x4);
-        const double x6 = x3*x5;
-        const double x7 = cos(x0);
-        const double x8 = cos(x2);
-        const double x9 = cos(x4);
-        const double x10 = x8*x9;
-        const double x11 = x3*x9;
-        const double x12 = x5*x8;
+        const double x0 = 0.5*phi;
+        const double x1 = cos(x0);
+        const double x2 = 0.5*psi;
+        const double x3 = cos(x2);
+        const double outer_1 = x1*x3;
+        const double x5 = 0.5*theta;
+        const double x6 = cos(x5);
+        const double x7 = sin(x0);
+        const double x8 = sin(x2);
+        const double outer_2 = x7*x8;
+        const double x10 = sin(x5);
+        const double outer_3 = x1*x8;
+        const double outer_4 = x3*x7;
 
-        q[0*n + k] = x1*x6 + x7*x10;
-        q[1*n + k] = x7*x12 - x1*x11;
-        q[2*n + k] = x7*x11 - x1*x12;
-        q[3*n + k] = x7*x6 + x1*x10;
+        q[0*n + k] = outer_1*x6 + outer_2*x10;
+        q[1*n + k] = outer_3*x6 - outer_4*x10;
+        q[2*n + k] = outer_4*x6 - outer_3*x10;
+        q[3*n + k] = outer_1*x10 + outer_2*x6;
     }
 }
 
@@ -78,24 +78,24 @@ void euler_extrinsic_yzx_quaternionf(const float angles[3], float q[4])
     const float phi = angles[0];
     const float theta = angles[1];
     const float psi = angles[2];
-    const float x0 = 0.5f*theta;
-    const float x1 = sinf(x0);
-    const float x2 = 0.5f*phi;
-    const float x3 = sinf(x2);
-    const float x4 = 0.5f*psi;
-    const float x5 = sinf(x4);
-    const float x6 = x3*x5;
-    const float x7 = cosf(x0);
-    const float x8 = cosf(x2);
-    const float x9 = cosf(x4);
-    const float x10 = x8*x9;
-    const float x11 = x3*x9;
-    const float x12 = x5*x8;
+    const float x0 = 0.5f*phi;
+    const float x1 = cosf(x0);
+    const float x2 = 0.5f*psi;
+    const float x3 = cosf(x2);
+    const float outer_1 = x1*x3;
+    const float x5 = 0.5f*theta;
+    const float x6 = cosf(x5);
+    const float x7 = sinf(x0);
+    const float x8 = sinf(x2);
+    const float outer_2 = x7*x8;
+    const float x10 = sinf(x5);
+    const float outer_3 = x1*x8;
+    const float outer_4 = x3*x7;
 
-    q[0] = x1*x6 + x7*x10;
-    q[1] = x7*x12 - x1*x11;
-    q[2] = x7*x11 - x1*x12;
-    q[3] = x7*x6 + x1*x10;
+    q[0] = outer_1*x6 + outer_2*x10;
+    q[1] = outer_3*x6 - outer_4*x10;
+    q[2] = outer_4*x6 - outer_3*x10;
+    q[3] = outer_1*x10 + outer_2*x6;
 }
 
 void euler_extrinsic_yzx_quaternionf_batch(
@@ -105,23 +105,23 @@ void euler_extrinsic_yzx_quaternionf_batch(
         const float phi = angles[0*n + k];
         const float theta = angles[1*n + k];
         const float psi = angles[2*n + k];
-        const float x0 = 0.5f*theta;
-        const float x1 = sinf(x0);
-        const float x2 = 0.5f*phi;
-        const float x3 = sinf(x2);
-        const float x4 = 0.5f*psi;
-        const float x5 = sinf(x4);
-        const float x6 = x3*x5;
-        const float x7 = cosf(x0);
-        const float x8 = cosf(x2);
-        const float x9 = cosf(x4);
-        const float x10 = x8*x9;
-        const float x11 = x3*x9;
-        const float x12 = x5*x8;
+        const float x0 = 0.5f*phi;
+        const float x1 = cosf(x0);
+        const float x2 = 0.5f*psi;
+        const float x3 = cosf(x2);
+        const float outer_1 = x1*x3;
+        const float x5 = 0.5f*theta;
+        const float x6 = cosf(x5);
+        const float x7 = sinf(x0);
+        const float x8 = sinf(x2);
+        const float outer_2 = x7*x8;
+        const float x10 = sinf(x5);
+        const float outer_3 = x1*x8;
+        const float outer_4 = x3*x7;
 
-        q[0*n + k] = x1*x6 + x7*x10;
-        q[1*n + k] = x7*x12 - x1*x11;
-        q[2*n + k] = x7*x11 - x1*x12;
-        q[3*n + k] = x7*x6 + x1*x10;
+        q[0*n + k] = outer_1*x6 + outer_2*x10;
+        q[1*n + k] = outer_3*x6 - outer_4*x10;
+        q[2*n + k] = outer_4*x6 - outer_3*x10;
+        q[3*n + k] = outer_1*x10 + outer_2*x6;
     }
 }

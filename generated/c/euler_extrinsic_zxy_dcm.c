@@ -33,23 +33,23 @@ void euler_extrinsic_zxy_dcm(const double angles[3], double dcm[9])
     const double psi = angles[2];
     const double cos_phi = cos(phi);
     const double cos_psi = cos(psi);
-    const double x0 = cos_phi*cos_psi;
-    const double sin_theta = sin(theta);
+    const double outer_1 = cos_phi*cos_psi;
     const double sin_phi = sin(phi);
     const double sin_psi = sin(psi);
-    const double x1 = sin_phi*sin_psi;
-    const double x2 = cos_psi*sin_phi;
-    const double x3 = cos_phi*sin_psi;
+    const double outer_2 = sin_phi*sin_psi;
+    const double sin_theta = sin(theta);
+    const double outer_3 = cos_psi*sin_phi;
+    const double outer_4 = cos_phi*sin_psi;
     const double cos_theta = cos(theta);
 
-    dcm[0] = x0 + sin_theta*x1;
-    dcm[1] = sin_theta*x3 - x2;
+    dcm[0] = outer_1 + outer_2*sin_theta;
+    dcm[1] = outer_4*sin_theta - outer_3;
     dcm[2] = sin_psi*cos_theta;
     dcm[3] = sin_phi*cos_theta;
     dcm[4] = cos_phi*cos_theta;
     dcm[5] = -sin_theta;
-    dcm[6] = sin_theta*x2 - x3;
-    dcm[7] = x1 + x0*sin_theta;
+    dcm[6] = outer_3*sin_theta - outer_4;
+    dcm[7] = outer_2 + outer_1*sin_theta;
     dcm[8] = cos_psi*cos_theta;
 }
 
@@ -62,23 +62,23 @@ void euler_extrinsic_zxy_dcm_batch(
         const double psi = angles[2*n + k];
         const double cos_phi = cos(phi);
         const double cos_psi = cos(psi);
-        const double x0 = cos_phi*cos_psi;
-        const double sin_theta = sin(theta);
+        const double outer_1 = cos_phi*cos_psi;
         const double sin_phi = sin(phi);
         const double sin_psi = sin(psi);
-        const double x1 = sin_phi*sin_psi;
-        const double x2 = cos_psi*sin_phi;
-        const double x3 = cos_phi*sin_psi;
+        const double outer_2 = sin_phi*sin_psi;
+        const double sin_theta = sin(theta);
+        const double outer_3 = cos_psi*sin_phi;
+        const double outer_4 = cos_phi*sin_psi;
         const double cos_theta = cos(theta);
 
-        dcm[0*n + k] = x0 + sin_theta*x1;
-        dcm[1*n + k] = sin_theta*x3 - x2;
+        dcm[0*n + k] = outer_1 + outer_2*sin_theta;
+        dcm[1*n + k] = outer_4*sin_theta - outer_3;
         dcm[2*n + k] = sin_psi*cos_theta;
         dcm[3*n + k] = sin_phi*cos_theta;
         dcm[4*n + k] = cos_phi*cos_theta;
         dcm[5*n + k] = -sin_theta;
-        dcm[6*n + k] = sin_theta*x2 - x3;
-        dcm[7*n + k] = x1 + x0*sin_theta;
+        dcm[6*n + k] = outer_3*sin_theta - outer_4;
+        dcm[7*n + k] = outer_2 + outer_1*sin_theta;
         dcm[8*n + k] = cos_psi*cos_theta;
     }
 }
@@ -90,23 +90,23 @@ void euler_extrinsic_zxy_dcmf(const float angles[3], float dcm[9])
     const float psi = angles[2];
     const float cos_phi = cosf(phi);
     const float cos_psi = cosf(psi);
-    const float x0 = cos_phi*cos_psi;
-    const float sin_theta = sinf(theta);
+    const float outer_1 = cos_phi*cos_psi;
     const float sin_phi = sinf(phi);
     const float sin_psi = sinf(psi);
-    const float x1 = sin_phi*sin_psi;
-    const float x2 = cos_psi*sin_phi;
-    const float x3 = cos_phi*sin_psi;
+    const float outer_2 = sin_phi*sin_psi;
+    const float sin_theta = sinf(theta);
+    const float outer_3 = cos_psi*sin_phi;
+    const float outer_4 = cos_phi*sin_psi;
     const float cos_theta = cosf(theta);
 
-    dcm[0] = x0 + sin_theta*x1;
-    dcm[1] = sin_theta*x3 - x2;
+    dcm[0] = outer_1 + outer_2*sin_theta;
+    dcm[1] = outer_4*sin_theta - outer_3;
     dcm[2] = sin_psi*cos_theta;
     dcm[3] = sin_phi*cos_theta;
     dcm[4] = cos_phi*cos_theta;
     dcm[5] = -sin_theta;
-    dcm[6] = sin_theta*x2 - x3;
-    dcm[7] = x1 + x0*sin_theta;
+    dcm[6] = outer_3*sin_theta - outer_4;
+    dcm[7] = outer_2 + outer_1*sin_theta;
     dcm[8] = cos_psi*cos_theta;
 }
 
@@ -118,23 +118,23 @@ void euler_extrinsic_zxy_dcmf_batch(size_t n, const float *SYMROT_RESTRICT angle
         const float psi = angles[2*n + k];
         const float cos_phi = cosf(phi);
         const float cos_psi = cosf(psi);
-        const float x0 = cos_phi*cos_psi;
-        const float sin_theta = sinf(theta);
+        const float outer_1 = cos_phi*cos_psi;
         const float sin_phi = sinf(phi);
         const float sin_psi = sinf(psi);
-        const float x1 = sin_phi*sin_psi;
-        const float x2 = cos_psi*sin_phi;
-        const float x3 = cos_phi*sin_psi;
+        const float outer_2 = sin_phi*sin_psi;
+        const float sin_theta = sinf(theta);
+        const float outer_3 = cos_psi*sin_phi;
+        const float outer_4 = cos_phi*sin_psi;
         const float cos_theta = cosf(theta);
 
-        dcm[0*n + k] = x0 + sin_theta*x1;
-        dcm[1*n + k] = sin_theta*x3 - x2;
+        dcm[0*n + k] = outer_1 + outer_2*sin_theta;
+        dcm[1*n + k] = outer_4*sin_theta - outer_3;
         dcm[2*n + k] = sin_psi*cos_theta;
         dcm[3*n + k] = sin_phi*cos_theta;
         dcm[4*n + k] = cos_phi*cos_theta;
         dcm[5*n + k] = -sin_theta;
-        dcm[6*n + k] = sin_theta*x2 - x3;
-        dcm[7*n + k] = x1 + x0*sin_theta;
+        dcm[6*n + k] = outer_3*sin_theta - outer_4;
+        dcm[7*n + k] = outer_2 + outer_1*sin_theta;
         dcm[8*n + k] = cos_psi*cos_theta;
     }
 }

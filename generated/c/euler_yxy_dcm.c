@@ -33,24 +33,24 @@ void euler_yxy_dcm(const double angles[3], double dcm[9])
     const double psi = angles[2];
     const double cos_phi = cos(phi);
     const double cos_psi = cos(psi);
-    const double x0 = cos_phi*cos_psi;
-    const double cos_theta = cos(theta);
+    const double outer_1 = cos_phi*cos_psi;
     const double sin_phi = sin(phi);
     const double sin_psi = sin(psi);
-    const double x1 = sin_phi*sin_psi;
+    const double outer_2 = sin_phi*sin_psi;
+    const double cos_theta = cos(theta);
     const double sin_theta = sin(theta);
-    const double x2 = cos_phi*sin_psi;
-    const double x3 = cos_psi*sin_phi;
+    const double outer_3 = cos_phi*sin_psi;
+    const double outer_4 = cos_psi*sin_phi;
 
-    dcm[0] = x0 - cos_theta*x1;
+    dcm[0] = outer_1 - outer_2*cos_theta;
     dcm[1] = sin_phi*sin_theta;
-    dcm[2] = x2 + cos_theta*x3;
+    dcm[2] = outer_3 + outer_4*cos_theta;
     dcm[3] = sin_psi*sin_theta;
     dcm[4] = cos_theta;
     dcm[5] = -(cos_psi*sin_theta);
-    dcm[6] = -(x3 + cos_theta*x2);
+    dcm[6] = -(outer_4 + outer_3*cos_theta);
     dcm[7] = cos_phi*sin_theta;
-    dcm[8] = x0*cos_theta - x1;
+    dcm[8] = outer_1*cos_theta - outer_2;
 }
 
 void euler_yxy_dcm_batch(size_t n, const double *SYMROT_RESTRICT angles, double *SYMROT_RESTRICT dcm)
@@ -61,24 +61,24 @@ void euler_yxy_dcm_batch(size_t n, const double *SYMROT_RESTRICT angles, double 
         const double psi = angles[2*n + k];
         const double cos_phi = cos(phi);
         const double cos_psi = cos(psi);
-        const double x0 = cos_phi*cos_psi;
-        const double cos_theta = cos(theta);
+        const double outer_1 = cos_phi*cos_psi;
         const double sin_phi = sin(phi);
         const double sin_psi = sin(psi);
-        const double x1 = sin_phi*sin_psi;
+        const double outer_2 = sin_phi*sin_psi;
+        const double cos_theta = cos(theta);
         const double sin_theta = sin(theta);
-        const double x2 = cos_phi*sin_psi;
-        const double x3 = cos_psi*sin_phi;
+        const double outer_3 = cos_phi*sin_psi;
+        const double outer_4 = cos_psi*sin_phi;
 
-        dcm[0*n + k] = x0 - cos_theta*x1;
+        dcm[0*n + k] = outer_1 - outer_2*cos_theta;
         dcm[1*n + k] = sin_phi*sin_theta;
-        dcm[2*n + k] = x2 + cos_theta*x3;
+        dcm[2*n + k] = outer_3 + outer_4*cos_theta;
         dcm[3*n + k] = sin_psi*sin_theta;
         dcm[4*n + k] = cos_theta;
         dcm[5*n + k] = -(cos_psi*sin_theta);
-        dcm[6*n + k] = -(x3 + cos_theta*x2);
+        dcm[6*n + k] = -(outer_4 + outer_3*cos_theta);
         dcm[7*n + k] = cos_phi*sin_theta;
-        dcm[8*n + k] = x0*cos_theta - x1;
+        dcm[8*n + k] = outer_1*cos_theta - outer_2;
     }
 }
 
@@ -89,24 +89,24 @@ void euler_yxy_dcmf(const float angles[3], float dcm[9])
     const float psi = angles[2];
     const float cos_phi = cosf(phi);
     const float cos_psi = cosf(psi);
-    const float x0 = cos_phi*cos_psi;
-    const float cos_theta = cosf(theta);
+    const float outer_1 = cos_phi*cos_psi;
     const float sin_phi = sinf(phi);
     const float sin_psi = sinf(psi);
-    const float x1 = sin_phi*sin_psi;
+    const float outer_2 = sin_phi*sin_psi;
+    const float cos_theta = cosf(theta);
     const float sin_theta = sinf(theta);
-    const float x2 = cos_phi*sin_psi;
-    const float x3 = cos_psi*sin_phi;
+    const float outer_3 = cos_phi*sin_psi;
+    const float outer_4 = cos_psi*sin_phi;
 
-    dcm[0] = x0 - cos_theta*x1;
+    dcm[0] = outer_1 - outer_2*cos_theta;
     dcm[1] = sin_phi*sin_theta;
-    dcm[2] = x2 + cos_theta*x3;
+    dcm[2] = outer_3 + outer_4*cos_theta;
     dcm[3] = sin_psi*sin_theta;
     dcm[4] = cos_theta;
     dcm[5] = -(cos_psi*sin_theta);
-    dcm[6] = -(x3 + cos_theta*x2);
+    dcm[6] = -(outer_4 + outer_3*cos_theta);
     dcm[7] = cos_phi*sin_theta;
-    dcm[8] = x0*cos_theta - x1;
+    dcm[8] = outer_1*cos_theta - outer_2;
 }
 
 void euler_yxy_dcmf_batch(size_t n, const float *SYMROT_RESTRICT angles, float *SYMROT_RESTRICT dcm)
@@ -117,23 +117,23 @@ void euler_yxy_dcmf_batch(size_t n, const float *SYMROT_RESTRICT angles, float *
         const float psi = angles[2*n + k];
         const float cos_phi = cosf(phi);
         const float cos_psi = cosf(psi);
-        const float x0 = cos_phi*cos_psi;
-        const float cos_theta = cosf(theta);
+        const float outer_1 = cos_phi*cos_psi;
         const float sin_phi = sinf(phi);
         const float sin_psi = sinf(psi);
-        const float x1 = sin_phi*sin_psi;
+        const float outer_2 = sin_phi*sin_psi;
+        const float cos_theta = cosf(theta);
         const float sin_theta = sinf(theta);
-        const float x2 = cos_phi*sin_psi;
-        const float x3 = cos_psi*sin_phi;
+        const float outer_3 = cos_phi*sin_psi;
+        const float outer_4 = cos_psi*sin_phi;
 
-        dcm[0*n + k] = x0 - cos_theta*x1;
+        dcm[0*n + k] = outer_1 - outer_2*cos_theta;
         dcm[1*n + k] = sin_phi*sin_theta;
-        dcm[2*n + k] = x2 + cos_theta*x3;
+        dcm[2*n + k] = outer_3 + outer_4*cos_theta;
         dcm[3*n + k] = sin_psi*sin_theta;
         dcm[4*n + k] = cos_theta;
         dcm[5*n + k] = -(cos_psi*sin_theta);
-        dcm[6*n + k] = -(x3 + cos_theta*x2);
+        dcm[6*n + k] = -(outer_4 + outer_3*cos_theta);
         dcm[7*n + k] = cos_phi*sin_theta;
-        dcm[8*n + k] = x0*cos_theta - x1;
+        dcm[8*n + k] = outer_1*cos_theta - outer_2;
     }
 }

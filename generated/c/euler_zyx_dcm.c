@@ -35,22 +35,22 @@ void euler_zyx_dcm(const double angles[3], double dcm[9])
     const double cos_theta = cos(theta);
     const double sin_phi = sin(phi);
     const double cos_psi = cos(psi);
-    const double x0 = sin_phi*cos_psi;
-    const double sin_theta = sin(theta);
+    const double outer_1 = sin_phi*cos_psi;
     const double sin_psi = sin(psi);
-    const double x1 = cos_phi*sin_psi;
-    const double x2 = sin_phi*sin_psi;
-    const double x3 = cos_phi*cos_psi;
+    const double outer_2 = sin_psi*cos_phi;
+    const double sin_theta = sin(theta);
+    const double outer_3 = sin_phi*sin_psi;
+    const double outer_4 = cos_psi*cos_phi;
 
     dcm[0] = cos_phi*cos_theta;
-    dcm[1] = sin_theta*x1 - x0;
-    dcm[2] = x2 + sin_theta*x3;
-    dcm[3] = cos_theta*sin_phi;
-    dcm[4] = x3 + sin_theta*x2;
-    dcm[5] = x0*sin_theta - x1;
+    dcm[1] = outer_2*sin_theta - outer_1;
+    dcm[2] = outer_3 + outer_4*sin_theta;
+    dcm[3] = sin_phi*cos_theta;
+    dcm[4] = outer_4 + outer_3*sin_theta;
+    dcm[5] = outer_1*sin_theta - outer_2;
     dcm[6] = -sin_theta;
-    dcm[7] = cos_theta*sin_psi;
-    dcm[8] = cos_theta*cos_psi;
+    dcm[7] = sin_psi*cos_theta;
+    dcm[8] = cos_psi*cos_theta;
 }
 
 void euler_zyx_dcm_batch(size_t n, const double *SYMROT_RESTRICT angles, double *SYMROT_RESTRICT dcm)
@@ -63,22 +63,22 @@ void euler_zyx_dcm_batch(size_t n, const double *SYMROT_RESTRICT angles, double 
         const double cos_theta = cos(theta);
         const double sin_phi = sin(phi);
         const double cos_psi = cos(psi);
-        const double x0 = sin_phi*cos_psi;
-        const double sin_theta = sin(theta);
+        const double outer_1 = sin_phi*cos_psi;
         const double sin_psi = sin(psi);
-        const double x1 = cos_phi*sin_psi;
-        const double x2 = sin_phi*sin_psi;
-        const double x3 = cos_phi*cos_psi;
+        const double outer_2 = sin_psi*cos_phi;
+        const double sin_theta = sin(theta);
+        const double outer_3 = sin_phi*sin_psi;
+        const double outer_4 = cos_psi*cos_phi;
 
         dcm[0*n + k] = cos_phi*cos_theta;
-        dcm[1*n + k] = sin_theta*x1 - x0;
-        dcm[2*n + k] = x2 + sin_theta*x3;
-        dcm[3*n + k] = cos_theta*sin_phi;
-        dcm[4*n + k] = x3 + sin_theta*x2;
-        dcm[5*n + k] = x0*sin_theta - x1;
+        dcm[1*n + k] = outer_2*sin_theta - outer_1;
+        dcm[2*n + k] = outer_3 + outer_4*sin_theta;
+        dcm[3*n + k] = sin_phi*cos_theta;
+        dcm[4*n + k] = outer_4 + outer_3*sin_theta;
+        dcm[5*n + k] = outer_1*sin_theta - outer_2;
         dcm[6*n + k] = -sin_theta;
-        dcm[7*n + k] = cos_theta*sin_psi;
-        dcm[8*n + k] = cos_theta*cos_psi;
+        dcm[7*n + k] = sin_psi*cos_theta;
+        dcm[8*n + k] = cos_psi*cos_theta;
     }
 }
 
@@ -91,22 +91,22 @@ void euler_zyx_dcmf(const float angles[3], float dcm[9])
     const float cos_theta = cosf(theta);
     const float sin_phi = sinf(phi);
     const float cos_psi = cosf(psi);
-    const float x0 = sin_phi*cos_psi;
-    const float sin_theta = sinf(theta);
+    const float outer_1 = sin_phi*cos_psi;
     const float sin_psi = sinf(psi);
-    const float x1 = cos_phi*sin_psi;
-    const float x2 = sin_phi*sin_psi;
-    const float x3 = cos_phi*cos_psi;
+    const float outer_2 = sin_psi*cos_phi;
+    const float sin_theta = sinf(theta);
+    const float outer_3 = sin_phi*sin_psi;
+    const float outer_4 = cos_psi*cos_phi;
 
     dcm[0] = cos_phi*cos_theta;
-    dcm[1] = sin_theta*x1 - x0;
-    dcm[2] = x2 + sin_theta*x3;
-    dcm[3] = cos_theta*sin_phi;
-    dcm[4] = x3 + sin_theta*x2;
-    dcm[5] = x0*sin_theta - x1;
+    dcm[1] = outer_2*sin_theta - outer_1;
+    dcm[2] = outer_3 + outer_4*sin_theta;
+    dcm[3] = sin_phi*cos_theta;
+    dcm[4] = outer_4 + outer_3*sin_theta;
+    dcm[5] = outer_1*sin_theta - outer_2;
     dcm[6] = -sin_theta;
-    dcm[7] = cos_theta*sin_psi;
-    dcm[8] = cos_theta*cos_psi;
+    dcm[7] = sin_psi*cos_theta;
+    dcm[8] = cos_psi*cos_theta;
 }
 
 void euler_zyx_dcmf_batch(size_t n, const float *SYMROT_RESTRICT angles, float *SYMROT_RESTRICT dcm)
@@ -119,21 +119,21 @@ void euler_zyx_dcmf_batch(size_t n, const float *SYMROT_RESTRICT angles, float *
         const float cos_theta = cosf(theta);
         const float sin_phi = sinf(phi);
         const float cos_psi = cosf(psi);
-        const float x0 = sin_phi*cos_psi;
-        const float sin_theta = sinf(theta);
+        const float outer_1 = sin_phi*cos_psi;
         const float sin_psi = sinf(psi);
-        const float x1 = cos_phi*sin_psi;
-        const float x2 = sin_phi*sin_psi;
-        const float x3 = cos_phi*cos_psi;
+        const float outer_2 = sin_psi*cos_phi;
+        const float sin_theta = sinf(theta);
+        const float outer_3 = sin_phi*sin_psi;
+        const float outer_4 = cos_psi*cos_phi;
 
         dcm[0*n + k] = cos_phi*cos_theta;
-        dcm[1*n + k] = sin_theta*x1 - x0;
-        dcm[2*n + k] = x2 + sin_theta*x3;
-        dcm[3*n + k] = cos_theta*sin_phi;
-        dcm[4*n + k] = x3 + sin_theta*x2;
-        dcm[5*n + k] = x0*sin_theta - x1;
+        dcm[1*n + k] = outer_2*sin_theta - outer_1;
+        dcm[2*n + k] = outer_3 + outer_4*sin_theta;
+        dcm[3*n + k] = sin_phi*cos_theta;
+        dcm[4*n + k] = outer_4 + outer_3*sin_theta;
+        dcm[5*n + k] = outer_1*sin_theta - outer_2;
         dcm[6*n + k] = -sin_theta;
-        dcm[7*n + k] = cos_theta*sin_psi;
-        dcm[8*n + k] = cos_theta*cos_psi;
+        dcm[7*n + k] = sin_psi*cos_theta;
+        dcm[8*n + k] = cos_psi*cos_theta;
     }
 }

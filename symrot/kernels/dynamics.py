@@ -6,11 +6,11 @@ from functools import partial
 from sympy import Expr, Matrix, Symbol, diag
 
 from symrot import symbols
-from symrot.dynamics.equations import angular_acceleration, inverse
+from symrot.dynamics.equations import angular_acceleration
 from symrot.kernel import Argument
-from symrot.kernels.definition import Box, Definition, Law, argument, boxed, result
-from symrot.kernels.quaternion import QUATERNION, QUATERNION_BOX
-from symrot.kinematics.quaternion import dcm_of, qmul, quaternion_rates, unit_relation
+from symrot.kernels.definition import Box, Definition, Law, argument, boxed, interval, result, scalar
+from symrot.kernels.quaternion import QUATERNION, QUATERNION_BOX, Named, halved, quaternion_rate, turned
+from symrot.kinematics.quaternion import dcm_of, qmul, unit_relation
 
 __all__ = ["OMEGA", "OMEGA_BOX", "TENSOR", "TENSOR_BOX", "definitions", "tensor_argument"]
 
@@ -44,6 +44,8 @@ def definitions() -> Iterator[tuple[str, Callable[[], Definition]]]:
         yield f"euler_equations_{body}", partial(_euler_equations, f"euler_equations_{body}", body)
     for body in ("tensor", "principal"):
         yield f"rigid_body_{body}", partial(_rigid_body, f"rigid_body_{body}", body)
+    yield "heavy_top", partial(_heavy_top, "heavy_top", "principal")
+    yield "heavy_top_symmetric", partial(_heavy_top, "heavy_top_symmetric", "symmetric")
     for name, make in _QUANTITIES.items():
         yield name, partial(make, name)
 
@@ -57,16 +59,27 @@ def _body_box(body: str) -> Box:
     return TENSOR_BOX if body == "tensor" else boxed(_BODIES[body][0], 1, 4)
 
 
-Named = tuple[tuple[Symbol, Expr], ...]
+def _symbols(name: str, count: int = 3) -> tuple[Symbol, ...]:
+    return tuple(Symbol(f"{name}_{i}", real=True) for i in range(1, count + 1))
 
 
 def _solved(inertia: Matrix, omega: Matrix, torque: Matrix) -> tuple[Named, Matrix]:
     """Return named quantities and the angular acceleration in them."""
     if inertia.is_diagonal():
         return (), angular_acceleration(inertia, omega, torque)
-    momentum, moment = (Matrix([Symbol(f"{letter}_{i}", real=True) for i in (1, 2, 3)]) for letter in "LM")
-    named = (*zip(momentum, inertia * omega, strict=True), *zip(moment, torque - omega.cross(momentum), strict=True))
-    return named, inverse(inertia) * moment
+    momentum, moment = Matrix(_symbols("L")), Matrix(_symbols("M"))
+    entries, adjugate = _symbols("cofactor", 6), inertia.adjugate()
+    places = [(i, j) for i in range(3) for j in range(i, 3)]
+    held = dict(zip(places, entries, strict=True))
+    cofactors = Matrix(3, 3, lambda i, j: held[min(i, j), max(i, j)])
+    determinant = Symbol("determinant", real=True)
+    named = (
+        *zip(momentum, inertia * omega, strict=True),
+        *zip(entries, (adjugate[place] for place in places), strict=True),
+        (determinant, inertia.row(0).dot(cofactors.row(0))),
+        *zip(moment, (torque - omega.cross(momentum)) / determinant, strict=True),
+    )
+    return named, cofactors * moment
 
 
 def _law_of_euler(inertia: Matrix, torque: Matrix) -> Law:
@@ -93,23 +106,69 @@ def _rigid_body(name: str, body: str) -> Definition:
     _, inertia = _BODIES[body]
     omega, torque = Matrix(symbols.omega_b), Matrix(symbols.torque_b)
     named, acceleration = _solved(inertia, omega, torque)
-
-    def laws() -> tuple[Law, ...]:
-        q, dq = symbols.quaternion, symbols.quaternion_rates
-        return (
-            _law_of_euler(inertia, torque),
-            Law("dq/dt is q (0, omega) / 2", tuple(Matrix(dq) - qmul(q, [0, *omega]) / 2)),
-        )
+    halves, half = halved(symbols.omega_b)
 
     return Definition(
         name, "right-hand side of a rigid body: angular acceleration and rate of the quaternion, "
         + ("full inertia tensor" if body == "tensor" else "principal axes"),
         (tensor_argument(body), OMEGA, QUATERNION, _TORQUE),
         (result("domega", acceleration, symbols.omega_rates, "angular acceleration, body components"),
-         result("dq", quaternion_rates("body") * omega, symbols.quaternion_rates, "rate of the quaternion")),
+         _attitude_rate(half)),
         "positive definite inertia", f"{_EULER}, derivations/quaternion_rates.md",
-        _body_box(body) | OMEGA_BOX | QUATERNION_BOX | boxed(symbols.torque_b, -10, 10), laws, named,
+        _body_box(body) | OMEGA_BOX | QUATERNION_BOX | boxed(symbols.torque_b, -10, 10),
+        lambda: (_law_of_euler(inertia, torque), _law_of_attitude()), (*named, *halves),
     )  # fmt: skip
+
+
+def _attitude_rate(half: tuple[Symbol, ...]) -> tuple[Argument, tuple[Expr, ...]]:
+    formulas = quaternion_rate(symbols.quaternion, half)
+    return result("dq", formulas, symbols.quaternion_rates, "rate of the quaternion")
+
+
+def _law_of_attitude() -> Law:
+    q, dq = symbols.quaternion, symbols.quaternion_rates
+    return Law("dq/dt is q (0, omega) / 2", tuple(Matrix(dq) - qmul(q, [0, *symbols.omega_b]) / 2))
+
+
+_WEIGHT = symbols.W
+_CENTER = argument("center_of_mass", "in", symbols.center_of_mass, "from the fixed point, body axes")
+_DISTANCE = symbols.h
+
+
+def _heavy_top(name: str, body: str) -> Definition:
+    """Return the right-hand side of a top: a symmetric one carries its centre of mass on body axis 3."""
+    _, inertia = _BODIES[body]
+    symmetric = body == "symmetric"
+    center = Matrix([0, 0, _DISTANCE]) if symmetric else Matrix(symbols.center_of_mass)
+    omega, upward = Matrix(symbols.omega_b), dcm_of().T.col(2)
+    vertical = Matrix(_symbols("half_vertical"))
+    weighed, lever = _weighed(center)
+    acceleration = angular_acceleration(inertia, omega, vertical.cross(weighed))
+    halves, half = halved(symbols.omega_b)
+    named = tuple((symbol, value) for symbol, value in zip(vertical, upward / 2, strict=True)
+                  if any(entry.has(symbol) for entry in acceleration))  # fmt: skip
+
+    def laws() -> tuple[Law, ...]:
+        return (_law_of_euler(inertia, -_WEIGHT * center.cross(upward)), _law_of_attitude())
+
+    distance = scalar(_DISTANCE, "of the centre of mass from the fixed point, along body axis 3")
+    return Definition(
+        name, "right-hand side of a heavy top about its fixed point, the weight along -z of space, "
+        + ("symmetric about body axis 3" if symmetric else "principal axes"),
+        (tensor_argument(body), scalar(_WEIGHT, "weight"), distance if symmetric else _CENTER, OMEGA, QUATERNION),
+        (result("domega", acceleration, symbols.omega_rates, "angular acceleration, body components"),
+         _attitude_rate(half)),
+        "unit quaternions; positive moments", "derivations/heavy_top.md, derivations/quaternion_rates.md",
+        _body_box(body) | {str(_WEIGHT): interval("1/10", 100)}
+        | (boxed((_DISTANCE,), "1/100", 1) if symmetric else boxed(symbols.center_of_mass, -1, 1))
+        | OMEGA_BOX | QUATERNION_BOX, laws, (*lever, *named, *halves),
+    )  # fmt: skip
+
+
+def _weighed(center: Matrix) -> tuple[Matrix, Named]:
+    """Return twice the weight times the centre of mass as symbols, zero where that is zero, and what they are."""
+    found = [symbol if c else c for symbol, c in zip(_symbols("moment_of_weight"), center, strict=True)]
+    return Matrix(found), tuple((symbol, 2 * _WEIGHT * c) for symbol, c in zip(found, center, strict=True) if c)
 
 
 _MOMENTUM_S = tuple(Symbol(f"L_{i}", real=True) for i in "xyz")
@@ -147,7 +206,8 @@ def _momentum_body(name: str) -> Definition:
 
 def _momentum_space(name: str) -> Definition:
     omega = Matrix(symbols.omega_b)
-    named = tuple(zip(_MOMENTUM_B, TENSOR * omega, strict=True))
+    named, formulas = turned(symbols.quaternion, Matrix(_MOMENTUM_B))
+    named = (*zip(_MOMENTUM_B, TENSOR * omega, strict=True), *named)
 
     def laws() -> tuple[Law, ...]:
         found = Matrix(_MOMENTUM_S)
@@ -156,7 +216,7 @@ def _momentum_space(name: str) -> Definition:
 
     return Definition(
         name, "angular momentum in space axes", (tensor_argument(), OMEGA, QUATERNION),
-        (result("momentum", dcm_of() * Matrix(_MOMENTUM_B), _MOMENTUM_S, "angular momentum, space components",
+        (result("momentum", formulas, _MOMENTUM_S, "angular momentum, space components",
                 "kg m^2/s"),),
         "unit quaternions", "derivations/angular_momentum.md", TENSOR_BOX | OMEGA_BOX | QUATERNION_BOX, laws, named,
     )  # fmt: skip

@@ -1,14 +1,16 @@
 """Kernels of Euler angles: for all 24 sequences the dcm, both rate Jacobians and their inverses, and quaternions."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 
-from sympy import Expr, Matrix, pi
+from sympy import Add, Expr, Integer, Matrix, Mul, Symbol, expand, pi
 
 from symrot import symbols
 from symrot.conventions import SEQUENCES, parse_sequence
 from symrot.kernels.definition import Box, Definition, Law, argument, boxed, interval, result
+from symrot.kernels.quaternion import Named
 from symrot.kernels.removable import select_ge
+from symrot.kinematics.chart import RateMatrix
 from symrot.kinematics.euler import dcm, euler_of_quaternion, quaternion_of_euler, rate_jacobian
 from symrot.kinematics.quaternion import dcm_of, unit_relation
 from symrot.kinematics.rotations import skew
@@ -53,8 +55,30 @@ def _regular_box(sequence: str) -> Box:
     return ANGLE_BOX | {"theta": interval("1/10", "304/100") if proper else interval("-7/5", "7/5")}
 
 
+def _by_outer_products(entries: Iterable[Expr]) -> tuple[Named, list[Expr]]:
+    """Return the products of functions of the first and of the last angle as named quantities, and entries by them.
+
+    What they are multiplied by, a function of the middle angle, is taken out of the sums.
+    """
+    named: dict[Expr, Symbol] = {}
+    found = []
+    for entry in entries:
+        sums: dict[Expr, Expr] = {}
+        for term in Add.make_args(expand(entry)):
+            coefficient, factors = term.as_coeff_mul()
+            outer = [f for f in factors if f.free_symbols & {symbols.phi, symbols.psi}]
+            product = Mul(*outer)
+            if len(outer) == 2:
+                product = named.setdefault(product, Symbol(f"outer_{len(named) + 1}", real=True))
+            middle = Mul(*(f for f in factors if f not in outer))
+            sums[middle] = sums.get(middle, Integer(0)) + coefficient * product
+        found.append(Add(*(middle * value for middle, value in sums.items())))
+    return tuple((symbol, product) for product, symbol in named.items()), found
+
+
 def _dcm(name: str, sequence: str) -> Definition:
     matrix = dcm(sequence)
+    named, formulas = _by_outer_products(matrix)
 
     def laws() -> tuple[Law, ...]:
         found = Matrix(3, 3, symbols.rotation_entries)
@@ -65,8 +89,8 @@ def _dcm(name: str, sequence: str) -> Definition:
 
     return Definition(
         name, f"direction cosine matrix dcm_sb of Euler angles, {_called(sequence)}; v_s = dcm_sb v_b, row by row",
-        (ANGLES,), (result("dcm", matrix, symbols.rotation_entries, "entry of dcm_sb"),),
-        "all finite angles", "derivations/rotation_matrices.md", ANGLE_BOX, laws,
+        (ANGLES,), (result("dcm", formulas, symbols.rotation_entries, "entry of dcm_sb"),),
+        "all finite angles", "derivations/rotation_matrices.md", ANGLE_BOX, laws, named,
     )  # fmt: skip
 
 
@@ -89,6 +113,7 @@ def _jacobian(frame: str, name: str, sequence: str) -> Definition:
 
 def _rates(frame: str, name: str, sequence: str) -> Definition:
     jacobian, omega = rate_jacobian(sequence, frame), Matrix(OMEGA[frame])
+    named, formulas = _solved(jacobian, omega)
 
     def laws() -> tuple[Law, ...]:
         vanishing = Matrix(jacobian) * Matrix(symbols.angle_rates) - omega
@@ -98,12 +123,31 @@ def _rates(frame: str, name: str, sequence: str) -> Definition:
     return Definition(
         name, f"rates of Euler angles from the angular velocity in {where} axes, {_called(sequence)}",
         (ANGLES, argument("omega", "in", OMEGA[frame], f"angular velocity, {where} components")),
-        (result("dangles", jacobian.inverse * omega, symbols.angle_rates, "rate of the angle"),),
-        _lock(sequence), DERIVATION, _regular_box(sequence) | boxed(OMEGA[frame], -10, 10), laws,
+        (result("dangles", formulas, symbols.angle_rates, "rate of the angle"),),
+        _lock(sequence), DERIVATION, _regular_box(sequence) | boxed(OMEGA[frame], -10, 10), laws, named,
     )  # fmt: skip
 
 
+def _solved(jacobian: RateMatrix, omega: Matrix) -> tuple[Named, list[Expr]]:
+    """Return the rate of an outer angle as a named quantity, and all three rates by it.
+
+    The column of the other outer angle is an axis of the frame: along it, omega is that rate and a part of the named
+    one. The row of the named one over the determinant has no other quotient.
+    """
+    matrix, determinant = Matrix(jacobian), jacobian.determinant
+    last = next(place for place in (0, 2) if not matrix[:, place].free_symbols)
+    first, along = 2 - last, next(i for i in range(3) if matrix[i, last])
+    turning = Symbol("turning", real=True)
+    row = jacobian.inverse.row(first) * determinant
+    formulas = list(jacobian.inverse * omega)
+    formulas[first] = turning
+    formulas[last] = (omega[along] - matrix[along, first] * turning) / matrix[along, last]
+    return ((turning, sum((a * w for a, w in zip(row, omega, strict=True)), Integer(0)) / determinant),), formulas
+
+
 def _quaternion(name: str, sequence: str) -> Definition:
+    named, formulas = _by_outer_products(quaternion_of_euler(sequence))
+
     def laws() -> tuple[Law, ...]:
         return (Law("its dcm is that of the angles", tuple(dcm_of() - dcm(sequence))),
                 Law("it is of unit norm", (unit_relation(),)))  # fmt: skip
@@ -111,8 +155,8 @@ def _quaternion(name: str, sequence: str) -> Definition:
     return Definition(
         name, f"quaternion of Euler angles, {_called(sequence)}",
         (ANGLES,),
-        (result("q", quaternion_of_euler(sequence), symbols.quaternion, "attitude, body to space"),),
-        "all finite angles; q and -q are one attitude", "derivations/euler_parameters.md", ANGLE_BOX, laws,
+        (result("q", formulas, symbols.quaternion, "attitude, body to space"),),
+        "all finite angles; q and -q are one attitude", "derivations/euler_parameters.md", ANGLE_BOX, laws, named,
     )  # fmt: skip
 
 

@@ -11,7 +11,7 @@ from symrot.inertia.solids import solid
 from symrot.kernel import Argument
 from symrot.kernels.definition import Definition, Law, argument, boxed, result, scalar
 from symrot.kernels.dynamics import ENTRIES, TENSOR, TENSOR_BOX, tensor_argument
-from symrot.kernels.quaternion import QUATERNION, QUATERNION_BOX
+from symrot.kernels.quaternion import QUATERNION, QUATERNION_BOX, dcm_by_halves
 from symrot.kinematics.quaternion import dcm_of, unit_relation
 
 __all__ = ["definitions"]
@@ -69,7 +69,9 @@ def _solid(name: str, shape: str) -> Definition:
 
 def _parallel_axis(name: str) -> Definition:
     d = Matrix(symbols.offset)
-    moved = TENSOR + symbols.m * (d.dot(d) * eye(3) - d * d.T)
+    weighed = Matrix([Symbol(f"mass_times_{entry}", real=True) for entry in d])
+    outer = ImmutableMatrix(3, 3, lambda i, j: weighed[min(i, j)] * d[max(i, j)])
+    moved = TENSOR + outer.trace() * eye(3) - outer
 
     def laws() -> tuple[Law, ...]:
         difference = _tensor(_MOVED) - TENSOR
@@ -85,13 +87,16 @@ def _parallel_axis(name: str) -> Definition:
         (result("moved", _entries(moved), _MOVED, f"{_TENSOR_OUT}, about the point", "kg m^2"),),
         "all finite values", "derivations/parallel_axis.md",
         TENSOR_BOX | boxed((symbols.m,), "1/10", 10) | boxed(symbols.offset, -1, 1), laws,
+        tuple(zip(weighed, symbols.m * d, strict=True)),
     )  # fmt: skip
 
 
 def _rotated(name: str) -> Definition:
     turn = Matrix(3, 3, symbols.rotation_entries)
     half = Matrix(3, 3, [Symbol(f"turned_{i}{j}", real=True) for i in "123" for j in "123"])
-    named = (*zip(turn, dcm_of(), strict=True), *zip(half, turn * TENSOR, strict=True))
+    scalar, *axis = symbols.quaternion
+    doubled, matrix = dcm_by_halves(scalar, axis, [2 * q for q in axis])
+    named = (*doubled, *zip(turn, matrix, strict=True), *zip(half, turn * TENSOR, strict=True))
 
     def laws() -> tuple[Law, ...]:
         matrix = dcm_of()

@@ -1,10 +1,10 @@
 """Kernels of unit quaternions: dcm and back, product, rotation of a vector, rates in both frames."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from itertools import pairwise
 
-from sympy import Expr, Matrix, Symbol, sqrt
+from sympy import Expr, ImmutableMatrix, Matrix, Symbol, eye, sqrt
 
 from symrot import symbols
 from symrot.kernels.definition import Definition, Law, argument, boxed, result
@@ -15,15 +15,18 @@ from symrot.kinematics.quaternion import (
     norm_squared,
     qmul,
     quaternion_of_dcm,
-    quaternion_rates,
     unit_relation,
 )
+from symrot.kinematics.rotations import skew
 
-__all__ = ["OMEGA", "QUATERNION", "QUATERNION_BOX", "definitions"]
+__all__ = ["OMEGA", "QUATERNION", "QUATERNION_BOX", "Named", "dcm_by_halves", "definitions", "halved",
+           "quaternion_rate", "turned"]  # fmt: skip
 
 OMEGA = {"body": symbols.omega_b, "space": symbols.omega_s}
 QUATERNION = argument("q", "in", symbols.quaternion, "attitude, body to space")
 QUATERNION_BOX = boxed(symbols.quaternion, -1, 1)
+
+Named = tuple[tuple[Symbol, Expr], ...]  # quantities that formulas use by a symbol, and what they are
 
 _DERIVATION = "derivations/quaternion_rates.md"
 _UNIT = "unit quaternions"
@@ -35,7 +38,34 @@ def definitions() -> Iterator[tuple[str, Callable[[], Definition]]]:
         yield name, partial(make, name)
 
 
+def dcm_by_halves(scalar: Expr, axis: Sequence[Expr], doubled: Sequence[Expr]) -> tuple[Named, ImmutableMatrix]:
+    """Return named quantities ``t = doubled`` and the dcm ``1 + scalar [t] + [t][axis]``, [v] the matrix of v x.
+
+    For a unit quaternion (q0, u) and t = 2 u it is the dcm. Since t is along the axis, [t][axis] is symmetric, so that
+    each of its products is computed once.
+    """
+    twice = tuple(Symbol(f"twice_{i}", real=True) for i in "123")
+    square = skew(twice) * skew(axis)
+    symmetric = ImmutableMatrix(3, 3, lambda i, j: square[min(i, j), max(i, j)])
+    matrix = eye(3) + scalar * skew(twice) + symmetric
+    return tuple(zip(twice, doubled, strict=True)), ImmutableMatrix(matrix)
+
+
+def halved(omega: Sequence[Expr]) -> tuple[Named, tuple[Symbol, ...]]:
+    """Return half an angular velocity as named quantities, and their symbols."""
+    half = tuple(Symbol(f"half_{i}", real=True) for i in "123")
+    return tuple(zip(half, (w / 2 for w in omega), strict=True)), half
+
+
+def quaternion_rate(q: Sequence[Expr], half: Sequence[Expr], frame: str = "body") -> ImmutableMatrix:
+    """Return ``dq/dt`` from half the angular velocity: q (0, omega/2) in body axes, (0, omega/2) q in space axes."""
+    return qmul(q, [0, *half]) if frame == "body" else qmul([0, *half], q)
+
+
 def _dcm(name: str) -> Definition:
+    q0, *axis = symbols.quaternion
+    named, matrix = dcm_by_halves(q0, axis, [2 * q for q in axis])
+
     def laws() -> tuple[Law, ...]:
         found, q = Matrix(3, 3, symbols.rotation_entries), symbols.quaternion
         turned = Matrix.hstack(*(qmul(q, [0, *axis], conjugate(q))[1:, 0] for axis in Matrix.eye(3).tolist()))
@@ -46,8 +76,8 @@ def _dcm(name: str) -> Definition:
 
     return Definition(
         name, "direction cosine matrix dcm_sb of a unit quaternion; v_s = dcm_sb v_b, row by row", (QUATERNION,),
-        (result("dcm", dcm_of(), symbols.rotation_entries, "entry of dcm_sb"),),
-        _UNIT, "derivations/euler_parameters.md", QUATERNION_BOX, laws,
+        (result("dcm", matrix, symbols.rotation_entries, "entry of dcm_sb"),),
+        _UNIT, "derivations/euler_parameters.md", QUATERNION_BOX, laws, named,
     )  # fmt: skip
 
 
@@ -99,7 +129,8 @@ def _rotation(matrix: Matrix) -> tuple[Expr, ...]:
 
 
 def _rates(frame: str, name: str) -> Definition:
-    q, dq, omega = symbols.quaternion, symbols.quaternion_rates, Matrix(OMEGA[frame])
+    q, dq, omega = symbols.quaternion, symbols.quaternion_rates, OMEGA[frame]
+    named, half = halved(omega)
 
     def laws() -> tuple[Law, ...]:
         doubled = qmul(conjugate(q), dq) if frame == "body" else qmul(dq, conjugate(q))
@@ -112,8 +143,8 @@ def _rates(frame: str, name: str) -> Definition:
     return Definition(
         name, f"rate of a quaternion from the angular velocity in {frame} axes",
         (QUATERNION, argument("omega", "in", OMEGA[frame], f"angular velocity, {frame} components")),
-        (result("dq", quaternion_rates(frame) * omega, dq, "rate of the quaternion"),),
-        "all quaternions; the rate keeps the norm", _DERIVATION, QUATERNION_BOX | boxed(OMEGA[frame], -10, 10), laws,
+        (result("dq", quaternion_rate(q, half, frame), dq, "rate of the quaternion"),),
+        "all quaternions; the rate keeps the norm", _DERIVATION, QUATERNION_BOX | boxed(omega, -10, 10), laws, named,
     )  # fmt: skip
 
 
@@ -137,26 +168,26 @@ def _product(name: str) -> Definition:
 
 
 def _rotate(towards: str, name: str) -> Definition:
-    vector, turned = Matrix(symbols.vector), symbols.turned_vector
+    vector, found = Matrix(symbols.vector), symbols.turned_vector
     to_space = towards == "space"
     matrix = dcm_of() if to_space else dcm_of().T
     here, there = ("body", "space") if to_space else ("space", "body")
-    half, formulas = _turned(symbols.quaternion if to_space else conjugate(symbols.quaternion), vector)
+    named, formulas = turned(symbols.quaternion if to_space else conjugate(symbols.quaternion), vector)
 
     def laws() -> tuple[Law, ...]:
-        return (Law("it is the dcm times the vector", tuple(Matrix(turned) - matrix * vector), (unit_relation(),)),)
+        return (Law("it is the dcm times the vector", tuple(Matrix(found) - matrix * vector), (unit_relation(),)),)
 
     return Definition(
         name, f"{there} components of a vector given in {here} axes, by a unit quaternion",
         (QUATERNION, argument("vector", "in", tuple(vector), f"{here} components")),
-        (result("turned", formulas, turned, f"{there} components"),),
-        _UNIT, "derivations/euler_parameters.md", QUATERNION_BOX | boxed(tuple(vector), -1, 1), laws, half,
+        (result("turned", formulas, found, f"{there} components"),),
+        _UNIT, "derivations/euler_parameters.md", QUATERNION_BOX | boxed(tuple(vector), -1, 1), laws, named,
     )  # fmt: skip
 
 
-def _turned(q: Matrix, vector: Matrix) -> tuple[tuple[tuple[Symbol, Expr], ...], Matrix]:
+def turned(q: Sequence[Expr], vector: Matrix) -> tuple[Named, Matrix]:
     """Return ``v + q0 h + u x h`` with ``h = 2 u x v`` for ``q = (q0, u)``: fewer operations than by the dcm."""
-    scalar, axis = q[0], Matrix(q[1:])
+    scalar, axis = q[0], Matrix([*q][1:])
     half = Matrix([Symbol(f"twice_cross_{i}", real=True) for i in "123"])
     named = tuple(zip(half, 2 * axis.cross(vector), strict=True))
     return named, vector + scalar * half + axis.cross(half)

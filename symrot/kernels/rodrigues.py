@@ -3,14 +3,14 @@
 from collections.abc import Callable, Iterator
 from functools import partial
 
-from sympy import Integer, Matrix
+from sympy import Expr, Integer, Matrix, Symbol
 
 from symrot import symbols
 from symrot.kernel import Argument
 from symrot.kernels.definition import Box, Definition, Law, argument, boxed, result
-from symrot.kernels.quaternion import OMEGA, QUATERNION, QUATERNION_BOX
+from symrot.kernels.quaternion import OMEGA, QUATERNION, QUATERNION_BOX, Named, dcm_by_halves, halved, quaternion_rate
 from symrot.kernels.removable import select_ge
-from symrot.kinematics.quaternion import dcm_of, unit_relation
+from symrot.kinematics.quaternion import dcm_of, norm_squared, unit_relation
 from symrot.kinematics.rodrigues import CLASSICAL, MODIFIED, Projection, shadow
 
 __all__ = ["definitions"]
@@ -37,7 +37,24 @@ def _input(which: Projection) -> Argument:
     return argument("parameters", "in", which.parameters, which.about)
 
 
+_SQUARE = Symbol("square", real=True)  # of the length of the parameters
+
+
+def _ray(which: Projection) -> tuple[Named, Expr]:
+    """Return named quantities and the scalar part of the quaternion (scalar, parameters) on the ray of an attitude."""
+    if not which.centre:
+        return (), Integer(1)
+    return ((_SQUARE, sum(p**2 for p in which.parameters)),), (1 - _SQUARE) / 2
+
+
 def _dcm(which: Projection, name: str) -> Definition:
+    square, scalar = _ray(which)
+    norm, p = Symbol("norm", real=True), which.parameters
+    # |(scalar, p)| is half of 1 + p^2 for the modified parameters, and its square 1 + p^2 for the classical ones
+    whole, square_of_ray = (1 + _SQUARE, norm**2 / 4) if which.centre else (norm_squared((scalar, *p)), norm)
+    doubled, matrix = dcm_by_halves(scalar, p, [2 * each / square_of_ray for each in p])
+    named = (*square, (norm, whole))
+
     def laws() -> tuple[Law, ...]:
         found = Matrix(3, 3, symbols.rotation_entries)
         return (
@@ -48,8 +65,8 @@ def _dcm(which: Projection, name: str) -> Definition:
 
     return Definition(
         name, f"direction cosine matrix dcm_sb of {_CALLED[which.name]}; v_s = dcm_sb v_b, row by row",
-        (_input(which),), (result("dcm", which.dcm(), symbols.rotation_entries, "entry of dcm_sb"),),
-        "all finite parameters", _DERIVATION, _box(which), laws,
+        (_input(which),), (result("dcm", matrix, symbols.rotation_entries, "entry of dcm_sb"),),
+        "all finite parameters", _DERIVATION, _box(which), laws, (*named, *doubled),
     )  # fmt: skip
 
 
@@ -85,7 +102,11 @@ def _of_quaternion(which: Projection, name: str) -> Definition:
 
 
 def _rates(frame: str, which: Projection, name: str) -> Definition:
-    omega, rates = Matrix(OMEGA[frame]), _RATES[which.name]
+    omega, rates, p = Matrix(OMEGA[frame]), _RATES[which.name], which.parameters
+    square, scalar = _ray(which)
+    named, half = halved(OMEGA[frame])
+    scalar_rate, *vector_rate = quaternion_rate((scalar, *p), half, frame)  # of the ray, along which dp is taken out
+    found = [rate - p * scalar_rate for rate, p in zip(vector_rate, p, strict=True)]
 
     def laws() -> tuple[Law, ...]:
         vanishing = Matrix(which.rate_matrix(frame)) * Matrix(rates) - omega
@@ -94,8 +115,9 @@ def _rates(frame: str, which: Projection, name: str) -> Definition:
     return Definition(
         name, f"rate of {_CALLED[which.name]} from the angular velocity in {frame} axes",
         (_input(which), argument("omega", "in", OMEGA[frame], f"angular velocity, {frame} components")),
-        (result("rates", which.rate_matrix(frame).inverse * omega, rates, "rate of the parameter"),),
+        (result("rates", found, rates, "rate of the parameter"),),
         "all finite parameters", _DERIVATION, _box(which) | boxed(OMEGA[frame], -10, 10), laws,
+        (*square, *named),
     )  # fmt: skip
 
 
