@@ -227,6 +227,17 @@ def _doctor(options: Namespace) -> int:
     return FAILED if found["problems"] else GOOD
 
 
+def _selftest(options: Namespace) -> int:
+    from symrot.certify.selftest import run_selftest
+
+    found = run_selftest(bits=not options.bounds)
+    if options.json:
+        _say_json(found.facts())
+    else:
+        _say(found.lines())
+    return GOOD if found.passed else FAILED
+
+
 # --- what each takes --------------------------------------------------------------------------------------------------
 
 
@@ -320,6 +331,11 @@ def _doctor_arguments(parser: ArgumentParser) -> None:
     _json_option(parser)
 
 
+def _selftest_arguments(parser: ArgumentParser) -> None:
+    parser.add_argument("--bounds", action="store_true", help="ask for the error bounds only: contraction is no failure")
+    _json_option(parser)
+
+
 COMMANDS: dict[str, tuple[str, Callable[[Namespace], int], Callable[[ArgumentParser], None]]] = {
     "run": ("propagate a scene and summarise its motion", _run, _run_arguments),
     "explain": ("show what is computed for a scene, what is skipped and why", _explain, _explain_arguments),
@@ -327,6 +343,7 @@ COMMANDS: dict[str, tuple[str, Callable[[Namespace], int], Callable[[ArgumentPar
     "check": ("decide whether formulas hold, and what would", _check, _check_arguments),
     "identify": ("say what a formula is, whatever its symbols are called", _identify, _identify_arguments),
     "emit": ("print a kernel of the library, or that of a scene, as C or NumPy", _emit, _emit_arguments),
+    "selftest": ("check that this machine computes as the certificates assume", _selftest, _selftest_arguments),
     "scenes": ("list the scenes that come with symrot", _scenes, _json_option),
     "doctor": ("check compiler, cache and installed versions", _doctor, _doctor_arguments),
 }

@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from difflib import unified_diff
 from pathlib import Path
 
+from symrot.certify.selftest import selftest_files
 from symrot.errors import InputError
 from symrot.interface import emit
 from symrot.kernels.library import definition, kernel_names
@@ -38,6 +39,8 @@ def _all_files(targets: Sequence[str], progress: Callable[[str], object]) -> dic
             progress(f"emitting {name} ..")
             for target in targets:
                 files |= {f"{target}/{room}{file}": text for file, text in kernel_files(name, target).items()}
+    if "c" in targets:
+        files |= {f"c/{file}": text for file, text in selftest_files().items()}
     return files
 
 
