@@ -1,4 +1,4 @@
-"""A file of Coq: definitions, theorems with their proofs, and the request to print what each theorem rests on."""
+"""A file of Coq: definitions, and theorems with their proofs."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -26,8 +26,7 @@ class Theorem:
     @property
     def text(self) -> str:
         return "\n".join([
-            comment(self.about), f"Theorem {self.name} :", f"{self.statement}.", "Proof.", self.proof, "Qed.",
-            f"Print Assumptions {self.name}.",
+            comment(self.about), f"Theorem {self.name} :", f"{self.statement}.", "Proof.", self.proof, "Qed."
         ])  # fmt: skip
 
 

@@ -105,17 +105,21 @@ def comment(text: str) -> str:
     return folded("(* " + text.replace("(*", "( *").replace("*)", "* )") + " *)", 3)
 
 
-def _record(formulas: Sequence[str]) -> str:
-    """Return a vector, quaternion or matrix of texts, folded with an indent of 2; a single formula as it is."""
+def _record(formulas: Sequence[Expr]) -> str:
+    """Return a vector, quaternion or matrix (row by row) of formulas with an indent of 2; a single one as it is."""
     if len(formulas) == 1:
-        return folded(f"  {formulas[0]}", 4)
-    lines = [folded(f"    ({formula})", 6) for formula in formulas]
-    return "\n".join([f"  {_MAKERS[len(formulas)]}", *lines])
+        return folded(f"  {coq_expression(formulas[0])}", 4)
+    texts = [_within(formula, _ATOM) for formula in formulas]
+    row = 3 if len(formulas) == 9 else len(formulas)
+    rows = ["    " + " ".join(texts[start : start + row]) for start in range(0, len(texts), row)]
+    if max(map(len, rows)) > WIDTH:
+        rows = [folded(f"    {text}", 6) for text in texts]
+    return "\n".join([f"  {_MAKERS[len(formulas)]}", *rows])
 
 
 def matrix_text(name: str, given: Iterable[str], formulas: Sequence[Expr]) -> str:
     """Return the definition of a function of real variables whose value is a record of formulas."""
-    return _defined(name, given, len(formulas), _record([coq_expression(formula) for formula in formulas]))
+    return _defined(name, given, len(formulas), _record(formulas))
 
 
 def _defined(name: str, given: Iterable[str], size: int, body: str) -> str:
@@ -135,7 +139,7 @@ def definition_text(kernel: Definition, name: str, output: str | None = None) ->
     """
     formulas = next(found for target, found in kernel.results if output in (None, target.name))
     lines = [folded(f"  let {symbol} := {coq_expression(value)} in", 4) for symbol, value in kernel.named]
-    body = "\n".join([*lines, _record([coq_expression(formula) for formula in formulas])])
+    body = "\n".join([*lines, _record(formulas)])
     return _defined(name, variables(kernel), len(formulas), body)
 
 
