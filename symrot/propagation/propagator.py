@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cached_property
+from math import isfinite
 from pathlib import Path
 from time import perf_counter
 from typing import Any, NamedTuple
@@ -20,7 +21,7 @@ from symrot.propagation.dop853 import Stats
 from symrot.propagation.invariants import invariant_parameters
 from symrot.propagation.kernels import compiled, error_blocks, scene_kernel, taylor_library
 from symrot.propagation.smoothness import roughness
-from symrot.propagation.stepping import Task
+from symrot.propagation.stepping import FEW, Task
 from symrot.propagation.trajectory import ARRAY_FUNCTIONS, Trajectory
 from symrot.scene import Initial, Scene, load_scene
 from symrot.scene_kernel import SceneKernel, bind
@@ -247,15 +248,17 @@ def _keep(motion: Motion, times: Floats) -> tuple[Floats, Stats]:
 
 
 def _stepped(motion: Motion, times: Floats) -> tuple[Floats, Stats]:
-    return motion.stepping.again().sample(times)
+    return motion.stepping.once(times)
 
 
 def _exact(motion: Motion, times: Floats) -> tuple[Floats, Stats]:
     attitude, exact = motion.plan.structure["attitude"], motion.exact
-    began = perf_counter()
-    omega, quaternion = exact.evaluate(times - motion.start, quaternion=attitude)
-    states = np.hstack([part for part in (omega, quaternion) if part is not None])
-    states[times == motion.start] = motion.plan.initial_state  # to the last bit, as every method has it
+    began, start = perf_counter(), motion.start
+    omega, quaternion = exact.evaluate(times - start if start else times, quaternion=attitude)
+    assert omega is not None
+    states = omega if quaternion is None else np.concatenate((omega, quaternion), axis=1)
+    if len(times) > FEW or start in times.tolist():
+        states[times == start] = motion.plan.initial_state  # to the last bit, as every method has it
     return states, Stats(0, 0, 0, perf_counter() - began)
 
 
@@ -374,7 +377,8 @@ def _times(t: ArrayLike) -> Floats:
         raise InputError(f"t: expected an array of times in s, got {number.show(t)}") from None
     if times.ndim != 1:
         raise InputError(f"t: expected a one-dimensional array of times in s, got shape {times.shape}")
-    if not np.isfinite(times).all():
+    finite = np.isfinite(times).all() if len(times) > FEW else all(map(isfinite, times.tolist()))
+    if not finite:
         raise InputError(f"t: expected finite times in s, got {times[~np.isfinite(times)][0]}")
     return times
 
