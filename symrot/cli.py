@@ -332,7 +332,7 @@ def _doctor_arguments(parser: ArgumentParser) -> None:
 
 
 def _selftest_arguments(parser: ArgumentParser) -> None:
-    parser.add_argument("--bounds", action="store_true", help="ask for the error bounds only: contraction is no failure")
+    parser.add_argument("--bounds", action="store_true", help="for the error bounds only: contraction is no failure")
     _json_option(parser)
 
 
