@@ -12,6 +12,7 @@ of second order is left out.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cache
 from math import inf, pi
 from typing import Any
 
@@ -191,6 +192,42 @@ def _arc_ratio(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array
     return state.relative(value, 2 * state.libm_ulp + 1, 0.0)
 
 
+GAP_END = 8.0  # |x| beyond which the error of a gap function is not tabulated
+GAP_CELLS = 8192
+
+
+@cache
+def _gap_errors(own: Cone, libm_ulp: float) -> tuple[Array, ...]:
+    """Return the largest error of a gap function on 2^k neighbouring cells of [0, GAP_END], for k = 0, 1, .."""
+    ends = np.linspace(0.0, GAP_END, GAP_CELLS + 1)
+    boxes = np.stack([ends[:-1], ends[1:]])[:, None]
+    sides = [evaluate(own, boxes, np.full((1, GAP_CELLS), side, np.int8), libm_ulp=libm_ulp).bound for side in (0, 1)]
+    levels = [np.maximum(*sides)]
+    while levels[-1].size > 1:
+        step = 2 ** (len(levels) - 1)
+        levels.append(np.maximum(levels[-1][:-step], levels[-1][step:]) if levels[-1].size > step else levels[-1][:1])
+    return tuple(levels)
+
+
+def _gap(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Array | None]:
+    levels = _gap_errors(node[2], state.libm_ulp)
+    size = intervals.magnitude(taken[0])
+    least = np.where(intervals.contains_zero(taken[0]), 0.0, np.abs(taken[0]).min(axis=0))
+    inside = size < GAP_END
+    first = np.floor(np.where(inside, least, 0.0) * (GAP_CELLS / GAP_END)).astype(np.int64)
+    last = np.floor(np.where(inside, size, 0.0) * (GAP_CELLS / GAP_END)).astype(np.int64)
+    level = np.frexp((last - first + 1).astype(np.float64))[1] - 1  # 2^level <= number of cells
+    error = np.full(size.size, inf)
+    for k, values in enumerate(levels):
+        here = inside & (level == k)
+        error[here] = np.maximum(values[first[here]], values[last[here] - 2**k + 1])
+    return intervals.widened(_GAP_VALUES[node[1]](taken[0]), error), error
+
+
+_GAP_VALUES = {"sine_gap": functions.sine_gap, "tangent_gap": functions.tangent_gap}
+_GAP_SLOPES = {"sine_gap": functions.sine_gap_slope, "tangent_gap": functions.tangent_gap_slope}
+
+
 def _length(a: Array, b: Array) -> Array:
     return intervals.square_root(intervals.add(intervals.square(a), intervals.square(b)))
 
@@ -212,7 +249,7 @@ def _left_out(precision: str) -> float:
 FORWARD: dict[str, Forward] = {
     "in": _input, "const": _constant, "add": _sum, "sub": _sum, "mul": _product, "square": _square, "div": _quotient,
     "sqrt": _root, "neg": _sign, "abs": _sign, "copysign": _sign, "sin": _circular, "cos": _circular, "atan2": _angle,
-    "norm": _norm, "sinc": _sinc, "arc_ratio": _arc_ratio, "select": _choice,
+    "norm": _norm, "sinc": _sinc, "arc_ratio": _arc_ratio, "gap": _gap, "select": _choice,
 }  # fmt: skip
 
 _times = intervals.multiply_loosely
@@ -292,6 +329,11 @@ def _from_arc_ratio(state: _State, index: int, adjoint: Array) -> list[Array]:
     return [_times(adjoint, by_s), _times(adjoint, by_c)]
 
 
+def _from_gap(state: _State, index: int, adjoint: Array) -> list[Array]:
+    node = state.cone.nodes[index]
+    return [_times(adjoint, _GAP_SLOPES[node[1]](state.values[node[3]]))]
+
+
 def _from_choice(state: _State, index: int, adjoint: Array) -> list[Array]:
     decision = state.decided[state.cone.nodes[index][1]]
     return [np.where(decision != 0, adjoint, 0.0), np.where(decision != 1, adjoint, 0.0)]
@@ -301,7 +343,7 @@ BACKWARD: dict[str, Callable[[_State, int, Array], list[Array]]] = {
     "add": _from_sum, "sub": _from_sum, "mul": _from_product, "square": _from_square, "div": _from_quotient,
     "sqrt": _from_root, "neg": _from_sign, "abs": _from_sign, "copysign": _from_sign, "sin": _from_sine,
     "cos": _from_cosine, "atan2": _from_angle, "norm": _from_norm, "sinc": _from_sinc, "arc_ratio": _from_arc_ratio,
-    "select": _from_choice,
+    "gap": _from_gap, "select": _from_choice,
 }  # fmt: skip
 
 _POSSIBLE: dict[str, Callable[[Array, Array], Any]] = {  # whether a relation may hold, and whether it may fail
@@ -380,31 +422,39 @@ def _decide(state: _State, number: int, undecided: NDArray[np.int64]) -> NDArray
 def _backwards(state: _State) -> tuple[Array, NDArray[np.int64]]:
     """Return the sum of errors times derivatives, and the first node that is in the way of a finite one, or -1.
 
-    What no branch uses has the derivative zero, and may be anything.
+    What no branch uses may be anything; what is used has to be finite, whatever its derivative.
     """
     nodes = state.cone.nodes
     count = state.boxes.shape[2]
     adjoints: list[Array | None] = [None] * len(nodes)
     adjoints[-1] = intervals.point(1.0, count)
+    used = [np.zeros(count, bool) for _ in nodes]
+    used[-1][:] = True
     bound, of_value = np.zeros(count), np.full(count, -1, np.int64)
     of_slope = of_value
     for index in range(len(nodes) - 1, -1, -1):
-        adjoint, error = adjoints[index], state.errors[index]
+        adjoint, error, here = adjoints[index], state.errors[index], used[index]
         if adjoint is None:
             continue
-        unused = (adjoint == 0).all(axis=0)
-        of_value = np.where(~np.isfinite(state.values[index]).all(axis=0) & ~unused, index, of_value)
+        of_value = np.where(here & ~np.isfinite(state.values[index]).all(axis=0), index, of_value)
         if error is not None:
-            term = np.where(unused | (error == 0), 0.0, intervals.magnitude(adjoint) * error)
-            of_slope = np.where(~np.isfinite(term), index, of_slope)
-            bound = bound + term
+            bound = bound + np.where(here & (error != 0), intervals.magnitude(adjoint) * error, 0.0)
         kind = nodes[index][0]
         if kind not in BACKWARD:
             continue
-        for place, part in zip(places_of(nodes[index]), BACKWARD[kind](state, index, adjoint), strict=True):
-            used = np.where(unused, 0.0, part) if state.cone.conditions else part
+        clear = (of_slope < 0) & here & np.isfinite(adjoint).all(axis=0)
+        decision = state.decided[nodes[index][1]] if kind == "select" else None
+        for branch, (place, part) in enumerate(
+            zip(places_of(nodes[index]), BACKWARD[kind](state, index, adjoint), strict=True)
+        ):
+            taken = here if decision is None else here & (decision != branch)
+            used[place] |= taken
+            of_slope = np.where(clear & taken & ~np.isfinite(part).all(axis=0), index, of_slope)
             known = adjoints[place]
-            total = used if known is None else known + used
-            adjoints[place] = total if known is None else np.where(total == 0, 0.0, intervals.widened(total, 0.0))
+            part = np.where(taken, part, 0.0)
+            adjoints[place] = part if known is None else intervals.widened(known + part, 0.0)
     whole = bound * (1 + 2.0**-52 * (2 * len(nodes) + 4)) + 1e-320 * len(nodes) * (bound > 0)
-    return whole, np.where(of_value >= 0, of_value, of_slope)
+    obstacle = np.where(of_value >= 0, of_value, np.where(np.isfinite(whole), -1, of_slope))
+    return np.where(of_value >= 0, inf, whole), np.where(
+        (obstacle < 0) & ~np.isfinite(whole), len(nodes) - 1, obstacle
+    )

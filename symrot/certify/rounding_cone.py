@@ -4,7 +4,8 @@ The operations behind an output, renumbered so that equal computations look equa
 numbered by first use. Computations that have a finite derivative only as a whole are one node each:
 
 ``norm``: the root of a sum of squares, whose derivative x/|x| is at most 1 at zero too;
-``sinc``: ``x == 0 ? 1 : sin(x)/x``;  ``arc_ratio``: ``s == 0 ? 1/c : atan2(s, c)/s`` with s a root and c not negative.
+``sinc``: ``x == 0 ? 1 : sin(x)/x``;  ``arc_ratio``: ``s == 0 ? 1/c : atan2(s, c)/s`` with s a root and c not negative;
+``gap``: ``x*x < split ? series : formula`` of (x - sin x)/x^3 or (sin x - x cos x)/x^3, with its own computation.
 """
 
 import hashlib
@@ -29,8 +30,8 @@ class Cone:
     """The computation of one output: nodes with operands before them, the last node is the output.
 
     Beside the kinds of :class:`Operations` there are ``("square", i)``, ``("sin", i)``, ``("cos", i)``,
-    ``("atan2", i, j)``, ``("norm", roundings, i, ...)``, ``("sinc", i)``, ``("arc_ratio", i, j)`` and
-    ``("select", condition, x, y)``; an input is ``("in", number)``. ``conditions`` are (relation, i, j).
+    ``("atan2", i, j)``, ``("norm", roundings, i, ...)``, ``("sinc", i)``, ``("arc_ratio", i, j)``,
+    ``("gap", name, Cone, i)`` and ``("select", condition, x, y)``; an input is ``("in", number)``. ``conditions`` are (relation, i, j).
     """
 
     precision: str
@@ -109,6 +110,8 @@ def places_of(node: Node) -> tuple[int, ...]:
     """Return the operands of a node of a cone."""
     if node[0] in ("in", "const"):
         return ()
+    if node[0] == "gap":
+        return (node[3],)
     return tuple(node[2:]) if node[0] in ("norm", "select") else tuple(node[1:])
 
 
@@ -143,13 +146,15 @@ def _is_turn(node: Node) -> bool:
 class _Reader:
     """Copies the operations behind one output into a cone."""
 
-    def __init__(self, operations: Operations) -> None:
+    def __init__(self, operations: Operations, leaf: int = -1) -> None:
+        self.operations, self.leaf = operations, leaf  # the leaf is an input, whatever it is computed from
         self.source = operations.nodes
         self.nodes: list[Node] = []
         self.known: dict[Any, int] = {}
         self.numbers: dict[str, int] = {}
         self.conditions: list[tuple[str, int, int]] = []
         self.done: dict[int, int] = {}
+        self.root = -1  # that of a gap is read as it stands
 
     def put(self, *node: Any) -> int:
         if node not in self.known:
@@ -164,13 +169,15 @@ class _Reader:
 
     def _read(self, node: Node, index: int) -> int:
         kind = node[0]
+        if index == self.leaf:
+            return self.put("in", self.numbers.setdefault("x", len(self.numbers)))
         if kind == "in":
             return self.put("in", self.numbers.setdefault(node[1], len(self.numbers)))
         if kind == "const":
             return self.put(*node)
         if kind == "mul" and node[1] == node[2]:
             return self.put("square", self.read(node[1]))
-        for pattern in _PATTERNS:
+        for pattern in _PATTERNS if index != self.root else ():
             found = pattern(self, node)
             if found is not None:
                 return found
@@ -232,7 +239,42 @@ def _arc_ratio(reader: _Reader, node: Node) -> int | None:
     return reader.put("arc_ratio", reader.read(s), reader.read(c))
 
 
-_PATTERNS: tuple[Callable[[_Reader, Node], int | None], ...] = (_norm, _sinc, _arc_ratio)
+_GAPS = {"sine_gap": Fraction(1, 6), "tangent_gap": Fraction(1, 3)}  # their values at zero
+
+
+def _at_origin(reader: _Reader, index: int, square: int) -> Fraction | None:
+    """Return the value at zero of a polynomial in ``square``; None for anything else."""
+    node = reader.source[index]
+    if index == square:
+        return Fraction(0)
+    if node[0] == "const":
+        return Fraction(node[1])
+    if node[0] not in ("add", "mul"):
+        return None
+    left, right = (_at_origin(reader, i, square) for i in node[1:])
+    if left is None or right is None:
+        return None
+    return left + right if node[0] == "add" else left * right
+
+
+def _gap(reader: _Reader, node: Node) -> int | None:
+    if node[0] != "select" or node[1] != "<" or reader.source[node[2]][0] != "mul":
+        return None
+    leaf, other = reader.source[node[2]][1:]
+    origin = _at_origin(reader, node[4], node[2])
+    names = [name for name, value in _GAPS.items() if origin is not None and abs(origin - value) < Fraction(1, 2**20)]
+    if leaf != other or not names:
+        return None
+    inner = _Reader(reader.operations, leaf)
+    inner.root = reader.source.index(node)
+    inner.read(inner.root)
+    if list(inner.numbers) != ["x"]:
+        return None
+    own = Cone(reader.operations.precision, ("x",), tuple(inner.nodes), tuple(inner.conditions))
+    return reader.put("gap", names[0], own, reader.read(leaf))
+
+
+_PATTERNS: tuple[Callable[[_Reader, Node], int | None], ...] = (_norm, _sinc, _arc_ratio, _gap)
 
 
 def cone_of(operations: Operations, index: int) -> Cone:

@@ -12,7 +12,8 @@ import numpy as np
 
 from symrot.certify.rounding_intervals import Array, contains_zero, divide, multiply_loosely, negative, widened
 
-__all__ = ["arc_ratio_terms", "arc_tangent", "cosine", "sinc", "sinc_slope", "sine"]
+__all__ = ["arc_ratio_terms", "arc_tangent", "cosine", "sinc", "sinc_slope", "sine",
+           "sine_gap", "sine_gap_slope", "tangent_gap", "tangent_gap_slope"]  # fmt: skip
 
 SLACK = 2e-15  # absolute, many times what the series and the reduction lose
 FARTHEST = 2.0**20  # |x| beyond which nothing is reduced
@@ -25,10 +26,13 @@ def _series(terms: list[Fraction]) -> tuple[float, ...]:
     return tuple(float(term) for term in reversed(terms))
 
 
-_SINC = _series([Fraction((-1) ** n, factorial(2 * n + 1)) for n in range(10)])
-_COSINE = _series([Fraction((-1) ** n, factorial(2 * n)) for n in range(10)])
-_SINE_GAP = _series([Fraction((-1) ** n, factorial(2 * n + 3)) for n in range(10)])
-_TANGENT_GAP = _series([Fraction((-1) ** n * 2 * (n + 1), factorial(2 * n + 3)) for n in range(10)])
+TERMS = 13  # of x^2, enough for |x| <= 2
+_SINC = _series([Fraction((-1) ** n, factorial(2 * n + 1)) for n in range(TERMS)])
+_COSINE = _series([Fraction((-1) ** n, factorial(2 * n)) for n in range(TERMS)])
+_SINE_GAP = _series([Fraction((-1) ** n, factorial(2 * n + 3)) for n in range(TERMS)])
+_SINE_GAP_SLOPE = _series([Fraction((-1) ** n * 2 * (n + 1), factorial(2 * n + 5)) for n in range(TERMS)])
+_TANGENT_GAP = _series([Fraction((-1) ** n * 2 * (n + 1), factorial(2 * n + 3)) for n in range(TERMS)])
+_TANGENT_GAP_SLOPE = _series([Fraction((-1) ** n * 4 * (n + 1) * (n + 2), factorial(2 * n + 5)) for n in range(TERMS)])
 _ARC = _series([Fraction((-1) ** n, 2 * n + 1) for n in range(9)])
 
 
@@ -80,7 +84,7 @@ def _falling(x: Array, near: tuple[float, ...], far: Callable[[Array], Array], e
     """Return an enclosure of an even function that falls for 0 <= x <= end, and is at most ``crude`` in size beyond."""
     size = _size(x)
     inside = np.minimum(size, end)
-    value = np.where(inside < 1.0, _polynomial(near, inside * inside), far(np.maximum(inside, 1.0)))
+    value = np.where(inside < 2.0, _polynomial(near, inside * inside), far(np.maximum(inside, 2.0)))
     found = widened(value[::-1], 2 * SLACK)
     beyond = size[1] > end
     return np.where(beyond, np.array([[-crude], [crude]]), found)
@@ -92,19 +96,36 @@ def sinc(x: Array) -> Array:
     return np.clip(found, -0.2173, 1.0)
 
 
-def _tangent_gap(x: Array) -> Array:
-    """(sin x - x cos x)/x^3 = j1(x)/x, which falls from 1/3 at 0 to x = 5.7."""
+def tangent_gap(x: Array) -> Array:
+    """Return an enclosure of (sin x - x cos x)/x^3 = j1(x)/x, which falls from 1/3 at 0 to x = 5.7."""
     return _falling(x, _TANGENT_GAP, lambda z: (_sine_of(z, 0) / z - _sine_of(z, 1)) / (z * z), 4.4, 1 / 3)
 
 
-def _sine_gap(x: Array) -> Array:
-    """(x - sin x)/x^3, which falls from 1/6 at 0 and is positive."""
+def sine_gap(x: Array) -> Array:
+    """Return an enclosure of (x - sin x)/x^3, which falls from 1/6 at 0 and is positive."""
     return _falling(x, _SINE_GAP, lambda z: (1 - _sine_of(z, 0) / z) / (z * z), 6.0, 1 / 6)
+
+
+def tangent_gap_slope(x: Array) -> Array:
+    """Return an enclosure of the derivative, ``-x j2(x)/x^2``; the second factor falls from 1/15 at 0 to x = 4.4."""
+    factor = _falling(
+        x, _TANGENT_GAP_SLOPE,
+        lambda z: ((3 - z * z) * (_sine_of(z, 0) / z) - 3 * _sine_of(z, 1)) / (z * z * z * z), 4.4, 1 / 15,
+    )  # fmt: skip
+    return negative(multiply_loosely(x, factor))
+
+
+def sine_gap_slope(x: Array) -> Array:
+    """Return an enclosure of the derivative, -x times an integral of (1-s)^2 s sin(xs)/(2x), which falls to x = 4.4."""
+    factor = _falling(
+        x, _SINE_GAP_SLOPE, lambda z: (2 + _sine_of(z, 1) - 3 * (_sine_of(z, 0) / z)) / (z * z * z * z), 4.4, 1 / 60
+    )
+    return negative(multiply_loosely(x, factor))
 
 
 def sinc_slope(x: Array) -> Array:
     """Return an enclosure of the derivative of sin(x)/x, which is ``-x (sin x - x cos x)/x^3``."""
-    return negative(multiply_loosely(x, _tangent_gap(x)))
+    return negative(multiply_loosely(x, tangent_gap(x)))
 
 
 def _arc(z: Array) -> Array:
@@ -137,5 +158,5 @@ def arc_ratio_terms(s: Array, c: Array, radius: Array) -> tuple[Array, Array, Ar
     angle = np.clip(arc_tangent(s, c), 0.0, pi / 2 + SLACK)
     one = np.ones_like(s)
     value = divide(one, multiply_loosely(radius, sinc(angle)))
-    slope = multiply_loosely(multiply_loosely(4 * angle, _sine_gap(2 * angle)), multiply_loosely(value, value))
+    slope = multiply_loosely(multiply_loosely(4 * angle, sine_gap(2 * angle)), multiply_loosely(value, value))
     return value, negative(slope), negative(divide(one, multiply_loosely(radius, radius)))

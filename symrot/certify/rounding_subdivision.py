@@ -66,6 +66,9 @@ class _Search:
     def __init__(self, cone: Cone, box: Array, region: Region, libm_ulp: float) -> None:
         self.cone, self.box, self.region, self.libm_ulp = cone, box, region, libm_ulp
         self.width = box[1] - box[0]
+        places = cone.places
+        self.groups = [[places.index(place) for place in group if place in places] for group in region.unit]
+        self.groups = [group for group, all_ in zip(self.groups, region.unit, strict=True) if len(group) == len(all_)]
         self.evaluations = 0
         self.pointwise, self.worst = -1.0, tuple(float(x) for x in box.mean(axis=0))
         self.largest_value = 0.0
@@ -92,7 +95,12 @@ class _Search:
         low, high = parts.boxes
         outermost = np.where(np.abs(high) >= np.abs(low), high, low)
         points = np.concatenate([(low + high) / 2, outermost], axis=1)
-        found = self.evaluate(np.stack([points, points]), np.concatenate([parts.decided] * 2, axis=1))
+        decided = np.concatenate([parts.decided] * 2, axis=1)
+        for group in self.groups:
+            length = np.sqrt((points[group] ** 2).sum(axis=0))
+            points[group] /= np.where(length > 0, length, 1.0)
+            decided = np.full_like(decided, -1)
+        found = self.evaluate(np.stack([points, points]), decided)
         reached = np.where(np.isfinite(found.bound), found.bound, -1.0)
         best = int(np.argmax(reached))
         if reached[best] > self.pointwise:
@@ -107,7 +115,7 @@ class _Search:
             for branch in (0, 1):
                 taken = chosen.decided.copy()
                 taken[chosen.undecided, np.arange(taken.shape[1])] = branch
-                boxes.append(chosen.boxes)
+                boxes.append(self.cut(chosen, branch))
                 decided.append(taken)
         if not choosing.all():
             rest = parts.take(~choosing)
@@ -121,12 +129,32 @@ class _Search:
                 decided.append(rest.decided)
         return np.concatenate(boxes, axis=2), np.concatenate(decided, axis=1)
 
+    def cut(self, parts: _Parts, branch: int) -> Array:
+        """Return parts where a branch is taken: halved there, if the condition compares an input with a constant."""
+        boxes = parts.boxes.copy()
+        for number, (relation, i, j) in enumerate(self.cone.conditions):
+            left, right = self.cone.nodes[i], self.cone.nodes[j]
+            here = parts.undecided == number
+            if left[0] == "in" and right[0] == "const" and relation in _UPPER:
+                side = 1 if _UPPER[relation] == (branch == 1) else 0
+                clip = np.minimum if side else np.maximum
+                boxes[side, left[1], here] = clip(boxes[side, left[1], here], float(right[1]))
+        return boxes
+
     def direction(self, parts: _Parts) -> NDArray[np.int64]:
         """Return the input in which to halve each part."""
         inputs, count = parts.boxes.shape[1:]
         relative = np.where(self.width[:, None] > 0, (parts.boxes[1] - parts.boxes[0]) / self.width[:, None], 0.0)
         depends = np.array([[k in found for k in range(inputs)] for found in self.cone.inputs_of])
         widest = np.argmax(relative * np.where(parts.obstacle < 0, True, depends[parts.obstacle].T), axis=0)
+        bounded = np.isfinite(parts.bound)  # without a bound there is nothing to lower: halve the widest
+        if bounded.any():
+            widest[bounded] = self.best(parts.take(bounded), relative[:, bounded], widest[bounded])
+        return widest
+
+    def best(self, parts: _Parts, relative: Array, otherwise: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Return the input whose range, shrunk to its middle, lowers the bound of each part most."""
+        inputs, count = parts.boxes.shape[1:]
         middle = parts.boxes.mean(axis=0)
         shrunk = np.repeat(parts.boxes, inputs, axis=2).reshape(2, inputs, count, inputs)
         for k in range(inputs):
@@ -135,10 +163,10 @@ class _Search:
         bounds = np.where(relative.T > 0, found.bound.reshape(count, inputs), inf)
         bounds = np.where(bounds < 0, inf, bounds)  # the middle is outside of the region
         best = np.argmin(bounds, axis=1)
-        helps = np.isfinite(bounds[np.arange(count), best]) & (bounds[np.arange(count), best] < parts.bound)
-        return np.where(helps & (relative[best, np.arange(count)] > 0), best, widest)
+        return np.where(bounds[np.arange(count), best] < parts.bound, best, otherwise)
 
 
+_UPPER = {"<": True, "<=": True, ">": False, ">=": False}  # whether the left side is the lesser where it holds
 _FIELDS = ("bound", "obstacle", "undecided", "value")
 
 
