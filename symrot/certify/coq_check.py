@@ -165,7 +165,7 @@ def _levels(sources: Mapping[str, str]) -> list[list[str]]:
     while left:
         ready = [name for name, text in left.items() if _required(text) & sources.keys() <= done]
         if not ready:
-            raise CertificateError(f"expected files of Coq that can be put in order, got a circle among {', '.join(left)}")
+            raise CertificateError(f"expected files that can be put in order, got a circle among {', '.join(left)}")
         levels.append(ready)
         done |= set(ready)
         left = {name: text for name, text in left.items() if name not in done}

@@ -1,5 +1,6 @@
 """All files of Coq that symrot prints, by name, and which theorem of which file is about a kernel."""
 
+from collections.abc import Callable
 from functools import cache, partial
 from hashlib import sha256
 from importlib.resources import files
@@ -7,6 +8,7 @@ from typing import Any
 
 from symrot.certify.coq_euler import euler_file, euler_files
 from symrot.certify.coq_file import CoqFile, Theorem
+from symrot.certify.coq_quaternion import quaternion_file
 from symrot.errors import InputError
 
 __all__ = ["STANDARD_AXIOMS", "assumptions_text", "coq_file", "coq_file_names", "coq_section", "coq_texts", "needed"]
@@ -25,12 +27,16 @@ STANDARD_AXIOMS = (
 )
 """What the real numbers of Coq's standard library rest on; no theorem may rest on anything else."""
 
-_MAKERS = {name: partial(euler_file, sequence) for name, sequence in euler_files().items()}
+_FILES: dict[str, tuple[tuple[str, ...], Callable[[], CoqFile]]] = {
+    "quaternions": (("quaternion_",), quaternion_file),
+    **{name: ((f"{name}_",), partial(euler_file, sequence)) for name, sequence in euler_files().items()},
+}
+"""File, without ``.v`` -> how the names of the kernels in it begin, and what prints it; after those it requires."""
 
 
 def coq_file_names() -> tuple[str, ...]:
     """Return the names of the files of theorems, without ``.v``, each after those that it requires."""
-    return tuple(_MAKERS)
+    return tuple(_FILES)
 
 
 @cache
@@ -42,9 +48,10 @@ def coq_file(name: str) -> CoqFile:
     InputError
         For a name that is none.
     """
-    if name not in _MAKERS:
+    if name not in _FILES:
         raise InputError(f"expected the name of a file of theorems, such as euler_zxz, got {name!r}")
-    return _MAKERS[name]()
+    _, make = _FILES[name]
+    return make()
 
 
 @cache
@@ -77,22 +84,16 @@ def coq_texts(names: tuple[str, ...] | None = None) -> dict[str, str]:
     ``_CoqProject`` lists them for ``coq_makefile``.
     """
     wanted = needed(coq_file_names() if names is None else names)
-    texts = {RULES: rules_text(), **{name: coq_file(name).text for name in wanted}, ASSUMPTIONS: assumptions_text(wanted)}
+    printed = {name: coq_file(name).text for name in wanted}
+    texts = {RULES: rules_text(), **printed, ASSUMPTIONS: assumptions_text(wanted)}
     project = "".join(f"{line}\n" for line in ("-R . symrot", *(f"{name}.v" for name in texts)))
     return {"_CoqProject": project, **{f"{name}.v": text for name, text in texts.items()}}
 
 
-@cache
-def _homes() -> dict[str, tuple[str, Theorem]]:
-    """Return kernel -> file and theorem."""
-    found = ((name, each) for name in coq_file_names() for each in coq_file(name).theorems)
-    return {theorem.name: (name, theorem) for name, theorem in found if theorem.kernel}
-
-
 def _home(kernel: str) -> tuple[str, Theorem] | None:
     """Return the file and theorem of a kernel; only the file that may hold it is printed."""
-    for name in coq_file_names():
-        if kernel.startswith(name.rstrip("s") + "_"):
+    for name, (beginnings, _) in _FILES.items():
+        if kernel.startswith(beginnings):
             for theorem in coq_file(name).theorems:
                 if theorem.kernel and theorem.name == kernel:
                     return name, theorem

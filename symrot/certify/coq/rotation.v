@@ -193,14 +193,14 @@ Qed.
 Ltac differentiate := (* from the hypotheses, by the rules above; what is divided by is not zero by hypothesis *)
   first [ eassumption
         | apply d_constant
+        | eapply d_square; differentiate
+        | eapply d_cube; differentiate
+        | eapply d_fourth; differentiate
         | eapply d_plus; [differentiate | differentiate]
         | eapply d_minus; [differentiate | differentiate]
         | eapply d_opposite; differentiate
         | eapply d_times; [differentiate | differentiate]
         | eapply d_over; [differentiate | differentiate | assumption]
-        | eapply d_square; differentiate
-        | eapply d_cube; differentiate
-        | eapply d_fourth; differentiate
         | eapply d_sine; differentiate
         | eapply d_cosine; differentiate ].
 
@@ -536,6 +536,65 @@ Proof.
   revert E. spread. intro E. injection E. clear E. intros E3 E2 E1 E0. unfold turn.
   unfold derivative; spread; repeat match goal with |- _ /\ _ => split end;
     (eapply derivative_is; [differentiate | cbv beta; rewrite ?E0, ?E1, ?E2, ?E3; ring [N]]).
+Qed.
+
+Definition vector_part (q : quaternion) : vector := vec (h1 q) (h2 q) (h3 q).
+
+Lemma quat_path_norm : forall q0 q1 q2 q3 t dq0 dq1 dq2 dq3,
+  derivable_pt_lim q0 t dq0 -> derivable_pt_lim q1 t dq1 -> derivable_pt_lim q2 t dq2 -> derivable_pt_lim q3 t dq3 ->
+  (forall u, norm2 (quat (q0 u) (q1 u) (q2 u) (q3 u)) = 1) ->
+  q0 t * dq0 + q1 t * dq1 + q2 t * dq2 + q3 t * dq3 = 0.
+Proof.
+  intros q0 q1 q2 q3 t dq0 dq1 dq2 dq3 D0 D1 D2 D3 U.
+  assert (Y : derivable_pt_lim (fun u => norm2 (quat (q0 u) (q1 u) (q2 u) (q3 u))) t
+    (2 * (q0 t * dq0 + q1 t * dq1 + q2 t * dq2 + q3 t * dq3)))
+    by (spread; eapply derivative_is; [differentiate | cbv beta; ring]).
+  assert (Z : derivable_pt_lim (fun u => norm2 (quat (q0 u) (q1 u) (q2 u) (q3 u))) t 0)
+    by (apply (d_same _ (fun _ => 1)); [exact U | apply d_constant]).
+  pose proof (uniqueness_limite _ _ _ _ Z Y). lra.
+Qed.
+
+Lemma scaled_rate : forall q r, norm2 q = 1 -> h0 q * h0 r + h1 q * h1 r + h2 q * h2 r + h3 q * h3 r = 0 ->
+  r = q *q pure (vector_part (conjugate q *q r)) /\ r = pure (vector_part (r *q conjugate q)) *q q.
+Proof.
+  intros q r N S. assert (N' := norm2_square q N). clear N. destruct q as [a b c d], r as [e f g h]. cbn in N', S.
+  assert (B : conjugate (quat a b c d) *q quat e f g h =
+    pure (vector_part (conjugate (quat a b c d) *q quat e f g h))).
+  { unfold vector_part. spread. f_equal. rewrite <- S. ring. }
+  assert (C : quat e f g h *q conjugate (quat a b c d) =
+    pure (vector_part (quat e f g h *q conjugate (quat a b c d)))).
+  { unfold vector_part. spread. f_equal. rewrite <- S. ring. }
+  rewrite <- B, <- C. split; spread; f_equal; ring [N'].
+Qed.
+
+Lemma only_quaternion_rates_body : forall q0 q1 q2 q3 t dq0 dq1 dq2 dq3 omega,
+  derivable_pt_lim q0 t dq0 -> derivable_pt_lim q1 t dq1 -> derivable_pt_lim q2 t dq2 -> derivable_pt_lim q3 t dq3 ->
+  (forall u, norm2 (quat (q0 u) (q1 u) (q2 u) (q3 u)) = 1) ->
+  derivative (fun u => turn (quat (q0 u) (q1 u) (q2 u) (q3 u))) t
+    (turn (quat (q0 t) (q1 t) (q2 t) (q3 t)) *m skew omega) ->
+  exists v, omega = vadd v v /\ quat dq0 dq1 dq2 dq3 = quat (q0 t) (q1 t) (q2 t) (q3 t) *q pure v.
+Proof.
+  intros q0 q1 q2 q3 t dq0 dq1 dq2 dq3 omega D0 D1 D2 D3 U H.
+  pose proof (quat_path_norm _ _ _ _ _ _ _ _ _ D0 D1 D2 D3 U) as S.
+  destruct (scaled_rate (quat (q0 t) (q1 t) (q2 t) (q3 t)) (quat dq0 dq1 dq2 dq3) (U t) S) as [P _].
+  eexists. split; [|exact P].
+  apply (body_skew_injective _ _ _ (turn_rotation _ (U t))).
+  exact (derivative_unique _ _ _ _ H (turn_body _ _ _ _ _ _ _ _ _ _ D0 D1 D2 D3 (U t) P)).
+Qed.
+
+Lemma only_quaternion_rates_space : forall q0 q1 q2 q3 t dq0 dq1 dq2 dq3 omega,
+  derivable_pt_lim q0 t dq0 -> derivable_pt_lim q1 t dq1 -> derivable_pt_lim q2 t dq2 -> derivable_pt_lim q3 t dq3 ->
+  (forall u, norm2 (quat (q0 u) (q1 u) (q2 u) (q3 u)) = 1) ->
+  derivative (fun u => turn (quat (q0 u) (q1 u) (q2 u) (q3 u))) t
+    (skew omega *m turn (quat (q0 t) (q1 t) (q2 t) (q3 t))) ->
+  exists v, omega = vadd v v /\ quat dq0 dq1 dq2 dq3 = pure v *q quat (q0 t) (q1 t) (q2 t) (q3 t).
+Proof.
+  intros q0 q1 q2 q3 t dq0 dq1 dq2 dq3 omega D0 D1 D2 D3 U H.
+  pose proof (quat_path_norm _ _ _ _ _ _ _ _ _ D0 D1 D2 D3 U) as S.
+  destruct (scaled_rate (quat (q0 t) (q1 t) (q2 t) (q3 t)) (quat dq0 dq1 dq2 dq3) (U t) S) as [_ P].
+  eexists. split; [|exact P].
+  apply (space_skew_injective _ _ _ (turn_rotation _ (U t))).
+  exact (derivative_unique _ _ _ _ H (turn_space _ _ _ _ _ _ _ _ _ _ D0 D1 D2 D3 (U t) P)).
 Qed.
 
 (* --- angular momentum --- *)
