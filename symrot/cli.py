@@ -170,6 +170,18 @@ def _derive(options: Namespace) -> int:
     return GOOD
 
 
+def _prove(options: Namespace) -> int:
+    from symrot.report import proofs
+
+    written, result = proofs.prove(options.coq, options.check, _progress)
+    _progress("")
+    if options.json:
+        _say_json(proofs.facts(options.coq, written, result))
+    else:
+        _say(proofs.lines(options.coq, result))
+    return FAILED if result is not None and not result else GOOD
+
+
 def _check(options: Namespace) -> int:
     from symrot.report import verdicts
 
@@ -199,6 +211,19 @@ def _identify(options: Namespace) -> int:
         if not found:
             _say(["nothing that symrot derives is equal to it"])
     return GOOD if found else FAILED
+
+
+def _bench(options: Namespace) -> int:
+    from symrot.bench import command
+
+    outcome = command.run(options, _progress)
+    _progress("")
+    if options.json:
+        _say_json(outcome.found)
+    else:
+        title, *rest = outcome.lines
+        _say([emphasis(title, sys.stdout), *rest])
+    return GOOD if outcome.good else FAILED
 
 
 def _scenes(options: Namespace) -> int:
@@ -287,6 +312,12 @@ def _derive_arguments(parser: ArgumentParser) -> None:
                         help="folder of --all and --check (default: ./derivations)")  # fmt: skip
 
 
+def _prove_arguments(parser: ArgumentParser) -> None:
+    parser.add_argument("--coq", type=Path, metavar="DIR", required=True, help="write the theorems as files of Coq")
+    parser.add_argument("--check", action="store_true", help="demand that Coq checks them; it does where it is there")
+    _json_option(parser)
+
+
 def _check_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("claim", metavar="CLAIM", nargs="?", help="'left == right', LaTeX, or a FILE.toml of claims")
     parser.add_argument("--textbook", metavar="NAME", help="check what a document says: chen, sahakian, brown, "
@@ -304,6 +335,12 @@ def _check_arguments(parser: ArgumentParser) -> None:
 def _identify_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("formula", metavar="FORMULA", help="a formula or matrix, as text or LaTeX")
     _json_option(parser)
+
+
+def _bench_arguments(parser: ArgumentParser) -> None:
+    from symrot.bench import command
+
+    command.arguments(parser)
 
 
 def _check_textbook(options: Namespace) -> int:
@@ -340,10 +377,12 @@ COMMANDS: dict[str, tuple[str, Callable[[Namespace], int], Callable[[ArgumentPar
     "run": ("propagate a scene and summarise its motion", _run, _run_arguments),
     "explain": ("show what is computed for a scene, what is skipped and why", _explain, _explain_arguments),
     "derive": ("print derivations, proven step by step", _derive, _derive_arguments),
+    "prove": ("print the kinematics as theorems, and have Coq check them", _prove, _prove_arguments),
     "check": ("decide whether formulas hold, and what would", _check, _check_arguments),
     "identify": ("say what a formula is, whatever its symbols are called", _identify, _identify_arguments),
     "emit": ("print a kernel of the library, or that of a scene, as C or NumPy", _emit, _emit_arguments),
     "selftest": ("check that this machine computes as the certificates assume", _selftest, _selftest_arguments),
+    "bench": ("measure time against error, on a scene of yours", _bench, _bench_arguments),
     "scenes": ("list the scenes that come with symrot", _scenes, _json_option),
     "doctor": ("check compiler, cache and installed versions", _doctor, _doctor_arguments),
 }

@@ -13,7 +13,7 @@ from typing import Any
 
 __all__ = ["Measured", "race", "rounds_for", "seconds_of", "work_ahead"]
 
-SHORTEST = 3e-4  # s, what one turn lasts at least
+SHORTEST = 2e-3  # s, what one turn lasts at least: long enough to find its code and numbers in the caches
 MOST_REPEATS = 200
 SLOW, SLOW_ROUNDS = 0.2, 2  # a run of that many seconds gets so many turns
 

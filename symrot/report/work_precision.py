@@ -13,6 +13,7 @@ from symrot.report.layout import columns, duration, fields, one_line
 __all__ = ["compared", "lines", "lines_of_comparison", "read_study"]
 
 FORMAT = "symrot work-precision 1"
+ROUNDING = 1e-16  # of what is compared: no two results are nearer for certain
 LARGEST_FILE = 50_000_000
 
 
@@ -56,7 +57,7 @@ def _against(found: Mapping[str, Any]) -> list[str]:
 def lines(found: Mapping[str, Any]) -> list[str]:
     """Return the lines for people that say what :func:`symrot.bench.work_precision.study` found; first the title."""
     scene, reference, machine = found["scene"], found["reference"], found["machine"]
-    others = [f"{other['name']} differs by {other['difference']:.0e}" for other in reference["others"]]
+    others = [f"{other['name']} within {max(other['difference'], ROUNDING):.0e}" for other in reference["others"]]
     versions = [f"{name} {machine[name]}" for name in ("python", "numpy", "scipy", "heyoka") if machine[name]]
     title = f"{one_line(scene['title'])} [{one_line(scene['name'])}]: time against error"
     head = fields(

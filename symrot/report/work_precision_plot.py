@@ -1,0 +1,175 @@
+"""A work-precision study as a figure: seconds against the error reached, one curve for each method, named at its end.
+
+Both axes are logarithmic; the error grows to the left, so that better is right and faster is down. A curve joins the
+runs that no other run of the same method beats in both; the others are faint points.
+"""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, BinaryIO, NamedTuple
+
+import numpy as np
+
+from symrot import __version__
+from symrot.report.files import write
+from symrot.report.layout import one_line
+from symrot.report.plot import GREY, STYLE, UNDATED
+
+__all__ = ["figure", "save"]
+
+LEAST_ERROR = 1e-17  # what is drawn of an error of zero
+APART = 0.042  # of the height of the panel, between two names
+OUTERMOST = 1.5  # error from which on nothing is shown
+
+
+class Look(NamedTuple):
+    """How the curve of a method is drawn."""
+
+    colour: str
+    marker: str
+    width: float
+    dashes: Any = "-"
+
+
+# Okabe & Ito, 2008; methods of one kind share a colour and differ in marker and dash
+LOOKS: dict[str, Look] = {
+    "exact": Look("#000000", "D", 2.0),
+    "exact with set-up": Look("#000000", "d", 1.2, (0, (1, 1))),
+    "taylor": Look("#0072B2", "o", 2.4),
+    "dop853": Look("#56B4E9", "s", 2.0),
+    "symrot scipy": Look("#56B4E9", "v", 1.2, (0, (4, 2))),
+    "heyoka": Look("#D55E00", "o", 1.8),
+    "heyoka fast math": Look("#D55E00", "^", 1.0, (0, (4, 2))),
+    "heyoka high accuracy": Look("#D55E00", "x", 1.0, (0, (1, 1))),
+    "heyoka compact": Look("#D55E00", "+", 1.0, (0, (6, 2, 1, 2))),
+    "SciPy DOP853": Look("#009E73", "s", 1.6),
+    "SciPy RK45": Look("#009E73", "^", 1.0, (0, (4, 2))),
+    "SciPy LSODA": Look("#CC79A7", "o", 1.6),
+    "SciPy Radau": Look("#E69F00", "v", 1.6),
+}
+OTHER = Look("#606060", ".", 1.0)
+SPOKEN = {"exact": "exact", "taylor": "symrot Taylor", "dop853": "symrot DOP853", "symrot scipy": "symrot, no compiler"}
+
+
+def _frontier(runs: Sequence[Mapping[str, Any]]) -> tuple[list[tuple[float, float]], list[tuple[float, float]]]:
+    """Return the runs that none beats in error and seconds, by error, and the others."""
+    points = sorted((max(float(run["error"]), LEAST_ERROR), float(run["seconds"])) for run in runs)
+    points = [point for point in points if point[0] < OUTERMOST]
+    kept, rest, least = [], [], float("inf")
+    for point in points:  # from the least error on: each must be faster than all before it
+        (kept if point[1] < least else rest).append(point)
+        least = min(least, point[1])
+    return kept, rest
+
+
+def _names(axes: Any, ends: list[tuple[float, str, str]]) -> None:
+    """Write names beside the right edge, each as near the height of its curve's end as the others let it."""
+    low, high = np.log10(axes.get_ylim())
+    ends = sorted(ends)
+    heights = [(np.log10(value) - low) / (high - low) for value, *_ in ends]
+    placed: list[float] = []
+    for height in heights:
+        placed.append(max(height, placed[-1] + APART) if placed else height)
+    # push back down what has been pushed over the top, and settle in the middle of what was wished
+    for number in range(len(placed) - 1, -1, -1):
+        ceiling = 1.0 if number == len(placed) - 1 else placed[number + 1] - APART
+        placed[number] = min(placed[number], ceiling)
+    for (_, name, colour), place, wished in zip(ends, placed, heights, strict=True):
+        axes.annotate(
+            name, (1.0, wished), (1.045, place), xycoords="axes fraction", textcoords="axes fraction", va="center",
+            color=colour, fontsize=9, annotation_clip=False,
+            arrowprops={"arrowstyle": "-", "color": colour, "linewidth": 0.6, "shrinkA": 1, "shrinkB": 0,
+                        "relpos": (0.0, 0.5)},
+        )  # fmt: skip
+
+
+def figure(found: Mapping[str, Any]) -> Any:
+    """Return a matplotlib Figure of a study."""
+    from matplotlib.figure import Figure
+
+    page = Figure(figsize=(9.2, 5.8))
+    axes = page.add_axes((0.085, 0.135, 0.685, 0.72))
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    ends, least, most = [], 1.0, 0.0
+    for name in dict.fromkeys(run["method"] for run in found["runs"]):
+        kept, rest = _frontier([run for run in found["runs"] if run["method"] == name])
+        if not kept:
+            continue
+        look = LOOKS.get(name, OTHER)
+        errors, seconds = zip(*kept, strict=True)
+        axes.plot(
+            errors, seconds, color=look.colour, marker=look.marker, linewidth=look.width, linestyle=look.dashes,
+            markersize=4.2, markeredgewidth=1.0, zorder=3,
+        )  # fmt: skip
+        if rest:
+            axes.plot(*zip(*rest, strict=True), color=look.colour, marker=look.marker, linestyle="", markersize=3,
+                      alpha=0.25, zorder=2)  # fmt: skip
+        ends.append((seconds[0], SPOKEN.get(name, name), look.colour))
+        least, most = min(least, errors[0]), max(most, errors[-1])
+    axes.set_xlim(min(most * 3, OUTERMOST), max(least / 3, LEAST_ERROR))
+    doubt = min((other["difference"] for other in found["reference"]["others"]), default=0.0)
+    right = axes.get_xlim()[1]
+    if doubt > right:
+        axes.axvspan(doubt, right, color="#f0f0f0", zorder=0)
+        axes.annotate(" references differ", (doubt, 1.0), xycoords=("data", "axes fraction"), color=GREY, fontsize=8,
+                      rotation=90, va="top", ha="left")  # fmt: skip
+    axes.grid(True, which="major")
+    axes.tick_params(which="minor", length=2, color="#b0b0b0")
+    axes.set_xlabel("error at the end: attitude in rad, angular velocity relative to its size")
+    axes.set_ylabel("time of one call, s")
+    page.canvas.draw()
+    _leaders(axes, found)
+    _names(axes, ends)
+    _words(page, found)
+    return page
+
+
+def _leaders(axes: Any, found: Mapping[str, Any]) -> None:
+    """Lead the eye from the last point of each curve to the right edge, where its name is."""
+    right = axes.get_xlim()[1]
+    for name in dict.fromkeys(run["method"] for run in found["runs"]):
+        kept, _ = _frontier([run for run in found["runs"] if run["method"] == name])
+        if kept:
+            error, seconds = kept[0]
+            colour = LOOKS.get(name, OTHER).colour
+            axes.plot((error, right), (seconds, seconds), color=colour, linewidth=0.6, alpha=0.5, zorder=1)
+
+
+def _literal(text: str) -> str:
+    """Return text as matplotlib shows it unchanged: a dollar would begin a formula."""
+    return one_line(text).replace("\\", "/").replace("$", r"\$")
+
+
+def _words(page: Any, found: Mapping[str, Any]) -> None:
+    scene, machine, reference = found["scene"], found["machine"], found["reference"]
+    page.text(0.02, 0.965, _literal(scene["title"])[:85], fontsize=13, fontweight="bold", va="top")
+    versions = ", ".join(f"{name} {machine[name]}" for name in ("scipy", "heyoka") if machine[name])
+    line = f"t = {scene['span'][0]:g} to {scene['span'][1]:g} s, one core of {machine['processor']}; {versions}"
+    page.text(0.02, 0.915, _literal(line)[:150], fontsize=8.5, color=GREY, va="top")
+    others = "; ".join(f"{other['name']} within {max(other['difference'], 1e-16):.0e}" for other in reference["others"])
+    caption = f"reference: {reference['name']}" + (f"; {others}" if others else "")
+    page.text(0.02, 0.018, _literal(caption), fontsize=7.5, color=GREY)
+    page.text(0.985, 0.018, f"symrot {__version__}", fontsize=7.5, color=GREY, ha="right")
+
+
+def save(found: Mapping[str, Any], path: Path) -> None:
+    """Draw a study into a file.
+
+    Parameters
+    ----------
+    found : mapping
+        What :func:`symrot.bench.work_precision.study` returned, or a file of it.
+    path : Path
+        Its suffix, ``.png``, ``.pdf`` or ``.svg``, decides the format.
+    """
+    import matplotlib
+
+    suffix = path.suffix.lower()
+    with matplotlib.rc_context({**matplotlib.rcParamsDefault, **STYLE}):
+        page = figure(found)
+
+        def draw(stream: BinaryIO) -> None:
+            page.savefig(stream, format=suffix[1:], dpi=150, metadata=UNDATED[suffix])
+
+        write(path, draw)
