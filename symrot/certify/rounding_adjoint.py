@@ -46,12 +46,14 @@ class Region:
 @dataclass(frozen=True)
 class Evaluation:
     """Of each box: the bound (infinite where none was found, -1 where the region is empty), what is in the way
-    (node, -1 if nothing), the condition that is not decided (-1 if none), and the largest value of the output."""
+    (node, -1 if nothing), the condition that is not decided (-1 if none), the largest value of the output, and
+    whether an atan2 may jump by a whole turn."""
 
     bound: Array
     obstacle: NDArray[np.int64]
     undecided: NDArray[np.int64]
     value: Array
+    turns: NDArray[np.bool_]
 
 
 @dataclass
@@ -66,6 +68,7 @@ class _State:
     values: list[Array]
     errors: list[Array | None]
     outside: NDArray[np.bool_]
+    cuts: dict[int, NDArray[np.bool_]]  # where the atan2 of a node may be on both sides of its cut
 
     def __post_init__(self) -> None:
         self.precision = self.cone.precision
@@ -159,6 +162,7 @@ def _angle(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Ar
     if state.region.clearance:
         length = intervals.add(intervals.square(y), intervals.square(x))
         state.outside |= length[1] < state.region.clearance**2
+    state.cuts[len(state.values)] = intervals.contains_zero(y) & (x[0] < 0)
     value, error = state.rounded(np.clip(functions.arc_tangent(y, x), -pi, pi), 2 * state.libm_ulp)
     return value, error
 
@@ -375,7 +379,7 @@ def evaluate(
         Largest error of sin, cos and atan2, in units in the last place.
     """
     count = boxes.shape[2]
-    state = _State(cone, boxes, decided.copy(), region, libm_ulp, [], [], np.zeros(count, bool))
+    state = _State(cone, boxes, decided.copy(), region, libm_ulp, [], [], np.zeros(count, bool), {})
     undecided = np.full(count, -1, np.int64)
     waiting: dict[int, list[int]] = {}
     for number, (_, i, j) in enumerate(cone.conditions):
@@ -388,10 +392,10 @@ def evaluate(
             state.errors.append(error)
             for number in waiting.get(index, ()):
                 undecided = _decide(state, number, undecided)
-        bound, obstacle = _backwards(state)
+        bound, obstacle, turns = _backwards(state)
     bound = np.where((obstacle >= 0) | (undecided >= 0), inf, bound)
     bound = np.where(state.outside, -1.0, bound)
-    return Evaluation(bound, obstacle, undecided, intervals.magnitude(state.values[-1]))
+    return Evaluation(bound, obstacle, undecided, intervals.magnitude(state.values[-1]), turns & ~state.outside)
 
 
 def _restrict(state: _State) -> None:
@@ -419,9 +423,10 @@ def _decide(state: _State, number: int, undecided: NDArray[np.int64]) -> NDArray
     return np.where((undecided < 0) & open_ & holds & fails, number, undecided)
 
 
-def _backwards(state: _State) -> tuple[Array, NDArray[np.int64]]:
+def _backwards(state: _State) -> tuple[Array, NDArray[np.int64], NDArray[np.bool_]]:
     """Return the sum of errors times derivatives, and the first node that is in the way of a finite one, or -1.
 
+    An angle that may jump by a whole turn may only be added to the output, whose error is then that modulo a turn.
     What no branch uses may be anything; what is used has to be finite, whatever its derivative.
     """
     nodes = state.cone.nodes
@@ -431,7 +436,8 @@ def _backwards(state: _State) -> tuple[Array, NDArray[np.int64]]:
     used = [np.zeros(count, bool) for _ in nodes]
     used[-1][:] = True
     bound, of_value = np.zeros(count), np.full(count, -1, np.int64)
-    of_slope = of_value
+    of_slope, turns = of_value, np.zeros(count, bool)
+    combine = intervals.add if state.cone.conditions else lambda a, b: intervals.widened(a + b, 0.0)
     for index in range(len(nodes) - 1, -1, -1):
         adjoint, error, here = adjoints[index], state.errors[index], used[index]
         if adjoint is None:
@@ -440,6 +446,10 @@ def _backwards(state: _State) -> tuple[Array, NDArray[np.int64]]:
         if error is not None:
             bound = bound + np.where(here & (error != 0), intervals.magnitude(adjoint) * error, 0.0)
         kind = nodes[index][0]
+        if index in state.cuts:
+            jumps = here & state.cuts[index]
+            turns |= jumps
+            of_value = np.where(jumps & ~((adjoint[0] == adjoint[1]) & (np.abs(adjoint[0]) == 1)), index, of_value)
         if kind not in BACKWARD:
             continue
         clear = (of_slope < 0) & here & np.isfinite(adjoint).all(axis=0)
@@ -452,9 +462,8 @@ def _backwards(state: _State) -> tuple[Array, NDArray[np.int64]]:
             of_slope = np.where(clear & taken & ~np.isfinite(part).all(axis=0), index, of_slope)
             known = adjoints[place]
             part = np.where(taken, part, 0.0)
-            adjoints[place] = part if known is None else intervals.widened(known + part, 0.0)
+            adjoints[place] = part if known is None else combine(known, part)
     whole = bound * (1 + 2.0**-52 * (2 * len(nodes) + 4)) + 1e-320 * len(nodes) * (bound > 0)
     obstacle = np.where(of_value >= 0, of_value, np.where(np.isfinite(whole), -1, of_slope))
-    return np.where(of_value >= 0, inf, whole), np.where(
-        (obstacle < 0) & ~np.isfinite(whole), len(nodes) - 1, obstacle
-    )
+    obstacle = np.where((obstacle < 0) & ~np.isfinite(whole), len(nodes) - 1, obstacle)
+    return np.where(of_value >= 0, inf, whole), obstacle, turns

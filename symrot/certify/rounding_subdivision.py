@@ -28,7 +28,7 @@ NARROWEST = 2.0**-24  # of the width of the box: a part this narrow that has no 
 class Search:
     """What was found: no error in the box is larger than ``bound``; the method finds ``pointwise`` at ``worst``.
 
-    ``bound`` is infinite where none was found: then ``obstacle`` is the node in the way, near ``worst``.
+    ``turns``: the error is that modulo whole turns. ``bound`` is infinite where none was found: then ``obstacle`` is the node in the way, near ``worst``.
     """
 
     bound: float
@@ -37,6 +37,7 @@ class Search:
     largest_value: float
     evaluations: int
     converged: bool
+    turns: bool = False
     obstacle: int = -1
 
 
@@ -71,7 +72,7 @@ class _Search:
         self.groups = [group for group, all_ in zip(self.groups, region.unit, strict=True) if len(group) == len(all_)]
         self.evaluations = 0
         self.pointwise, self.worst = -1.0, tuple(float(x) for x in box.mean(axis=0))
-        self.largest_value = 0.0
+        self.largest_value, self.turns = 0.0, False
 
     def evaluate(self, boxes: Array, decided: NDArray[np.int8]) -> Evaluation:
         """Evaluate boxes, a chunk at a time."""
@@ -83,12 +84,12 @@ class _Search:
         ]
         return Evaluation(*(np.concatenate([getattr(part, name) for part in found]) for name in _FIELDS))
 
-    def parts(self, boxes: Array, decided: NDArray[np.int8]) -> tuple[_Parts, Evaluation]:
+    def parts(self, boxes: Array, decided: NDArray[np.int8]) -> _Parts:
         """Return the parts of the region among boxes, with their bounds."""
         found = self.evaluate(boxes, decided)
         inside = found.bound >= 0
-        parts = _Parts(boxes, decided, found.bound, found.obstacle, found.undecided)
-        return parts.take(inside), found
+        self.turns |= bool((found.turns & np.isfinite(found.bound)).any())
+        return _Parts(boxes, decided, found.bound, found.obstacle, found.undecided).take(inside)
 
     def look_at_points(self, parts: _Parts) -> None:
         """Raise what single points reach by the middles and the outermost corners of parts."""
@@ -103,6 +104,7 @@ class _Search:
         found = self.evaluate(np.stack([points, points]), decided)
         reached = np.where(np.isfinite(found.bound), found.bound, -1.0)
         best = int(np.argmax(reached))
+        self.largest_value = max(self.largest_value, float(found.value[reached >= 0].max(initial=0.0)))
         if reached[best] > self.pointwise:
             self.pointwise, self.worst = float(reached[best]), tuple(float(x) for x in points[:, best])
 
@@ -167,7 +169,7 @@ class _Search:
 
 
 _UPPER = {"<": True, "<=": True, ">": False, ">=": False}  # whether the left side is the lesser where it holds
-_FIELDS = ("bound", "obstacle", "undecided", "value")
+_FIELDS = ("bound", "obstacle", "undecided", "value", "turns")
 
 
 def search(
@@ -193,13 +195,13 @@ def search(
     """
     run = _Search(cone, box, region, libm_ulp)
     conditions = len(cone.conditions)
-    parts, first = run.parts(box[:, :, None].copy(), np.full((conditions, 1), -1, np.int8))
-    run.largest_value = float(first.value.max())
+    parts = run.parts(box[:, :, None].copy(), np.full((conditions, 1), -1, np.int8))
     settled = -1.0
     while parts.bound.size:
         order = np.argsort(-parts.bound, kind="stable")
         batch = parts.take(order[:BATCH])
-        run.look_at_points(batch.take(np.isfinite(batch.bound))) if np.isfinite(batch.bound).any() else None
+        if np.isfinite(batch.bound).any():
+            run.look_at_points(batch.take(np.isfinite(batch.bound)))
         enough = max(run.pointwise * GAP, settled)
         if target is not None and run.pointwise <= target:
             enough = max(enough, target)
@@ -215,7 +217,7 @@ def search(
         settled = max(settled, float(parts.bound[done].max(initial=-1.0)))
         working = np.zeros(done.size, bool)
         working[order[:BATCH]] = True
-        halves, _ = run.parts(*run.halves(parts.take(working & ~done)))
+        halves = run.parts(*run.halves(parts.take(working & ~done)))
         parts = parts.take(~done & ~working).join(halves)
     return _result(run, parts, settled)
 
@@ -230,13 +232,11 @@ def _narrow(run: _Search, parts: _Parts) -> NDArray[np.bool_]:
 
 
 def _result(run: _Search, parts: _Parts, settled: float) -> Search:
-    bound = max(settled, float(parts.bound.max(initial=-1.0)))
-    found = {"largest_value": run.largest_value, "evaluations": run.evaluations}
-    if bound < 0:
-        return Search(0.0, 0.0, run.worst, converged=True, **found)  # type: ignore[arg-type]
+    bound = max(settled, float(parts.bound.max(initial=-1.0)), 0.0)
+    pointwise, worst, obstacle = max(run.pointwise, 0.0), run.worst, -1
     if np.isinf(bound):
-        worst = int(np.argmax(parts.bound))
-        place = tuple(float(x) for x in parts.boxes[:, :, worst].mean(axis=0))
-        return Search(inf, max(run.pointwise, 0.0), place, converged=False, obstacle=int(parts.obstacle[worst]), **found)  # type: ignore[arg-type]
-    pointwise = max(run.pointwise, 0.0)
-    return Search(bound, pointwise, run.worst, converged=bound <= max(GAP * pointwise, 0.0), **found)  # type: ignore[arg-type]
+        first = int(np.argmax(parts.bound))
+        worst, obstacle = tuple(float(x) for x in parts.boxes[:, :, first].mean(axis=0)), int(parts.obstacle[first])
+    return Search(
+        bound, pointwise, worst, run.largest_value, run.evaluations, bound <= GAP * pointwise, run.turns, obstacle
+    )

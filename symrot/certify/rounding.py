@@ -1,0 +1,332 @@
+"""Link 4 of a certificate: bounds of the rounding error of a kernel's outputs on a box of inputs.
+
+For the certificate: :func:`rounding_section` returns plain data that is the same, byte for byte, on every machine;
+:func:`check_section` verifies it, at once what a point evaluation can tell and, with ``rerun``, everything.
+
+What is bounded is the absolute error of each output against the exact formula (link 3) at the same floating-point
+inputs. Where a choice compares rounded numbers, the exact formula is followed along the branch that the kernel took;
+such choices are listed. An angle whose choices wrap it is compared modulo whole turns. Every number on the way is
+finite on the box, so that nothing overflows.
+"""
+
+import hashlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from math import inf, isfinite, nextafter
+from typing import Any
+
+import numpy as np
+
+from symrot.certify.operations import Operations
+from symrot.certify.rounding_adjoint import LIBM_ULP, Region, evaluate
+from symrot.certify.rounding_cone import Cone, cone_of
+from symrot.certify.rounding_intervals import DIGITS, Array
+from symrot.certify.rounding_store import Store
+from symrot.certify.rounding_subdivision import Search, search
+from symrot.errors import CertificateError, InputError
+from symrot.number import show
+
+__all__ = ["BUDGET", "Box", "OutputBound", "Task", "bound_outputs", "bound_task", "check_section", "rounding_section",
+           "tasks"]  # fmt: skip
+
+Box = Mapping[str, tuple[Fraction, Fraction]]  # place of an input, such as "q[1]" -> least and largest value
+
+BUDGET = 100_000  # evaluations of boxes per output
+_STORE = Store()
+
+
+@dataclass(frozen=True)
+class OutputBound:
+    """The bound of one output: no error is larger than ``bound``; by the same method a point reaches ``pointwise``.
+
+    ``at`` is that point; ``scale`` a power of two not below the values met; ``turns``: the error is that modulo whole
+    turns; ``choices`` are the comparisons of rounded numbers, whose branch is taken as computed.
+    """
+
+    output: str
+    bound: float
+    pointwise: float
+    at: tuple[tuple[str, float], ...]
+    scale: float
+    evaluations: int
+    converged: bool
+    turns: bool
+    choices: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Task:
+    """The bound of one computation on one box: equal ones of different kernels are found once."""
+
+    cone: Cone
+    low: tuple[float, ...]
+    high: tuple[float, ...]
+    region: Region
+    budget: int
+    libm_ulp: float
+
+    @property
+    def key(self) -> str:
+        """A name that equal tasks have in common."""
+        numbers = {place: k for k, place in enumerate(self.cone.places)}
+        groups = sorted(tuple(numbers.get(place, -1) for place in group) for group in self.region.unit)
+        ends = [x.hex() for x in (*self.low, *self.high)]
+        said = [self.cone.digest, ends, groups, self.region.clearance, self.budget, self.libm_ulp]
+        return hashlib.sha256(repr(said).encode()).hexdigest()
+
+    @property
+    def box(self) -> Array:
+        """Least and largest value of each input, shape (2, inputs)."""
+        return np.array([self.low, self.high])
+
+
+def tasks(
+    operations: Operations, box: Box, region: Region = Region(), budget: int = BUDGET, libm_ulp: float = LIBM_ULP
+) -> dict[str, Task]:
+    """Return what has to be bounded for each output.
+
+    Raises
+    ------
+    InputError
+        For a box with a range that is missing, unknown, reversed or not finite.
+    """
+    _check_box(operations, box)
+    found = {}
+    for place, index in operations.outputs:
+        cone = cone_of(operations, index)
+        low = tuple(_outward(box[name][0], -inf) for name in cone.places)
+        high = tuple(_outward(box[name][1], inf) for name in cone.places)
+        used = tuple(group for group in region.unit if set(group) & set(cone.places))
+        atan2 = any(node[0] == "atan2" for node in cone.nodes)
+        own = Region(used, region.clearance if atan2 else 0.0)
+        found[place] = Task(cone, low, high, own, budget, libm_ulp)
+    return found
+
+
+def _outward(value: Fraction, direction: float) -> float:
+    near = float(value)
+    exact = Fraction(near)
+    return near if exact == value or (exact < value) == (direction < 0) else nextafter(near, direction)
+
+
+def _check_box(operations: Operations, box: Box) -> None:
+    unknown = sorted(set(box) - set(operations.inputs))
+    if unknown:
+        raise InputError(
+            f"{operations.name}: expected a box of {', '.join(operations.inputs)}, got one of {unknown[0]}"
+        )
+    for place in operations.inputs:
+        if place not in box:
+            raise InputError(f"{operations.name}: expected a range of {place} in the box, got none")
+        low, high = box[place]
+        if not all(isfinite(x) and abs(Fraction(x)) < Fraction(2) ** 1024 for x in (low, high)):
+            raise InputError(f"{operations.name}: expected a finite range of {place}, got {show(low)} to {show(high)}")
+        if low > high:
+            raise InputError(
+                f"{operations.name}: expected a range of {place} from its least to its largest value, "
+                f"got {show(low)} to {show(high)}"
+            )
+
+
+def bound_task(task: Task, fresh: bool = False) -> Search:
+    """Return the bound of one computation, from the store if it is known and ``fresh`` does not forbid it."""
+    known = None if fresh else _STORE.get(task.key)
+    if known is None:
+        known = search(task.cone, task.box, task.region, task.budget, task.libm_ulp)
+        _STORE.put(task.key, known)
+    return known
+
+
+def bound_outputs(
+    operations: Operations, box: Box, region: Region = Region(), budget: int = BUDGET, libm_ulp: float = LIBM_ULP,
+    fresh: bool = False,
+) -> tuple[OutputBound, ...]:  # fmt: skip
+    """Return the bound of each output on a box.
+
+    Parameters
+    ----------
+    operations : Operations
+        As read back from C (:func:`symrot.certify.readback.read_kernel`).
+    box : mapping
+        Place of an input, such as ``"q[1]"`` -> least and largest value, both exact.
+    region : Region
+        What holds in the box beyond its sides.
+    budget : int
+        Evaluations of boxes per output.
+    libm_ulp : float
+        Largest error of sin, cos and atan2, in units in the last place.
+    fresh : bool
+        Bound again what the cache knows.
+
+    Raises
+    ------
+    InputError
+        For a box that cannot be one, or on which an output has no bound: it says which and near where.
+    """
+    return tuple(
+        _found(operations, place, task, bound_task(task, fresh))
+        for place, task in tasks(operations, box, region, budget, libm_ulp).items()
+    )
+
+
+def _found(operations: Operations, place: str, task: Task, found: Search) -> OutputBound:
+    at = tuple(zip(task.cone.places, found.worst, strict=True))
+    if found.bound == inf:
+        where = ", ".join(f"{name} = {x:.6g}" for name, x in at)
+        what = task.cone.text(found.obstacle) if found.obstacle >= 0 else place
+        raise InputError(
+            f"{operations.name}: expected a box without singular points, got one where {place} has no bound "
+            f"near {where}, because of {what}"
+        )
+    scale = 2.0 ** np.ceil(np.log2(found.largest_value)) if found.largest_value > 0 else 1.0
+    choices = tuple(f"{text}{', by whole turns' if turns else ''}" for text, turns in task.cone.choices)
+    return OutputBound(
+        place, found.bound, found.pointwise, at, float(scale), found.evaluations, found.converged, found.turns, choices
+    )
+
+
+# --- the section of the certificate -----------------------------------------------------------------------------------
+
+MEANING = (
+    "absolute error of the computed output against the exact formula at the same floating-point inputs; "
+    "choices are followed as computed"
+)
+
+
+def _assumptions(libm_ulp: float) -> list[str]:
+    return [
+        "IEEE 754, rounding to nearest, subnormal numbers kept",
+        f"sin, cos and atan2 within {libm_ulp:g} unit in the last place; sin and cos within [-1, 1], sincos alike",
+        "link 3: constants are rounded to nearest, series leave out at most a quarter of a unit in the last place",
+    ]
+
+
+def rounding_section(
+    operations_double: Operations, operations_float: Operations | None, box: Box, region: Region = Region(),
+    budget: int = BUDGET, libm_ulp: float = LIBM_ULP, fresh: bool = False,
+) -> dict[str, Any]:  # fmt: skip
+    """Return link 4 of a certificate as plain data, numbers as hexadecimal text: the same bytes on every machine.
+
+    Parameters
+    ----------
+    operations_double, operations_float : Operations
+        The one-sample functions NAME and NAMEf as read back; the second may be left out (None).
+    box, region, budget, libm_ulp, fresh
+        As for :func:`bound_outputs`; :func:`symrot.certify.rounding_library.problem` gives those of a library kernel.
+
+    Returns
+    -------
+    dict
+        ``{"meaning", "assumptions", "libm_ulp", "budget", "box": {place: [hex, hex]}, "unit_groups", "clearance",
+        "precisions": [{"precision", "operations_sha256", "unit", "outputs": [{"output", "absolute", "units",
+        "pointwise", "at", "scale", "evaluations", "converged", "modulo_turns", "choices"}]}]}``; ``absolute`` is the
+        bound, ``units`` the same in units of ``unit`` (2^-53 or 2^-24), rounded up.
+
+    Raises
+    ------
+    InputError
+        As :func:`bound_outputs`.
+    """
+    kernels = [operations_double] if operations_float is None else [operations_double, operations_float]
+    return {
+        "meaning": MEANING, "assumptions": _assumptions(libm_ulp), "libm_ulp": float(libm_ulp).hex(), "budget": budget,
+        "box": {place: [_outward(low, -inf).hex(), _outward(high, inf).hex()] for place, (low, high) in box.items()},
+        "unit_groups": [list(group) for group in region.unit], "clearance": float(region.clearance).hex(),
+        "precisions": [_precision(kernel, box, region, budget, libm_ulp, fresh) for kernel in kernels],
+    }  # fmt: skip
+
+
+def _precision(
+    operations: Operations, box: Box, region: Region, budget: int, libm_ulp: float, fresh: bool
+) -> dict[str, Any]:
+    unit = 2.0 ** -DIGITS[operations.precision]
+    outputs = [
+        {
+            "output": found.output, "absolute": found.bound.hex(), "units": _units(found.bound / unit),
+            "pointwise": found.pointwise.hex(), "at": {name: x.hex() for name, x in found.at},
+            "scale": found.scale.hex(), "evaluations": found.evaluations, "converged": found.converged,
+            "modulo_turns": found.turns, "choices": list(found.choices),
+        }
+        for found in bound_outputs(operations, box, region, budget, libm_ulp, fresh)
+    ]  # fmt: skip
+    return {
+        "precision": operations.precision, "operations_sha256": operations.digest(), "unit": unit.hex(),
+        "outputs": outputs,
+    }  # fmt: skip
+
+
+def _units(value: float) -> str:
+    """Return a number in decimal, four digits, rounded up."""
+    if value == 0:
+        return "0"
+    digits = 4 - len(str(int(value))) if value >= 1 else 4
+    step = Fraction(10) ** -digits
+    up = -(-Fraction(value) // step) * step
+    return f"{float(up):.{max(digits, 0)}f}"
+
+
+def check_section(
+    section: Mapping[str, Any], operations_double: Operations, operations_float: Operations | None, rerun: bool = False
+) -> None:
+    """Verify link 4 of a certificate.
+
+    At once: that it is about these operations and all their outputs, that its numbers are finite and in order, and
+    that no bound is below what the method finds at the stored point. With ``rerun``: everything, by bounding again.
+
+    Raises
+    ------
+    CertificateError
+        Saying what does not hold.
+    """
+    kernels = {kernel.precision: kernel for kernel in (operations_double, operations_float) if kernel is not None}
+    try:
+        box = {place: tuple(Fraction(float.fromhex(x)) for x in ends) for place, ends in section["box"].items()}
+        region = Region(tuple(map(tuple, section["unit_groups"])), float.fromhex(section["clearance"]))
+        libm_ulp, budget = float.fromhex(section["libm_ulp"]), int(section["budget"])
+        for part in section["precisions"]:
+            _check_precision(part, kernels[part["precision"]], box, region, libm_ulp)
+        said = [part["precision"] for part in section["precisions"]]
+    except (KeyError, TypeError, ValueError, AttributeError, OverflowError) as error:
+        if isinstance(error, CertificateError | InputError):
+            raise CertificateError(str(error)) from None
+        raise CertificateError(f"expected a section of rounding bounds, got one without or with a bad {error}") from None
+    if said != list(kernels):
+        raise CertificateError(f"expected bounds for {' and '.join(kernels)}, got {' and '.join(said) or 'none'}")
+    if section.get("meaning") != MEANING or section.get("assumptions") != _assumptions(libm_ulp):
+        raise CertificateError("expected bounds under the assumptions of this method, got others")
+    if rerun and rounding_section(operations_double, operations_float, box, region, budget, libm_ulp, True) != section:
+        raise CertificateError(f"{operations_double.name}: expected the bounds that bounding again gives, got others")
+
+
+def _check_precision(
+    part: Mapping[str, Any], operations: Operations, box: Box, region: Region, libm_ulp: float
+) -> None:
+    name = operations.name
+    if part["operations_sha256"] != operations.digest():
+        raise CertificateError(f"{name}: expected bounds of these operations, got those of others")
+    wanted = tasks(operations, box, region, 0, libm_ulp)
+    unit = 2.0 ** -DIGITS[operations.precision]
+    if [item["output"] for item in part["outputs"]] != list(wanted) or float.fromhex(part["unit"]) != unit:
+        raise CertificateError(f"{name}: expected bounds of {', '.join(wanted)}")
+    for item in part["outputs"]:
+        task, said = wanted[item["output"]], float.fromhex(item["absolute"])
+        at = np.array([float.fromhex(item["at"][place]) for place in task.cone.places])
+        if not isfinite(said) or said < 0 or item["units"] != _units(said / unit):
+            raise CertificateError(f"{name}: expected a finite bound of {item['output']}, got {item['units']}")
+        if at.size and not ((task.box[0] <= at) & (at <= task.box[1])).all():
+            raise CertificateError(f"{name}: expected a point of the box for {item['output']}, got another")
+        reached = _reached(task, at)
+        if not reached <= float.fromhex(item["pointwise"]) * (1 + 1e-9) or float.fromhex(item["pointwise"]) > said:
+            raise CertificateError(
+                f"{name}: expected a bound of {item['output']} of at least {reached / unit:.6g} units, "
+                f"which a point of the box reaches, got {item['units']}"
+            )
+
+
+def _reached(task: Task, at: Array) -> float:
+    """Return what the method finds at one point, the least over the branches that are open there."""
+    point = np.stack([at, at])[:, :, None]
+    found = evaluate(task.cone, point, np.full((len(task.cone.conditions), 1), -1, np.int8), task.region, task.libm_ulp)
+    value = float(found.bound[0])
+    return value if isfinite(value) else 0.0
