@@ -1,8 +1,8 @@
 """A motion to 30 digits at any of its times: Taylor series in mpmath, and for free bodies on through all periods.
 
 The angular velocity of a free body is periodic, and one period turns the body always alike: with period P and
-``R = q(P) q(0)^-1`` the attitude is ``q(t + n P) = R^n q(t)``. Series over one period so give the motion after a million
-of them, and share nothing with the closed form that they judge.
+``R = q(P) q(0)^-1`` the attitude is ``q(t + n P) = R^n q(t)``. Series over one period so give the motion after a
+million of them, and share nothing with the closed form that they judge.
 """
 
 from fractions import Fraction

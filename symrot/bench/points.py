@@ -84,7 +84,7 @@ def _secant(r: Floats, w: Floats, middle: Floats, h: float) -> Floats:
     speed = float(np.linalg.norm(middle))
     return (
         _turned(middle / speed, 2.0 * math.atan(h * speed / 2.0), r) if speed else r
-    )  # Cayley: the solved secant step
+    )  # Cayley's
 
 
 def _rotation(r: Floats, w: Floats, middle: Floats, h: float) -> Floats:

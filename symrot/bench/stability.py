@@ -4,15 +4,12 @@
 
 Without a scene a free plate (moments 1, 3, 4) is followed for 1e5 revolutions (``--long``: 1e6), medians over three
 starts; with one, the scene over its span. The truth has 30 digits and shares nothing with any method
-(:mod:`symrot.bench.exact_path`). Then the textbooks' claims: Euler angles as state against the quaternion as state, near
-gimbal lock and through it; the quaternion renormalised or left alone; points carried along the tangent or the secant.
+(:mod:`symrot.bench.exact_path`). Then the textbooks' claims: Euler angles as state against the quaternion as state,
+near gimbal lock and through it; the quaternion renormalised or left alone; points carried along tangents or secants.
 """
 
-import argparse
-import json
 import math
-import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +23,7 @@ from symrot.propagation.propagator import propagator
 from symrot.report.layout import columns
 from symrot.scene import Scene, load_scene
 
-__all__ = ["lines", "main", "stability"]
+__all__ = ["lines", "report", "stability"]
 
 Floats = NDArray[np.float64]
 
@@ -78,7 +75,7 @@ def stability(scene: Scene | None = None, long: bool = False, say: Callable[[str
         )
         for each in carried(_scene(name, body, omega), CARRIED_FOR, STEPS, size)
     ]
-    return found
+    return _finite(found)
 
 
 def _of_plates(long: bool, say: Callable[[str], object]) -> dict[str, Any]:
@@ -107,6 +104,8 @@ def _median(rows: list[Floats], count: int) -> Floats:
 
 
 def _of_scene(scene: Scene, long: bool, say: Callable[[str], object]) -> dict[str, Any]:
+    if not scene.span.stop > scene.span.start:
+        raise InputError(f"{scene.name}: span: expected an end after the start")
     times = np.linspace(float(scene.span.start), float(scene.span.stop), SAMPLES)
     say(f"{scene.name}: truth in 40 digits ..")
     track = Track(scene, times, periodic=False)
@@ -135,7 +134,7 @@ def _curve(method: str, at: Floats | None, attitude: Floats, rates: Floats, kept
 
 
 def passes() -> list[dict[str, Any]]:
-    """Return what passes by gimbal lock cost and lose: the quaternion, angles that are exchanged, angles that are not."""
+    """Return what passes by gimbal lock cost and lose: quaternion, angles that are exchanged, angles that are not."""
     t, found = np.linspace(-3, 8, 45), []
     for distance in PASSES:
         attitude = {"sequence": SEQUENCE, "angles": ["1/5", distance, "3/10"]}
@@ -166,12 +165,16 @@ def scene_distance(text: str | int) -> float:
 # ------------------------------------------------------------------------------------------------ for people
 
 
-def _figure(value: float) -> str:
-    return "-" if not math.isfinite(value) else f"{value:.1e}"
+def _figure(value: float | None) -> str:
+    return "-" if value is None else f"{value:.1e}"
 
 
-def _power(value: float) -> str:
-    return "-" if not math.isfinite(value) else f"t^{value:.2f}"
+def _power(value: float | None) -> str:
+    return "-" if value is None else f"t^{value:.2f}"
+
+
+def _worst(values: Iterable[float | None]) -> float | None:
+    return max((value for value in values if value is not None), default=None)
 
 
 def lines(found: Any) -> list[str]:
@@ -193,23 +196,22 @@ def _growth_lines(data: Any) -> list[str]:
     for curve in data["curves"]:
         rows.append([f"  {curve['method']}", *(_figure(curve["attitude"][i]) for i in shown)])
         kept = {name: values for name, values in curve["invariants"].items() if name != "quaternion norm"}
-        worst = [max((values[i] for values in kept.values()), default=math.nan) for i in shown]
+        worst = [_worst(values[i] for values in kept.values()) for i in shown]
         drifts.append([f"  {curve['method']}", *map(_figure, worst)])
         if "exponents" in curve:
             rows[-1].append(_power(curve["exponents"]["attitude"]))
             drifts[-1].append(_power(curve["exponents"]["invariants"]))
-        norms = [value for value in curve["invariants"].get("quaternion norm", []) if math.isfinite(value)]
-        drifts[-1].append(_figure(max(norms, default=math.nan)))
+        drifts[-1].append(_figure(_worst(curve["invariants"].get("quaternion norm", []))))
     right = tuple(range(1, len(drifts[0])))
     kept_names = [name for name in data["curves"][0]["invariants"] if name != "quaternion norm"]
     found += columns(rows, right=right[:-1])
     found += ["", f"largest relative drift of {', '.join(kept_names) or 'nothing: no invariant'}; "
               "and of the norm of the quaternion, on the way", *columns(drifts, right=right)]  # fmt: skip
     notes = "; ".join(f"{each.name}: {each.about}" for each in METHODS)
-    fitted = (
-        f" Powers are fitted from {FROM:.0f} revolutions on; rounding alone gives t^0.5 to an invariant, t^1.5 to an"
-    )
-    return found + ["", *_wrapped(notes + "." + (f"{fitted} angle." if data["variable"] == "revolutions" else ""))]
+    if data["variable"] == "revolutions":
+        notes += f". Powers are fitted from {FROM:.0f} revolutions on; rounding alone grows as t^0.5 in an invariant, "
+        notes += "t^1.5 in an angle"
+    return [*found, "", *_wrapped(f"{notes}.")]
 
 
 def _wrapped(text: str) -> list[str]:
@@ -248,46 +250,20 @@ def _point_lines(found: Any) -> list[str]:
     return [*said, *columns(rows, right=(2, 3, 4, 5, 6))]
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Print the report; also ``python -m symrot.bench.stability``."""
-    parser = argparse.ArgumentParser(prog="symrot bench --stability", description=(__doc__ or "").split("\n")[0])
-    parser.add_argument("scene", nargs="?", metavar="SCENE", help="follow this scene over its span")
-    parser.add_argument("--long", action="store_true", help="1e6 revolutions")
-    parser.add_argument("--plot", type=Path, metavar="FILE", help="draw it: FILE.png, .pdf or .svg")
-    parser.add_argument("--json", action="store_true", help="print JSON")
-    options = parser.parse_args(arguments)
-    return run(options.scene, options.long, options.plot, options.json)
+def report(scene: str | None, long: bool, plot: Path | None, say: Callable[[str], object]) -> Any:
+    """Return the report of a shipped scene or a file, of the plate without one; draw it if asked.
 
-
-def run(scene: str | None, long: bool, plot: Path | None, as_json: bool) -> int:
-    """Make the report, draw it if asked, print it; return 0."""
-    from symrot.report.files import check_target
-
-    if plot:
-        from symrot.report import plot as page
-
-        check_target(plot, page.SUFFIXES, "--plot")
-        page.require_matplotlib()
-    shown = load_scene(scene) if scene else None
-    if shown and not shown.span.stop > shown.span.start:
-        raise InputError(f"{shown.name}: expected a span that ends after it starts")
-
-    def say(text: str) -> None:
-        if sys.stderr.isatty():
-            sys.stderr.write(f"\r\x1b[K{text}")
-            sys.stderr.flush()
-
-    found = stability(shown, long, say)
-    say("")
+    Raises
+    ------
+    InputError
+        For a scene that cannot be used.
+    """
+    found = stability(load_scene(scene) if scene else None, long, say)
     if plot:
         from symrot.bench.stability_plot import save
 
         save(found, plot)
-    if as_json:
-        print(json.dumps(_finite(found), indent=2))
-    else:
-        print("\n".join(lines(found)))
-    return 0
+    return found
 
 
 def _finite(value: Any) -> Any:
@@ -297,7 +273,3 @@ def _finite(value: Any) -> Any:
     if isinstance(value, list):
         return [_finite(each) for each in value]
     return None if isinstance(value, float) and not math.isfinite(value) else value
-
-
-if __name__ == "__main__":
-    sys.exit(main())
