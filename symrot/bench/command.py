@@ -5,7 +5,7 @@ are imported when it is asked for. To add one: a function here or in a module of
 """
 
 from argparse import ArgumentParser, Namespace
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -31,7 +31,7 @@ class Mode(NamedTuple):
     about: str
     takes: frozenset[str]  # of scene, methods, quick, plot, out, json, directory
     run: Callable[[Namespace, Say], Outcome]
-    more: dict[str, Any] = {}  # what argparse needs to know of the option beyond its name
+    more: Mapping[str, Any] | None = None  # what argparse needs to know of the option beyond its name
 
 
 def _study(options: Namespace, say: Say) -> Outcome:
@@ -89,6 +89,14 @@ def _skip(options: Namespace, say: Say) -> Outcome:
     return Outcome(found, skip.lines(found))
 
 
+def _stability(options: Namespace, say: Say) -> Outcome:
+    from symrot.bench import stability
+
+    _targets(options)
+    found = stability.report(options.scene, options.long, options.plot, say)
+    return Outcome(found, stability.lines(found))
+
+
 STUDIES: dict[str, str] = {
     "taylor": "Taylor series against heyoka in all settings and against loops by hand in C, at equal error",
     "ensemble": "many motions in SIMD lanes against heyoka's batch and ensemble modes",
@@ -124,6 +132,8 @@ MODES: tuple[Mode, ...] = (
          _suite, {"action": "store_true"}),
     Mode("--skip", "what specialisation saves: a ladder of scenes, or the scene given", SCENE_STUDY - {"methods"},
          _skip, {"action": "store_true"}),
+    Mode("--stability", "how errors grow over 1e5 revolutions, or over the span of the scene given",
+         frozenset({"scene", "long", "plot", "json", "out"}), _stability, {"action": "store_true"}),
     Mode("--list", "list the modes, and the studies of one question each", frozenset({"json"}), _list,
          {"action": "store_true"}),
 )  # fmt: skip
@@ -138,10 +148,11 @@ def arguments(parser: ArgumentParser) -> None:
     add("scene", metavar="SCENE", nargs="?", help="a shipped scene (see `symrot scenes`), or a file")
     for mode in MODES:
         if mode.option:
-            add(mode.option, help=mode.about, **mode.more)
+            add(mode.option, help=mode.about, **(mode.more or {}))
     add("--methods", metavar="NAMES", help="of exact, taylor, dop853, scipy, heyoka, DOP853, RK45, LSODA, Radau; "
         "commas between (default: all)")  # fmt: skip
     add("--quick", action="store_true", help="fewer tolerances and turns")
+    add("--long", action="store_true", help="with --stability: 1e6 revolutions")
     add("--plot", type=Path, metavar="FILE", help="draw time against error: FILE.png, .pdf or .svg")
     add("--out", type=Path, metavar="FILE", help="write the study as FILE.json, for --compare")
     add("-o", type=Path, metavar="DIR", dest="directory", help="folder of --suite (default: ./generated/bench)")
@@ -161,7 +172,7 @@ def run(options: Namespace, say: Say) -> Outcome:
     if len(asked) > 1 or (not asked and options.scene is None):
         raise InputError(f"bench: expected a SCENE or exactly one of {names} (see `symrot bench --help`)")
     mode = asked[0] if asked else MODES[0]
-    for name in ("scene", "methods", "quick", "plot", "out", "directory"):
+    for name in ("scene", "methods", "quick", "long", "plot", "out", "directory"):
         if getattr(options, name) and name not in mode.takes:
             spoken = SPOKEN.get(name, f"--{name}")
             raise InputError(f"bench: {mode.option or 'a SCENE'} takes no {spoken} (see `symrot bench --help`)")

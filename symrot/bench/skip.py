@@ -1,0 +1,167 @@
+"""What specialisation saves: each motion through the most general kernel, and through the scene's own.
+
+The general kernel has a full tensor, the full attitude and every kind of torque that can act together, each of its
+constants free; a motion without some torque gives it zeros. Both follow the same motion by Taylor series at the same
+tolerance; their ends must agree, or the table says so and the command fails. Nanoseconds are those of one evaluation
+of the rates in C, one after another over many states; microseconds those of the whole motion. The last column is what
+`auto` takes, which steps nothing where there is a closed form.
+"""
+
+import ctypes
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from symrot.bench.problem import Floats, Problem, State
+from symrot.bench.race import Measured, race, seconds_of
+from symrot.codegen import library
+from symrot.dynamics.torque_kinds import TORQUE_KINDS
+from symrot.errors import InputError
+from symrot.planner import Plan, general_structure, make_plan
+from symrot.propagation.propagator import Choice, Motion, propagator
+from symrot.scene import Scene, Torque, load_scene
+from symrot.scene_file import read_toml
+
+__all__ = ["LADDER", "general_plan", "lines", "measure", "rungs"]
+
+LADDER = Path(__file__).with_name("skip.toml")
+TOLERANCE, AGREEMENT = 1e-12, 1e-10  # of the motions; of their ends
+STATES, TURNS = 64, 400  # evaluations in one call
+ABOUT_CENTRE = ("gravity_gradient",)  # needs the centre of mass at rest, gravity a fixed point: one of them acts
+ABOUT_POINT = ("gravity",)
+LOOP = """
+void many(long turns, const double *y, const double *p, double *dy)
+{{
+    for (long turn = 0; turn < turns; ++turn)
+        for (int k = 0; k < {states}; ++k)
+            symrot_rates((double)turn, y + {size}*k, p, dy + {size}*k);
+}}
+"""
+
+Say = Callable[[str], object]
+
+
+def rungs() -> dict[str, tuple[str, Scene]]:
+    """Return the ladder, the most general first: name -> what it is, scene."""
+    found = {}
+    for name, entry in read_toml(LADDER, LADDER.name).items():
+        about = str(entry.pop("about"))
+        found[name] = (about, Scene.from_dict({"title": about, **entry}, name))
+    return found
+
+
+def _nothing(kind: str) -> Torque:
+    """Return a torque of a kind that does nothing."""
+    zeros: dict[str, Any] = {
+        "scalar": Fraction(0), "vector": (Fraction(0),) * 3, "scalar or vector": (Fraction(0),) * 3,
+        "attitude": (Fraction(1), *(Fraction(0),) * 3),
+    }  # fmt: skip
+    fields = [field for field in TORQUE_KINDS[kind].fields if (kind, field.name) != ("gravity", "gravity")]
+    return Torque(kind, {field.name: zeros[field.shape] for field in fields})
+
+
+def general_plan(scene: Scene) -> Plan:
+    """Return the plan of a scene without any rule, and with a torque of every kind that the scene lacks, at zero."""
+    given = {torque.kind for torque in scene.torques}
+    left_out = ABOUT_POINT if given & set(ABOUT_CENTRE) else ABOUT_CENTRE
+    lacking = [kind for kind in TORQUE_KINDS if kind not in given and kind != "expression" and kind not in left_out]
+    whole = replace(scene, torques=(*scene.torques, *map(_nothing, lacking)))
+    return Plan(whole, general_structure(whole), ())
+
+
+def measure(name: str | None = None, quick: bool = False, say: Say = lambda text: None) -> dict[str, Any]:
+    """Return the rows as data for JSON: those of the ladder, or of one scene.
+
+    Raises
+    ------
+    InputError
+        For a scene that cannot be used, or where there is no C compiler.
+    """
+    if library.missing():
+        raise InputError(f"--skip: expected a C compiler, whose kernels are compared; {library.missing()}")
+    ladder = rungs() if name is None else {name: (load_scene(name).title, load_scene(name))}
+    rows, entries = [], []
+    for about, scene in ladder.values():
+        say(f"{about} ..")
+        row, runs = _row(about, scene)
+        rows.append(row)
+        entries += [(row, key, Measured(key, 0.0, 0, 0.0, seconds_of(run)), run) for key, run in runs.items()]
+    race([(measured, run) for _, _, measured, run in entries], 5 if quick else 15,
+         lambda number: say(f"{len(entries)} runs in turns: round {number + 1}"))  # fmt: skip
+    for row, key, measured, _ in entries:
+        side, what = key.split()
+        row[side][what] = measured.median / (STATES * TURNS if what == "evaluation" else 1)
+    return {"format": "symrot skip 1", "tolerance": TOLERANCE, "rows": rows}
+
+
+def _row(about: str, scene: Scene) -> tuple[dict[str, Any], dict[str, Callable[[], object]]]:
+    """Return a row without its seconds, and the runs that give them."""
+    plans = {"general": general_plan(scene), "own": make_plan(scene)}
+    row: dict[str, Any] = {"motion": about}
+    runs: dict[str, Callable[[], object]] = {}
+    ends: dict[str, State] = {}
+    for side, plan in plans.items():
+        row[side] = {"states": len(plan.states), "operations": 0, "evaluation": None, "motion": None}
+        if not plan.states:
+            continue
+        problem = Problem(scene, plan)
+        counts = problem.kernel.rates.operations()
+        row[side]["operations"] = sum(count for name, count in counts.items() if name != "neg")
+        runs[f"{side} evaluation"] = _evaluations(problem)
+        motion, at = Motion(plan, Choice("taylor", ""), TOLERANCE), np.array([problem.stop])
+        runs[f"{side} motion"] = lambda motion=motion, at=at: motion.integrate(at)  # type: ignore[misc]
+        ends[side] = problem.state(motion.integrate(at)[0][0])
+    auto, at = propagator(scene, "auto", TOLERANCE), np.array([float(scene.span.stop)])
+    found = auto(at)
+    ends["auto"] = State(found.omega[0], found.quaternion[0] if found.has_attitude else None)
+    runs["auto motion"] = lambda: auto(at)
+    row["auto"] = {"method": auto.method, "motion": None}
+    row["apart"] = max(Problem.error(end, ends["general"]) for end in ends.values())
+    row["agrees"] = bool(row["apart"] <= AGREEMENT)
+    return row, runs
+
+
+def _evaluations(problem: Problem) -> Callable[[], object]:
+    """Return a run of many evaluations of the rates, about the initial state."""
+    size = len(problem.y0)
+    function = ctypes.CDLL(
+        str(library.build(problem.kernel.source + LOOP.format(states=STATES, size=size), "many"))
+    ).many
+    function.argtypes, function.restype = (ctypes.c_long, *(ctypes.c_void_p,) * 3), None
+    y: Floats = np.array(problem.y0) + 1e-3 * np.arange(STATES)[:, None]
+    p, dy = np.array(problem.p or [0.0]), np.empty_like(y)
+    return lambda: function(TURNS, y.ctypes.data, p.ctypes.data, dy.ctypes.data)
+
+
+def _scaled(value: float | None, unit: float) -> str:
+    return "-" if value is None else f"{value / unit:.3g}"
+
+
+def lines(found: Mapping[str, Any]) -> list[str]:
+    """Return the lines for people; the first is the title."""
+    from symrot.report.layout import columns
+
+    rows = [["motion", "states", "operations", "ns", "motion us", "auto us", "", "ends apart"]]
+    for row in found["rows"]:
+        pairs = [row[side] for side in ("general", "own")]
+        rows.append(
+            [
+                row["motion"],
+                " -> ".join(str(side["states"]) for side in pairs),
+                " -> ".join(str(side["operations"]) for side in pairs),
+                " -> ".join(_scaled(side["evaluation"], 1e-9) for side in pairs),
+                " -> ".join(_scaled(side["motion"], 1e-6) for side in pairs),
+                _scaled(row["auto"]["motion"], 1e-6), row["auto"]["method"],
+                f"{row['apart']:.0e}" + ("" if row["agrees"] else " TOO FAR"),
+            ]
+        )  # fmt: skip
+    legend = (
+        "general kernel -> the scene's own: states, operations and nanoseconds of one evaluation of the rates, "
+        f"microseconds of the whole motion by Taylor series at {found['tolerance']:g}, and those of what auto takes"
+    )
+    return ["What is saved by leaving out what a motion does not need", "",
+            *columns(rows, right=(1, 2, 3, 4, 5, 7), width=140), "", legend]  # fmt: skip

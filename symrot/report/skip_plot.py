@@ -1,0 +1,73 @@
+"""What specialisation saves, as one figure: for each motion of the ladder, from the general kernel to the scene's own."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, BinaryIO
+
+from symrot import __version__
+from symrot.report.files import write
+from symrot.report.plot import COLOURS, GREY, STYLE, UNDATED
+
+__all__ = ["figure", "save"]
+
+PANELS = (
+    ("operations", 1.0, "operations of the rates"),
+    ("evaluation", 1e-9, "ns of one evaluation in C"),
+    ("motion", 1e-6, "us of the motion from Python"),
+)
+GENERAL, OWN, AUTO = COLOURS[1], COLOURS[0], COLOURS[6]
+LEAST = 0.6  # where no operation at all is drawn
+
+
+def figure(found: Mapping[str, Any]) -> Any:
+    """Return a matplotlib Figure of what :func:`symrot.bench.skip.measure` found."""
+    from matplotlib.figure import Figure
+
+    rows = found["rows"]
+    page = Figure(figsize=(11.0, 1.9 + 0.38 * len(rows)))
+    grid = page.add_gridspec(1, len(PANELS), left=0.215, right=0.985, top=0.8, bottom=0.14, wspace=0.08)
+    for number, (key, unit, title) in enumerate(PANELS):
+        axes = page.add_subplot(grid[number])
+        axes.set_xscale("log")
+        for height, row in enumerate(rows):
+            ends = [
+                None if row[side][key] is None else max(row[side][key] / unit, LEAST) for side in ("general", "own")
+            ]
+            if None not in ends:
+                axes.plot(ends, (height, height), color="#c8c8c8", linewidth=2.0, zorder=1)
+            for end, colour, marker in zip(ends, (GENERAL, OWN), "os", strict=True):
+                if end is not None:
+                    axes.plot(end, height, marker, color=colour, markersize=6, zorder=2)
+            if key == "motion":
+                axes.plot(row["auto"][key] / unit, height, "D", color=AUTO, markersize=4, zorder=3)
+            if key == "operations":
+                axes.annotate(f"{row['own'][key]}", (ends[1], height), (-7, 0), textcoords="offset points",
+                              va="center", ha="right", fontsize=7.5, color=OWN)  # fmt: skip
+        axes.set_ylim(len(rows) - 0.5, -0.6)
+        axes.set_yticks(range(len(rows)), [row["motion"] for row in rows] if number == 0 else [""] * len(rows))
+        axes.tick_params(axis="y", length=0)
+        axes.grid(True, axis="x")
+        axes.set_xlabel(title)
+        low, high = axes.get_xlim()
+        axes.set_xlim(low / 2, high * 1.2)
+    page.text(0.02, 0.965, "What is saved by leaving out what a motion does not need", fontsize=13,
+              fontweight="bold", va="top")  # fmt: skip
+    for place, words, colour in ((0.215, "general kernel: full tensor, every torque", GENERAL),
+                                 (0.475, "the scene's own", OWN), (0.735, "what auto takes", AUTO)):  # fmt: skip
+        page.text(place, 0.845, words, fontsize=9, color=colour, fontweight="bold")
+    page.text(0.985, 0.02, f"symrot {__version__}", fontsize=7.5, color=GREY, ha="right")
+    return page
+
+
+def save(found: Mapping[str, Any], path: Path) -> None:
+    """Draw the ladder into a file, whose suffix decides the format."""
+    import matplotlib
+
+    suffix = path.suffix.lower()
+    with matplotlib.rc_context({**matplotlib.rcParamsDefault, **STYLE}):
+        page = figure(found)
+
+        def draw(stream: BinaryIO) -> None:
+            page.savefig(stream, format=suffix[1:], dpi=150, metadata=UNDATED[suffix])
+
+        write(path, draw)
