@@ -117,9 +117,9 @@ def _relocations(content: bytes, functions: Sequence[str], random: Random) -> tu
 _BYTES = {"code": _code, "constants": _constants, "relocations": _relocations}
 _EDITS = (  # in a statement of a function: pattern, what takes its place
     (re.compile(r" \+ "), (" - ",)), (re.compile(r" - "), (" + ",)), (re.compile(r"\*(?=\w)"), (" + ",)),
-    (re.compile(r"\bsin(?=f?\()"), ("cos",)), (re.compile(r"\bcos(?=f?\()"), ("sin",)), (re.compile(r">="), (">", "<=")),
-    (re.compile(r"\b\d+\.\d+"), ("1.25", "3.0")), (re.compile(r"= (?=\w+\*)"), ("= -",)), (re.compile(r"\[0\]"), ("[1]",)),
-    (re.compile(r"/(?=\w)"), ("*",)),
+    (re.compile(r"\bsin(?=f?\()"), ("cos",)), (re.compile(r"\bcos(?=f?\()"), ("sin",)),
+    (re.compile(r">="), (">", "<=")), (re.compile(r"\b\d+\.\d+"), ("1.25", "3.0")),
+    (re.compile(r"= (?=\w+\*)"), ("= -",)), (re.compile(r"\[0\]"), ("[1]",)), (re.compile(r"/(?=\w)"), ("*",)),
 )  # fmt: skip
 
 

@@ -130,7 +130,15 @@ def _greater(terms: Terms, a: int, b: int) -> int:
 
 
 def _blended(suffix: str) -> Numeric:
-    return _each(suffix, lambda terms, a, b, mask: terms.choose(mask, b, a), 3)
+    """Return a choice by the sign bit of the last source: a mask has that of all its bits."""
+
+    def one(terms: Terms, a: int, b: int, mask: int) -> int:
+        value = terms.constant(mask)
+        if value is not None:
+            return b if value >> terms.width(mask) - 1 else a
+        return terms.choose(mask, b, a)
+
+    return _each(suffix, one, 3)
 
 
 def _approximate(name: str) -> Callable[..., int]:

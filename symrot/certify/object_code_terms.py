@@ -444,6 +444,8 @@ class Terms:
 
 
 def _is_power_of_two(value: float) -> bool:
+    if not isfinite(value):
+        return False
     top, bottom = Fraction(value).as_integer_ratio()
     return top & (top - 1) == 0 and bottom & (bottom - 1) == 0 and top > 0
 
