@@ -102,12 +102,24 @@ def _constant(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array,
     return intervals.widened(value, error), error
 
 
+def _step(state: _State, index: int) -> Array:
+    """Return a power of two that every value of a node is a multiple of."""
+    node, value = state.cone.nodes[index], state.values[index]
+    if node[0] == "const":
+        above, below = abs(node[1].numerator), node[1].denominator
+        return np.full(value.shape[1], (above & -above) / below if above else inf)
+    least = np.where(intervals.contains_zero(value), 0.0, np.abs(value).min(axis=0))
+    return intervals.binade(least) * (2 * state.unit)
+
+
 def _sum(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Array | None]:
     a, b = taken[0], taken[1] if node[0] == "add" else intervals.negative(taken[1])
     value, error = state.rounded(intervals.add(a, b))
     error = np.minimum(error, np.minimum(intervals.magnitude(a), intervals.magnitude(b)))  # RN(a+b) is as near as a, b
     near = (a[0] > 0) & (b[1] < 0) & (-2 * b[1] >= a[1]) & (2 * a[0] >= -b[0])  # Sterbenz: b/2 <= a <= 2b is exact
     near |= (b[0] > 0) & (a[1] < 0) & (-2 * a[1] >= b[1]) & (2 * b[0] >= -a[0])
+    step = np.minimum(*(_step(state, i) for i in node[1:]))  # both are multiples of it, and so is their sum
+    near |= intervals.magnitude(value) * state.unit <= step
     return value, np.where(near, 0.0, error)
 
 

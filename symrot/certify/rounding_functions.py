@@ -5,12 +5,13 @@ parts and summed as Taylor series, to an absolute error below 1e-15 that every r
 """
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from fractions import Fraction
 from math import factorial, pi
 
 import numpy as np
 
-from symrot.certify.rounding_intervals import Array, contains_zero, divide, multiply_loosely, negative, widened
+from symrot.certify.rounding_intervals import Array, add, contains_zero, divide, multiply_loosely, negative, widened
 
 __all__ = ["arc_ratio_terms", "arc_tangent", "cosine", "sinc", "sinc_slope", "sine",
            "sine_gap", "sine_gap_slope", "tangent_gap", "tangent_gap_slope"]  # fmt: skip
@@ -80,47 +81,71 @@ def _size(x: Array) -> Array:
     return np.stack([np.where(contains_zero(x), 0.0, size.min(axis=0)), size.max(axis=0)])
 
 
-def _falling(x: Array, near: tuple[float, ...], far: Callable[[Array], Array], end: float, crude: float) -> Array:
-    """Return an enclosure of an even function that falls for 0 <= x <= end, and is at most ``crude`` in size beyond."""
-    size = _size(x)
-    inside = np.minimum(size, end)
-    value = np.where(inside < 2.0, _polynomial(near, inside * inside), far(np.maximum(inside, 2.0)))
-    found = widened(value[::-1], 2 * SLACK)
-    beyond = size[1] > end
-    return np.where(beyond, np.array([[-crude], [crude]]), found)
+@dataclass(frozen=True)
+class _Even:
+    """An even function of x: its series in x^2, its formula at numbers and on intervals, both for |x| >= 2.
+
+    It falls for 0 <= x <= ``end`` and is at most ``crude`` in size everywhere.
+    """
+
+    series: tuple[float, ...]
+    formula: Callable[[Array, Array, Array], Array]  # of x, sin(x)/x and cos(x)
+    on_intervals: Callable[[Array, Array, Array], Array]
+    end: float
+    crude: float
+
+    def __call__(self, x: Array) -> Array:
+        """Return an enclosure on intervals."""
+        size = _size(x)
+        low = np.minimum(size, self.end)
+        far = np.maximum(low, 2.0)
+        value = np.where(
+            low < 2.0, _polynomial(self.series, low * low), self.formula(far, _sine_of(far, 0) / far, _sine_of(far, 1))
+        )
+        found = widened(value[::-1], 2 * SLACK)
+        beyond = size[1] > self.end
+        if not beyond.any():
+            return found
+        z = np.where(size[0] >= 2.0, size, 2.0)
+        general = self.on_intervals(z, divide(sine(z), z), cosine(z))
+        crude = np.array([[-self.crude], [self.crude]])
+        return np.where(beyond, np.where(size[0] >= 2.0, general, crude), found)
 
 
-def sinc(x: Array) -> Array:
-    """Return an enclosure of sin(x)/x, which falls from 1 at 0 to x = 4.49, and is never below -0.2173."""
-    found = _falling(x, _SINC, lambda z: _sine_of(z, 0) / z, 4.4, 1.0)
-    return np.clip(found, -0.2173, 1.0)
+def _over(numerator: Array, z: Array, power: int) -> Array:
+    for _ in range(power):
+        numerator = divide(numerator, z)
+    return numerator
 
 
-def tangent_gap(x: Array) -> Array:
-    """Return an enclosure of (sin x - x cos x)/x^3 = j1(x)/x, which falls from 1/3 at 0 to x = 5.7."""
-    return _falling(x, _TANGENT_GAP, lambda z: (_sine_of(z, 0) / z - _sine_of(z, 1)) / (z * z), 4.4, 1 / 3)
-
-
-def sine_gap(x: Array) -> Array:
-    """Return an enclosure of (x - sin x)/x^3, which falls from 1/6 at 0 and is positive."""
-    return _falling(x, _SINE_GAP, lambda z: (1 - _sine_of(z, 0) / z) / (z * z), 6.0, 1 / 6)
+_times = multiply_loosely
+sinc = _Even(_SINC, lambda z, s, c: s, lambda z, s, c: s, 4.4, 1.0)
+sine_gap = _Even(
+    _SINE_GAP, lambda z, s, c: (1 - s) / (z * z), lambda z, s, c: _over(add(np.ones_like(s), negative(s)), z, 2), 6.0, 1 / 6
+)
+tangent_gap = _Even(
+    _TANGENT_GAP, lambda z, s, c: (s - c) / (z * z), lambda z, s, c: _over(add(s, negative(c)), z, 2), 5.7, 1 / 3
+)
+_sine_gap_factor = _Even(
+    _SINE_GAP_SLOPE, lambda z, s, c: (2 + c - 3 * s) / (z * z * z * z),
+    lambda z, s, c: _over(add(np.full_like(c, 2.0), add(c, _times(np.full_like(s, -3.0), s))), z, 4), 4.4, 1 / 60,
+)  # fmt: skip
+_tangent_gap_factor = _Even(
+    _TANGENT_GAP_SLOPE, lambda z, s, c: ((3 - z * z) * s - 3 * c) / (z * z * z * z),
+    lambda z, s, c: _over(
+        add(_times(add(np.full_like(z, 3.0), negative(_times(z, z))), s), _times(np.full_like(c, -3.0), c)), z, 4
+    ), 4.4, 1 / 15,
+)  # fmt: skip
 
 
 def tangent_gap_slope(x: Array) -> Array:
-    """Return an enclosure of the derivative, ``-x j2(x)/x^2``; the second factor falls from 1/15 at 0 to x = 4.4."""
-    factor = _falling(
-        x, _TANGENT_GAP_SLOPE,
-        lambda z: ((3 - z * z) * (_sine_of(z, 0) / z) - 3 * _sine_of(z, 1)) / (z * z * z * z), 4.4, 1 / 15,
-    )  # fmt: skip
-    return negative(multiply_loosely(x, factor))
+    """Return an enclosure of the derivative, ``-x j2(x)/x^2``; the second factor falls from 1/15 at 0 to x = 5.7."""
+    return negative(multiply_loosely(x, _tangent_gap_factor(x)))
 
 
 def sine_gap_slope(x: Array) -> Array:
     """Return an enclosure of the derivative, -x times an integral of (1-s)^2 s sin(xs)/(2x), which falls to x = 4.4."""
-    factor = _falling(
-        x, _SINE_GAP_SLOPE, lambda z: (2 + _sine_of(z, 1) - 3 * (_sine_of(z, 0) / z)) / (z * z * z * z), 4.4, 1 / 60
-    )
-    return negative(multiply_loosely(x, factor))
+    return negative(multiply_loosely(x, _sine_gap_factor(x)))
 
 
 def sinc_slope(x: Array) -> Array:

@@ -14,7 +14,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["ETA", "Array", "add", "contains_zero", "divide", "half_ulp", "hull", "multiply", "multiply_loosely", "negative",
+__all__ = ["ETA", "Array", "add", "binade", "contains_zero", "divide", "half_ulp", "hull", "multiply", "multiply_loosely", "negative",
            "magnitude", "point", "rounded_to", "square", "square_root", "widened"]  # fmt: skip
 
 Array: TypeAlias = NDArray[np.float64]
@@ -118,6 +118,11 @@ def square_root(a: Array) -> Array:
     found = np.stack([np.maximum(roots[0] - step[0], 0.0), roots[1] + step[1]])
     found[:, a[0] < 0] = np.inf
     return found
+
+
+def binade(size: Array) -> Array:
+    """Return the largest power of two that is at most a number, 0 for 0."""
+    return (size.view(np.int64) & _EXPONENT).view(np.float64)
 
 
 def half_ulp(size: Array, precision: str) -> Array:

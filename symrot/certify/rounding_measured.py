@@ -1,0 +1,230 @@
+"""Measured rounding errors, to hold the bounds against: the kernel's operations replayed, next to exact values.
+
+Every operation is done twice: rounded, as the kernel does it, and as exactly as can be, along the same branches. The
+scan of many points is exact to 64 bits (float kernels: 53); the points with the largest errors are done again with
+mpmath at 600 bits, of which cancellations leave far more than 200, and only those count.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from math import atan2, cos, pi, sin
+from typing import Any
+
+import mpmath
+import numpy as np
+from numpy.typing import NDArray
+
+from symrot.certify.operations import RELATIONS, Operations, operands
+from symrot.certify.rounded import meaning
+from symrot.certify.rounding import Box, OutputBound
+from symrot.certify.rounding_adjoint import UNIT_NORM, Region
+from symrot.errors import CertificateError
+
+__all__ = ["Measured", "measure", "points_in"]
+
+BITS = 600
+CONFIRMED = 12  # points per output that are done again
+ROUNDS = 6  # of looking around the worst points
+
+_FLOAT = {"binary64": np.float64, "binary32": np.float32}
+_WIDE = {"binary64": np.longdouble, "binary32": np.float64}
+_CALLS: dict[str, Callable[..., Any]] = {
+    "sin": np.frompyfunc(sin, 1, 1), "cos": np.frompyfunc(cos, 1, 1), "atan2": np.frompyfunc(atan2, 2, 1),
+}  # fmt: skip
+_ROUNDED: dict[str, Callable[..., Any]] = {
+    "add": np.add, "sub": np.subtract, "mul": np.multiply, "div": np.divide, "neg": np.negative, "abs": np.abs,
+    "sqrt": np.sqrt, "copysign": np.copysign,
+}  # fmt: skip
+_WIDE_CALLS: dict[str, Callable[..., Any]] = {"sin": np.sin, "cos": np.cos, "atan2": np.arctan2}
+_EXACT: dict[str, Callable[..., Any]] = {
+    "add": lambda a, b: a + b, "sub": lambda a, b: a - b, "mul": lambda a, b: a * b, "div": lambda a, b: a / b,
+    "neg": lambda a: -a, "abs": abs, "sqrt": mpmath.sqrt, "sin": mpmath.sin, "cos": mpmath.cos, "atan2": mpmath.atan2,
+    "copysign": lambda a, b: abs(a) if b >= 0 else -abs(a),
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Measured:
+    """The largest error seen of an output, and the inputs at which it was seen."""
+
+    output: str
+    error: float
+    at: tuple[tuple[str, float], ...]
+    points: int
+
+
+def _meant(value: Fraction, precision: str) -> tuple[Fraction, bool]:
+    """Return what a constant stands for, and whether times pi; itself where that is not told by the constant."""
+    try:
+        found = meaning(value, precision)
+    except CertificateError:
+        return value, False
+    return found.fraction, found.times_pi
+
+
+Points = NDArray[Any]  # (inputs, n)
+
+
+def _replay(operations: Operations, points: Points) -> tuple[list[Any], list[Any]]:
+    """Return the rounded and the nearly exact values of all nodes."""
+    kind, wide = _FLOAT[operations.precision], _WIDE[operations.precision]
+    count = points.shape[1]
+    computed: list[Any] = []
+    exact: list[Any] = []
+    for node in operations.nodes:
+        if node[0] == "in":
+            value = points[operations.inputs.index(node[1])]
+            computed.append(value)
+            exact.append(value.astype(wide))
+        elif node[0] == "const":
+            fraction, times_pi = _meant(node[1], operations.precision)
+            value = wide(fraction.numerator) / wide(fraction.denominator)
+            computed.append(np.full(count, kind(float(node[1]))))
+            exact.append(np.full(count, value * np.arctan2(wide(0), wide(-1)) if times_pi else value))
+        elif node[0] == "select":
+            holds = RELATIONS[node[1]](computed[node[2]], computed[node[3]])
+            computed.append(np.where(holds, computed[node[4]], computed[node[5]]))
+            exact.append(np.where(holds, exact[node[4]], exact[node[5]]))
+        elif node[0] == "call":
+            taken = [computed[i].astype(np.float64) for i in node[2]]
+            computed.append(_CALLS[node[1]](*taken).astype(np.float64).astype(kind))
+            exact.append(_WIDE_CALLS[node[1]](*(exact[i] for i in node[2])))
+        else:
+            computed.append(_ROUNDED[node[0]](*(computed[i] for i in operands(node))))
+            exact.append(_ROUNDED[node[0]](*(exact[i] for i in operands(node))))
+    return computed, exact
+
+
+def _confirmed(operations: Operations, computed: Sequence[Any], column: int, root: int, point: Any) -> Any:
+    """Return the exact value of a node at one point; the series and the formula of a function are the same there."""
+    values: dict[int, Any] = {}
+
+    def value(index: int) -> Any:
+        if index not in values:
+            values[index] = found(operations.nodes[index])
+        return values[index]
+
+    def found(node: tuple[Any, ...]) -> Any:
+        if node[0] == "in":
+            return mpmath.mpf(float(point[operations.inputs.index(node[1])]))
+        if node[0] == "const":
+            fraction, times_pi = _meant(node[1], operations.precision)
+            return mpmath.mpf(fraction.numerator) / fraction.denominator * (mpmath.pi if times_pi else 1)
+        if node[0] == "select":
+            if node[1] == "<" and value(node[2]) != 0:  # a series: its function is the other branch
+                return value(node[5])
+            holds = RELATIONS[node[1]](computed[node[2]][column], computed[node[3]][column])
+            return value(node[4] if holds else node[5])
+        name = node[1] if node[0] == "call" else node[0]
+        return _EXACT[name](*(value(i) for i in operands(node)))
+
+    return value(root)
+
+
+def points_in(
+    box: Box, places: Sequence[str], region: Region, count: int, rng: np.random.Generator, centre: Any = None,
+    spread: float = 1.0, kind: Any = np.float64,
+) -> Points:  # fmt: skip
+    """Return random points of a region: of the whole, near its corners, or near ``centre``."""
+    low = np.array([[float(box[place][0])] for place in places])
+    high = np.array([[float(box[place][1])] for place in places])
+    if centre is None:
+        part = rng.random((len(places), count))
+        ends = rng.random(part.shape) < rng.choice([0.0, 0.5, 0.9], size=count)
+        part = np.where(ends, np.round(part) + (0.5 - np.round(part)) * 2.0 ** -rng.integers(4, 50, part.shape), part)
+        found = low + (high - low) * part
+    else:
+        chosen = centre[:, rng.integers(0, centre.shape[1], count)]
+        moved = rng.random(chosen.shape) < 0.6
+        step = (high - low) * spread * rng.standard_normal(chosen.shape) * moved
+        found = np.clip(chosen + step, low, high)
+    for group in region.unit:
+        rows = [places.index(place) for place in group]
+        length = np.sqrt((found[rows] ** 2).sum(axis=0))
+        found[rows] /= np.where(length > 0, length, 1.0)
+    rounded = found.astype(kind).astype(np.float64)
+    inside = ((rounded >= low) & (rounded <= high)).all(axis=0)
+    for group in region.unit:
+        rows = [places.index(place) for place in group]
+        inside &= np.abs((rounded[rows] ** 2).sum(axis=0) - 1) < 0.9 * UNIT_NORM
+    return rounded[:, inside].astype(kind)
+
+
+def measure(
+    operations: Operations, box: Box, bounds: Sequence[OutputBound], region: Region = Region(), points: int = 100_000,
+    seed: int = 1,
+) -> tuple[Measured, ...]:  # fmt: skip
+    """Return the largest error found of each output: at random points, near corners, and around the worst of them.
+
+    Parameters
+    ----------
+    operations, box, region
+        As for :func:`symrot.certify.rounding.bound_outputs`.
+    bounds : sequence of OutputBound
+        What that returned: the search also starts where a bound is largest.
+    points : int
+        Points per kernel, all outputs together.
+    seed : int
+        Of the random points.
+    """
+    rng = np.random.default_rng(seed)
+    kind = _FLOAT[operations.precision]
+    places = operations.inputs
+    if not places:
+        return tuple(Measured(each.output, 0.0, (), 0) for each in bounds)
+    worst = {each.output: np.full((len(places), 1), np.nan) for each in bounds}
+    for each in bounds:
+        start = dict(each.at)
+        middle = {place: float((box[place][0] + box[place][1]) / 2) for place in places}
+        worst[each.output][:, 0] = [start.get(place, middle[place]) for place in places]
+    scanned = points_in(box, places, region, points // 2, rng, kind=kind)
+    share = max(points // (2 * ROUNDS * max(len(bounds), 1)), 50)
+    errors, used = _scan(operations, box, region, scanned)
+    best = {each.output: (scanned[:, _top(errors[each.output])],) for each in bounds}
+    for round_ in range(ROUNDS):
+        for each in bounds:
+            centre = np.concatenate([*best[each.output], worst[each.output]], axis=1).astype(np.float64)
+            near = points_in(box, places, region, share, rng, centre, 0.2 * 8.0**-round_, kind)
+            both = np.concatenate([near, *best[each.output]], axis=1)
+            found, number = _scan(operations, box, region, both)
+            used += number
+            best[each.output] = (both[:, _top(found[each.output])],)
+    return tuple(_confirm(operations, each, best[each.output][0], used) for each in bounds)
+
+
+def _top(errors: NDArray[np.float64]) -> NDArray[np.intp]:
+    return np.argsort(-errors, kind="stable")[:CONFIRMED]
+
+
+def _scan(operations: Operations, box: Box, region: Region, points: Points) -> tuple[dict[str, Any], int]:
+    """Return the errors of all outputs at points, -1 where a point is too near to where an angle is not defined."""
+    with np.errstate(all="ignore"):
+        computed, exact = _replay(operations, points)
+        outside = np.zeros(points.shape[1], bool)
+        for node in operations.nodes if region.clearance else ():
+            if node[0] == "call" and node[1] == "atan2":
+                outside |= np.hypot(*(exact[i] for i in node[2])) < region.clearance
+        found = {}
+        for place, index in operations.outputs:
+            error = np.abs(computed[index].astype(exact[index].dtype) - exact[index]).astype(np.float64)
+            if region.unit:
+                error = np.abs(error - 2 * pi * np.rint(error / (2 * pi)))
+            found[place] = np.where(outside | ~np.isfinite(error), -1.0, error)
+    return found, points.shape[1]
+
+
+def _confirm(operations: Operations, each: OutputBound, points: Points, used: int) -> Measured:
+    computed, _ = _replay(operations, points)
+    root = dict(operations.outputs)[each.output]
+    best, at = 0.0, points[:, 0]
+    with mpmath.workprec(BITS):
+        for column in range(points.shape[1]):
+            exact = _confirmed(operations, computed, column, root, points[:, column])
+            error = abs(mpmath.mpf(float(computed[root][column])) - exact)
+            if each.turns:
+                error = abs(error - 2 * mpmath.pi * mpmath.nint(error / (2 * mpmath.pi)))
+            if error > best:
+                best, at = error, points[:, column]
+    shown = tuple((place, float(x)) for place, x in zip(operations.inputs, at, strict=True))
+    return Measured(each.output, float(best), shown, used)
