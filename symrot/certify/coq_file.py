@@ -25,9 +25,8 @@ class Theorem:
 
     @property
     def text(self) -> str:
-        return "\n".join([
-            comment(self.about), f"Theorem {self.name} :", f"{self.statement}.", "Proof.", self.proof, "Qed."
-        ])  # fmt: skip
+        lines = [f"Theorem {self.name} :", *f"{self.statement}.".split("\n"), "Proof.", *self.proof.split("\n"), "Qed."]
+        return "\n".join([comment(self.about), *(_short(line) for line in lines)])
 
 
 @dataclass(frozen=True)
@@ -57,7 +56,7 @@ class CoqFile:
         opening = [
             comment(f"{self.title} Printed by `symrot prove --coq`; do not edit."),
             "",
-            "From Coq Require Import Reals Lra.",
+            "From Coq Require Import Reals.",
             f"From symrot Require Import {' '.join(self.requires)}.",
             "Open Scope R_scope.",
         ]
@@ -66,6 +65,11 @@ class CoqFile:
     @property
     def digest(self) -> str:
         return sha256(self.text.encode()).hexdigest()
+
+
+def _short(line: str) -> str:
+    """Return a line folded, if it must be, under its own indent."""
+    return folded(line, len(line) - len(line.lstrip()) + 2)
 
 
 def derivatives(functions: Sequence[str], rates: Sequence[str]) -> str:

@@ -5,9 +5,8 @@ from collections.abc import Sequence
 from symrot import symbols
 from symrot.certify.coq_euler import OMEGA, TURNED
 from symrot.certify.coq_file import CoqFile, Theorem, derivatives, statement
-from symrot.certify.coq_text import definition_text, matrix_text
+from symrot.certify.coq_text import definition_text
 from symrot.kernels.library import definition
-from symrot.kinematics.rodrigues import projection
 
 __all__ = ["quaternion_file"]
 
