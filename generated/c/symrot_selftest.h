@@ -17,7 +17,7 @@ extern "C" {
 
 /*
  * Return 0 where all is well, else the number of the first check that failed. bits: nonzero where the
- * bits of the C text are wanted, and not only its error bounds. ulps: worst errors found in ulp, or null.
+ * bits of the C text are wanted, not only its error bounds. ulps: worst errors found in ulp, or null.
  */
 int symrot_selftest(int bits, double ulps[SYMROT_SELFTEST_FUNCTIONS]);
 

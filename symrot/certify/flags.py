@@ -81,8 +81,10 @@ TABLE: tuple[Rule, ...] = (
     Rule(r"-f(no-)?rounding-math", "rounding is to nearest, which the self-test at load checks"),
     Rule(r"-f(no-)?cx-(limited-range|fortran-rules)|-fcomplex-arithmetic=\w+", "kernels have no complex numbers"),
     Rule(r"-O[0123sgz]?", "changes no value: the object code is compared where it can be"),
+    Rule(r"-mfma4?|-march=" + _WORDS, "the processor; gcc 12 fuses a*b +- c in vectors at -O3 although -ffp-contract=off "
+         "is given: compare the object code, or add -fno-tree-slp-vectorize"),
     Rule(r"-m(no-)?(sse\w*|ssse3|avx\w*|fma|fma4|bmi2?|popcnt|lzcnt|f16c|movbe|aes|pclmul|adx|sha|neon\w*|altivec|vsx)(=\d+)?"
-         r"|-m(arch|tune|cpu|abi|fpu|float-abi)=" + _WORDS + r"|-mprefer-vector-width=\w+|-mthumb|-marm|-mvzeroupper",
+         r"|-m(tune|cpu|abi|fpu|float-abi)=" + _WORDS + r"|-mprefer-vector-width=\w+|-mthumb|-marm|-mvzeroupper",
          "the processor: its operations are rounded as IEEE 754 says; the self-test at load checks it"),
     Rule(r"-f(no-)?(tree-\w[\w-]*|vectorize|slp-vectorize|inline[\w-]*|unroll-\w+|peel-loops|ipa-[\w-]+|gcse[\w-]*|if-conversion2?"
          r"|schedule-insns2?|split-loops|loop-[\w-]+|reorder-[\w-]+|align-[\w-]+(=\d+)?|rename-registers|web|ivopts|early-inlining"
