@@ -25,7 +25,7 @@ Floats = NDArray[np.float64]
 
 DIGITS, ORDER, TAIL = 40, 32, 1e-28
 FUNCTIONS = ("sqrt", "sin", "cos", "tan", "exp", "log", "sinh", "cosh", "tanh", "asin", "acos", "atan", "atan2")
-ALIKE = 1e-3  # of |omega|: rates so near to those of the start are tried as the end of a period
+MOST_STEPS = 2000
 
 
 def _as_mpf(value: Fraction) -> Any:
@@ -91,25 +91,25 @@ class ExactPath:
         Raises
         ------
         InputError
-            If the rates do not come back within ten thousand steps.
+            If the rates do not come back within :data:`MOST_STEPS` steps.
         """
+        start, left = np.array([float(x) for x in self.start[: self.rates]]), False
+        size = float(np.linalg.norm(start))
         with mpmath.workdps(DIGITS):
-            start = self.start[: self.rates]
-            size, left = mpmath.norm(mpmath.matrix(start)), False
-            for _ in range(10_000):
+            for _ in range(MOST_STEPS):
                 self._advance()
                 first, last, series = self.pieces[-1]
-                for k in range(8):
+                rates = np.array([[float(x) for x in one] for one in series[: self.rates]])
+                for k in range(8):  # a look in doubles is enough to begin from
                     t = first + (last - first) * k / 8
-                    apart = mpmath.norm(
-                        mpmath.matrix(self._sum(series, t - first)[: self.rates]) - mpmath.matrix(start)
-                    )
-                    left |= bool(apart > size / 4)
-                    if left and apart < size / 4:
+                    now = np.array([np.polyval(one[::-1], float(t - first)) for one in rates])
+                    apart = float(np.linalg.norm(now - start))
+                    left |= apart > size / 4
+                    if left and apart < size / 8:
                         found = self._newton(t)
                         if found is not None and found > self.t0:
                             return found - self.t0
-            raise InputError("the angular velocity does not come back: expected a free body off its separatrix")
+        raise InputError("the angular velocity does not come back: expected a free body off its separatrix")
 
     def _newton(self, t: Any) -> Any:
         """Return the time near t at which all rates are those of the start, or None."""
