@@ -86,7 +86,9 @@ def _curves(axes: Any, data: Any, what: str) -> None:
     axes.set_xlim(at[0], at[-1])
     drawn = [line.get_ydata() for line in axes.get_lines() if line.get_label()[0] != "_"]
     most = max(float(np.nanmax(values)) for values in drawn) if drawn else 1.0
-    axes.set_ylim(FLOOR, most * (1e5 if what == "attitude" else 10.0))  # the legend stands above the curves
+    axes.set_yticks(10.0 ** np.arange(-16, np.log10(most) + 1, 2))
+    axes.tick_params(axis="y", which="minor", length=0)
+    axes.set_ylim(FLOOR, most * (1e4 if what == "attitude" else 10.0))  # the legend stands above the curves
     axes.grid(True)
     axes.set_xlabel("t (s)" if linear else "revolutions")
     if what == "attitude":

@@ -186,7 +186,7 @@ class EulerMotion(Motion):
 
         return states
 
-    def integrate(self, times: Floats) -> tuple[Floats, Stats]:
+    def integrate(self, times: Floats, rise: bool = False) -> tuple[Floats, Stats]:
         """Return omega and quaternion at the times, shape (n, N), and what it cost."""
         began = perf_counter()
         self._count = [0, 0, 0, 0]
