@@ -6,6 +6,7 @@ from hashlib import sha256
 from importlib.resources import files
 from typing import Any
 
+from symrot.certify.coq_dynamics import dynamics_file
 from symrot.certify.coq_euler import euler_file, euler_files
 from symrot.certify.coq_file import CoqFile, Theorem
 from symrot.certify.coq_quaternion import quaternion_file
@@ -29,6 +30,7 @@ STANDARD_AXIOMS = (
 
 _FILES: dict[str, tuple[tuple[str, ...], Callable[[], CoqFile]]] = {
     "quaternions": (("quaternion_",), quaternion_file),
+    "dynamics": (("euler_equations_", "kinetic_", "angular_", "inertia_rotated"), dynamics_file),
     **{name: ((f"{name}_",), partial(euler_file, sequence)) for name, sequence in euler_files().items()},
 }
 """File, without ``.v`` -> how the names of the kernels in it begin, and what prints it; after those it requires."""

@@ -14,9 +14,9 @@ from symrot.kernels.definition import Definition
 __all__ = ["comment", "coq_expression", "definition_text", "folded", "matrix_text", "variables"]
 
 WIDTH = 118
-_SHAPES = {1: "R", 3: "vector", 4: "quaternion", 9: "matrix"}  # number of components -> type in rotation.v
+_SHAPES = {1: "R", 3: "vector", 4: "quaternion", 6: "matrix", 9: "matrix"}  # number of components -> type in rotation.v
 
-_MAKERS = {3: "vec", 4: "quat", 9: "mat"}
+_MAKERS = {3: "vec", 4: "quat", 6: "tensor", 9: "mat"}
 _FUNCTIONS = {sin: "sin", cos: "cos"}
 _SUM, _PRODUCT, _POWER, _ATOM = range(4)  # how tightly a text holds together
 

@@ -627,3 +627,32 @@ Proof.
   - apply (d_mmul D (fun _ => i)); [exact H | repeat split; apply d_constant].
   - apply d_transpose. exact H.
 Qed.
+
+Lemma vderivative_unique : forall f t d e, vderivative f t d -> vderivative f t e -> d = e.
+Proof.
+  intros f t [] []. unfold vderivative. spread. intros H K. decompose [and] H. decompose [and] K.
+  f_equal; eapply uniqueness_limite; eassumption.
+Qed.
+
+Lemma rotation_injective : forall a v w, rotation a -> a *v v = a *v w -> v = w.
+Proof.
+  intros a v w [A _] H. rewrite <- (identity_mulv v), <- (identity_mulv w), <- A, !mulv_mmul, H. reflexivity.
+Qed.
+
+Lemma cross_beyond : forall v w u x, vadd v (cross w u) = x <-> v = vadd x (cross u w).
+Proof.
+  intros [v1 v2 v3] [w1 w2 w3] [u1 u2 u3] [y1 y2 y3]. spread.
+  split; intro H; injection H; intros; subst; f_equal; ring.
+Qed.
+
+Lemma only_acceleration : forall D i omega t domega tau rates,
+  derivative D t (D t *m skew (omega t)) -> vderivative omega t domega -> rotation (D t) -> det i <> 0 ->
+  i *v rates = vadd tau (cross (i *v omega t) (omega t)) ->
+  (vderivative (fun u => D u *v (i *v omega u)) t (D t *v tau) <-> domega = rates).
+Proof.
+  intros D i omega t domega tau rates H K N I E. pose proof (momentum_rate D i omega t domega H K) as P.
+  split; intro Q.
+  - apply (mulv_injective i _ _ I). rewrite E. apply cross_beyond. apply (rotation_injective _ _ _ N).
+    exact (vderivative_unique _ _ _ _ P Q).
+  - rewrite <- Q in E. apply cross_beyond in E. rewrite E in P. exact P.
+Qed.
