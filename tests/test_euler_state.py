@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import symrot
+from symrot import cli
 from symrot.conventions import SEQUENCES
 from symrot.errors import InputError, PropagationError
 from symrot.kinematics import conversions
@@ -124,3 +125,10 @@ def test_bad_input_is_refused(options, words):
     named = {"kind": "expression", "torque": ["phi*omega_1", "0", "0"], "parameters": {"phi": 1}}
     with pytest.raises(InputError, match="the name of an angle"):
         symrot.propagator(scene("1/2", torque=(named,)), state="ZXZ")
+
+
+def test_from_the_command_line(capsys):
+    assert cli.main(["run", "tumbling_prism", "--state", "ZXZ", "--json"]) == 0
+    assert '"the state is the Euler angles ZXZ, ZXY near its gimbal lock"' in capsys.readouterr().out
+    assert cli.main(["run", "tumbling_prism", "--state", "ZXX"]) == 2
+    assert capsys.readouterr().err.count("\n") == 1

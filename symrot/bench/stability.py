@@ -144,7 +144,7 @@ def passes() -> list[dict[str, Any]]:
         for name, options in (("quaternion", {}), ("switching", {"state": SEQUENCE}),
                               ("angles", {"state": SEQUENCE, "switching": False})):  # fmt: skip
             try:
-                trajectory = propagator(scene, "taylor", 1e-13, **options)(t)  # type: ignore[arg-type]
+                trajectory = propagator(scene, "taylor", 1e-13, **options)(t)
             except PropagationError as error:
                 row[name] = {"failed": str(error)}
                 continue
