@@ -438,7 +438,10 @@ def test_files_that_are_no_object_files_are_refused_in_one_sentence(tmp_path):
     ("flags", "holds"),
     [
         ("gcc -O2 -ffp-contract=off -fno-math-errno -c kernel.c -o kernel.o", BITS),
-        ("-O3 -march=native -std=c99 -Wall -g -fPIC -Iinclude -DNDEBUG -ffp-contract=off", BITS),
+        ("-O3 -mavx2 -std=c99 -Wall -g -fPIC -Iinclude -DNDEBUG -ffp-contract=off", BITS),
+        ("clang -O3 -march=native -ffp-contract=off", BITS),
+        ("gcc -O3 -march=native -ffp-contract=off -fno-tree-slp-vectorize", BITS),
+        ("gcc -O3 -march=native -ffp-contract=off", BOUNDS),  # gcc 12 fuses in vectors all the same
         ("-O2", BOUNDS),
         ("-O2 -mavx2 -mfma -ffp-contract=fast", BOUNDS),
         ("-ffp-contract=off -ffp-contract=fast", BOUNDS),

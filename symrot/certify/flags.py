@@ -1,7 +1,8 @@
 """Compiler flags and what they do to a certificate: the bits of the C text, its error bounds only, or nothing holds.
 
 A certificate speaks of the operations of the C text, each rounded once to nearest. A flag that lets the compiler round
-elsewhere voids it; contraction (a*b + c rounded once) only takes roundings away, so that bounds hold and bits do not.
+elsewhere voids it; contraction (a*b + c rounded once) takes roundings away, so that bounds hold and bits do not, but
+for a product that is fused in some places and rounded in others: its error may have cancelled before.
 The table says what a flag may do by its documentation; what a compiler did is seen in its object code
 (:mod:`symrot.certify.object_code`). Standard library only.
 """
@@ -17,8 +18,15 @@ __all__ = ["BITS", "BOUNDS", "NOTHING", "REQUIRED", "TABLE", "Judgement", "Remar
 
 BITS, BOUNDS, NOTHING = "bits", "bounds", "nothing"
 REQUIRED = ("-ffp-contract=off",)
-CONTRACTION = "contraction rounds a*b + c once: the bounds hold, the bits of the C text do not"
-UNFIXED = "without -ffp-contract=off a compiler may contract a*b + c where the processor has it: the bounds hold"
+VECTORS = (
+    "gcc 12 fuses a*b + c in vectors of single statements although -ffp-contract=off is given: "
+    "add -fno-tree-slp-vectorize, or compare the object code"
+)
+CONTRACTION = (
+    "contraction rounds a*b + c once: bits change, and the bounds hold where no product is fused in some places and "
+    "rounded in others, which the comparison of object code tells"
+)
+UNFIXED = "without it a compiler may contract a*b + c where the processor has it, and bits change"
 
 
 @dataclass(frozen=True)
@@ -81,8 +89,10 @@ TABLE: tuple[Rule, ...] = (
     Rule(r"-f(no-)?rounding-math", "rounding is to nearest, which the self-test at load checks"),
     Rule(r"-f(no-)?cx-(limited-range|fortran-rules)|-fcomplex-arithmetic=\w+", "kernels have no complex numbers"),
     Rule(r"-O[0123sgz]?", "changes no value: the object code is compared where it can be"),
-    Rule(r"-mfma4?|-march=" + _WORDS, "the processor; gcc 12 fuses a*b +- c in vectors at -O3 although -ffp-contract=off "
-         "is given: compare the object code, or add -fno-tree-slp-vectorize"),
+    Rule(r"-mfma4?|-march=" + _WORDS, "the processor, which may have fused operations", sets=("fused operations",)),
+    Rule(r"-mno-fma4?", "a processor without fused operations", clears=("fused operations",)),
+    Rule(r"-f(tree-)?slp-vectorize", "vectors of single statements", clears=("no vectors",)),
+    Rule(r"-fno-(tree-)?slp-vectorize", "no vectors of single statements", sets=("no vectors",)),
     Rule(r"-m(no-)?(sse\w*|ssse3|avx\w*|fma|fma4|bmi2?|popcnt|lzcnt|f16c|movbe|aes|pclmul|adx|sha|neon\w*|altivec|vsx)(=\d+)?"
          r"|-m(tune|cpu|abi|fpu|float-abi)=" + _WORDS + r"|-mprefer-vector-width=\w+|-mthumb|-marm|-mvzeroupper",
          "the processor: its operations are rounded as IEEE 754 says; the self-test at load checks it"),
@@ -177,6 +187,8 @@ def judge(flags: str | Sequence[str]) -> Judgement:
         remarks.append(Remark(switched["contraction"], BOUNDS, CONTRACTION))
     elif not is_off:
         remarks.append(Remark(REQUIRED[0], BOUNDS, UNFIXED))
+    elif "fused operations" in switched and "no vectors" not in switched and "clang" not in words[0]:
+        remarks.append(Remark(switched["fused operations"], BOUNDS, VECTORS))
     effects = {remark.effect for remark in remarks}
     return Judgement(NOTHING if NOTHING in effects else BOUNDS if effects else BITS, tuple(remarks))
 
@@ -193,7 +205,7 @@ def flags_section() -> dict[str, object]:
     void = ("-ffast-math", "-Ofast", "-funsafe-math-optimizations", "-fassociative-math", "-freciprocal-math",
             "-ffinite-math-only", "-fno-signed-zeros", "-fapprox-func", "-mdaz-ftz", "-mfpmath=387",
             "-fsingle-precision-constant")  # fmt: skip
-    allowed = ("-O1", "-O2", "-O3", "-Os", "-fno-math-errno", "-fno-trapping-math", "-frounding-math", "-march=native")
+    allowed = ("-O1", "-O2", "-O3", "-Os", "-fno-math-errno", "-fno-trapping-math", "-frounding-math", "-mavx2")
     return {
         "required": {flag: _rule(flag).reason for flag in REQUIRED},
         "allowed": {flag: _rule(flag).reason for flag in allowed},

@@ -126,13 +126,14 @@ def _object(
         compile_object(compiler, flags, source, target)
         verdicts = compare_object(text, target, functions, source.name)
         digest = sha256(target.read_bytes()).hexdigest()
+    judgement = judge((compiler, *flags))
     return {
         "compiler": compiler,
         "version": version,
         "flags": " ".join(flags),
-        "flags_hold": judge(flags).holds,
+        "flags_hold": judgement.holds,
         "sha256": digest,
-        "accepted": judge(flags).accepted and all(item.accepted for item in verdicts),
+        "accepted": judgement.accepted and all(item.accepted for item in verdicts),
         "functions": [_plain(item) for item in verdicts],
     }
 
