@@ -1,10 +1,11 @@
 """Prove the laws of a kernel from its formulas, as polynomial identities with cofactors that anyone can multiply out.
 
 The outputs in a law are replaced by their formulas; what is left is a fraction of polynomials over the inputs and
-generators: cosine and sine of base angles, roots, signs, arc tangents. Its numerator is a sum of cofactors times
-relations: the hypotheses of the law, ``s^2 + c^2 - 1`` of a base angle, ``r^2 - P`` of a root, ``g^2 - 1`` of a sign.
-Nothing is reduced on the way, so that a second program gets the same fraction. Choices are followed one branch at a
-time; a law holds where no denominator that occurs vanishes.
+generators: cosine and sine of base angles, roots, signs, arc tangents. Times its denominator it is a sum of cofactors
+times relations: the hypotheses of the law, ``s^2 + c^2 - 1`` of a base angle, ``r^2 - P`` of a root, ``g^2 - 1`` of a
+sign. How functions become generators is written down as steps, each an instance of a fact about functions (the tables
+FACTS and RELATIONS of :mod:`symrot.certify.recheck`), so that a second program can follow. Choices are followed one
+branch at a time; a law holds where no denominator that occurs vanishes.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -23,33 +24,20 @@ from symrot.errors import CertificateError
 from symrot.kernels.definition import Definition, Law
 from symrot.kernels.removable import explicit, select_ge
 
-__all__ = ["CaseProof", "Entry", "LawProof", "Root", "prove_law", "prove_laws"]
+__all__ = ["CaseProof", "Entry", "LawProof", "prove_law", "prove_laws"]
 
 Quotient = tuple[PolyElement, PolyElement]  # numerator, denominator, in lowest terms
 Cofactors = tuple[tuple[int, str], ...]  # number of a relation, polynomial; those that are zero left out
-Pair = tuple[str, str]  # numerator, denominator
-Choice = tuple[Pair, str, Pair]  # left, ">=" or "<", right
+Choice = tuple[str, str, str]  # left, ">=" or "<", right
+Step = tuple[Any, ...]  # kind, what it is about
 FEWEST = 8  # generators of the first attempt at a proof
 
 
 @dataclass(frozen=True)
-class Root:
-    """``sqrt(square)`` is ``value``, which is not negative: ``square - value^2`` over one denominator has cofactors.
-
-    Both are fractions, (numerator, denominator).
-    """
-
-    square: Pair
-    value: Pair
-    cofactors: Cofactors
-
-
-@dataclass(frozen=True)
 class Entry:
-    """What vanishes, as a fraction: ``numerator = sum of cofactor * relation``."""
+    """What vanishes, times ``factor``, is the sum of cofactor times relation."""
 
-    numerator: str
-    denominator: str
+    factor: str
     cofactors: Cofactors
 
 
@@ -57,17 +45,18 @@ class Entry:
 class CaseProof:
     """The proof of a law in one case of its choices.
 
-    ``generators`` are, in the order in which later ones use earlier ones, tuples that begin with their kind::
+    ``steps`` are, in order, tuples that begin with their kind; x and y are expressions as text::
 
-        ("turn", cosine, sine, angle)      ("root", symbol, radicand)
-        ("sign", symbol, of: numerator, denominator)
-        ("arc", symbol, y: numerator, denominator, x: numerator, denominator)
+        ("name", symbol, x)             a generator, and what it stands for
+        ("circle", x) ("root", x) ("sign", x)     a relation: of sine and cosine, of sqrt(x), of copysign(1, x)
+        ("sum", x, y) ("odd", x) ("quarter", x)   sine and cosine of x + y, of -x, of x + pi/2
+        ("arc", y, x) ("wrap", x)                 of atan2(y, x), of x brought to [-pi, pi]
+        ("square", x, y, factor, cofactors)       sqrt(x) is y: (x - y^2) factor has these cofactors
     """
 
     case: tuple[Choice, ...]
-    generators: tuple[tuple[str, ...], ...]
+    steps: tuple[Step, ...]
     relations: tuple[str, ...]
-    roots: tuple[Root, ...]
     entries: tuple[Entry, ...]
 
 
@@ -160,11 +149,11 @@ class _Proof:
     formulas: Mapping[str, Expr]
     ring: PolyRing
     bases: Mapping[str, Fraction]  # what an angle is a multiple of, as text -> least coefficient so far
-    generators: list[tuple[str, ...]] = field(default_factory=list)
+    steps: dict[Step, None] = field(default_factory=dict)
     values: dict[Expr, Quotient] = field(default_factory=dict)
     hypotheses: list[PolyElement] = field(default_factory=list)
     rules: list[PolyElement] = field(default_factory=list)  # each leads with a power of a generator of its own
-    roots: dict[Quotient, tuple[Quotient, Root]] = field(default_factory=dict)
+    roots: dict[Quotient, Quotient] = field(default_factory=dict)
     radicals: dict[PolyElement, PolyElement] = field(default_factory=dict)  # a radicand -> its root
     signs: dict[Quotient, PolyElement] = field(default_factory=dict)
     arcs: dict[tuple[Quotient, Quotient], PolyElement] = field(default_factory=dict)
@@ -187,11 +176,13 @@ class _Proof:
             cofactors = self.cofactors(above)
             if cofactors is None:
                 raise CertificateError(f"{self.name}: expected the law {self.law.text!r} to follow, and it does not")
-            entries.append(Entry(str(above), str(below), cofactors))
-        return CaseProof(
-            tuple(decided), tuple(self.generators), tuple(map(str, (*self.hypotheses, *self.rules))),
-            tuple(root for _, root in self.roots.values()), tuple(entries),
-        )  # fmt: skip
+            entries.append(Entry(str(below), cofactors))
+        relations = tuple(map(str, (*self.hypotheses, *self.rules)))
+        return CaseProof(tuple(decided), tuple(self.steps), relations, tuple(entries))
+
+    def step(self, *step: Any) -> None:
+        """Write down a fact that is used from here on."""
+        self.steps.setdefault(step)
 
     # --- fractions ----------------------------------------------------------------------------------------------------
 
@@ -265,16 +256,18 @@ class _Proof:
 
     def is_taken(self, choice: Expr) -> bool:
         """Tell whether the case at hand takes the first branch of a choice."""
-        left, right = (_texts(self.value(argument)) for argument in choice.args[:2])
+        left, right = (_text(self.value(argument)) for argument in choice.args[:2])
         if (left, right) not in self.decided:
             raise _Undecided(left, right)
         return self.decided[left, right] == ">="
 
-    def generator(self, kind: str) -> PolyElement:
+    def generator(self, meaning: str) -> PolyElement:
         if self.made == self.pool:
             raise _Full
         self.made += 1
-        return self.known[f"g{self.made - 1}_"]
+        name = f"g{self.made - 1}_"
+        self.step("name", name, meaning)
+        return self.known[name]
 
     def root(self, square: Quotient) -> Quotient:
         """Return the square root of a fraction: of its rest by the relations, a product if that is a square."""
@@ -282,19 +275,21 @@ class _Proof:
             above, below = self.lowest(self.rest(square[0]), self.rest(square[1]))
             if not self.is_nonnegative(below):
                 raise CertificateError(f"{self.name}: expected a root over a sum of squares, got one over {below}")
-            value = self.lowest(self.radical(above * below), below)
-            cofactors = self.cofactors(square[0] * value[1] ** 2 - value[0] ** 2 * square[1])
-            if cofactors is None:
-                raise CertificateError(f"{self.name}: expected the square of a root to be what it is the root of")
-            self.roots[square] = value, Root(_texts(square), _texts(value), cofactors)
-        return self.roots[square][0]
+            value = self.roots[square] = self.lowest(self.radical(above * below), below)
+            if square != (above * below, below) or value[0] in self.radicals:
+                factor = square[1] * value[1] ** 2
+                cofactors = self.cofactors(square[0] * value[1] ** 2 - value[0] ** 2 * square[1])
+                if cofactors is None:
+                    raise CertificateError(f"{self.name}: expected the square of a root to be what it is the root of")
+                self.step("square", _text(square), _text(value), str(factor), cofactors)
+        return self.roots[square]
 
     def radical(self, inside: PolyElement) -> PolyElement:
         if inside not in self.radicals:
             found = self.perfect(inside)
             if found is None:
-                found = self.generator("root")
-                self.generators.append(("root", str(found), str(inside)))
+                found = self.generator(f"sqrt({inside})")
+                self.step("root", str(inside))
                 self.rules.append(found**2 - inside)
                 self.nonnegative.add(self.ring.gens.index(found))
             self.radicals[inside] = found
@@ -323,8 +318,8 @@ class _Proof:
     def sign(self, value: Quotient) -> PolyElement:
         """Return the generator of the sign of a value: 1 or -1, which times the value is its absolute value."""
         if value not in self.signs:
-            made = self.signs[value] = self.generator("sign")
-            self.generators.append(("sign", str(made), *map(str, value)))
+            made = self.signs[value] = self.generator(f"copysign(1, {_text(value)})")
+            self.step("sign", _text(value))
             self.rules.append(made**2 - 1)
         return self.signs[value]
 
@@ -332,8 +327,8 @@ class _Proof:
         """Return the generator of ``atan2(y, x)``, with its cosine and sine."""
         if (y, x) not in self.arcs:
             radius = self.root(self.add(self.power(x, 2), self.power(y, 2)))
-            made = self.arcs[y, x] = self.generator("arc")
-            self.generators.append(("arc", str(made), *map(str, (*y, *x))))
+            made = self.arcs[y, x] = self.generator(f"atan2({_text(y)}, {_text(x)})")
+            self.step("arc", _text(y), _text(x))
             inverse = self.power(radius, -1)
             self.turns[made] = self.multiply(x, inverse), self.multiply(y, inverse)
             if self.is_nonnegative(y[0]) and self.is_nonnegative(y[1]):
@@ -343,37 +338,49 @@ class _Proof:
     # --- angles -------------------------------------------------------------------------------------------------------
 
     def angle(self, expr: Expr) -> Quotient:
-        """Return an angle, up to whole turns: a choice between angles that differ by them is either one."""
+        """Return an angle, up to whole turns: one that is brought to [-pi, pi] is what it was before."""
         while str(expr) in self.formulas and expr.is_Symbol:
             expr = self.formulas[str(expr)]
-        if isinstance(expr, select_ge):
-            first, second = (self.angle(argument) for argument in expr.args[2:])
-            turns, rest = self.known["pi"], self.add(first, (-second[0], second[1]))
-            if rest[1] == 1 and not rest[0].rem(2 * turns) and (rest[0] / (2 * turns)).is_ground:
-                if QQ.denom((rest[0] / (2 * turns)).coeff(1)) == 1:
-                    return first
+        if isinstance(expr, select_ge) and isinstance(expr.args[2], select_ge):
+            inner = expr.args[1]
+            lifted = select_ge(inner, -pi, inner, inner + 2 * pi)
+            if expr == select_ge(pi, inner, lifted, inner - 2 * pi):
+                angle = self.value(inner)
+                self.turned(angle)
+                self.step("wrap", _text(angle))
+                return angle
         return self.value(expr)
 
     def turned(self, angle: Quotient) -> tuple[Quotient, Quotient]:
         """Return cosine and sine of a sum of multiples of base angles and right angles."""
         above, below = angle
         if below != 1:
-            raise CertificateError(f"{self.name}: expected a sum of angles under a sine, got ({above})/({below})")
-        right_angles = Fraction(0)
-        result = self.number(1), self.number(0)
+            raise CertificateError(f"{self.name}: expected a sum of angles under a sine, got {_text(angle)}")
+        right_angles, so_far, turn = Fraction(0), self.ring.zero, (self.number(1), self.number(0))
         for monomial, coefficient in above.terms():
-            coefficient = Fraction(int(coefficient.numerator), int(coefficient.denominator))
-            unit = self.ring({monomial: QQ(1)})
-            if unit == self.known["pi"]:
-                right_angles = 2 * coefficient
-            elif unit == 1:
+            unit, times = (
+                self.ring({monomial: QQ(1)}),
+                Fraction(int(coefficient.numerator), int(coefficient.denominator)),
+            )
+            if unit == 1:
                 raise CertificateError(f"{self.name}: expected no radians beside angles under a sine, got {above}")
-            else:
-                result = self._rotated(result, self._multiple(unit, coefficient))
+            if unit == self.known["pi"]:
+                right_angles = 2 * times
+                continue
+            found = self._multiple(unit, times)
+            if so_far:
+                self.step("sum", str(so_far), str(coefficient * unit))
+            so_far, turn = so_far + coefficient * unit, self._rotated(turn, found)
         if right_angles.denominator != 1:
             raise CertificateError(f"{self.name}: expected right angles beside angles under a sine, got {above}")
-        quarter = int(right_angles) % 4
-        return self._rotated(result, (self.number((1, 0, -1, 0)[quarter]), self.number((0, 1, 0, -1)[quarter])))
+        for _ in range(abs(int(right_angles))):
+            step = 1 if right_angles > 0 else -1
+            self.step("quarter" if step > 0 else "quarter back", str(so_far))
+            so_far, turn = (
+                so_far + self.known["pi"] * QQ(step, 2),
+                self._rotated(turn, (self.number(0), self.number(step))),
+            )
+        return turn
 
     def _rotated(self, a: tuple[Quotient, Quotient], b: tuple[Quotient, Quotient]) -> tuple[Quotient, Quotient]:
         def negative(value: Quotient) -> Quotient:
@@ -386,13 +393,15 @@ class _Proof:
 
     def _multiple(self, unit: PolyElement, coefficient: Fraction) -> tuple[Quotient, Quotient]:
         base = self._base(unit, coefficient)
-        cosine, sine = self._pair(unit, base)
+        first = unit * QQ(base.numerator, base.denominator)
+        result = turn = self._pair(unit, first)
         times = int(coefficient / base)
-        turn = (cosine, sine) if times > 0 else (cosine, (-sine[0], sine[1]))
-        result = turn
-        for _ in range(abs(times) - 1):
+        for k in range(1, abs(times)):
+            self.step("sum", str(k * first), str(first))
             result = self._rotated(result, turn)
-        return result
+        if times < 0:
+            self.step("odd", str(-times * first))
+        return result if times > 0 else (result[0], (-result[1][0], result[1][1]))
 
     def _base(self, unit: PolyElement, coefficient: Fraction) -> Fraction:
         if unit in self.turns and unit in self.arcs.values():
@@ -408,10 +417,10 @@ class _Proof:
             raise _Coarse(str(unit), finer)
         return known
 
-    def _pair(self, unit: PolyElement, base: Fraction) -> tuple[Quotient, Quotient]:
+    def _pair(self, unit: PolyElement, angle: PolyElement) -> tuple[Quotient, Quotient]:
         if unit not in self.turns:
-            cosine, sine = self.generator("cos"), self.generator("sin")
-            self.generators.append(("turn", str(cosine), str(sine), str(unit * QQ(base.numerator, base.denominator))))
+            cosine, sine = self.generator(f"cos({angle})"), self.generator(f"sin({angle})")
+            self.step("circle", str(angle))
             self.rules.append(sine**2 + cosine**2 - 1)
             self.turns[unit] = (cosine, self.ring.one), (sine, self.ring.one)
         return self.turns[unit]
@@ -447,8 +456,9 @@ class _Proof:
         return (list(by_rules), rest) if found is None else ([*by_rules, *found], self.ring.zero)
 
 
-def _texts(value: Quotient) -> Pair:
-    return str(value[0]), str(value[1])
+def _text(value: Quotient) -> str:
+    above, below = value
+    return str(above) if below == 1 else f"({above})/({below})"
 
 
 def _combination(polynomial: PolyElement, relations: Sequence[PolyElement], degree: int) -> list[PolyElement] | None:

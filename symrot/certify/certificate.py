@@ -1,0 +1,208 @@
+"""The certificate of an emitted kernel: what was proven of its text, as JSON that can be re-checked without symrot.
+
+Links 1 (laws of the formulas) and 3 (C text = formulas) are proven here, from the texts as they are printed; the other
+links are filled in by their rooms. Same kernel, same bytes, on every machine.
+"""
+
+import json
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from hashlib import sha256
+from typing import Any
+
+from sympy import Expr, Symbol
+
+from symrot.certify.equality import Equality, prove_equal
+from symrot.certify.laws import CaseProof, LawProof, prove_law
+from symrot.certify.operations import Operations
+from symrot.certify.readback import read_batch, read_kernel
+from symrot.errors import CertificateError
+from symrot.kernel import Argument
+from symrot.kernels.definition import Definition, Law
+
+__all__ = ["SCHEMA", "Subject", "certificate_text", "of_definition", "seal"]
+
+SCHEMA = "symrot.certificate/1"
+Data = dict[str, Any]
+
+FLAGS: Data = {
+    "required": ["-ffp-contract=off"],
+    "allowed": ["-O1", "-O2", "-O3", "-fno-math-errno", "-fno-trapping-math"],
+    "void": ["-ffast-math", "-Ofast", "-funsafe-math-optimizations", "-fassociative-math", "-freciprocal-math",
+             "-ffinite-math-only", "-mfpmath=387"],
+}  # fmt: skip
+TRUSTED = {
+    "formulas and laws": "recheck.py alone, or the reader and the prover of symrot; both in exact arithmetic",
+    "C text": "that the compiler gives C its meaning: real numbers are rounded as IEEE 754 says, to nearest",
+    "functions": "sin, cos, sqrt and others of <math.h> are, but for rounding, the functions of that name",
+}
+
+
+@dataclass(frozen=True)
+class Subject:
+    """A kernel to certify: what it is said to compute, and the texts that were printed of it.
+
+    ``files`` maps paths, as seen from the certificate, to texts; ``types`` maps the suffix of a function to its type.
+    """
+
+    name: str
+    title: str
+    command: str
+    convention: str
+    domain: str
+    derivation: str
+    inputs: tuple[Argument, ...]
+    outputs: tuple[tuple[Argument, tuple[Expr, ...]], ...]
+    named: tuple[tuple[Symbol, Expr], ...]
+    laws: tuple[Law, ...]
+    files: Mapping[str, str]
+    types: Mapping[str, str]
+    meanings: Mapping[str, Expr] = field(default_factory=dict)  # of inputs that stand for a formula in others
+
+    @property
+    def places(self) -> dict[str, tuple[str, str]]:
+        """Return place of an input -> symbol, unit."""
+        return {place: (name, unit) for a in self.inputs for place, (name, unit, _) in _places(a)}
+
+    @property
+    def formulas(self) -> dict[str, tuple[str, Expr]]:
+        """Return place of an output -> symbol, formula."""
+        return {
+            place: (component[0], formula)
+            for target, formulas in self.outputs
+            for (place, component), formula in zip(_places(target), formulas, strict=True)
+        }
+
+
+def _places(argument: Argument) -> list[tuple[str, tuple[str, str, str]]]:
+    if argument.is_scalar:
+        return [(argument.name, argument.components[0])]
+    return [(f"{argument.name}[{i}]", component) for i, component in enumerate(argument.components)]
+
+
+def of_definition(found: Definition, command: str, convention: str, files: Mapping[str, str]) -> Subject:
+    """Return a kernel of the library as something to certify."""
+    return Subject(
+        found.name, found.title, command, convention, found.domain, found.derivation, found.inputs, found.results,
+        found.named, found.laws(), files, {"": "double", "f": "float"},
+    )  # fmt: skip
+
+
+def certificate_text(subject: Subject) -> str:
+    """Return the certificate of a kernel, printed; every claim in it is proven now.
+
+    Raises
+    ------
+    CertificateError
+        If a text is not its formulas, or a law does not follow.
+    """
+    return printed(_certificate(subject))
+
+
+def _certificate(subject: Subject) -> Data:
+    formulas = {symbol: formula for symbol, formula in subject.formulas.values()}
+    known = {str(symbol): value for symbol, value in subject.named} | formulas
+    return {
+        "schema": SCHEMA,
+        "kernel": subject.name,
+        "title": subject.title,
+        "regenerate": subject.command,
+        "convention": subject.convention,
+        "domain": subject.domain,
+        "derivation": subject.derivation,
+        "files": {path: sha256(text.encode()).hexdigest() for path, text in subject.files.items()},
+        "inputs": [[place, *described] for place, described in subject.places.items()],
+        "spec": {
+            "named": [[str(symbol), str(value)] for symbol, value in subject.named],
+            "formulas": [[place, symbol, str(formula)] for place, (symbol, formula) in subject.formulas.items()],
+        },
+        "laws": [_law(prove_law(subject.name, law, known)) for law in subject.laws],
+        "readback": {f"{subject.name}{suffix}": _readback(subject, suffix, real) for suffix, real in subject.types.items()},
+        "flags": FLAGS,
+        "trusted": TRUSTED,
+    }
+
+
+def _law(found: LawProof) -> Data:
+    return {
+        "law": found.text, "vanishing": list(found.vanishing), "given": list(found.given),
+        "cases": [_case(case) for case in found.cases],
+    }  # fmt: skip
+
+
+def _case(found: CaseProof) -> Data:
+    return {
+        "case": [list(choice) for choice in found.case],
+        "steps": _plain(found.steps),
+        "relations": list(found.relations),
+        "entries": [[entry.factor, _plain(entry.cofactors)] for entry in found.entries],
+    }
+
+
+def _plain(value: Any) -> Any:
+    return [_plain(each) for each in value] if isinstance(value, tuple) else value
+
+
+def _readback(subject: Subject, suffix: str, real: str) -> Data:
+    name, file = f"{subject.name}{suffix}", f"{subject.name}.c"
+    text = subject.files[file]
+    one, batch = read_kernel(text, name, file), read_batch(text, f"{name}_batch", file)
+    if one.digest() != batch.digest():
+        raise CertificateError(f"{file}: expected {name} and {name}_batch to compute the same, and they do not")
+    symbols = {place: symbol for place, (symbol, _) in subject.places.items()}
+    proof = prove_equal(one, symbols, {place: f for place, (_, f) in subject.formulas.items()}, subject.named)
+    return {
+        "type": real,
+        "operations": _counts(one),
+        "digest": one.digest(),
+        "constants": [[_shown(each.written), _meaning(each.fraction, each.times_pi)] for each in proof.rounded],
+        "series": _series(proof),
+    }
+
+
+def _counts(operations: Operations) -> Data:
+    names = [node[1] if node[0] == "call" else node[0] for node in operations.nodes if node[0] not in ("in", "const")]
+    return {name: names.count(name) for name in sorted(set(names))}
+
+
+def _shown(value: Fraction) -> str:
+    """Return a number as text that is exact."""
+    return str(value)
+
+
+def _meaning(fraction: Fraction, times_pi: bool) -> str:
+    return f"{fraction}*pi" if times_pi else str(fraction)
+
+
+def _series(proof: Equality) -> list[list[Any]]:
+    found = {each.function: each for each in proof.truncations}
+    return [[each.function, str(each.split), each.terms, str(each.relative)] for each in found.values()]
+
+
+def seal(data: Data) -> str:
+    """Return the SHA-256 of a certificate without its seal."""
+    bare = {key: value for key, value in data.items() if key != "seal"}
+    return sha256(json.dumps(bare, sort_keys=True, separators=(",", ":")).encode()).hexdigest()
+
+
+def printed(data: Data) -> str:
+    """Return a certificate as text, its seal at the end."""
+    sealed = {key: value for key, value in data.items() if key != "seal"}
+    return _layout(sealed | {"seal": seal(sealed)}) + "\n"
+
+
+WIDTH = 118
+
+
+def _layout(value: Any, indent: int = 0, key: str = "") -> str:
+    """Return JSON with everything on one line that fits on it."""
+    flat = json.dumps(value, ensure_ascii=False)
+    if len(flat) + indent + len(key) <= WIDTH or not isinstance(value, (dict, list)) or not value:
+        return flat
+    space = " " * (indent + 1)
+    if isinstance(value, dict):
+        inner = [f"{json.dumps(k)}: {_layout(v, indent + 1, k)}" for k, v in value.items()]
+        return "{\n" + ",\n".join(f"{space}{each}" for each in inner) + "\n" + " " * indent + "}"
+    inner = [_layout(each, indent + 1) for each in value]
+    return "[\n" + ",\n".join(f"{space}{each}" for each in inner) + "\n" + " " * indent + "]"
