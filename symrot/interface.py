@@ -64,7 +64,7 @@ def emit(kernel: Scene | str | Path, target: str = "c") -> Emitted:
     if target == "numpy":
         return Emitted(name, numpy_source(program, description), "")
     reals = (DOUBLE, FLOAT) if is_kernel else (DOUBLE,)
-    return Emitted(name, c_source(program, description, reals), c_header(program, description, reals))
+    return Emitted(name, c_source(program, description, reals, is_kernel), c_header(program, description, reals))
 
 
 def kernel_names() -> tuple[str, ...]:

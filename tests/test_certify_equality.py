@@ -61,7 +61,7 @@ def test_a_corrupted_text_is_refused(name):
     text = text_of(name)
     for start, end in (m.span(1) for m in re.finditer(r"(?:double|void) \w+\([^)]*\)\n\{(.*?)\n\}", text, re.DOTALL)):
         head = text[text.rfind("\n", 0, text.rfind("(", 0, start)) : start]
-        if "batch" in head or "float" in head:
+        if "batch" in head or "float" in head or "near" in head:
             continue
         tokens = re.compile(r"\bsin\b|\bcos\b|\bsqrt\b|0\.5|[12]\.0|\[[01]\]|[>=]=|<|[-+*/]")
         places = [m for m in tokens.finditer(text, start, end) if text[m.start() - 1] != "e"]

@@ -14,7 +14,7 @@ from symrot.certify.readback import read_batch, read_kernel
 from symrot.errors import CertificateError
 
 GENERATED = Path(__file__).parents[1] / "generated" / "c"
-KERNELS = sorted(GENERATED.rglob("*.c"))
+KERNELS = sorted(path for path in GENERATED.rglob("*.c") if not path.stem.startswith("symrot_"))
 FUNCTIONS = {
     name: getattr(math, name)
     for name in ("sqrt", "sin", "cos", "tan", "exp", "log", "atan2", "asin", "acos", "copysign")
@@ -111,6 +111,43 @@ def test_what_is_not_understood_is_refused(old, new, said):
     assert old in PLAIN
     with pytest.raises(CertificateError, match=re.escape(said)):
         read_kernel(PLAIN.replace(old, new, 1), "plain", "plain.c")
+
+
+BLOCKS = (GENERATED / "euler_zxz_body_rates.c").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("symrot_sin(psi)", "symrot_cos(psi)", "the same"),
+        ("symrot_sin(psi)", "symrot_sin(phi)", "has a value"),
+        ("symrot_sin(psi)", "symrot_tan(psi)", "<math.h>"),
+        (" + symrot_far(theta)", "", "of each angle"),
+        ("symrot_far(theta)", "symrot_far(omega_1)", "of each angle"),
+        ("symrot_far(theta)", "symrot_near(theta)", "symrot_far"),
+        ("beyond += ", "beyond -= ", "'+'"),
+        ("beyond == 0 ? start : end", "beyond == 0 ? end : start", "'start'"),
+        ("beyond == 0", "beyond == 1", "'0'"),
+        ("uint64_t beyond = 0", "uint64_t beyond = 1", "'0'"),
+        ("start += SYMROT_BLOCK", "start += 2*SYMROT_BLOCK", "SYMROT_BLOCK"),
+        ("n - start < SYMROT_BLOCK ? n", "n - start < SYMROT_BLOCK ? start", "'n'"),
+        ("k = start; k < end", "k = start; k < n", "'end'"),
+        ("k = start; k < again", "k = 0; k < again", "'start'"),
+        ("again; ++k) {\n            const double theta = angles[1*n", "again; ++k) {\n            const double theta = angles[0*n", "the same"),
+    ],
+)  # fmt: skip
+def test_a_batch_in_blocks_is_read_whole_or_refused(old, new, said):
+    """Near angles by symrot_math.h, each asked whether it is far, and the block again by the C library."""
+    start = BLOCKS.index("void euler_zxz_body_rates_batch")
+    assert old in BLOCKS[start:]
+    with pytest.raises(CertificateError, match=re.escape(said)):
+        read_batch(BLOCKS[:start] + BLOCKS[start:].replace(old, new, 1), "euler_zxz_body_rates_batch", "x.c")
+
+
+def test_sine_of_symrot_is_for_batches_alone():
+    text = BLOCKS.replace("= sin(psi)", "= symrot_sin(psi)", 1)
+    with pytest.raises(CertificateError, match=r"<math\.h>"):
+        read_kernel(text, "euler_zxz_body_rates", "x.c")
 
 
 def test_an_edited_kernel_is_refused_or_computes_something_else():

@@ -52,6 +52,7 @@ void angular_momentum_body_batch(
     size_t n, const double *SYMROT_RESTRICT inertia, const double *SYMROT_RESTRICT omega,
     double *SYMROT_RESTRICT momentum)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const double I_xx = inertia[0*n + k];
         const double I_yy = inertia[1*n + k];
@@ -90,6 +91,7 @@ void angular_momentum_bodyf_batch(
     size_t n, const float *SYMROT_RESTRICT inertia, const float *SYMROT_RESTRICT omega,
     float *SYMROT_RESTRICT momentum)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const float I_xx = inertia[0*n + k];
         const float I_yy = inertia[1*n + k];

@@ -68,6 +68,7 @@ void angular_momentum_space_batch(
     size_t n, const double *SYMROT_RESTRICT inertia, const double *SYMROT_RESTRICT omega,
     const double *SYMROT_RESTRICT q, double *SYMROT_RESTRICT momentum)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const double I_xx = inertia[0*n + k];
         const double I_yy = inertia[1*n + k];
@@ -127,6 +128,7 @@ void angular_momentum_spacef_batch(
     size_t n, const float *SYMROT_RESTRICT inertia, const float *SYMROT_RESTRICT omega,
     const float *SYMROT_RESTRICT q, float *SYMROT_RESTRICT momentum)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const float I_xx = inertia[0*n + k];
         const float I_yy = inertia[1*n + k];

@@ -44,6 +44,7 @@ void euler_equations_spherical_batch(
     const double *SYMROT_RESTRICT torque, double *SYMROT_RESTRICT domega)
 {
     (void)omega;
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const double A = inertia[0*n + k];
         const double tau_1 = torque[0*n + k];
@@ -77,6 +78,7 @@ void euler_equations_sphericalf_batch(
     const float *SYMROT_RESTRICT torque, float *SYMROT_RESTRICT domega)
 {
     (void)omega;
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const float A = inertia[0*n + k];
         const float tau_1 = torque[0*n + k];

@@ -48,6 +48,7 @@ void euler_equations_symmetric_batch(
     size_t n, const double *SYMROT_RESTRICT inertia, const double *SYMROT_RESTRICT omega,
     const double *SYMROT_RESTRICT torque, double *SYMROT_RESTRICT domega)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const double A = inertia[0*n + k];
         const double C = inertia[1*n + k];
@@ -89,6 +90,7 @@ void euler_equations_symmetricf_batch(
     size_t n, const float *SYMROT_RESTRICT inertia, const float *SYMROT_RESTRICT omega,
     const float *SYMROT_RESTRICT torque, float *SYMROT_RESTRICT domega)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const float A = inertia[0*n + k];
         const float C = inertia[1*n + k];

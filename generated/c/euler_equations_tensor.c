@@ -74,6 +74,7 @@ void euler_equations_tensor_batch(
     size_t n, const double *SYMROT_RESTRICT inertia, const double *SYMROT_RESTRICT omega,
     const double *SYMROT_RESTRICT torque, double *SYMROT_RESTRICT domega)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const double I_xx = inertia[0*n + k];
         const double I_yy = inertia[1*n + k];
@@ -147,6 +148,7 @@ void euler_equations_tensorf_batch(
     size_t n, const float *SYMROT_RESTRICT inertia, const float *SYMROT_RESTRICT omega,
     const float *SYMROT_RESTRICT torque, float *SYMROT_RESTRICT domega)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const float I_xx = inertia[0*n + k];
         const float I_yy = inertia[1*n + k];

@@ -34,6 +34,16 @@
 #endif
 #endif
 
+#ifndef SYMROT_INDEPENDENT /* in front of a loop over samples: outputs do not overlap inputs */
+#if defined(__clang__)
+#define SYMROT_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
+#elif defined(__GNUC__)
+#define SYMROT_INDEPENDENT _Pragma("GCC ivdep")
+#else
+#define SYMROT_INDEPENDENT
+#endif
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif

@@ -61,6 +61,7 @@ void euler_yzx_of_quaternion(const double q[4], double angles[3])
 
 void euler_yzx_of_quaternion_batch(size_t n, const double *SYMROT_RESTRICT q, double *SYMROT_RESTRICT angles)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const double q0 = q[0*n + k];
         const double q1 = q[1*n + k];
@@ -121,6 +122,7 @@ void euler_yzx_of_quaternionf(const float q[4], float angles[3])
 
 void euler_yzx_of_quaternionf_batch(size_t n, const float *SYMROT_RESTRICT q, float *SYMROT_RESTRICT angles)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const float q0 = q[0*n + k];
         const float q1 = q[1*n + k];

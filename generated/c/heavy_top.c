@@ -80,6 +80,7 @@ void heavy_top_batch(
     const double *SYMROT_RESTRICT center_of_mass, const double *SYMROT_RESTRICT omega,
     const double *SYMROT_RESTRICT q, double *SYMROT_RESTRICT domega, double *SYMROT_RESTRICT dq)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const double W_k = W[k];
         const double A = inertia[0*n + k];
@@ -162,6 +163,7 @@ void heavy_topf_batch(
     const float *SYMROT_RESTRICT center_of_mass, const float *SYMROT_RESTRICT omega,
     const float *SYMROT_RESTRICT q, float *SYMROT_RESTRICT domega, float *SYMROT_RESTRICT dq)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const float W_k = W[k];
         const float A = inertia[0*n + k];

@@ -70,6 +70,7 @@ void heavy_top_symmetric_batch(
     const double *SYMROT_RESTRICT h, const double *SYMROT_RESTRICT omega, const double *SYMROT_RESTRICT q,
     double *SYMROT_RESTRICT domega, double *SYMROT_RESTRICT dq)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const double W_k = W[k];
         const double h_k = h[k];
@@ -137,6 +138,7 @@ void heavy_top_symmetricf_batch(
     const float *SYMROT_RESTRICT h, const float *SYMROT_RESTRICT omega, const float *SYMROT_RESTRICT q,
     float *SYMROT_RESTRICT domega, float *SYMROT_RESTRICT dq)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const float W_k = W[k];
         const float h_k = h[k];

@@ -58,6 +58,7 @@ void inertia_ellipsoid_batch(
     size_t n, const double *SYMROT_RESTRICT m, const double *SYMROT_RESTRICT dimensions,
     double *SYMROT_RESTRICT inertia, double *SYMROT_RESTRICT center_of_mass)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const double m_k = m[k];
         const double a = dimensions[0*n + k];
@@ -105,6 +106,7 @@ void inertia_ellipsoidf_batch(
     size_t n, const float *SYMROT_RESTRICT m, const float *SYMROT_RESTRICT dimensions,
     float *SYMROT_RESTRICT inertia, float *SYMROT_RESTRICT center_of_mass)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const float m_k = m[k];
         const float a = dimensions[0*n + k];

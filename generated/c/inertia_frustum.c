@@ -67,6 +67,7 @@ void inertia_frustum_batch(
     size_t n, const double *SYMROT_RESTRICT m, const double *SYMROT_RESTRICT dimensions,
     double *SYMROT_RESTRICT inertia, double *SYMROT_RESTRICT center_of_mass)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const double m_k = m[k];
         const double R_1 = dimensions[0*n + k];
@@ -132,6 +133,7 @@ void inertia_frustumf_batch(
     size_t n, const float *SYMROT_RESTRICT m, const float *SYMROT_RESTRICT dimensions,
     float *SYMROT_RESTRICT inertia, float *SYMROT_RESTRICT center_of_mass)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const float m_k = m[k];
         const float R_1 = dimensions[0*n + k];

@@ -71,6 +71,7 @@ void inertia_parallel_axis_batch(
     size_t n, const double *SYMROT_RESTRICT inertia, const double *SYMROT_RESTRICT m,
     const double *SYMROT_RESTRICT offset, double *SYMROT_RESTRICT moved)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const double m_k = m[k];
         const double I_xx = inertia[0*n + k];
@@ -128,6 +129,7 @@ void inertia_parallel_axisf_batch(
     size_t n, const float *SYMROT_RESTRICT inertia, const float *SYMROT_RESTRICT m,
     const float *SYMROT_RESTRICT offset, float *SYMROT_RESTRICT moved)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const float m_k = m[k];
         const float I_xx = inertia[0*n + k];

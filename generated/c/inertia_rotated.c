@@ -96,6 +96,7 @@ void inertia_rotated_batch(
     size_t n, const double *SYMROT_RESTRICT q, const double *SYMROT_RESTRICT inertia,
     double *SYMROT_RESTRICT rotated)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const double q0 = q[0*n + k];
         const double q1 = q[1*n + k];
@@ -202,6 +203,7 @@ void inertia_rotatedf_batch(
     size_t n, const float *SYMROT_RESTRICT q, const float *SYMROT_RESTRICT inertia,
     float *SYMROT_RESTRICT rotated)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const float q0 = q[0*n + k];
         const float q1 = q[1*n + k];

@@ -49,6 +49,7 @@ void kinetic_energy_batch(
     size_t n, const double *SYMROT_RESTRICT inertia, const double *SYMROT_RESTRICT omega,
     double *SYMROT_RESTRICT energy)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const double I_xx = inertia[0*n + k];
         const double I_yy = inertia[1*n + k];
@@ -85,6 +86,7 @@ void kinetic_energyf_batch(
     size_t n, const float *SYMROT_RESTRICT inertia, const float *SYMROT_RESTRICT omega,
     float *SYMROT_RESTRICT energy)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const float I_xx = inertia[0*n + k];
         const float I_yy = inertia[1*n + k];

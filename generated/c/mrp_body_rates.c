@@ -46,6 +46,7 @@ void mrp_body_rates_batch(
     size_t n, const double *SYMROT_RESTRICT parameters, const double *SYMROT_RESTRICT omega,
     double *SYMROT_RESTRICT rates)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const double s1 = parameters[0*n + k];
         const double s2 = parameters[1*n + k];
@@ -90,6 +91,7 @@ void mrp_body_ratesf_batch(
     size_t n, const float *SYMROT_RESTRICT parameters, const float *SYMROT_RESTRICT omega,
     float *SYMROT_RESTRICT rates)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const float s1 = parameters[0*n + k];
         const float s2 = parameters[1*n + k];

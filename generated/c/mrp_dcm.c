@@ -60,6 +60,7 @@ void mrp_dcm(const double parameters[3], double dcm[9])
 
 void mrp_dcm_batch(size_t n, const double *SYMROT_RESTRICT parameters, double *SYMROT_RESTRICT dcm)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const double s1 = parameters[0*n + k];
         const double s2 = parameters[1*n + k];
@@ -130,6 +131,7 @@ void mrp_dcmf(const float parameters[3], float dcm[9])
 
 void mrp_dcmf_batch(size_t n, const float *SYMROT_RESTRICT parameters, float *SYMROT_RESTRICT dcm)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const float s1 = parameters[0*n + k];
         const float s2 = parameters[1*n + k];

@@ -36,6 +36,7 @@ void mrp_quaternion(const double parameters[3], double q[4])
 
 void mrp_quaternion_batch(size_t n, const double *SYMROT_RESTRICT parameters, double *SYMROT_RESTRICT q)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const double s1 = parameters[0*n + k];
         const double s2 = parameters[1*n + k];
@@ -68,6 +69,7 @@ void mrp_quaternionf(const float parameters[3], float q[4])
 
 void mrp_quaternionf_batch(size_t n, const float *SYMROT_RESTRICT parameters, float *SYMROT_RESTRICT q)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const float s1 = parameters[0*n + k];
         const float s2 = parameters[1*n + k];

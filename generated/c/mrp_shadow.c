@@ -47,6 +47,7 @@ void mrp_shadow(const double parameters[3], double switched[3])
 
 void mrp_shadow_batch(size_t n, const double *SYMROT_RESTRICT parameters, double *SYMROT_RESTRICT switched)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const double s1 = parameters[0*n + k];
         const double s2 = parameters[1*n + k];
@@ -81,6 +82,7 @@ void mrp_shadowf(const float parameters[3], float switched[3])
 
 void mrp_shadowf_batch(size_t n, const float *SYMROT_RESTRICT parameters, float *SYMROT_RESTRICT switched)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const float s1 = parameters[0*n + k];
         const float s2 = parameters[1*n + k];

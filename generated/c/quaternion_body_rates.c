@@ -46,6 +46,7 @@ void quaternion_body_rates(const double q[4], const double omega[3], double dq[4
 void quaternion_body_rates_batch(
     size_t n, const double *SYMROT_RESTRICT q, const double *SYMROT_RESTRICT omega, double *SYMROT_RESTRICT dq)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const double q0 = q[0*n + k];
         const double q1 = q[1*n + k];
@@ -87,6 +88,7 @@ void quaternion_body_ratesf(const float q[4], const float omega[3], float dq[4])
 void quaternion_body_ratesf_batch(
     size_t n, const float *SYMROT_RESTRICT q, const float *SYMROT_RESTRICT omega, float *SYMROT_RESTRICT dq)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const float q0 = q[0*n + k];
         const float q1 = q[1*n + k];

@@ -57,6 +57,7 @@ void quaternion_dcm(const double q[4], double dcm[9])
 
 void quaternion_dcm_batch(size_t n, const double *SYMROT_RESTRICT q, double *SYMROT_RESTRICT dcm)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const double q0 = q[0*n + k];
         const double q1 = q[1*n + k];
@@ -119,6 +120,7 @@ void quaternion_dcmf(const float q[4], float dcm[9])
 
 void quaternion_dcmf_batch(size_t n, const float *SYMROT_RESTRICT q, float *SYMROT_RESTRICT dcm)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const float q0 = q[0*n + k];
         const float q1 = q[1*n + k];

@@ -88,6 +88,7 @@ void quaternion_of_dcm(const double dcm[9], double q[4])
 
 void quaternion_of_dcm_batch(size_t n, const double *SYMROT_RESTRICT dcm, double *SYMROT_RESTRICT q)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const double R_11 = dcm[0*n + k];
         const double R_12 = dcm[1*n + k];
@@ -188,6 +189,7 @@ void quaternion_of_dcmf(const float dcm[9], float q[4])
 
 void quaternion_of_dcmf_batch(size_t n, const float *SYMROT_RESTRICT dcm, float *SYMROT_RESTRICT q)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const float R_11 = dcm[0*n + k];
         const float R_12 = dcm[1*n + k];

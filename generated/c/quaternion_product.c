@@ -1,16 +1,16 @@
 /*
  * quaternion_product: Hamilton product p q of two quaternions: the turn q, then the turn p, in space
  *
- * in   p[4]
- *      [0] p0           1          left factor
- *      [1] p1           1          left factor
- *      [2] p2           1          left factor
- *      [3] p3           1          left factor
- * in   q[4]
- *      [0] q0           1          right factor
- *      [1] q1           1          right factor
- *      [2] q2           1          right factor
- *      [3] q3           1          right factor
+ * in   left[4]
+ *      [0] p0           1          left factor p
+ *      [1] p1           1          left factor p
+ *      [2] p2           1          left factor p
+ *      [3] p3           1          left factor p
+ * in   right[4]
+ *      [0] q0           1          right factor q
+ *      [1] q1           1          right factor q
+ *      [2] q2           1          right factor q
+ *      [3] q3           1          right factor q
  * out  product[4]
  *      [0] pq0          1          p q
  *      [1] pq1          1          p q
@@ -25,16 +25,16 @@
  */
 #include "quaternion_product.h"
 
-void quaternion_product(const double p[4], const double q[4], double product[4])
+void quaternion_product(const double left[4], const double right[4], double product[4])
 {
-    const double p0 = p[0];
-    const double p1 = p[1];
-    const double p2 = p[2];
-    const double p3 = p[3];
-    const double q0 = q[0];
-    const double q1 = q[1];
-    const double q2 = q[2];
-    const double q3 = q[3];
+    const double p0 = left[0];
+    const double p1 = left[1];
+    const double p2 = left[2];
+    const double p3 = left[3];
+    const double q0 = right[0];
+    const double q1 = right[1];
+    const double q2 = right[2];
+    const double q3 = right[3];
 
     product[0] = p0*q0 - (p1*q1 + p2*q2 + p3*q3);
     product[1] = p0*q1 + q0*p1 + p2*q3 - q2*p3;
@@ -43,17 +43,19 @@ void quaternion_product(const double p[4], const double q[4], double product[4])
 }
 
 void quaternion_product_batch(
-    size_t n, const double p[4], const double *SYMROT_RESTRICT q, double *SYMROT_RESTRICT product)
+    size_t n, const double *SYMROT_RESTRICT left, const double *SYMROT_RESTRICT right,
+    double *SYMROT_RESTRICT product)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
-        const double p0 = p[0];
-        const double p1 = p[1];
-        const double p2 = p[2];
-        const double p3 = p[3];
-        const double q0 = q[0*n + k];
-        const double q1 = q[1*n + k];
-        const double q2 = q[2*n + k];
-        const double q3 = q[3*n + k];
+        const double p0 = left[0*n + k];
+        const double p1 = left[1*n + k];
+        const double p2 = left[2*n + k];
+        const double p3 = left[3*n + k];
+        const double q0 = right[0*n + k];
+        const double q1 = right[1*n + k];
+        const double q2 = right[2*n + k];
+        const double q3 = right[3*n + k];
 
         product[0*n + k] = p0*q0 - (p1*q1 + p2*q2 + p3*q3);
         product[1*n + k] = p0*q1 + q0*p1 + p2*q3 - q2*p3;
@@ -62,16 +64,16 @@ void quaternion_product_batch(
     }
 }
 
-void quaternion_productf(const float p[4], const float q[4], float product[4])
+void quaternion_productf(const float left[4], const float right[4], float product[4])
 {
-    const float p0 = p[0];
-    const float p1 = p[1];
-    const float p2 = p[2];
-    const float p3 = p[3];
-    const float q0 = q[0];
-    const float q1 = q[1];
-    const float q2 = q[2];
-    const float q3 = q[3];
+    const float p0 = left[0];
+    const float p1 = left[1];
+    const float p2 = left[2];
+    const float p3 = left[3];
+    const float q0 = right[0];
+    const float q1 = right[1];
+    const float q2 = right[2];
+    const float q3 = right[3];
 
     product[0] = p0*q0 - (p1*q1 + p2*q2 + p3*q3);
     product[1] = p0*q1 + q0*p1 + p2*q3 - q2*p3;
@@ -80,17 +82,19 @@ void quaternion_productf(const float p[4], const float q[4], float product[4])
 }
 
 void quaternion_productf_batch(
-    size_t n, const float p[4], const float *SYMROT_RESTRICT q, float *SYMROT_RESTRICT product)
+    size_t n, const float *SYMROT_RESTRICT left, const float *SYMROT_RESTRICT right,
+    float *SYMROT_RESTRICT product)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
-        const float p0 = p[0];
-        const float p1 = p[1];
-        const float p2 = p[2];
-        const float p3 = p[3];
-        const float q0 = q[0*n + k];
-        const float q1 = q[1*n + k];
-        const float q2 = q[2*n + k];
-        const float q3 = q[3*n + k];
+        const float p0 = left[0*n + k];
+        const float p1 = left[1*n + k];
+        const float p2 = left[2*n + k];
+        const float p3 = left[3*n + k];
+        const float q0 = right[0*n + k];
+        const float q1 = right[1*n + k];
+        const float q2 = right[2*n + k];
+        const float q3 = right[3*n + k];
 
         product[0*n + k] = p0*q0 - (p1*q1 + p2*q2 + p3*q3);
         product[1*n + k] = p0*q1 + q0*p1 + p2*q3 - q2*p3;

@@ -1,16 +1,16 @@
 /*
  * quaternion_product: Hamilton product p q of two quaternions: the turn q, then the turn p, in space
  *
- * in   p[4]
- *      [0] p0           1          left factor
- *      [1] p1           1          left factor
- *      [2] p2           1          left factor
- *      [3] p3           1          left factor
- * in   q[4]
- *      [0] q0           1          right factor
- *      [1] q1           1          right factor
- *      [2] q2           1          right factor
- *      [3] q3           1          right factor
+ * in   left[4]
+ *      [0] p0           1          left factor p
+ *      [1] p1           1          left factor p
+ *      [2] p2           1          left factor p
+ *      [3] p3           1          left factor p
+ * in   right[4]
+ *      [0] q0           1          right factor q
+ *      [1] q1           1          right factor q
+ *      [2] q2           1          right factor q
+ *      [3] q3           1          right factor q
  * out  product[4]
  *      [0] pq0          1          p q
  *      [1] pq1          1          p q
@@ -36,19 +36,31 @@
 #endif
 #endif
 
+#ifndef SYMROT_INDEPENDENT /* in front of a loop over samples: outputs do not overlap inputs */
+#if defined(__clang__)
+#define SYMROT_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
+#elif defined(__GNUC__)
+#define SYMROT_INDEPENDENT _Pragma("GCC ivdep")
+#else
+#define SYMROT_INDEPENDENT
+#endif
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif
 
 /* one sample */
-void quaternion_product(const double p[4], const double q[4], double product[4]);
-void quaternion_productf(const float p[4], const float q[4], float product[4]);
+void quaternion_product(const double left[4], const double right[4], double product[4]);
+void quaternion_productf(const float left[4], const float right[4], float product[4]);
 
 /* n samples; component i of sample k stands at [i*n + k] */
 void quaternion_product_batch(
-    size_t n, const double p[4], const double *SYMROT_RESTRICT q, double *SYMROT_RESTRICT product);
+    size_t n, const double *SYMROT_RESTRICT left, const double *SYMROT_RESTRICT right,
+    double *SYMROT_RESTRICT product);
 void quaternion_productf_batch(
-    size_t n, const float p[4], const float *SYMROT_RESTRICT q, float *SYMROT_RESTRICT product);
+    size_t n, const float *SYMROT_RESTRICT left, const float *SYMROT_RESTRICT right,
+    float *SYMROT_RESTRICT product);
 
 #ifdef __cplusplus
 }

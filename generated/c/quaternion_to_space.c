@@ -45,6 +45,7 @@ void quaternion_to_space_batch(
     size_t n, const double *SYMROT_RESTRICT q, const double *SYMROT_RESTRICT vector,
     double *SYMROT_RESTRICT turned)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const double q0 = q[0*n + k];
         const double q1 = q[1*n + k];
@@ -85,6 +86,7 @@ void quaternion_to_spacef_batch(
     size_t n, const float *SYMROT_RESTRICT q, const float *SYMROT_RESTRICT vector,
     float *SYMROT_RESTRICT turned)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const float q0 = q[0*n + k];
         const float q1 = q[1*n + k];

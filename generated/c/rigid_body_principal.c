@@ -72,6 +72,7 @@ void rigid_body_principal_batch(
     const double *SYMROT_RESTRICT q, const double *SYMROT_RESTRICT torque, double *SYMROT_RESTRICT domega,
     double *SYMROT_RESTRICT dq)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const double A = inertia[0*n + k];
         const double B = inertia[1*n + k];
@@ -135,6 +136,7 @@ void rigid_body_principalf_batch(
     const float *SYMROT_RESTRICT q, const float *SYMROT_RESTRICT torque, float *SYMROT_RESTRICT domega,
     float *SYMROT_RESTRICT dq)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const float A = inertia[0*n + k];
         const float B = inertia[1*n + k];

@@ -98,6 +98,7 @@ void rigid_body_tensor_batch(
     const double *SYMROT_RESTRICT q, const double *SYMROT_RESTRICT torque, double *SYMROT_RESTRICT domega,
     double *SYMROT_RESTRICT dq)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const double I_xx = inertia[0*n + k];
         const double I_yy = inertia[1*n + k];
@@ -195,6 +196,7 @@ void rigid_body_tensorf_batch(
     const float *SYMROT_RESTRICT q, const float *SYMROT_RESTRICT torque, float *SYMROT_RESTRICT domega,
     float *SYMROT_RESTRICT dq)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const float I_xx = inertia[0*n + k];
         const float I_yy = inertia[1*n + k];

@@ -54,6 +54,7 @@ void rodrigues_dcm(const double parameters[3], double dcm[9])
 
 void rodrigues_dcm_batch(size_t n, const double *SYMROT_RESTRICT parameters, double *SYMROT_RESTRICT dcm)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const double g1 = parameters[0*n + k];
         const double g2 = parameters[1*n + k];
@@ -112,6 +113,7 @@ void rodrigues_dcmf(const float parameters[3], float dcm[9])
 
 void rodrigues_dcmf_batch(size_t n, const float *SYMROT_RESTRICT parameters, float *SYMROT_RESTRICT dcm)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const float g1 = parameters[0*n + k];
         const float g2 = parameters[1*n + k];

@@ -36,6 +36,7 @@ void rodrigues_quaternion(const double parameters[3], double q[4])
 
 void rodrigues_quaternion_batch(size_t n, const double *SYMROT_RESTRICT parameters, double *SYMROT_RESTRICT q)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const double g1 = parameters[0*n + k];
         const double g2 = parameters[1*n + k];
@@ -66,6 +67,7 @@ void rodrigues_quaternionf(const float parameters[3], float q[4])
 
 void rodrigues_quaternionf_batch(size_t n, const float *SYMROT_RESTRICT parameters, float *SYMROT_RESTRICT q)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const float g1 = parameters[0*n + k];
         const float g2 = parameters[1*n + k];

@@ -44,6 +44,7 @@ void rodrigues_space_rates_batch(
     size_t n, const double *SYMROT_RESTRICT parameters, const double *SYMROT_RESTRICT omega,
     double *SYMROT_RESTRICT rates)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const double g1 = parameters[0*n + k];
         const double g2 = parameters[1*n + k];
@@ -84,6 +85,7 @@ void rodrigues_space_ratesf_batch(
     size_t n, const float *SYMROT_RESTRICT parameters, const float *SYMROT_RESTRICT omega,
     float *SYMROT_RESTRICT rates)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const float g1 = parameters[0*n + k];
         const float g2 = parameters[1*n + k];

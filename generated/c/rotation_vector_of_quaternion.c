@@ -49,6 +49,7 @@ void rotation_vector_of_quaternion(const double q[4], double v[3])
 
 void rotation_vector_of_quaternion_batch(size_t n, const double *SYMROT_RESTRICT q, double *SYMROT_RESTRICT v)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const double q0 = q[0*n + k];
         const double q1 = q[1*n + k];
@@ -85,6 +86,7 @@ void rotation_vector_of_quaternionf(const float q[4], float v[3])
 
 void rotation_vector_of_quaternionf_batch(size_t n, const float *SYMROT_RESTRICT q, float *SYMROT_RESTRICT v)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const float q0 = q[0*n + k];
         const float q1 = q[1*n + k];

@@ -33,6 +33,7 @@ void torque_constant_body(const double torque[3], double torque_b[3])
 void torque_constant_body_batch(
     size_t n, const double *SYMROT_RESTRICT torque, double *SYMROT_RESTRICT torque_b)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const double torque_1 = torque[0*n + k];
         const double torque_2 = torque[1*n + k];
@@ -58,6 +59,7 @@ void torque_constant_bodyf(const float torque[3], float torque_b[3])
 void torque_constant_bodyf_batch(
     size_t n, const float *SYMROT_RESTRICT torque, float *SYMROT_RESTRICT torque_b)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const float torque_1 = torque[0*n + k];
         const float torque_2 = torque[1*n + k];

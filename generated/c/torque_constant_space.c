@@ -46,6 +46,7 @@ void torque_constant_space_batch(
     size_t n, const double *SYMROT_RESTRICT q, const double *SYMROT_RESTRICT torque,
     double *SYMROT_RESTRICT torque_b)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const double q0 = q[0*n + k];
         const double q1 = q[1*n + k];
@@ -86,6 +87,7 @@ void torque_constant_spacef_batch(
     size_t n, const float *SYMROT_RESTRICT q, const float *SYMROT_RESTRICT torque,
     float *SYMROT_RESTRICT torque_b)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const float q0 = q[0*n + k];
         const float q1 = q[1*n + k];

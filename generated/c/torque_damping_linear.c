@@ -40,6 +40,7 @@ void torque_damping_linear_batch(
     size_t n, const double *SYMROT_RESTRICT omega, const double *SYMROT_RESTRICT linear,
     double *SYMROT_RESTRICT torque_b)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const double omega_1 = omega[0*n + k];
         const double omega_2 = omega[1*n + k];
@@ -72,6 +73,7 @@ void torque_damping_linearf_batch(
     size_t n, const float *SYMROT_RESTRICT omega, const float *SYMROT_RESTRICT linear,
     float *SYMROT_RESTRICT torque_b)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const float omega_1 = omega[0*n + k];
         const float omega_2 = omega[1*n + k];

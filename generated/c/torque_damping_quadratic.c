@@ -38,6 +38,7 @@ void torque_damping_quadratic_batch(
     size_t n, const double *SYMROT_RESTRICT omega, const double *SYMROT_RESTRICT quadratic,
     double *SYMROT_RESTRICT torque_b)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const double quadratic_k = quadratic[k];
         const double omega_1 = omega[0*n + k];
@@ -69,6 +70,7 @@ void torque_damping_quadraticf_batch(
     size_t n, const float *SYMROT_RESTRICT omega, const float *SYMROT_RESTRICT quadratic,
     float *SYMROT_RESTRICT torque_b)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const float quadratic_k = quadratic[k];
         const float omega_1 = omega[0*n + k];

@@ -60,6 +60,7 @@ void torque_gravity_batch(
     const double *SYMROT_RESTRICT center_of_mass, const double *SYMROT_RESTRICT direction,
     double *SYMROT_RESTRICT torque_b)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const double weight_k = weight[k];
         const double q0 = q[0*n + k];
@@ -115,6 +116,7 @@ void torque_gravityf_batch(
     const float *SYMROT_RESTRICT center_of_mass, const float *SYMROT_RESTRICT direction,
     float *SYMROT_RESTRICT torque_b)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const float weight_k = weight[k];
         const float q0 = q[0*n + k];

@@ -41,6 +41,7 @@ void torque_rotor_batch(
     size_t n, const double *SYMROT_RESTRICT omega, const double *SYMROT_RESTRICT angular_momentum,
     double *SYMROT_RESTRICT torque_b)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const double omega_1 = omega[0*n + k];
         const double omega_2 = omega[1*n + k];
@@ -73,6 +74,7 @@ void torque_rotorf_batch(
     size_t n, const float *SYMROT_RESTRICT omega, const float *SYMROT_RESTRICT angular_momentum,
     float *SYMROT_RESTRICT torque_b)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const float omega_1 = omega[0*n + k];
         const float omega_2 = omega[1*n + k];

@@ -47,6 +47,7 @@ void torque_spring_batch(
     size_t n, const double *SYMROT_RESTRICT q, const double *SYMROT_RESTRICT stiffness,
     const double *SYMROT_RESTRICT attitude, double *SYMROT_RESTRICT torque_b)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const double stiffness_k = stiffness[k];
         const double q0 = q[0*n + k];
@@ -86,6 +87,7 @@ void torque_springf_batch(
     size_t n, const float *SYMROT_RESTRICT q, const float *SYMROT_RESTRICT stiffness,
     const float *SYMROT_RESTRICT attitude, float *SYMROT_RESTRICT torque_b)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const float stiffness_k = stiffness[k];
         const float q0 = q[0*n + k];

@@ -21,6 +21,8 @@ LIBRARY: dict[str, int] = {  # functions of <math.h> that kernels call, without 
     "sinh": 1, "cosh": 1, "tanh": 1,
 }  # fmt: skip
 ROUNDED = {"sqrt": ("sqrt", 1), "fabs": ("abs", 1), "copysign": ("copysign", 2)}  # exact, or rounded correctly
+NEAR = {"symrot_sin": "sin", "symrot_cos": "cos"}  # of symrot_math.h, in batches: assumed to its stated error
+SELECT = {"symrot_select_lt": "<", "symrot_select_eq": "=="}  # of symrot_math.h: choices without a branch
 DEEPEST = 200  # nested levels of an expression
 
 _TOKEN = re.compile(
@@ -218,6 +220,7 @@ class _Reader:
         self.inputs: dict[str, int] = {}  # place -> its node
         self.calls: list[str] = []
         self.depth = 0
+        self.turning: set[int] | None = None  # what symrot_sin and symrot_cos are taken of, where they may be called
 
     def input(self, place: str) -> int:
         return self.inputs.setdefault(place, self.builder.add("in", place))
@@ -367,6 +370,11 @@ class _Reader:
             raise cursor.fail(f"the float form of {name}, before")
         if bare in ROUNDED and ROUNDED[bare][1] == len(taken):
             return self.builder.add(ROUNDED[bare][0], *taken)
+        if self.turning is not None and bare in NEAR and len(taken) == 1:
+            self.turning.add(taken[0])
+            return self.builder.add("call", NEAR[bare], tuple(taken))
+        if self.turning is not None and bare in SELECT and len(taken) == 4:
+            return self.builder.add("select", SELECT[bare], *taken)
         if LIBRARY.get(bare) != len(taken):
             raise cursor.fail(f"a function of <math.h> that kernels use instead of {name}, before")
         return self.builder.add("call", bare, tuple(taken))
@@ -458,6 +466,12 @@ def read_batch(text: str, name: str, where: str = "kernel") -> Operations:
     ------
     CertificateError
         As :func:`read_kernel`, and for a loop that is not the one over all samples.
+
+    Notes
+    -----
+    ``symrot_sin`` and ``symrot_cos`` are read as sine and cosine: that ``symrot_math.h`` computes them to its stated
+    error is an assumption. They are accepted where each angle is asked whether it is in their range, and the block is
+    computed again by the same operations with the C library where one is not.
     """
     functions = functions_of(text, where)
     function = _defined(functions, name, where)
@@ -472,16 +486,59 @@ def read_batch(text: str, name: str, where: str = "kernel") -> Operations:
         cursor.expect("(", "void", ")")
         reader._known(cursor, scope, cursor.name())
         cursor.expect(";")
-    cursor.expect("for", "(", "size_t")
-    scope.loop = cursor.name()
-    cursor.expect("=", "0", ";", scope.loop, "<", scope.count, ";", "++", scope.loop, ")")
-    body = cursor.block()
+    if cursor.peek(3) == "start":
+        _blocks(cursor, reader, scope)
+    else:
+        reader.statements(_Cursor(_samples(cursor, scope, "0", scope.count), where), scope)
     if cursor.peek():
         raise cursor.fail("the end of the function after the loop over samples")
-    reader.statements(_Cursor(body, where), scope)
     order = [parameter.name for parameter in function.parameters]
     places = sorted(scope.written, key=lambda place: (order.index(place[0]), place[1]))
     return _finished(reader, scope, function, places, where)
+
+
+def _samples(cursor: _Cursor, scope: _Scope, start: str, end: str) -> tuple[_Token, ...]:
+    """Return the body of the loop over samples from start to end."""
+    if cursor.peek() == "SYMROT_INDEPENDENT":
+        cursor.next()
+    cursor.expect("for", "(", "size_t")
+    scope.loop = cursor.name()
+    cursor.expect("=", start, ";", scope.loop, "<", end, ";", "++", scope.loop, ")")
+    return cursor.block()
+
+
+def _blocks(cursor: _Cursor, reader: _Reader, scope: _Scope) -> None:
+    """Read the loop over blocks: samples by ``symrot_math.h``, and again by the C library if an angle is far.
+
+    Both compute the same, and each angle that ``symrot_sin`` or ``symrot_cos`` is taken of is asked how far it is.
+    """
+    size = "SYMROT_BLOCK"
+    cursor.expect(*f"for ( size_t start = 0 ; start < {scope.count} ; start + = {size} ) {{".split())
+    cursor.expect(*f"const size_t end = {scope.count} - start < {size} ? {scope.count} : start + {size} ;".split())
+    cursor.expect("uint32_t" if reader.real == "float" else "uint64_t", "beyond", "=", "0", ";")
+    far = "symrot_farf" if reader.real == "float" else "symrot_far"
+    body = _samples(cursor, scope, "start", "end")
+    split = next((i for i, token in enumerate(body) if token.text == "beyond"), len(body))
+    plain = _Scope(arrays=scope.arrays, loop=scope.loop, count=scope.count)
+    reader.turning = set()
+    reader.statements(_Cursor(body[:split], cursor.where), scope)
+    asked, mark = set(), "="
+    question = _Cursor(body[split:], cursor.where)
+    question.expect("beyond", "+")
+    while question.peek() == mark:
+        question.expect(mark, far, "(")
+        asked.add(reader.expression(question, scope))
+        question.expect(")")
+        mark = "+"
+    question.expect(";")
+    if question.peek() or not reader.turning <= asked:
+        raise question.fail(f"the end of the loop after {far} of each angle")
+    reader.turning = None
+    cursor.expect(*["const", "size_t", "again", "=", "beyond", "==", "0", "?", "start", ":", "end", ";"])
+    reader.statements(_Cursor(_samples(cursor, plain, "start", "again"), cursor.where), plain)
+    cursor.expect("}")
+    if plain.written != scope.written:
+        raise cursor.fail("both loops over samples to compute the same")
 
 
 def _finished(

@@ -8,12 +8,16 @@ from struct import pack, unpack
 from textwrap import wrap
 
 from symrot.codegen.banner import WIDTH, Description, banner
-from symrot.codegen.own_functions import called, own_function
+from symrot.codegen.own_functions import NEAR, called, own_function, turning_arguments
 from symrot.expression import FUNCTIONS, Node, names, rename, text
 from symrot.kernel import Argument, Program
 from symrot.kernels.removable import FUNCTIONS as OWN_FUNCTIONS
 
-__all__ = ["DOUBLE", "FLOAT", "Real", "c_expression", "c_function", "c_header", "c_source"]
+__all__ = ["DOUBLE", "FLOAT", "MATH_HEADER", "Real", "c_expression", "c_function", "c_header", "c_source"]
+
+MATH_HEADER = "symrot_math.h"
+INDEPENDENT = "SYMROT_INDEPENDENT"  # in front of a loop over samples: none of them reads what another one writes
+RELATIONS = {"==": "eq", "<": "lt"}
 
 
 @dataclass(frozen=True)
@@ -36,6 +40,17 @@ class Real:
         found = {name: name for name in FUNCTIONS} | own | {"abs": "fabs", "copysign": "copysign"}
         return {name: f"{called}{self.suffix}" for name, called in found.items()}
 
+    @cached_property
+    def near_functions(self) -> dict[str, str]:
+        """Return their names in a batch, where angles are in the range of ``symrot_math.h``."""
+        own = {name: f"symrot_near_{name}{self.suffix}" for name in NEAR}
+        return self.functions | own | {name: f"symrot_{name}{self.suffix}" for name in ("sin", "cos")}
+
+    @property
+    def bits(self) -> str:
+        """Return the unsigned type of the same size."""
+        return "uint32_t" if self.suffix else "uint64_t"
+
 
 DOUBLE = Real("double", "", "binary64")
 FLOAT = Real("float", "f", "binary32")
@@ -53,9 +68,9 @@ def _as_float(value: float) -> float:
     return float(unpack("f", pack("f", value))[0])
 
 
-def c_expression(node: Node, real: Real = DOUBLE) -> str:
-    """Return a formula as C, with the brackets that keep its order of evaluation."""
-    return text(rename(node, functions=real.functions), 0, real.literal)
+def c_expression(node: Node, real: Real = DOUBLE, near: bool = False) -> str:
+    """Return a formula as C, with the brackets that keep its order of evaluation; ``near`` as in a batch."""
+    return text(rename(node, functions=real.near_functions if near else real.functions), 0, real.literal)
 
 
 def c_arguments(program: Program, real: Real = DOUBLE) -> str:
@@ -83,15 +98,15 @@ def _used(program: Program) -> set[str]:
     return set().union(*(names(node) for _, node in program.temporaries + program.outputs))
 
 
-def _statement(head: str, formula: str, indent: str) -> list[str]:
+def _statement(head: str, formula: str, indent: str, mark: str = "=") -> list[str]:
     """Return ``head = formula;``, broken after operators where one line is too long."""
-    line = f"{indent}{head} = {formula};"
+    line = f"{indent}{head} {mark} {formula};"
     if len(line) <= WIDTH + 10:
         return [line]
     return wrap(line, WIDTH + 10, subsequent_indent=f"{indent}    ", break_long_words=False, break_on_hyphens=False)
 
 
-def _body(program: Program, element: str, indent: str, real: Real) -> list[str]:
+def _body(program: Program, element: str, indent: str, real: Real, near: bool = False) -> list[str]:
     """Return the statements; ``element`` is the index of a component in its array, with {i} for its number."""
     used, lines = _used(program), []
     for argument in program.signature.arguments:
@@ -103,7 +118,7 @@ def _body(program: Program, element: str, indent: str, real: Real) -> list[str]:
                 if name in used
             ]
     for name, node in program.temporaries:
-        lines += _statement(f"const {real.type} {name}", c_expression(node, real), indent)
+        lines += _statement(f"const {real.type} {name}", c_expression(node, real, near), indent)
     if lines:
         lines.append("")
     results = dict(program.outputs)
@@ -111,7 +126,7 @@ def _body(program: Program, element: str, indent: str, real: Real) -> list[str]:
         if argument.role == "out":
             for index, (name, *_) in enumerate(argument.components):
                 place = f"{argument.name}[{element.format(i=index)}]"
-                lines += _statement(place, c_expression(results[name], real), indent)
+                lines += _statement(place, c_expression(results[name], real, near), indent)
     return lines
 
 
@@ -158,6 +173,17 @@ def _own_function(name: str, real: Real) -> list[str]:
     return [*lines, f"    return {condition} ? {c_expression(then, real)} : {c_expression(other, real)};", "}", ""]
 
 
+def _near_function(name: str, real: Real) -> list[str]:
+    """Return the form of an own function that batches call: both sides of its choice computed, no branch."""
+    parameters, temporaries, (relation, left, right, then, other) = own_function(name, real.precision)
+    arguments = ", ".join(f"{real.type} {parameter}" for parameter in parameters)
+    lines = [_head(real.near_functions[name], arguments, "static inline ", real.type), "{"]
+    for temporary, node in temporaries:
+        lines += _statement(f"const {real.type} {temporary}", c_expression(node, real, True), "    ")
+    taken = ", ".join(c_expression(node, real, True) for node in (left, right, then, other))
+    return [*lines, f"    return symrot_select_{RELATIONS[relation]}{real.suffix}({taken});", "}", ""]
+
+
 def _batch_arguments(program: Program, real: Real) -> str:
     parts = ["size_t n"]
     for argument in program.signature.arguments:
@@ -169,19 +195,45 @@ def _batch_arguments(program: Program, real: Real) -> str:
     return ", ".join(parts)
 
 
-def _batch(program: Program, real: Real) -> list[str]:
+def _batch(program: Program, real: Real, near: bool) -> list[str]:
+    """Return the function that computes n samples, those of a block with angles out of range a second time."""
+    head = [_head(f"{_name(program, real)}_batch", _batch_arguments(program, real)), "{", *_silenced(program, "    ")]
     scalars = [a for a in program.signature.arguments if a.is_scalar and a.role == "in"]
-    used = _used(program)
     each = {a.name: f"{a.name}_k" for a in scalars}  # a scalar of one sample is an array in a batch
+    used = _used(program)
+    loaded = [f"const {real.type} {a.name}_k = {a.name}[k];" for a in scalars if a.components[0][0] in used]
+    of_sample = _with_names(program, each)
+    angles = turning_arguments(of_sample) if near else []
+    if not angles:
+        return [*head, *_loop(of_sample, real, ("0", "n"), loaded, "    ", INDEPENDENT), "}"]
+    far = " + ".join(f"symrot_far{real.suffix}({c_expression(angle, real, True)})" for angle in angles)
     return [
-        _head(f"{_name(program, real)}_batch", _batch_arguments(program, real)),
-        "{",
-        *_silenced(program, "    "),
-        "    for (size_t k = 0; k < n; ++k) {",
-        *(f"        const {real.type} {a.name}_k = {a.name}[k];" for a in scalars if a.components[0][0] in used),
-        *_body(_with_names(program, each), "{i}*n + k", "        ", real),
+        *head,
+        "    for (size_t start = 0; start < n; start += SYMROT_BLOCK) {",
+        "        const size_t end = n - start < SYMROT_BLOCK ? n : start + SYMROT_BLOCK;",
+        f"        {real.bits} beyond = 0;",
+        *_loop(of_sample, real, ("start", "end"), loaded, "        ", INDEPENDENT, near=True)[:-1],
+        *_statement("beyond", far, "            ", "+="),
+        "        }",
+        "        const size_t again = beyond == 0 ? start : end;",
+        *_loop(of_sample, real, ("start", "again"), loaded, "        "),
         "    }",
         "}",
+    ]
+
+
+def _loop(
+    program: Program, real: Real, range_: tuple[str, str], loaded: Sequence[str], indent: str, pragma: str = "",
+    near: bool = False,
+) -> list[str]:  # fmt: skip
+    start, end = range_
+    inner = f"{indent}    "
+    return [
+        *([f"{indent}{pragma}"] if pragma else []),
+        f"{indent}for (size_t k = {start}; k < {end}; ++k) {{",
+        *(f"{inner}{line}" for line in loaded),
+        *_body(program, "{i}*n + k", inner, real, near),
+        f"{indent}}}",
     ]
 
 
@@ -198,9 +250,9 @@ def _with_names(program: Program, names: dict[str, str]) -> Program:
     )
 
 
-def _includes(program: Program) -> list[str]:
+def _includes(program: Program, near: bool) -> list[str]:
     calls = any(op not in ("add", "mul", "div", "neg") for op in program.operations())
-    return ["#include <math.h>"] if calls else []
+    return [*(["#include <math.h>"] if calls else []), *([f'#include "{MATH_HEADER}"'] if near else [])]
 
 
 def _prototypes(program: Program, real: Real) -> list[str]:
@@ -220,13 +272,18 @@ def c_header(program: Program, description: Description, reals: Sequence[Real] =
         *banner(program, description, "/*", " *", " */"), f"#ifndef {guard}", f"#define {guard}", "",
         "#include <stddef.h>", "", "#ifndef SYMROT_RESTRICT", "#ifdef __cplusplus",
         "#define SYMROT_RESTRICT __restrict", "#else", "#define SYMROT_RESTRICT restrict", "#endif", "#endif", "",
+        "#ifndef SYMROT_INDEPENDENT /* in front of a loop over samples: outputs do not overlap inputs */",
+        "#if defined(__clang__)",
+        '#define SYMROT_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")',
+        "#elif defined(__GNUC__)", '#define SYMROT_INDEPENDENT _Pragma("GCC ivdep")',
+        "#else", "#define SYMROT_INDEPENDENT", "#endif", "#endif", "",
         "#ifdef __cplusplus", 'extern "C" {', "#endif",
         "", *shapes, "",
         "#ifdef __cplusplus", "}", "#endif", "", "#endif",
     ]) + "\n"  # fmt: skip
 
 
-def c_source(program: Program, description: Description, reals: Sequence[Real] = (DOUBLE,)) -> str:
+def c_source(program: Program, description: Description, reals: Sequence[Real] = (DOUBLE,), near: bool = False) -> str:
     """Return the C99 text of a kernel. Same program, same bytes: no clock, no path, no environment.
 
     Parameters
@@ -237,11 +294,17 @@ def c_source(program: Program, description: Description, reals: Sequence[Real] =
         What the head says beside that.
     reals : sequence of Real
         The types of numbers, each with its one-sample and its batch function.
+    near : bool
+        Whether batches take sine and cosine from ``symrot_math.h``, which compilers vectorise, with those of the C
+        library for blocks with an angle out of its range.
     """
-    lines = [*banner(program, description, "/*", " *", " */"), *_includes(program)]
+    near = near and bool(turning_arguments(program))
+    lines = [*banner(program, description, "/*", " *", " */"), *_includes(program, near)]
     lines += [f'#include "{program.signature.name}.h"', ""]
     for real in reals:
         for name in called(program):
             lines += _own_function(name, real)
-    parts = ["\n".join([c_function(program, real=real), *_batch(program, real)]) for real in reals]
+            if near and name in NEAR:
+                lines += _near_function(name, real)
+    parts = ["\n".join([c_function(program, real=real), *_batch(program, real, near)]) for real in reals]
     return "\n".join(lines) + "\n" + "\n\n".join(parts) + "\n"

@@ -1,6 +1,6 @@
 """Text of the functions that kernels call beyond those of <math.h> (:mod:`symrot.kernels.removable`)."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from fractions import Fraction
 
 from symrot.codegen.lower import to_node
@@ -8,7 +8,9 @@ from symrot.expression import Node, children
 from symrot.kernel import Program
 from symrot.kernels.removable import FUNCTIONS, REMOVABLE, Removable
 
-__all__ = ["called", "own_function", "series"]
+__all__ = ["NEAR", "called", "own_function", "series", "turning_arguments"]
+
+NEAR = ("sinc", *REMOVABLE)  # own functions that take a sine or cosine of their argument
 
 Statement = tuple[str, Node]  # name of a temporary, formula
 ONE, ZERO = ("number", Fraction(1)), ("number", Fraction(0))
@@ -21,18 +23,27 @@ _CHOICES: dict[str, tuple[tuple[str, ...], Choice]] = {
 }
 
 
-def called(program: Program) -> list[str]:
-    """Return the own functions that a program calls, but for those that C has itself, in the order of the table."""
-    used: set[str] = set()
+def _calls(program: Program) -> Iterator[tuple[str, tuple[Node, ...]]]:
+    """Yield function and arguments of every call in a program, inner ones first."""
 
-    def visit(node: Node) -> None:
-        if node[0] == "call":
-            used.add(node[1])
+    def visit(node: Node) -> Iterator[tuple[str, tuple[Node, ...]]]:
         for child in children(node):
-            visit(child)
+            yield from visit(child)
+        if node[0] == "call":
+            yield node[1], node[2]
 
     for _, node in program.temporaries + program.outputs:
-        visit(node)
+        yield from visit(node)
+
+
+def turning_arguments(program: Program) -> list[Node]:
+    """Return the angles of which a program takes a sine or cosine, itself or in a function of its own, once each."""
+    return list(dict.fromkeys(taken[0] for name, taken in _calls(program) if name in ("sin", "cos", *NEAR)))
+
+
+def called(program: Program) -> list[str]:
+    """Return the own functions that a program calls, but for those that C has itself, in the order of the table."""
+    used = {name for name, _ in _calls(program)}
     return [name for name in FUNCTIONS if name in used and (name in _CHOICES or name in REMOVABLE)]
 
 

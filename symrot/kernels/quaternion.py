@@ -161,7 +161,7 @@ def _product(name: str) -> Definition:
 
     return Definition(
         name, "Hamilton product p q of two quaternions: the turn q, then the turn p, in space",
-        (argument("p", "in", left, "left factor"), argument("q", "in", right, "right factor")),
+        (argument("left", "in", left, "left factor p"), argument("right", "in", right, "right factor q")),
         (result("product", qmul(left, right), found, "p q"),),
         "all quaternions", "derivations/composition.md", boxed((*left, *right), -1, 1), laws,
     )  # fmt: skip

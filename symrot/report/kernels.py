@@ -6,6 +6,7 @@ from pathlib import Path
 
 from symrot.certify.selftest import selftest_files
 from symrot.errors import InputError
+from symrot.codegen.build_files import build_files
 from symrot.interface import emit
 from symrot.kernels.library import definition, kernel_names
 from symrot.report.files import write
@@ -13,7 +14,7 @@ from symrot.scene_file import shipped_names
 
 __all__ = ["kernel_files", "kernel_lines", "stale", "write_all", "write_files"]
 
-SUFFIXES = {"c": (".c", ".h"), "numpy": (".py",)}
+SUFFIXES = {"c": (".c", ".h", ".txt", ".in"), "numpy": (".py",)}
 SCENES = "scenes"  # under the folder of each target: the kernels of shipped scenes; those of the library beside it
 
 
@@ -28,7 +29,11 @@ def kernel_files(kernel: str | Path, target: str) -> dict[str, str]:
     found = emit(kernel, target)
     if target == "numpy":
         return {f"{found.name}.py": found.source}
-    return {f"{found.name}.h": found.header, f"{found.name}.c": found.source}
+    from symrot.codegen.c_source import MATH_HEADER
+    from symrot.codegen.math_header import math_header
+
+    shared = {MATH_HEADER: math_header()} if f'"{MATH_HEADER}"' in found.source else {}
+    return {f"{found.name}.h": found.header, f"{found.name}.c": found.source} | shared
 
 
 def _all_files(targets: Sequence[str], progress: Callable[[str], object]) -> dict[str, str]:
@@ -39,6 +44,8 @@ def _all_files(targets: Sequence[str], progress: Callable[[str], object]) -> dic
             progress(f"emitting {name} ..")
             for target in targets:
                 files |= {f"{target}/{room}{file}": text for file, text in kernel_files(name, target).items()}
+    if "c" in targets:
+        files |= {f"c/{file}": text for file, text in build_files().items()}
     if "c" in targets:
         files |= {f"c/{file}": text for file, text in selftest_files().items()}
     return files

@@ -76,6 +76,7 @@ void gravity_gradient_satellite_rates_batch(
     size_t n, const double *SYMROT_RESTRICT t, const double *SYMROT_RESTRICT y, const double p[7],
     double *SYMROT_RESTRICT dy)
 {
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const double t_k = t[k];
         const double omega_1 = y[0*n + k];

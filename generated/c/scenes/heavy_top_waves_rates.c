@@ -55,6 +55,7 @@ void heavy_top_waves_rates_batch(
     double *SYMROT_RESTRICT dy)
 {
     (void)t;
+    SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const double omega_1 = y[0*n + k];
         const double omega_2 = y[1*n + k];

@@ -1,0 +1,198 @@
+"""Sine and cosine for batches, ``symrot_math.h``: branch-free C that compilers vectorise, in double and in float.
+
+The angle is reduced by the multiple of pi/2 that is nearest to it, which is subtracted in parts so short that each
+product is exact, with and without fused operations (Cody and Waite, Software Manual for the Elementary Functions,
+1980); sine and cosine of the rest are polynomials, the other one and its sign are chosen by bits. The coefficients
+are computed here: interpolation of the exact series at Chebyshev points, in fractions.
+
+Stated error: at most 1 unit in the last place for ``|x|`` up to ``SYMROT_FAR``. Measured: tests/reference/sine.py.
+"""
+
+from fractions import Fraction
+from functools import cache
+from math import cos, factorial, pi
+
+from symrot.codegen.c_source import DOUBLE, FLOAT, Real
+from symrot.number import PI
+
+__all__ = ["FAR", "math_header"]
+
+FAR = {"binary64": 2**17, "binary32": 2**12}  # rad; beyond it, a batch computes its block again with the C library
+_DIGITS = {"binary64": 53, "binary32": 24}
+_PARTS = {"binary64": (36, 36), "binary32": (12, 12, 12)}  # bits: a part times the number of quarter turns is exact
+_COUNT = {"binary64": (6, 6), "binary32": (4, 4)}  # coefficients of sine and cosine
+_SQUARE = Fraction(617, 1000)  # largest square of the rest, that of pi/4 and a little more
+_TERMS = 20  # of the exact series
+
+
+@cache
+def _coefficients(first: int, count: int) -> tuple[Fraction, ...]:
+    """Return the polynomial in t = x^2 nearest to the tail of a series, lowest power first.
+
+    The tail is ``sum of (-1)^k t^(k - m)/first!..``: of sine for ``first = 3``, of cosine for ``first = 4``, from the
+    term ``x^first/first!`` on, over that power of x.
+    """
+    sign = -1 if first == 3 else 1
+    series = [Fraction(sign * (-1) ** k, factorial(first + 2 * k)) for k in range(_TERMS)]
+    # zeros of a Chebyshev polynomial whose last one is put at t = 0, since the tail counts times t
+    zeros = [Fraction(round(cos(pi * (2 * k + 1) / (2 * count + 2)) * 2**20), 2**20) for k in range(count + 1)]
+    points = [_SQUARE * (zero - zeros[-1]) / (1 - zeros[-1]) for zero in zeros[:-1]]
+    values = [sum((a * t**k for k, a in enumerate(series)), Fraction(0)) for t in points]
+    for level in range(1, count):  # Newton's divided differences
+        for i in range(count - 1, level - 1, -1):
+            values[i] = (values[i] - values[i - 1]) / (points[i] - points[i - level])
+    polynomial = [Fraction(0)] * count
+    for i in range(count - 1, -1, -1):
+        moved = [Fraction(0), *polynomial[:-1]]
+        polynomial = [a - points[i] * b for a, b in zip(moved, polynomial, strict=True)]
+        polynomial[0] += values[i]
+    return tuple(polynomial)
+
+
+def _parts(precision: str) -> list[Fraction]:
+    """Return pi/2 as parts of few bits and a last one of full precision."""
+    rest, parts = PI / 2, []
+    for bits in _PARTS[precision]:
+        shift = bits
+        while rest * Fraction(2) ** shift >= 2**bits:
+            shift -= 1
+        while rest * Fraction(2) ** shift < 2 ** (bits - 1):
+            shift += 1
+        parts.append(Fraction(int(rest * Fraction(2) ** shift)) / Fraction(2) ** shift)
+        rest -= parts[-1]
+    return [*parts, rest]
+
+
+def _horner(coefficients: tuple[Fraction, ...], real: Real) -> str:
+    *rest, last = [real.literal(each) for each in coefficients]
+    text = last
+    for literal in reversed(rest):
+        text = f"{literal} + t*({text})" if text != last else f"{literal} + t*{text}"
+    return text
+
+
+def _wrapped(head: str, formula: str) -> list[str]:
+    """Return ``head = formula;`` on lines that are not too long, broken before brackets."""
+    pieces = formula.split(" + ")
+    lines, line = [], f"    const {head} = {pieces[0]}"
+    for piece in pieces[1:]:
+        if len(line) + len(piece) > 105:
+            lines.append(f"{line} +")
+            line = f"        {piece}"
+        else:
+            line += f" + {piece}"
+    return [*lines, f"{line};"]
+
+
+def _reduction(real: Real) -> list[str]:
+    """Return the statements from x to the rest ``high + low``, its square t and the number of quarter turns."""
+    parts = [real.literal(part) for part in _parts(real.precision)]
+    digits = _DIGITS[real.precision]
+    lines = [
+        f"    const {real.type} shifted = x*{real.literal(2 / PI)} + {real.literal(Fraction(3 * 2 ** (digits - 2)))};",
+        f"    const {real.type} turns = shifted - {real.literal(Fraction(3 * 2 ** (digits - 2)))};",
+        f"    const {{bits}} quarter = symrot_bits{real.suffix}(shifted);",
+    ]
+    rest = "x"
+    for index, part in enumerate(parts[:-2]):
+        lines.append(f"    const {real.type} rest_{index} = {rest} - turns*{part};")
+        rest = f"rest_{index}"
+    return [
+        *lines,
+        f"    const {real.type} near = {rest} - turns*{parts[-2]};",
+        f"    const {real.type} missed = ({rest} - near) - turns*{parts[-2]} - turns*{parts[-1]};",
+        f"    const {real.type} high = near + missed;",
+        f"    const {real.type} low = (near - high) + missed;",
+        f"    const {real.type} t = high*high;",
+    ]
+
+
+def _functions(real: Real) -> list[str]:
+    kind, s = real.type, real.suffix
+    bits, top = ("uint64_t", 62) if kind == "double" else ("uint32_t", 30)
+    one, half = real.literal(Fraction(1)), real.literal(Fraction(1, 2))
+    sine, cosine = (_coefficients(first, count) for first, count in zip((3, 4), _COUNT[real.precision], strict=True))
+    lines = [
+        f"SYMROT_INLINE {bits} symrot_bits{s}({kind} x) {{ {bits} u; memcpy(&u, &x, sizeof u); return u; }}",
+        f"SYMROT_INLINE {kind} symrot_of_bits{s}({bits} u) {{ {kind} x; memcpy(&x, &u, sizeof x); return x; }}",
+        "",
+        f"SYMROT_INLINE {kind} symrot_chosen{s}({bits} condition, {kind} x, {kind} y)",
+        "{",
+        f"    const {bits} mask = ({bits})0 - condition;",
+        f"    return symrot_of_bits{s}((symrot_bits{s}(x) & mask) | (symrot_bits{s}(y) & ~mask));",
+        "}",
+        "",
+    ]
+    for name, relation in (("lt", "<"), ("eq", "==")):
+        lines += [
+            f"/* a {relation} b ? x : y, without a branch */",
+            f"SYMROT_INLINE {kind} symrot_select_{name}{s}({kind} a, {kind} b, {kind} x, {kind} y)",
+            "{",
+            f"    return symrot_chosen{s}(({bits})(a {relation} b), x, y);",
+            "}",
+            "",
+        ]
+    lines += [
+        "/* 1 where |x| is beyond the range of symrot_sin and symrot_cos, else 0 */",
+        f"SYMROT_INLINE {bits} symrot_far{s}({kind} x)",
+        "{",
+        f"    return ({bits})(fabs{s}(x) > {real.literal(Fraction(FAR[real.precision]))});",
+        "}",
+        "",
+        f"SYMROT_INLINE {kind} symrot_sine_of_rest{s}({kind} high, {kind} low, {kind} t)",
+        "{",
+        *_wrapped(f"{kind} p", _horner(sine, real)),
+        "    return high + (high*t*p + low);",
+        "}",
+        "",
+        f"SYMROT_INLINE {kind} symrot_cosine_of_rest{s}({kind} high, {kind} low, {kind} t)",
+        "{",
+        *_wrapped(f"{kind} p", _horner(cosine, real)),
+        f"    const {kind} half = {half}*t;",
+        f"    const {kind} near = {one} - half;",
+        f"    return near + ((({one} - near) - half) + (t*t*p - high*low));",
+        "}",
+        "",
+    ]
+    for name, chosen, turned in (("sin", "cosine, sine", "quarter"), ("cos", "sine, cosine", "(quarter + 1)")):
+        lines += [
+            f"SYMROT_INLINE {kind} symrot_{name}{s}({kind} x)",
+            "{",
+            *(line.format(bits=bits) for line in _reduction(real)),
+            f"    const {kind} sine = symrot_sine_of_rest{s}(high, low, t);",
+            f"    const {kind} cosine = symrot_cosine_of_rest{s}(high, low, t);",
+            f"    const {kind} size = symrot_chosen{s}(quarter & 1, {chosen});",
+            f"    return symrot_of_bits{s}(symrot_bits{s}(size) ^ (({turned} & 2) << {top}));",
+            "}",
+            "",
+        ]
+    return lines
+
+
+def math_header() -> str:
+    """Return the text of ``symrot_math.h``, the same bytes anywhere."""
+    far = ", ".join(f"{FAR[real.precision]} rad in {real.type}" for real in (DOUBLE, FLOAT))
+    return "\n".join([
+        "/*",
+        " * symrot_math.h: sine and cosine for batches, without branches, so that compilers vectorise them.",
+        " *",
+        " * symrot_sin, symrot_cos (double), symrot_sinf, symrot_cosf (float)",
+        f" * Domain: |x| up to {far}; NaN of NaN and of infinities. Beyond, batches",
+        " *         compute their block of samples again with the C library (symrot_far tells).",
+        " * Error: at most 1 unit in the last place, with and without fused multiply-add; 0.0 of -0.0.",
+        " * Needs: rounding to nearest, evaluation in the type itself, IEEE 754 binary formats; not -ffast-math.",
+        " * Generated by `symrot emit --all`; do not edit.",
+        " */",
+        "#ifndef SYMROT_MATH_H", "#define SYMROT_MATH_H", "",
+        "#include <float.h>", "#include <math.h>", "#include <stdint.h>", "#include <string.h>", "",
+        "#ifdef __FAST_MATH__", '#error "symrot_math.h relies on IEEE 754 arithmetic: compile without -ffast-math"',
+        "#endif",
+        "#if defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD != 0 && FLT_EVAL_METHOD != 16",
+        '#error "symrot_math.h relies on evaluation in the type itself: use SSE2 in the place of x87"',
+        "#endif", "",
+        "#define SYMROT_BLOCK 512 /* samples that are computed again together */", "",
+        "#if defined(__GNUC__)", "#define SYMROT_INLINE static inline __attribute__((always_inline, unused))",
+        "#else", "#define SYMROT_INLINE static inline", "#endif", "",
+        *_functions(DOUBLE), *_functions(FLOAT),
+        "#endif",
+    ]) + "\n"  # fmt: skip
