@@ -97,6 +97,8 @@ class EulerMotion(Motion):
         self.sequence, self.switching = sequence, switching
         self._kernels: dict[str, _Kernel] = {}
         self._count = [0, 0, 0, 0]  # accepted, rejected, evaluations, switches
+        for each in (sequence, partner(sequence)) if switching else (sequence,):
+            self._kernel_of(each)
 
     @cached_property
     def _moving(self) -> int:
@@ -244,14 +246,6 @@ class EulerPropagator(Propagator):
 
     def _prepare(self, plan: Plan) -> Motion:
         return EulerMotion(plan, self._method, self.tolerance, self._sequence, self._switching)
-
-    def prepare(self) -> None:
-        """Compile now what otherwise waits for the first use, the partner of the sequence too."""
-        super().prepare()
-        motion = self._motion
-        assert isinstance(motion, EulerMotion)
-        for sequence in (self._sequence, partner(self._sequence)) if self._switching else (self._sequence,):
-            motion._kernel_of(sequence)
 
     def __call__(self, t: ArrayLike | None = None, *, events: Any = None, **state: Any) -> Trajectory:
         """Return the motion as :class:`symrot.propagation.propagator.Propagator` does; events are not sought."""
