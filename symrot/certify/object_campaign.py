@@ -16,12 +16,13 @@ from symrot.certify.disassembly import listing, missing
 from symrot.certify.object_code import CONTRACTED, DIFFERS, IDENTICAL, NOT_UNDERSTOOD, compare_object
 from symrot.certify.object_code_build import COMPILERS, FLAGS, compile_object, compiler_version
 from symrot.certify.object_code_mutants import Mutant, mutants, same_bits
-from symrot.errors import SymrotError
+from symrot.errors import CompilerError, SymrotError
 
 __all__ = ["campaign", "corrupted", "main"]
 
 VERDICTS = (IDENTICAL, CONTRACTED, DIFFERS, NOT_UNDERSTOOD)
 FAST = ("-O2", "-ffast-math")
+TEXT = "not compiled: the text itself refuses the flags"
 REFUSED, ACCEPTED = "refused", "accepted"
 
 
@@ -31,7 +32,12 @@ def campaign(sources: Sequence[Path], compiler: str, flags: Sequence[str]) -> tu
     with TemporaryDirectory(prefix="symrot-") as directory:
         for source in sources:
             target, text = Path(directory) / "kernel.o", source.read_text(encoding="utf-8")
-            compile_object(compiler, flags, source, target)
+            try:
+                compile_object(compiler, flags, source, target)
+            except CompilerError as reason:
+                counts[TEXT] += 1
+                said.append(str(reason))
+                continue
             start = perf_counter()
             for verdict in compare_object(text, target, (), source.name):
                 counts[verdict.verdict] += 1
@@ -105,6 +111,8 @@ def main(argv: Sequence[str] | None = None) -> int:
             counts, each, said = campaign(chosen, compiler, flags)
             columns = "".join(f"{counts[v]:>{w}}" for v, w in zip(VERDICTS, (10, 11, 8, 8), strict=True))
             print(f"{' '.join((compiler, *flags)):<66}{columns}{each:>8.1f}", flush=True)
+            if counts[TEXT]:
+                print(f"  {counts[TEXT]} kernels {TEXT}", flush=True)
             print("".join(f"  {line}\n" for line in said if flags != FAST), end="", flush=True)
     picked = sources[:: max(1, len(sources) // 20)][:20]
     for compiler in (name for name in COMPILERS if compiler_version(name)):

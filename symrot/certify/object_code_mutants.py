@@ -18,6 +18,7 @@ from random import Random
 
 from symrot.certify.object_code_build import compile_object
 from symrot.certify.readback import functions_of
+from symrot.errors import CompilerError
 
 __all__ = ["KINDS", "Mutant", "mutants", "same_bits"]
 
@@ -177,12 +178,20 @@ def mutants(
         elif kind == "source":
             what = _from_edited(source, text, path, compiler, flags, random)
         else:
-            chosen = random.choice(OTHER_FLAGS)
-            compile_object(compiler, chosen, source, path)
-            what = " ".join(chosen)
+            what = _from_other_flags(source, path, compiler, random)
         if what is not None:
             made += 1
             yield Mutant(kind, what, path)
+
+
+def _from_other_flags(source: Path, path: Path, compiler: str, random: Random) -> str | None:
+    """Compile with flags that void the certificate; None where the text itself refuses them."""
+    chosen = random.choice(OTHER_FLAGS)
+    try:
+        compile_object(compiler, chosen, source, path)
+    except CompilerError:
+        return None
+    return " ".join(chosen)
 
 
 def _from_edited(
@@ -193,7 +202,10 @@ def _from_edited(
         return None
     changed = path.with_suffix(".c")
     changed.write_text(edited[1], encoding="utf-8")
-    compile_object(compiler, (*flags, "-w", "-I", str(source.parent)), changed, path)
+    try:
+        compile_object(compiler, (*flags, "-w", "-I", str(source.parent)), changed, path)
+    except CompilerError:
+        return None
     return edited[0]
 
 
