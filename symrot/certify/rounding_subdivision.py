@@ -1,7 +1,7 @@
 """The largest rounding error on a box: halve the worst parts until the bound is near what single points reach.
 
-Best first, in batches: of the parts with the largest bounds, each is halved in the input whose range, shrunk to its
-middle, lowers the bound most, or split into the two branches of a choice that is not decided on it. Parts whose bound
+Best first, in batches: of the parts with the largest bounds, each is halved in the input whose range, shrunk about
+its middle, lowers the bound most, or split into the two branches of a choice that is not decided on it. Parts whose bound
 is not above what a single point reaches (but for ``GAP``) are settled. The work is counted in evaluations of boxes,
 not in time: the same bytes come out everywhere.
 """
@@ -21,6 +21,7 @@ __all__ = ["Search", "search"]
 GAP = 1.02  # a bound within 2 % of what a point reaches is converged
 BATCH = 256  # parts that are halved at once
 CHUNK = 2048  # boxes evaluated at once
+SHRUNK = 8.0  # a range is shrunk to an eighth to see what halving it again and again would do
 NARROWEST = 2.0**-24  # of the width of the box: a part this narrow that has no bound is at a singular point
 
 
@@ -155,17 +156,19 @@ class _Search:
         return widest
 
     def best(self, parts: _Parts, relative: Array, otherwise: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Return the input whose range, shrunk to its middle, lowers the bound of each part most."""
+        """Return the input whose range, shrunk about its middle, lowers the bound of each part most."""
         inputs, count = parts.boxes.shape[1:]
-        middle = parts.boxes.mean(axis=0)
+        middle = parts.boxes.mean(axis=0) + (parts.boxes - parts.boxes.mean(axis=0)) / SHRUNK
         shrunk = np.repeat(parts.boxes, inputs, axis=2).reshape(2, inputs, count, inputs)
         for k in range(inputs):
-            shrunk[:, k, :, k] = middle[k]
+            shrunk[:, k, :, k] = middle[:, k]
         found = self.evaluate(shrunk.reshape(2, inputs, -1), np.repeat(parts.decided, inputs, axis=1))
         bounds = np.where(relative.T > 0, found.bound.reshape(count, inputs), inf)
-        bounds = np.where(bounds < 0, inf, bounds)  # the middle is outside of the region
-        best = np.argmin(bounds, axis=1)
-        return np.where(bounds[np.arange(count), best] < parts.bound, best, otherwise)
+        bounds = np.maximum(bounds, 0.0)  # -1: the middle is outside of the region
+        least = bounds.min(axis=1)
+        equal = bounds <= least[:, None] * (1 + 2.0**-30)
+        best = np.argmax(np.where(equal, relative.T, -1.0), axis=1)
+        return np.where(least < parts.bound, best, otherwise)
 
 
 _UPPER = {"<": True, "<=": True, ">": False, ">=": False}  # whether the left side is the lesser where it holds
