@@ -1,7 +1,7 @@
 /*
- * What a textbook writes: classical RK4 with a fixed step, the quaternion renormalised after each step or left alone,
- * and points of a body carried along their velocity. Follows the text of symrot_rates; N is the number of states, the
- * last four of them the quaternion. Used by `symrot bench --stability`.
+ * What a textbook writes: classical RK4 with a fixed step, the quaternion renormalised after each step or left alone.
+ * Follows the text of symrot_rates; N is the number of states, the last four of them the quaternion. For
+ * `symrot bench --stability`.
  */
 #include <math.h>
 
