@@ -114,6 +114,7 @@ def _certificate(subject: Subject) -> Data:
         "files": {path: sha256(text.encode()).hexdigest() for path, text in subject.files.items()},
         "inputs": [[place, *described] for place, described in subject.places.items()],
         "spec": {
+            "parameters": {symbol: str(value) for symbol, value in subject.meanings.items()},
             "named": [[str(symbol), str(value)] for symbol, value in subject.named],
             "formulas": [[place, symbol, str(formula)] for place, (symbol, formula) in subject.formulas.items()],
         },
