@@ -36,7 +36,7 @@ from symrot.propagation.kernels import error_blocks, library_source, scene_kerne
 from symrot.scene import Scene
 from symrot.scene_kernel import SceneKernel, bind
 
-__all__ = ["MOTIONS", "Run", "best_of", "main", "measure", "reference"]
+__all__ = ["MOTIONS", "Run", "best_of", "main", "measure", "reference", "scene"]
 
 Floats = NDArray[np.float64]
 
@@ -94,7 +94,7 @@ class _Problem:
     """A motion with its kernel bound to numbers."""
 
     def __init__(self, name: str, scale: float) -> None:
-        self.plan: Plan = make_plan(_scene(name))
+        self.plan: Plan = make_plan(scene(name))
         self.kernel: SceneKernel = scene_kernel(self.plan)
         self.p = bind(self.kernel.rate_parameters, self.plan.constants)
         self.y0 = [float(value) for value in self.plan.initial_state]
@@ -121,7 +121,8 @@ class _Problem:
         return worst
 
 
-def _scene(name: str) -> Scene:
+def scene(name: str) -> Scene:
+    """Return a motion of :data:`MOTIONS` as a scene."""
     form = {"schema": 1, "title": name, "output": {"quantities": ["omega", "quaternion"]}, **MOTIONS[name]}
     form["span"] = {**form["span"], "samples": 2}
     return Scene.from_dict(form, name)

@@ -224,7 +224,7 @@ class DrivenMotion(Motion):
                 raise
             raise failure from failure.__cause__
 
-    def integrate(self, times: Floats) -> tuple[Floats, Stats]:
+    def integrate(self, times: Floats, rise: bool = False) -> tuple[Floats, Stats]:
         """Return the states at the times, shape (n, N), and what it cost."""
         low, high = (float(times.min()), float(times.max())) if len(times) else (self.start, self.start)
         found: tuple[Floats, Stats] = self.guarded(low, high, lambda: self.stepping.again().sample(times))

@@ -21,7 +21,7 @@ from symrot.propagation.dop853 import Stats
 from symrot.propagation.invariants import invariant_parameters
 from symrot.propagation.kernels import compiled, error_blocks, scene_kernel, taylor_library
 from symrot.propagation.smoothness import roughness
-from symrot.propagation.stepping import FEW, Task
+from symrot.propagation.stepping import Task, rising
 from symrot.propagation.trajectory import ARRAY_FUNCTIONS, Trajectory
 from symrot.scene import Initial, Scene, load_scene
 from symrot.scene_kernel import SceneKernel, bind
@@ -183,9 +183,9 @@ class Motion:
         output = next(item.output for item in self.kernel.conserved if item.name == name)
         return float(self.evaluate(*self._initial, [output])[0, 0])
 
-    def integrate(self, times: Floats) -> tuple[Floats, Stats]:
-        """Return the states at the times, shape (n, N), and what it cost."""
-        return INTEGRATORS[self.choice.method.partition(":")[0]](self, times)
+    def integrate(self, times: Floats, rise: bool = False) -> tuple[Floats, Stats]:
+        """Return the states at the times, shape (n, N), and what it cost; ``rise``: they are known to be in order."""
+        return INTEGRATORS[self.choice.method.partition(":")[0]](self, times, rise)
 
     @cached_property
     def rates(self) -> Callable[..., Any]:
@@ -243,33 +243,33 @@ class Motion:
         return {"blocks": blocks, "scales": scales, **({"method": solver} if solver else {})}
 
 
-def _keep(motion: Motion, times: Floats) -> tuple[Floats, Stats]:
+def _keep(motion: Motion, times: Floats, rise: bool) -> tuple[Floats, Stats]:
     return np.empty((len(times), 0)), Stats(0, 0, 0, 0.0)
 
 
-def _stepped(motion: Motion, times: Floats) -> tuple[Floats, Stats]:
-    return motion.stepping.once(times)
+def _stepped(motion: Motion, times: Floats, rise: bool) -> tuple[Floats, Stats]:
+    return motion.stepping.once(times, rise)
 
 
-def _exact(motion: Motion, times: Floats) -> tuple[Floats, Stats]:
+def _exact(motion: Motion, times: Floats, rise: bool = False) -> tuple[Floats, Stats]:
     attitude, exact = motion.plan.structure["attitude"], motion.exact
     began, start = perf_counter(), motion.start
     omega, quaternion = exact.evaluate(times - start if start else times, quaternion=attitude)
     assert omega is not None
     states = omega if quaternion is None else np.concatenate((omega, quaternion), axis=1)
-    if len(times) > FEW or start in times.tolist():
+    if not (rise and len(times) and times.item(0) > start):
         states[times == start] = motion.plan.initial_state  # to the last bit, as every method has it
     return states, Stats(0, 0, 0, perf_counter() - began)
 
 
-def _scipy(motion: Motion, times: Floats) -> tuple[Floats, Stats]:
+def _scipy(motion: Motion, times: Floats, rise: bool) -> tuple[Floats, Stats]:
     from symrot.propagation import fallback
 
     start = (motion.rate_parameters, motion.plan.initial_state, motion.start)
     return fallback.integrate(motion.rates, *start, times, motion.tolerance, **motion.scipy_options)
 
 
-INTEGRATORS: dict[str, Callable[[Motion, Floats], tuple[Floats, Stats]]] = {
+INTEGRATORS: dict[str, Callable[[Motion, Floats, bool], tuple[Floats, Stats]]] = {
     "constant": _keep,
     "exact": _exact,
     "taylor": _stepped,
@@ -353,6 +353,7 @@ class Propagator:
             If the motion cannot be followed to the last time.
         """
         times = self.sample_times if t is None else _times(t)
+        rise = _in_order(times)
         motion = self._motion
         if omega is not None or quaternion is not None:
             motion = self._prepare(make_plan(self.scene, _initial(self.scene, omega, quaternion)))
@@ -364,7 +365,7 @@ class Propagator:
 
                 found = follow(motion, times, read_events(events))
                 return Trajectory(motion, found.t, found.states, motion.choice.method, found.stats, message, found)
-            states, stats = motion.integrate(times)
+            states, stats = motion.integrate(times, rise)
         except PropagationError as error:
             raise PropagationError(f"{self.scene.name}: {error}") from None
         return Trajectory(motion, times, states, motion.choice.method, stats, message)
@@ -377,10 +378,18 @@ def _times(t: ArrayLike) -> Floats:
         raise InputError(f"t: expected an array of times in s, got {number.show(t)}") from None
     if times.ndim != 1:
         raise InputError(f"t: expected a one-dimensional array of times in s, got shape {times.shape}")
-    finite = np.isfinite(times).all() if len(times) > FEW else all(map(isfinite, times.tolist()))
-    if not finite:
-        raise InputError(f"t: expected finite times in s, got {times[~np.isfinite(times)][0]}")
     return times
+
+
+def _in_order(times: Floats) -> bool:
+    """Return whether times never fall; refuse those that are not finite: of times in order, the ends tell."""
+    if not len(times):
+        return True
+    if isfinite(times.item(0)) and isfinite(times.item(-1)) and rising(times):
+        return True
+    if not np.isfinite(times).all():
+        raise InputError(f"t: expected finite times in s, got {times[~np.isfinite(times)][0]}")
+    return False
 
 
 def _vector(values: ArrayLike, size: int, name: str, unit: str) -> list[float]:

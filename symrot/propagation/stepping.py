@@ -40,6 +40,7 @@ __all__ = [
     "check_longest_step",
     "check_tolerance",
     "cut_off",
+    "rising",
     "stretches",
 ]
 
@@ -284,10 +285,10 @@ def _address(array: Any) -> int:
         return found
 
 
-def _rising(times: Floats) -> bool:
-    """Return whether times never fall; a few are sooner compared one by one."""
+def rising(times: Floats) -> bool:
+    """Return whether times never fall, which a nan among two does; a few are sooner compared one by one."""
     if len(times) > FEW:
-        return bool((times[1:] >= times[:-1]).all())
+        return b"\0" not in (times[1:] >= times[:-1]).tobytes()
     listed = times.tolist()
     return all(map(le, listed, listed[1:]))
 
@@ -345,7 +346,7 @@ class Task:
         if count == 0:
             return states, self.stats()
         low, high = float(times[0]), float(times[-1])
-        if low >= self.t0 and _rising(times):
+        if low >= self.t0 and rising(times):
             if not math.isfinite(high):
                 raise InputError(f"sample times must be finite, got {high}")
             self.follow(times, states)
@@ -358,9 +359,12 @@ class Task:
             states[part] = found
         return states, self.stats()
 
-    def once(self, times: Floats) -> tuple[Floats, Stats]:
-        """Return what ``again().sample(times)`` returns, by a short way where the times rise from t0 on."""
-        if self.breaks or not len(times) or times.item(0) < self.t0 or not _rising(times):
+    def once(self, times: Floats, rise: bool) -> tuple[Floats, Stats]:
+        """Return what ``again().sample(times)`` returns, by a short way where the times rise from t0 on.
+
+        ``rise`` says whether they do rise, and are finite.
+        """
+        if self.breaks or not rise or not len(times) or times.item(0) < self.t0:
             return self.again().sample(times)
         began, stepper, count, end = perf_counter(), self.stepper, len(times), times.item(-1)
         states = np.empty((count, stepper.states))

@@ -1,4 +1,4 @@
-"""What specialisation saves, as one figure: for each motion of the ladder, from the general kernel to the scene's own."""
+"""What specialisation saves, as one figure: each motion of the ladder, from the general kernel to the scene's own."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -52,8 +52,8 @@ def figure(found: Mapping[str, Any]) -> Any:
         axes.set_xlim(low / 2, high * 1.2)
     page.text(0.02, 0.965, "What is saved by leaving out what a motion does not need", fontsize=13,
               fontweight="bold", va="top")  # fmt: skip
-    for place, words, colour in ((0.215, "general kernel: full tensor, every torque", GENERAL),
-                                 (0.475, "the scene's own", OWN), (0.735, "what auto takes", AUTO)):  # fmt: skip
+    for place, words, colour in ((0.215, "general: full tensor, all torques", GENERAL),
+                                 (0.48, "the scene's own", OWN), (0.735, "what auto takes", AUTO)):  # fmt: skip
         page.text(place, 0.845, words, fontsize=9, color=colour, fontweight="bold")
     page.text(0.985, 0.02, f"symrot {__version__}", fontsize=7.5, color=GREY, ha="right")
     return page

@@ -1,0 +1,96 @@
+"""What a call from Python costs beyond the work: ``propagator(t)`` against the bare call of the same function in C.
+
+    python -m symrot.bench.overhead [--rounds 25] [SCENE ...]
+
+The bare call gets addresses that are ready and a run that is set back by one copy of its bytes: nothing of it is
+Python's but the call. Runs take turns; medians of the processor's time.
+"""
+
+import argparse
+import ctypes
+from collections.abc import Callable
+
+import numpy as np
+
+from symrot.bench.race import Measured, race, seconds_of
+from symrot.errors import InputError
+from symrot.propagation.propagator import Propagator, propagator
+from symrot.propagation.stepping import DONE, Stretch
+
+__all__ = ["main", "measure"]
+
+SCENES = ("tumbling_prism", "heavy_top_loops", "gravity_gradient_satellite", "damped_disk")
+SAMPLES = (1, 10, 100, 1000)
+METHODS = ("taylor", "dop853", "exact")
+
+
+def _bare_stepper(found: Propagator, times: "np.ndarray[tuple[int], np.dtype[np.float64]]") -> Callable[[], object]:
+    task = found._motion.stepping
+    stepper, end = task.stepper, float(times[-1])
+    ready = stepper.new_run.from_buffer_copy(task._ready)
+    ready.pace, ready.stop = (end - task.t0) * task.pace, end
+    stepper.enter(ready, Stretch(task.t0, end, task.t0, end), task.allowed)
+    run = stepper.new_run()
+    states = np.empty((len(times), stepper.states))
+    size, place, source = ctypes.sizeof(run), ctypes.addressof(run), ctypes.addressof(ready)
+    given = (ctypes.addressof(task.p), times.ctypes.data, len(times), states.ctypes.data, None, 0, 10**9)
+    call, reset = stepper.run, ctypes.memmove
+
+    def bare(kept: object = (states, ready, run, task)) -> None:  # whose memory is used
+        reset(place, source, size)
+        call(place, *given)
+
+    bare()
+    if run.next != len(times) or call(place, *given) != DONE:
+        raise InputError(f"{found.scene.name}: expected a motion that one call can follow")
+    return bare
+
+
+def _bare_exact(found: Propagator, times: "np.ndarray[tuple[int], np.dtype[np.float64]]") -> Callable[[], object]:
+    motion = found._motion.exact
+    call, constants = motion._evaluate, motion._address  # type: ignore[attr-defined]
+    omega, quaternion = np.empty((len(times), 3)), np.empty((len(times), 4))
+    given = (constants, len(times), times.ctypes.data, omega.ctypes.data, quaternion.ctypes.data)
+    return lambda kept=(omega, quaternion): call(*given)  # type: ignore[misc]
+
+
+def measure(name: str, method: str, samples: int, rounds: int) -> tuple[float, float] | None:
+    """Return the seconds of ``propagator(t)`` and of the bare call, or None for a scene without that method."""
+    try:
+        found = propagator(name, method)
+        if found.method != method:
+            return None
+    except InputError:
+        return None
+    times = np.linspace(0.0, float(found.scene.span.stop), samples + 1)[1:]
+    found(times)
+    bare = (_bare_exact if method == "exact" else _bare_stepper)(found, times)
+    runs: tuple[Callable[[], object], ...] = (lambda: found(times), bare)
+    entries = [(Measured("", 0.0, 0, 0.0, seconds_of(run)), run) for run in runs]
+    race(entries, rounds)
+    return entries[0][0].median, entries[1][0].median
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(prog="python -m symrot.bench.overhead", description=(__doc__ or "").split("\n")[0])
+    parser.add_argument("scenes", metavar="SCENE", nargs="*", default=list(SCENES))
+    parser.add_argument("--rounds", type=int, default=25)
+    options = parser.parse_args(arguments)
+    print(f"{'':28}{'method':>8}{'samples':>9}{'call us':>10}{'in C us':>10}{'Python us':>11}")
+    every: dict[int, list[float]] = {}
+    for name in options.scenes:
+        for method in METHODS:
+            for samples in SAMPLES:
+                found = measure(name, method, samples, options.rounds)
+                if found is None:
+                    break
+                call, bare = (seconds * 1e6 for seconds in found)
+                every.setdefault(samples, []).append(call - bare)
+                print(f"{name:28}{method:>8}{samples:9d}{call:10.1f}{bare:10.1f}{call - bare:11.1f}")
+    for samples, costs in every.items():
+        print(f"{samples} samples: median {np.median(costs):.1f} us of Python, most {max(costs):.1f}")
+
+
+if __name__ == "__main__":
+    main()
