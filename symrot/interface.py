@@ -1,6 +1,7 @@
 """The functions that people call and that live in no single room: a plan of a scene, the text of a kernel."""
 
 import re
+from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -13,12 +14,23 @@ __all__ = ["TARGETS", "Emitted", "emit", "kernel_names", "plan"]
 TARGETS = ("c", "numpy")
 
 
-class Emitted(NamedTuple):
-    """An emitted kernel: the name of its function, the text, and in C the header (empty otherwise)."""
-
+class _Texts(NamedTuple):
     name: str
     source: str
     header: str
+
+
+class Emitted(_Texts):
+    """An emitted kernel: the name of its function, the text, and in C the header (empty otherwise).
+
+    ``certificate`` is the text of its certificate, proven when it is asked for.
+    """
+
+    kernel: Any = None
+
+    @cached_property
+    def certificate(self) -> str:
+        return _certificate(self.kernel)
 
 
 def _scene(source: Scene | str | Path) -> Scene:
@@ -58,13 +70,43 @@ def emit(kernel: Scene | str | Path, target: str = "c") -> Emitted:
 
     if target not in TARGETS:
         raise InputError(f"target: expected one of {', '.join(TARGETS)}, got {target!r}")
-    is_kernel = isinstance(kernel, str) and kernel in kernel_names()
+    is_kernel = _is_kernel(kernel)
     program, description = (_library_kernel if is_kernel else _scene_kernel)(kernel, target)
     name = program.signature.name
     if target == "numpy":
-        return Emitted(name, numpy_source(program, description), "")
-    reals = (DOUBLE, FLOAT) if is_kernel else (DOUBLE,)
-    return Emitted(name, c_source(program, description, reals, is_kernel), c_header(program, description, reals))
+        found = Emitted(name, numpy_source(program, description), "")
+    else:
+        reals = (DOUBLE, FLOAT) if is_kernel else (DOUBLE,)
+        source = c_source(program, description, reals, is_kernel)
+        found = Emitted(name, source, c_header(program, description, reals))
+    found.kernel = kernel
+    return found
+
+
+def _is_kernel(kernel: Any) -> bool:
+    return isinstance(kernel, str) and kernel in kernel_names()
+
+
+def _certificate(kernel: Scene | str | Path) -> str:
+    """Return the certificate of a kernel or of a scene's own kernel, from the texts that are emitted of it."""
+    from symrot.certify.certificate import certificate_text
+    from symrot.certify.subjects import library_subject, scene_subject
+    from symrot.codegen.c_source import MATH_HEADER
+    from symrot.codegen.math_header import math_header
+    from symrot.dynamics.equations import equations_of_motion
+    from symrot.kernels.library import definition
+
+    c, numpy = emit(kernel, "c"), emit(kernel, "numpy")
+    is_kernel = _is_kernel(kernel)
+    files = {f"{c.name}.c": c.source, f"{c.name}.h": c.header}
+    files |= {MATH_HEADER: math_header()} if f'"{MATH_HEADER}"' in c.source else {}
+    files[f"../numpy/{c.name}.py" if is_kernel else f"../../numpy/scenes/{c.name}.py"] = numpy.source
+    if is_kernel:
+        return certificate_text(library_subject(definition(kernel), _library_kernel(kernel, "c")[1], files))
+    found = plan(kernel)
+    equations = equations_of_motion(found.structure)
+    lowered, description = _scene_rates(found, equations, "c")
+    return certificate_text(scene_subject(equations, lowered.program, lowered.parameters, description, files))
 
 
 def kernel_names() -> tuple[str, ...]:
@@ -82,16 +124,22 @@ def _library_kernel(name: Any, target: str) -> tuple[Any, Any]:
 
 
 def _scene_kernel(scene: Scene | str | Path, target: str) -> tuple[Any, Any]:
-    from symrot.codegen.scene_kernels import rates_program, scene_description, with_values
+    from symrot.codegen.scene_kernels import with_values
     from symrot.dynamics.equations import equations_of_motion
 
     found = plan(scene)
+    lowered, description = _scene_rates(found, equations_of_motion(found.structure), target)
+    return with_values(lowered.program, lowered.parameters, found.constants), description
+
+
+def _scene_rates(found: Plan, equations: Any, target: str) -> tuple[Any, Any]:
+    """Return the right-hand side of a plan, and what the emitted file says of it."""
+    from symrot.codegen.scene_kernels import rates_program, scene_description
+
     if not found.states:
         raise InputError(
             f"{found.scene.name}: expected a scene with states to integrate; every state of it is constant"
         )
     name = re.sub(r"\W", "_", f"{found.scene.name}_rates", flags=re.ASCII)
     name = name if name[0].isalpha() else f"scene_{name}"
-    lowered = rates_program(equations_of_motion(found.structure), name)
-    description = scene_description(found.scene.title, found.scene.name, target)
-    return with_values(lowered.program, lowered.parameters, found.constants), description
+    return rates_program(equations, name), scene_description(found.scene.title, found.scene.name, target)

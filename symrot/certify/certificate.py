@@ -5,7 +5,7 @@ links are filled in by their rooms. Same kernel, same bytes, on every machine.
 """
 
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from hashlib import sha256
@@ -13,25 +13,22 @@ from typing import Any
 
 from sympy import Expr, Symbol
 
+from symrot.certify.coq_library import coq_section
 from symrot.certify.equality import Equality, prove_equal
+from symrot.certify.flags import flags_section
 from symrot.certify.laws import CaseProof, LawProof, prove_law
 from symrot.certify.operations import Operations
 from symrot.certify.readback import read_batch, read_kernel
+from symrot.codegen.banner import Description
 from symrot.errors import CertificateError
 from symrot.kernel import Argument
-from symrot.kernels.definition import Definition, Law
+from symrot.kernels.definition import Law
 
-__all__ = ["SCHEMA", "Subject", "certificate_text", "of_definition", "seal"]
+__all__ = ["SCHEMA", "Data", "Subject", "certificate_text", "printed", "seal"]
 
 SCHEMA = "symrot.certificate/1"
 Data = dict[str, Any]
 
-FLAGS: Data = {
-    "required": ["-ffp-contract=off"],
-    "allowed": ["-O1", "-O2", "-O3", "-fno-math-errno", "-fno-trapping-math"],
-    "void": ["-ffast-math", "-Ofast", "-funsafe-math-optimizations", "-fassociative-math", "-freciprocal-math",
-             "-ffinite-math-only", "-mfpmath=387"],
-}  # fmt: skip
 TRUSTED = {
     "formulas and laws": "recheck.py alone, or the reader and the prover of symrot; both in exact arithmetic",
     "C text": "that the compiler gives C its meaning: real numbers are rounded as IEEE 754 says, to nearest",
@@ -48,17 +45,14 @@ class Subject:
 
     name: str
     title: str
-    command: str
-    convention: str
-    domain: str
-    derivation: str
+    description: Description
     inputs: tuple[Argument, ...]
     outputs: tuple[tuple[Argument, tuple[Expr, ...]], ...]
     named: tuple[tuple[Symbol, Expr], ...]
     laws: tuple[Law, ...]
     files: Mapping[str, str]
     types: Mapping[str, str]
-    meanings: Mapping[str, Expr] = field(default_factory=dict)  # of inputs that stand for a formula in others
+    parameters: Mapping[str, Expr] = field(default_factory=dict)  # inputs that stand for a formula in constants
 
     @property
     def places(self) -> dict[str, tuple[str, str]]:
@@ -81,14 +75,6 @@ def _places(argument: Argument) -> list[tuple[str, tuple[str, str, str]]]:
     return [(f"{argument.name}[{i}]", component) for i, component in enumerate(argument.components)]
 
 
-def of_definition(found: Definition, command: str, convention: str, files: Mapping[str, str]) -> Subject:
-    """Return a kernel of the library as something to certify."""
-    return Subject(
-        found.name, found.title, command, convention, found.domain, found.derivation, found.inputs, found.results,
-        found.named, found.laws(), files, {"": "double", "f": "float"},
-    )  # fmt: skip
-
-
 def certificate_text(subject: Subject) -> str:
     """Return the certificate of a kernel, printed; every claim in it is proven now.
 
@@ -107,20 +93,21 @@ def _certificate(subject: Subject) -> Data:
         "schema": SCHEMA,
         "kernel": subject.name,
         "title": subject.title,
-        "regenerate": subject.command,
-        "convention": subject.convention,
-        "domain": subject.domain,
-        "derivation": subject.derivation,
+        "regenerate": subject.description.command,
+        "convention": subject.description.convention,
+        "domain": subject.description.domain,
+        "derivation": subject.description.derivation,
         "files": {path: sha256(text.encode()).hexdigest() for path, text in subject.files.items()},
         "inputs": [[place, *described] for place, described in subject.places.items()],
         "spec": {
-            "parameters": {symbol: str(value) for symbol, value in subject.meanings.items()},
+            "parameters": {symbol: str(value) for symbol, value in subject.parameters.items()},
             "named": [[str(symbol), str(value)] for symbol, value in subject.named],
             "formulas": [[place, symbol, str(formula)] for place, (symbol, formula) in subject.formulas.items()],
         },
         "laws": [_law(prove_law(subject.name, law, known)) for law in subject.laws],
         "readback": {f"{subject.name}{suffix}": _readback(subject, suffix, real) for suffix, real in subject.types.items()},
-        "flags": FLAGS,
+        "coq": coq_section(subject.name),
+        "flags": flags_section(),
         "trusted": TRUSTED,
     }
 
@@ -152,12 +139,13 @@ def _readback(subject: Subject, suffix: str, real: str) -> Data:
     if one.digest() != batch.digest():
         raise CertificateError(f"{file}: expected {name} and {name}_batch to compute the same, and they do not")
     symbols = {place: symbol for place, (symbol, _) in subject.places.items()}
-    proof = prove_equal(one, symbols, {place: f for place, (_, f) in subject.formulas.items()}, subject.named)
+    proof = prove_equal(one, symbols, {place: f for place, (_, f) in subject.formulas.items()}, subject.named,
+                        subject.parameters)
     return {
         "type": real,
         "operations": _counts(one),
         "digest": one.digest(),
-        "constants": [[_shown(each.written), _meaning(each.fraction, each.times_pi)] for each in proof.rounded],
+        "constants": [[str(each.written), _meaning(each.fraction, each.times_pi)] for each in proof.rounded],
         "series": _series(proof),
     }
 
@@ -165,11 +153,6 @@ def _readback(subject: Subject, suffix: str, real: str) -> Data:
 def _counts(operations: Operations) -> Data:
     names = [node[1] if node[0] == "call" else node[0] for node in operations.nodes if node[0] not in ("in", "const")]
     return {name: names.count(name) for name in sorted(set(names))}
-
-
-def _shown(value: Fraction) -> str:
-    """Return a number as text that is exact."""
-    return str(value)
 
 
 def _meaning(fraction: Fraction, times_pi: bool) -> str:

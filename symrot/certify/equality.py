@@ -153,8 +153,10 @@ _SAFE = (
 class _Prover:
     """Follows the operations of a kernel as fractions."""
 
-    def __init__(self, operations: Operations, fractions: _Fractions, symbol_of: Mapping[str, str]) -> None:
-        self.operations, self.fractions, self.symbol_of = operations, fractions, symbol_of
+    def __init__(
+        self, operations: Operations, fractions: _Fractions, symbol_of: Mapping[str, str], meant: Mapping[str, Quotient]
+    ) -> None:
+        self.operations, self.fractions, self.symbol_of, self.meant = operations, fractions, symbol_of, meant
         self.values: list[Quotient] = []
         self.rounded: dict[Fraction, Meant] = {}
         self.truncations: list[Truncation] = []
@@ -184,7 +186,8 @@ class _Prover:
     def _value(self, node: tuple[Any, ...]) -> Quotient:
         fractions, kind = self.fractions, node[0]
         if kind == "in":
-            return fractions.of(self.symbol_of[node[1]])
+            symbol = self.symbol_of[node[1]]
+            return self.meant.get(symbol) or fractions.of(symbol)
         if kind == "const":
             return self._constant(node[1])
         if kind == "select":
@@ -282,6 +285,7 @@ def prove_equal(
     symbol_of: Mapping[str, str],
     formulas: Mapping[str, Expr],
     named: Sequence[tuple[Symbol, Expr]] = (),
+    parameters: Mapping[str, Expr] | None = None,
 ) -> Equality:
     """Prove that operations compute given formulas, for real numbers wherever both are defined.
 
@@ -295,16 +299,21 @@ def prove_equal(
         Place of an output -> formula.
     named : sequence of (Symbol, Expr)
         Quantities that later ones and the formulas use by a symbol.
+    parameters : mapping of str to Expr, optional
+        What symbols of inputs stand for, in symbols that are no inputs.
 
     Raises
     ------
     CertificateError
         Naming the first output that differs, or what is not understood.
     """
-    fractions = _Fractions(sorted(set(symbol_of.values())))
+    parameters = parameters or {}
+    constants = {str(symbol) for value in parameters.values() for symbol in value.free_symbols}
+    fractions = _Fractions(sorted(constants.union(symbol_of.values())))
     reader = _Formulas(fractions, named)
     wanted = {place: reader.read(formula) for place, formula in formulas.items()}
-    prover = _Prover(operations, fractions, symbol_of)
+    meant = {symbol: reader.read(value) for symbol, value in parameters.items()}
+    prover = _Prover(operations, fractions, symbol_of, meant)
     found = prover.run()
     if list(found) != list(wanted):
         raise CertificateError(f"{operations.name}: expected the outputs {', '.join(wanted)}, got {', '.join(found)}")
