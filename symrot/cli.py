@@ -263,6 +263,24 @@ def _selftest(options: Namespace) -> int:
     return GOOD if found.passed else FAILED
 
 
+def _bound(options: Namespace) -> int:
+    from symrot.report import bounds
+
+    _progress("bounding ..")
+    if options.target is None:
+        if options.variable:
+            raise InputError("--variable: expected --target X beside it, whose box is looked for")
+        found = bounds.facts(options.kernel, options.box, options.precision)
+    else:
+        found = bounds.target_facts(options.kernel, options.box, options.precision, options.target, options.variable)
+    _progress("")
+    if options.json:
+        _say_json(found)
+    else:
+        _say((bounds.lines if options.target is None else bounds.target_lines)(found))
+    return GOOD
+
+
 # --- what each takes --------------------------------------------------------------------------------------------------
 
 
@@ -373,6 +391,17 @@ def _selftest_arguments(parser: ArgumentParser) -> None:
     _json_option(parser)
 
 
+def _bound_arguments(parser: ArgumentParser) -> None:
+    parser.add_argument("kernel", metavar="KERNEL", help="a kernel of the library (see `symrot emit --list`)")
+    parser.add_argument("--box", metavar="NAME=LOW:HIGH", action="append", default=[],
+                        help="range of an input, such as theta=-1.4:1.4 (default: the kernel's own); may be repeated")  # fmt: skip
+    parser.add_argument("--target", type=float, metavar="X", help="find the largest box on which no error is above X")
+    parser.add_argument("--variable", metavar="NAME", action="append", default=[],
+                        help="with --target: resize the range of this input alone; may be repeated")  # fmt: skip
+    parser.add_argument("--precision", choices=("double", "float"), default="double", help="(default: double)")
+    _json_option(parser)
+
+
 COMMANDS: dict[str, tuple[str, Callable[[Namespace], int], Callable[[ArgumentParser], None]]] = {
     "run": ("propagate a scene and summarise its motion", _run, _run_arguments),
     "explain": ("show what is computed for a scene, what is skipped and why", _explain, _explain_arguments),
@@ -381,6 +410,7 @@ COMMANDS: dict[str, tuple[str, Callable[[Namespace], int], Callable[[ArgumentPar
     "check": ("decide whether formulas hold, and what would", _check, _check_arguments),
     "identify": ("say what a formula is, whatever its symbols are called", _identify, _identify_arguments),
     "emit": ("print a kernel of the library, or that of a scene, as C or NumPy", _emit, _emit_arguments),
+    "bound": ("bound the rounding errors of a kernel on a box of inputs", _bound, _bound_arguments),
     "selftest": ("check that this machine computes as the certificates assume", _selftest, _selftest_arguments),
     "bench": ("measure time against error, on a scene of yours", _bench, _bench_arguments),
     "scenes": ("list the scenes that come with symrot", _scenes, _json_option),

@@ -173,11 +173,12 @@ def bound_outputs(
 def _found(operations: Operations, place: str, task: Task, found: Search) -> OutputBound:
     at = tuple(zip(task.cone.places, found.worst, strict=True))
     if found.bound == inf:
-        where = ", ".join(f"{name} = {x:.6g}" for name, x in at)
-        what = task.cone.text(found.obstacle) if found.obstacle >= 0 else place
+        inputs = task.cone.inputs_of[found.obstacle]
+        where = ", ".join(f"{name} = {x:.6g}" for k, (name, x) in enumerate(at) if k in inputs)
+        what = task.cone.text(found.obstacle)
         raise InputError(
-            f"{operations.name}: expected a box without singular points, got one where {place} has no bound "
-            f"near {where}, because of {what}"
+            f"{operations.name}: expected a box without singular points, got one where {place} has no bound: "
+            f"{what} is not known to stay away from its singular values near {where}"
         )
     scale = 2.0 ** np.ceil(np.log2(found.largest_value)) if found.largest_value > 0 else 1.0
     choices = tuple(f"{text}{', by whole turns' if turns else ''}" for text, turns in task.cone.choices)

@@ -98,6 +98,11 @@ class Cone:
             return f"({f' {_SIGNS[node[0]]} '.join(taken)})"
         return f"{node[0]}({', '.join(taken)})"
 
+    def culprit(self, index: int) -> int:
+        """Return the operand that makes a node infinite: a divisor, what a root is taken of, or the node itself."""
+        node = self.nodes[index]
+        return int({"div": node[-1], "sqrt": node[-1]}.get(node[0], index))
+
     def text(self, index: int) -> str:
         """Return a node as a short formula, for people."""
         return self._text(index)

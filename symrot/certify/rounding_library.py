@@ -14,6 +14,7 @@ from symrot.certify.operations import Operations
 from symrot.certify.readback import read_kernel
 from symrot.certify.rounding import BUDGET, Box, Task, bound_task, tasks
 from symrot.certify.rounding_adjoint import LIBM_ULP, Region
+from symrot.certify.rounding_cone import cone_of
 from symrot.certify.rounding_subdivision import Search, search
 from symrot.errors import InputError
 from symrot.kernels.definition import Definition
@@ -61,7 +62,9 @@ def problem(found: Definition, operations: Operations) -> Problem:
         for each in found.inputs
         if [component[0][1:] for component in each.components] == list("0123")
     )
-    return Problem(box, Region(quaternions, CLEARANCE), symbols)
+    cones = (cone_of(operations, index) for _, index in operations.outputs)
+    angles = any(node[0] == "atan2" for cone in cones for node in cone.nodes)
+    return Problem(box, Region(quaternions, CLEARANCE if angles else 0.0), symbols)
 
 
 def operations_of(name: str, text: str) -> tuple[Operations, Operations]:
@@ -163,4 +166,6 @@ def largest_box(
     for _ in range(STEPS):
         middle = (low + high) / 2
         low, high = (middle, high) if holds(middle) else (low, middle)
+    if not low:
+        raise InputError(f"{operations.name}: expected a target that a box of some size has, got {target:g}")
     return low, resized(box, low, chosen)

@@ -71,6 +71,9 @@ class _Search:
         places = cone.places
         self.groups = [[places.index(place) for place in group if place in places] for group in region.unit]
         self.groups = [group for group, all_ in zip(self.groups, region.unit, strict=True) if len(group) == len(all_)]
+        self.depends = np.array(  # node, input: what has to be narrow for the node to be finite
+            [[k in cone.inputs_of[cone.culprit(i)] for k in range(box.shape[1])] for i in range(len(cone.nodes))]
+        )
         self.evaluations = 0
         self.pointwise, self.worst = -1.0, tuple(float(x) for x in box.mean(axis=0))
         self.largest_value, self.turns = 0.0, False
@@ -146,10 +149,8 @@ class _Search:
 
     def direction(self, parts: _Parts) -> NDArray[np.int64]:
         """Return the input in which to halve each part."""
-        inputs, count = parts.boxes.shape[1:]
         relative = np.where(self.width[:, None] > 0, (parts.boxes[1] - parts.boxes[0]) / self.width[:, None], 0.0)
-        depends = np.array([[k in found for k in range(inputs)] for found in self.cone.inputs_of])
-        widest = np.argmax(relative * np.where(parts.obstacle < 0, True, depends[parts.obstacle].T), axis=0)
+        widest = np.argmax(relative * np.where(parts.obstacle < 0, True, self.depends[parts.obstacle].T), axis=0)
         bounded = np.isfinite(parts.bound)  # without a bound there is nothing to lower: halve the widest
         if bounded.any():
             widest[bounded] = self.best(parts.take(bounded), relative[:, bounded], widest[bounded])
@@ -227,19 +228,29 @@ def search(
 
 def _narrow(run: _Search, parts: _Parts) -> NDArray[np.bool_]:
     """Tell which parts have no bound though what is in the way of one is all but a point there."""
+    stuck = np.isinf(parts.bound) & (parts.obstacle >= 0) & (parts.undecided < 0)
+    return stuck & (_spread(run, parts) < NARROWEST)
+
+
+def _spread(run: _Search, parts: _Parts) -> Array:
+    """Return the relative width of parts in the inputs of what is in the way of a bound."""
     width = np.where(run.width > 0, run.width, 1.0)
     relative = (parts.boxes[1] - parts.boxes[0]) / width[:, None]
-    depends = np.array([[k in found for k in range(run.width.size)] for found in run.cone.inputs_of]).T
-    spread = (relative * depends[:, np.maximum(parts.obstacle, 0)]).max(axis=0, initial=0.0)
-    return np.isinf(parts.bound) & (parts.obstacle >= 0) & (parts.undecided < 0) & (spread < NARROWEST)
+    return np.asarray((relative * run.depends[np.maximum(parts.obstacle, 0)].T).max(axis=0, initial=0.0))
+
+
+def _narrowest(run: _Search, parts: _Parts) -> tuple[tuple[float, ...], int]:
+    """Return the middle of the narrowest part without a bound, and what is in the way of one there."""
+    first = int(np.argmin(np.where(np.isinf(parts.bound) & (parts.obstacle >= 0), _spread(run, parts), inf)))
+    obstacle = int(parts.obstacle[first])
+    return tuple(float(x) for x in parts.boxes[:, :, first].mean(axis=0)), run.cone.culprit(obstacle)
 
 
 def _result(run: _Search, parts: _Parts, settled: float) -> Search:
     bound = max(settled, float(parts.bound.max(initial=-1.0)), 0.0)
     pointwise, worst, obstacle = max(run.pointwise, 0.0), run.worst, -1
     if np.isinf(bound):
-        first = int(np.argmax(parts.bound))
-        worst, obstacle = tuple(float(x) for x in parts.boxes[:, :, first].mean(axis=0)), int(parts.obstacle[first])
+        worst, obstacle = _narrowest(run, parts)
     return Search(
         bound, pointwise, worst, run.largest_value, run.evaluations, bound <= GAP * pointwise, run.turns, obstacle
     )
