@@ -11,7 +11,7 @@ from sympy import Add, Expr, Integer, Mul, Pow, Rational, Symbol, cos, fraction,
 from symrot.errors import CertificateError
 from symrot.kernels.definition import Definition
 
-__all__ = ["comment", "coq_expression", "definition_text", "folded", "matrix_text", "variables"]
+__all__ = ["comment", "coq_expression", "definition_text", "folded", "variables"]
 
 WIDTH = 118
 _SHAPES = {1: "R", 3: "vector", 4: "quaternion", 6: "matrix", 9: "matrix"}  # number of components -> type in rotation.v
@@ -115,11 +115,6 @@ def _record(formulas: Sequence[Expr]) -> str:
     if max(map(len, rows)) > WIDTH:
         rows = [folded(f"    {text}", 6) for text in texts]
     return "\n".join([f"  {_MAKERS[len(formulas)]}", *rows])
-
-
-def matrix_text(name: str, given: Iterable[str], formulas: Sequence[Expr]) -> str:
-    """Return the definition of a function of real variables whose value is a record of formulas."""
-    return _defined(name, given, len(formulas), _record(formulas))
 
 
 def _defined(name: str, given: Iterable[str], size: int, body: str) -> str:
