@@ -365,6 +365,8 @@ STRANGE = (
     (f"movsd xmm2,QWORD PTR [rdi+16]; {GOOD}; ret", NOT_UNDERSTOOD, "a read outside the array x"),
     (f"movsd xmm2,QWORD PTR [rsi]; {GOOD}; ret", NOT_UNDERSTOOD, "which is not written yet"),
     (f"movapd xmm3,XMMWORD PTR [rdi]; {GOOD}; ret", NOT_UNDERSTOOD, "an aligned access to x"),
+    (f"movsd xmm2,QWORD PTR fs:[rdi]; {GOOD}; ret", NOT_UNDERSTOOD, "segment fs"),
+    (f"movsd xmm2,QWORD PTR fs:[rip+f]; {GOOD}; ret", NOT_UNDERSTOOD, "segment fs"),
     ("ret", NOT_UNDERSTOOD, "y[0] is not written"),
     (f"{GOOD}", NOT_UNDERSTOOD, "no instruction"),
     (f"cvtsd2si eax,xmm0; {GOOD}; ret", NOT_UNDERSTOOD, "an instruction that is not known"),

@@ -23,7 +23,8 @@ RELATIVE = (
     "R_X86_64_PLT32",
 )  # both: symbol + addend - place, in a linked program or through its table
 INDIRECT = ("R_X86_64_GOTPCREL", "R_X86_64_GOTPCRELX", "R_X86_64_REX_GOTPCRELX")
-_PREFIXES = {"rep", "repz", "bnd", "notrack", "data16", "cs", "rex.W", "ds"}
+_PREFIXES = {"rep", "repz", "bnd", "notrack", "data16", "cs", "ds"}
+_PREFIXED = {"nop", "ret", "jmp", "call"}  # where prefixes change nothing
 
 _HEAD = re.compile(r"[0-9a-f]+ <(?P<name>.+)>:")
 _LINE = re.compile(r"\s*(?P<address>[0-9a-f]+):\t(?P<bytes>(?:[0-9a-f]{2} )+)\s*(?:\t(?P<text>.*))?")
@@ -241,9 +242,10 @@ def _instruction(
         relocation = Relocation(kind, symbol, plus + address + len(content) - at)
     bare = re.split(r"\s+[#<]", text)[0].strip()
     words = bare.split(None, 1)
+    is_prefixed = bool(words) and words[0] in _PREFIXES
     while len(words) > 1 and words[0] in _PREFIXES:
         words = words[1].split(None, 1)
-    mnemonic = words[0] if words else "(bad)"
+    mnemonic = words[0] if words and (words[0] in _PREFIXED or not is_prefixed) else "(bad)"
     operands = _operands(words[1]) if len(words) > 1 else ()
     if operands is None:
         mnemonic, operands = "(bad)", ()

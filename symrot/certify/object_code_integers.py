@@ -45,6 +45,8 @@ CONDITIONS = set(OF_NUMBERS) | set(OF_INTEGERS)
 def place_of(state: State, instruction: Instruction, operand: Memory) -> tuple[str, int]:
     if operand.base != "rip":
         return state.address(operand)
+    if operand.segment or operand.index:
+        raise NotUnderstood(f"segment {operand.segment}")
     return linked(state, instruction, RELATIVE)
 
 

@@ -76,36 +76,52 @@ def _flipped(content: bytes, at: int, bit: int) -> bytes:
     return content[:at] + bytes([content[at] ^ 1 << bit]) + content[at + 1 :]
 
 
-def _code(content: bytes, functions: Sequence[str], random: Random) -> tuple[str, bytes] | None:
-    start, stop = random.choice(_spans(content, _sections(content), functions))
-    at, bit = random.randrange(start, stop), random.randrange(8)
-    return f"bit {bit} of byte {at - start:#x} of a function flipped", _flipped(content, at, bit)
-
-
-def _constants(content: bytes, functions: Sequence[str], random: Random) -> tuple[str, bytes] | None:
-    found = [section for section in _sections(content) if section.name.startswith(".rodata") and section.size]
-    if not found:
-        return None
-    section = random.choice(found)
-    at, bit = random.randrange(section.offset, section.offset + section.size), random.randrange(8)
-    return f"bit {bit} of byte {at - section.offset:#x} of {section.name} flipped", _flipped(content, at, bit)
-
-
-def _relocations(content: bytes, functions: Sequence[str], random: Random) -> tuple[str, bytes] | None:
-    """Exchange what two relocations of the code of the functions point to."""
+def _links(content: bytes, functions: Sequence[str]) -> list[tuple[int, tuple[int, int, int], int]]:
+    """Return the relocations of the code of some functions: place of the entry, the entry, what it writes over."""
     sections = _sections(content)
     text = next(section for section in sections if section.name == ".text")
     table = next((section for section in sections if section.name == ".rela.text"), None)
     if table is None:
-        return None
-    spans = [(start - text.offset, stop - text.offset) for start, stop in _spans(content, sections, functions)]
-    places = [
+        return []
+    rows = (
         (at, struct.unpack_from(_RELOCATION, content, at)) for at in range(table.offset, table.offset + table.size, 24)
-    ]
-    inside = [(at, row) for at, row in places if any(start <= row[0] < stop for start, stop in spans)]
-    pairs = [
-        (a, b) for a in inside for b in inside if a[1][1:] < b[1][1:] and a[1][1] & 0xFFFFFFFF == b[1][1] & 0xFFFFFFFF
-    ]
+    )
+    spans = _spans(content, sections, functions)
+    found = [(at, row, text.offset + row[0]) for at, row in rows]
+    return [item for item in found if any(start <= item[2] < stop for start, stop in spans)]
+
+
+def _code(content: bytes, functions: Sequence[str], random: Random) -> tuple[str, bytes] | None:
+    """Flip a bit of an instruction, but for what the linker will write over."""
+    written = {at + byte for _, _, at in _links(content, functions) for byte in range(4)}
+    start, stop = random.choice(_spans(content, _sections(content), functions))
+    at, bit = random.choice([at for at in range(start, stop) if at not in written]), random.randrange(8)
+    return f"bit {bit} of byte {at - start:#x} of a function flipped", _flipped(content, at, bit)
+
+
+def _constants(content: bytes, functions: Sequence[str], random: Random) -> tuple[str, bytes] | None:
+    """Flip a bit in the first four bytes of a constant that the functions use."""
+    sections = _sections(content)
+    (table,) = (section for section in sections if section.name == ".symtab")
+    places = []
+    for _, (_, info, addend), _ in _links(content, functions):
+        _, _, _, index, value, _ = struct.unpack_from(_SYMBOL, content, table.offset + 24 * (info >> 32))
+        if 0 < index < len(sections) and sections[index].name.startswith(".rodata"):
+            places.append((sections[index], value + addend + 4))
+    if not places:
+        return None
+    section, offset = random.choice(places)
+    at, bit = offset + random.randrange(4), random.randrange(8)
+    if not 0 <= at < section.size:
+        return None
+    return f"bit {bit} of byte {at:#x} of {section.name} flipped", _flipped(content, section.offset + at, bit)
+
+
+def _relocations(content: bytes, functions: Sequence[str], random: Random) -> tuple[str, bytes] | None:
+    """Exchange what two relocations of the code of the functions point to."""
+    kind = 0xFFFFFFFF  # calls with calls, constants with constants
+    inside = [(at, row) for at, row, _ in _links(content, functions)]
+    pairs = [(a, b) for a in inside for b in inside if a[1][1:] < b[1][1:] and a[1][1] & kind == b[1][1] & kind]
     if not pairs:
         return None
     (first, one), (second, other) = random.choice(pairs)
