@@ -5,10 +5,12 @@ links are filled in by their rooms. Same kernel, same bytes, on every machine.
 """
 
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import cache
 from hashlib import sha256
+from pathlib import Path
 from typing import Any
 
 from sympy import Expr, Symbol
@@ -17,14 +19,14 @@ from symrot.certify.coq_library import coq_section
 from symrot.certify.equality import Equality, prove_equal
 from symrot.certify.flags import flags_section
 from symrot.certify.laws import CaseProof, LawProof, prove_law
-from symrot.certify.operations import Operations
 from symrot.certify.readback import read_batch, read_kernel
+from symrot.codegen import library
 from symrot.codegen.banner import Description
 from symrot.errors import CertificateError
 from symrot.kernel import Argument
 from symrot.kernels.definition import Law
 
-__all__ = ["SCHEMA", "Data", "Subject", "certificate_text", "printed", "seal"]
+__all__ = ["SCHEMA", "Data", "Subject", "certificate_text", "printed", "seal", "statement", "with_slots"]
 
 SCHEMA = "symrot.certificate/1"
 Data = dict[str, Any]
@@ -76,27 +78,44 @@ def _places(argument: Argument) -> list[tuple[str, tuple[str, str, str]]]:
 
 
 def certificate_text(subject: Subject) -> str:
-    """Return the certificate of a kernel, printed; every claim in it is proven now.
+    """Return the certificate of a kernel, printed; every claim in it is proven, now or when it was last asked for.
+
+    Proofs are kept in the cache by what they are about and by the programs that found them.
 
     Raises
     ------
     CertificateError
         If a text is not its formulas, or a law does not follow.
     """
-    return printed(_certificate(subject))
+    stated = statement(subject)
+    about = [stated, [[law.text, str(law.vanishing), str(law.relations)] for law in subject.laws], _method()]
+    key = f"certificate {sha256(json.dumps(about).encode()).hexdigest()}"
+    kept = library.fetch(key)
+    if kept is None:
+        kept = json.dumps(_proven(subject))
+        library.store(key, kept)
+    return printed(stated | json.loads(kept))
 
 
-def _certificate(subject: Subject) -> Data:
-    formulas = {symbol: formula for symbol, formula in subject.formulas.values()}
-    known = {str(symbol): value for symbol, value in subject.named} | formulas
+@cache
+def _method() -> str:
+    """Return the SHA-256 of the programs that prove."""
+    here = Path(__file__).parent
+    names = ("certificate", "equality", "laws", "operations", "readback", "rounded")
+    return sha256(b"".join((here / f"{name}.py").read_bytes() for name in names)).hexdigest()
+
+
+def statement(subject: Subject) -> Data:
+    """Return what a certificate says without proof: what the kernel is, what its files are, what is assumed."""
+    description = subject.description
     return {
         "schema": SCHEMA,
         "kernel": subject.name,
         "title": subject.title,
-        "regenerate": subject.description.command,
-        "convention": subject.description.convention,
-        "domain": subject.description.domain,
-        "derivation": subject.description.derivation,
+        "regenerate": description.command,
+        "convention": description.convention,
+        "domain": description.domain,
+        "derivation": description.derivation,
         "files": {path: sha256(text.encode()).hexdigest() for path, text in subject.files.items()},
         "inputs": [[place, *described] for place, described in subject.places.items()],
         "spec": {
@@ -104,11 +123,18 @@ def _certificate(subject: Subject) -> Data:
             "named": [[str(symbol), str(value)] for symbol, value in subject.named],
             "formulas": [[place, symbol, str(formula)] for place, (symbol, formula) in subject.formulas.items()],
         },
-        "laws": [_law(prove_law(subject.name, law, known)) for law in subject.laws],
-        "readback": {f"{subject.name}{suffix}": _readback(subject, suffix, real) for suffix, real in subject.types.items()},
         "coq": coq_section(subject.name),
         "flags": flags_section(),
         "trusted": TRUSTED,
+    }
+
+
+def _proven(subject: Subject) -> Data:
+    """Return what is proven: link 1, laws of the formulas, and link 3, that the C text is the formulas."""
+    known = {str(symbol): value for symbol, value in subject.named} | dict(subject.formulas.values())
+    return {
+        "laws": [_law(prove_law(subject.name, law, known)) for law in subject.laws],
+        "readback": {f"{subject.name}{suffix}": _readback(subject, suffix, real) for suffix, real in subject.types.items()},
     }
 
 
@@ -143,16 +169,11 @@ def _readback(subject: Subject, suffix: str, real: str) -> Data:
                         subject.parameters)
     return {
         "type": real,
-        "operations": _counts(one),
+        "operations": one.counts(),
         "digest": one.digest(),
         "constants": [[str(each.written), _meaning(each.fraction, each.times_pi)] for each in proof.rounded],
         "series": _series(proof),
     }
-
-
-def _counts(operations: Operations) -> Data:
-    names = [node[1] if node[0] == "call" else node[0] for node in operations.nodes if node[0] not in ("in", "const")]
-    return {name: names.count(name) for name in sorted(set(names))}
 
 
 def _meaning(fraction: Fraction, times_pi: bool) -> str:
@@ -168,6 +189,28 @@ def seal(data: Data) -> str:
     """Return the SHA-256 of a certificate without its seal."""
     bare = {key: value for key, value in data.items() if key != "seal"}
     return sha256(json.dumps(bare, sort_keys=True, separators=(",", ":")).encode()).hexdigest()
+
+
+SLOTS: dict[str, Callable[[Data, Any], bool]] = {  # what other rooms fill in: whether it is about this certificate
+    "rounding": lambda data, found: [part["operations_sha256"] for part in found["precisions"]]
+    == [function["digest"] for function in data["readback"].values()],
+    "objects": lambda data, found: data["files"].get(found["source"]["name"]) == found["source"]["sha256"],
+}
+
+
+def with_slots(text: str, slots: Mapping[str, Any]) -> str:
+    """Return a certificate with bounds of rounding errors (``rounding``) and verdicts on object code (``objects``).
+
+    Those are found on request, and kept while the kernel is what they are about: others are left out.
+    """
+    data = json.loads(text)
+    for name, is_about in SLOTS.items():
+        try:
+            if slots.get(name) is not None and is_about(data, slots[name]):
+                data[name] = slots[name]
+        except (KeyError, TypeError, AttributeError):
+            continue
+    return printed(data)
 
 
 def printed(data: Data) -> str:

@@ -91,6 +91,11 @@ class Operations:
             tuple((place, index) for place, index in data["outputs"]),
         )  # fmt: skip
 
+    def counts(self) -> dict[str, int]:
+        """Return how many operations there are of each kind, calls by their name."""
+        names = [node[1] if node[0] == "call" else node[0] for node in self.nodes if node[0] not in ("in", "const")]
+        return {name: names.count(name) for name in sorted(set(names))}
+
     def digest(self) -> str:
         """Return the SHA-256 of what is computed, whatever the kernel is called and whatever inputs it leaves alone."""
         data = self.to_json() | {"name": "", "inputs": []}

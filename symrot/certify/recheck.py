@@ -238,8 +238,9 @@ def check(path):  # what a certificate shows, in a line; an error with a sentenc
         for case in law["cases"]: prove(law, case, formulas)
     return f"{name}: {len(data['files'])} hashes, C text = formulas for {', '.join(data['readback'])} and batches, {len(data['laws'])} laws: they hold"
 
+REFUSALS = (LookupError, TypeError, AttributeError, SyntaxError, MemoryError, RecursionError, ValueError, ArithmeticError, OSError)
+def sentence(reason): return str(reason) if isinstance(reason, (ValueError, OSError)) else f"expected a certificate of the schema ({reason!r})"
 if __name__ == "__main__":
     for path in sys.argv[1:] or sys.exit("usage: python recheck.py NAME.cert.json .."):
         try: print(check(path))
-        except (LookupError, TypeError, AttributeError, SyntaxError, MemoryError, RecursionError) as reason: sys.exit(f"{path}: not a certificate of the schema: {reason!r}")
-        except (ValueError, ArithmeticError, OSError) as reason: sys.exit(f"{path}: {reason}")
+        except REFUSALS as reason: sys.exit(f"{path}: {sentence(reason)}")

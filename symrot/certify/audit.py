@@ -1,0 +1,133 @@
+"""Audit a certificate: whether everything it says still holds, for the files beside it and for what symrot derives.
+
+:mod:`symrot.certify.recheck` decides what can be decided from the files alone. Beyond it: the header says nothing but
+prototypes, the operations are those that were certified, and what the certificate says of the kernel (formulas, laws,
+domain, units, assumptions) is what symrot derives for a kernel of that name, so that no certificate of something else,
+however well proven, passes for it.
+"""
+
+import json
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from symrot.certify import recheck
+from symrot.certify.certificate import Data, Subject, printed, statement
+from symrot.certify.header import check_header
+from symrot.certify.operations import Operations
+from symrot.certify.readback import read_batch, read_kernel
+from symrot.errors import CertificateError
+
+__all__ = ["audit", "load"]
+
+LARGEST = 2**24  # bytes of a certificate
+PARTS = {  # what a certificate holds, and of what type
+    "schema": str, "kernel": str, "title": str, "regenerate": str, "convention": str, "domain": str, "derivation": str,
+    "files": dict, "inputs": list, "spec": dict, "coq": (dict, type(None)), "flags": dict, "trusted": dict,
+    "laws": list, "readback": dict, "rounding": (dict, type(None)), "objects": (dict, type(None)), "seal": str,
+}  # fmt: skip
+OPTIONAL = ("rounding", "objects")
+PROVEN = ("laws", "readback", *OPTIONAL, "seal")
+
+
+def load(path: Path) -> Data:
+    """Return a certificate; ``CertificateError`` for a file that is none, in one sentence."""
+    try:
+        with path.open("rb") as stream:
+            content = stream.read(LARGEST + 1)
+    except OSError as reason:
+        raise CertificateError(f"{path}: expected a certificate that can be read ({reason.strerror})") from None
+    if len(content) > LARGEST:
+        raise CertificateError(f"{path}: expected a certificate of at most {LARGEST} bytes")
+    try:
+        data = json.loads(content, object_pairs_hook=_unique, parse_constant=_refused)
+    except (ValueError, RecursionError) as reason:
+        raise CertificateError(f"{path}: expected a certificate as JSON, and it is not ({reason})") from None
+    if not isinstance(data, dict):
+        raise CertificateError(f"{path}: expected a certificate, a JSON object, got {type(data).__name__}")
+    for name, kind in PARTS.items():
+        if name not in data and name not in OPTIONAL:
+            raise CertificateError(f"{path}: expected {name!r} in a certificate, there is none")
+        if name in data and not isinstance(data[name], kind):
+            raise CertificateError(f"{path}: expected another kind of {name!r}, got {type(data[name]).__name__}")
+    unknown = sorted(set(data) - set(PARTS))
+    if unknown:
+        raise CertificateError(f"{path}: expected nothing but what a certificate holds, got {unknown[0]!r}")
+    return data
+
+
+def _unique(pairs: list[tuple[str, Any]]) -> Data:
+    found = dict(pairs)
+    if len(found) != len(pairs):
+        raise ValueError("a name is given twice")
+    return found
+
+
+def _refused(text: str) -> Any:
+    raise ValueError(f"the number {text}")
+
+
+def audit(path: Path, subject_of: Callable[[Data], Subject | None]) -> tuple[Data, list[str]]:
+    """Return a certificate that holds, and what was found of it.
+
+    Parameters
+    ----------
+    path : Path
+        NAME.cert.json, the files that it names beside it.
+    subject_of : callable
+        Takes a certificate and returns the kernel that it should be about, as symrot emits it now; None if that is
+        none that symrot knows.
+
+    Raises
+    ------
+    CertificateError
+        Saying what does not hold.
+    """
+    data = load(path)
+    try:
+        found = [recheck.check(path)]
+    except recheck.REFUSALS as reason:
+        raise CertificateError(f"{path}: {recheck.sentence(reason)}") from None
+    name = data["kernel"]
+    source, header = ((path.parent / f"{name}{end}").read_text(encoding="utf-8") for end in (".c", ".h"))
+    check_header(header, source, name)
+    _check_readback(data, source)
+    if path.read_text(encoding="utf-8") != printed(data):
+        raise CertificateError(f"{path}: expected a certificate as symrot prints it, got another layout")
+    subject = subject_of(data)
+    if subject is None:
+        found.append(f"{name} is no kernel that symrot knows: its formulas and laws are those of the certificate")
+        return data, found
+    _compare(path, data, statement(subject))
+    laws = [[law.text, list(map(str, law.vanishing)), list(map(str, law.relations))] for law in subject.laws]
+    if [[law["law"], law["vanishing"], law["given"]] for law in data["laws"]] != laws:
+        raise CertificateError(f"{path}: expected the laws of {name} as symrot derives them, got others")
+    found.append("formulas, laws, domain, units, flags and assumptions are those that symrot derives")
+    return data, found
+
+
+def _compare(path: Path, data: Mapping[str, Any], wanted: Mapping[str, Any]) -> None:
+    files = {name: digest for name, digest in wanted["files"].items() if name in data["files"]}
+    for name, value in [*wanted.items(), ("files", files)]:
+        if name == "files" and value is wanted["files"]:
+            continue
+        if json.dumps(data[name]) != json.dumps(value):
+            raise CertificateError(f"{path}: expected {name!r} as symrot prints it now, and it is not (emit it anew)")
+    others = sorted(set(data) - set(wanted) - set(PROVEN))
+    if others:
+        raise CertificateError(f"{path}: expected nothing but what a certificate holds, got {others[0]!r}")
+
+
+def operations_of(data: Data, source: str) -> dict[str, Operations]:
+    """Return the one-sample functions of a certificate, read back now, by name."""
+    return {name: read_kernel(source, name, f"{data['kernel']}.c") for name in data["readback"]}
+
+
+def _check_readback(data: Data, source: str) -> None:
+    for name, said in data["readback"].items():
+        one = read_kernel(source, name, f"{data['kernel']}.c")
+        batch = read_batch(source, f"{name}_batch", f"{data['kernel']}.c")
+        if not one.digest() == batch.digest() == said["digest"]:
+            raise CertificateError(f"{data['kernel']}.c: expected {name} to be the operations that were certified")
+        if said["operations"] != one.counts():
+            raise CertificateError(f"{data['kernel']}.c: expected the operation counts of {name} as they were certified")

@@ -1,0 +1,93 @@
+"""Read the header of an emitted kernel strictly: what it may hold beside the prototypes of its C file is listed here.
+
+A header can change what a C file means: a macro called ``sin`` is enough. Comments aside, every line has to be one of
+the lines below, in this order, and every prototype that of a function which the C file defines. Standard library only.
+"""
+
+import re
+
+from symrot.errors import CertificateError
+
+__all__ = ["check_header"]
+
+_COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
+_TOP = """
+#ifndef {guard}
+#define {guard}
+#include <stddef.h>
+#ifndef SYMROT_RESTRICT
+#ifdef __cplusplus
+#define SYMROT_RESTRICT __restrict
+#else
+#define SYMROT_RESTRICT restrict
+#endif
+#endif
+"""
+_INDEPENDENT = """
+#ifndef SYMROT_INDEPENDENT
+#if defined(__clang__)
+#define SYMROT_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
+#elif defined(__GNUC__)
+#define SYMROT_INDEPENDENT _Pragma("GCC ivdep")
+#else
+#define SYMROT_INDEPENDENT
+#endif
+#endif
+"""
+_OPEN = """
+#ifdef __cplusplus
+extern "C" {
+#endif
+"""
+_END = """
+#ifdef __cplusplus
+}
+#endif
+#endif
+"""
+
+
+def check_header(header: str, source: str, name: str) -> None:
+    """Refuse a header that says more than the prototypes of its C file.
+
+    Parameters
+    ----------
+    header, source : str
+        The texts of NAME.h and NAME.c.
+    name : str
+        The kernel.
+
+    Raises
+    ------
+    CertificateError
+        With the first line that is not expected, or a prototype without its function.
+    """
+    if re.search(r"\\|\?\?|[\0-\x09\x0b-\x1f]", header):
+        raise CertificateError(f"{name}.h: expected no backslash, trigraph or control character")
+    lines = [line.strip() for line in _COMMENT.sub(" ", header).split("\n")]
+    lines = [line for line in lines if line]
+    allowed = _lines(_TOP.format(guard=f"SYMROT_{name.upper()}_H"))
+    independent = _lines(_INDEPENDENT)
+    top = allowed + (independent if lines[len(allowed) : len(allowed) + 1] == independent[:1] else []) + _lines(_OPEN)
+    end = _lines(_END)
+    for got, wanted in zip(lines, top, strict=False):
+        if got != wanted:
+            raise CertificateError(f"{name}.h: expected the line {wanted!r}, got {got[:80]!r}")
+    middle = lines[len(top) : len(lines) - len(end)]
+    if len(lines) < len(top) + len(end) or lines[len(lines) - len(end) :] != end:
+        raise CertificateError(f"{name}.h: expected the lines {' '.join(end)!r} at the end")
+    if any("#" in line for line in middle):
+        raise CertificateError(f"{name}.h: expected nothing but prototypes between the guards")
+    said = {_words(each) for each in " ".join(middle).split(";") if each.strip()}
+    defined = {_words(head) for head in re.findall(r"^(void \w+\([^()]*\))\s*\{", _COMMENT.sub(" ", source), re.M)}
+    if said != defined:
+        odd = sorted(said ^ defined)[0]
+        raise CertificateError(f"{name}.h: expected the prototypes of the functions of {name}.c, and {odd!r} differs")
+
+
+def _lines(text: str) -> list[str]:
+    return text.strip().split("\n")
+
+
+def _words(text: str) -> str:
+    return " ".join(re.sub(r"([(),*])", r" \1 ", text).split())
