@@ -1,0 +1,19 @@
+"""How large a formula is as it is written."""
+
+from collections.abc import Iterable
+
+from sympy import Expr
+
+__all__ = ["pieces"]
+
+
+def pieces(entries: Iterable[Expr]) -> int:
+    """Return how many pieces expressions are made of, written out; common parts are visited once."""
+    known: dict[Expr, int] = {}
+
+    def count(node: Expr) -> int:
+        if node not in known:
+            known[node] = 1 + sum(map(count, node.args))
+        return known[node]
+
+    return sum(map(count, entries))
