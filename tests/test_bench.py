@@ -1,0 +1,362 @@
+"""The benchmark's own laws: references agree, errors are what they are said to be, tables and comparisons add up.
+
+No test looks at a time: those are of the machine.
+"""
+
+import json
+import re
+from dataclasses import replace
+from fractions import Fraction
+from importlib.util import find_spec
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from symrot.bench import command, skip, suite
+from symrot.bench.contestants import CONTESTANTS, chosen
+from symrot.bench.peers import scalar_kernel
+from symrot.bench.problem import Problem, State
+from symrot.bench.race import Measured, race
+from symrot.bench.reference import REFERENCES, longer, reference
+from symrot.bench.work_precision import DECADES, against, decades, study
+from symrot.cli import main
+from symrot.codegen.numpy_kernel import load_numpy_kernel
+from symrot.errors import InputError
+from symrot.planner import make_plan
+from symrot.report.work_precision import compared, lines, lines_of_comparison, read_study
+from symrot.scene import Scene, load_scene
+
+SHORT = {
+    "schema": 1, "title": "short", "body": {"principal": [1, 2, 3]}, "initial": {"omega": ["3/10", 1, "1/2"]},
+    "span": {"t": ["1/2", 3], "samples": 2},
+}  # fmt: skip
+SCENE = """schema = 1
+body = { principal = [1, 2, 3] }
+initial = { omega = [0.3, 1, 0.5] }
+span = { t = [0, 2], samples = 2 }
+"""
+
+
+def scene(**more):
+    return Scene.from_dict(SHORT | more, "short")
+
+
+@pytest.fixture(scope="module")
+def found():
+    return study(scene(), "exact,taylor,DOP853", quick=True)
+
+
+# --- references -------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        {},
+        {"torque": [{"kind": "expression", "torque": ["sin(3*t/2)/4", "exp(-t)*omega_1/7", "q0*q3/10"]}]},
+        {"torque": [{"kind": "rotor", "angular_momentum": [0, 0, 1]}], "body": {"principal": [2, 2, 3]}},
+    ],
+    ids=["free", "expression", "gyrostat"],
+)
+def test_the_references_share_nothing_and_agree(more):
+    """Series in 40 digits, Runge-Kutta in long double on unspecialised equations, and the closed form where there is one."""
+    result = reference(Problem(scene(**more)))
+    assert result.others
+    assert all(difference < 1e-15 for _, difference in result.others)
+    assert all("none" in why or "long double" in why for why in result.skipped)
+
+
+def test_a_reference_starts_from_the_exact_numbers():
+    """A moment of 1/3 is no double: the reference must see the third, not its rounding."""
+    thirds = scene(body={"principal": ["4/3", "5/3", "7/3"]}, initial={"omega": ["1/3", "1/7", "5/11"]})
+    scaled = scene(body={"principal": [4, 5, 7]}, initial={"omega": ["1/3", "1/7", "5/11"]})
+    ends = [reference(Problem(one)).state for one in (thirds, scaled)]  # only ratios of moments matter
+    assert Problem.error(ends[0], ends[1]) < 2e-16
+
+
+def test_a_rough_torque_has_no_series_and_says_so():
+    rough = scene(torque=[{"kind": "expression", "torque": ["-abs(omega_1)/10", "0", "0"]}])
+    result = reference(Problem(rough))
+    assert "long double" in result.name
+    assert any("abs" in why for why in result.skipped)
+
+
+def test_every_reference_is_refused_by_the_measure_when_it_is_wrong():
+    """The measure of errors sees a wrong sign, a swapped component, a turn by 1e-9 rad."""
+    exact = reference(Problem(scene())).state
+    q = exact.quaternion
+    turned = np.array([q[0], q[1], q[2], q[3]]) + 0.5e-9 * np.array([-q[1], q[0], q[3], -q[2]])
+    assert Problem.error(State(exact.omega, -q), exact) < 1e-15  # one attitude
+    assert Problem.error(State(exact.omega, turned), exact) == pytest.approx(1e-9, rel=1e-3)
+    assert Problem.error(State(exact.omega, q * [1, -1, -1, -1]), exact) > 0.1
+    assert Problem.error(State(exact.omega[::-1], q), exact) > 0.1
+    assert Problem.error(State(np.full(3, np.nan), None), exact) == np.inf
+
+
+def test_long_text_has_every_double_long():
+    text = longer("const double x = 0.5*sin(y[1]) + 1e-3 + 2.0/3.0; int i = 3; fmax1(x2.5)")
+    assert text.startswith("const long double x = 0.5L*sinl(y[1]) + 1e-3L + 2.0L/3.0L; int i = 3;")
+
+
+def test_references_cover_what_a_study_needs():
+    assert [name.split()[0] for name, _ in REFERENCES] == ["Taylor", "DOP853", "closed"]
+
+
+# --- contestants ------------------------------------------------------------------------------------------------------
+
+
+def test_the_kernel_for_scipy_is_the_emitted_one():
+    """Narrowed to one state it returns the same numbers, sin and sqrt among them."""
+    torque = [{"kind": "expression", "torque": ["sin(t)*sqrt(2+q0)", "atan2(q1, 2)", "exp(-t)*tanh(omega_3)"]}]
+    problem = Problem(scene(torque=torque))
+    whole, narrow = load_numpy_kernel(problem.kernel.rates), scalar_kernel(problem.kernel.rates)
+    y = np.array(problem.y0) + 0.1
+    given = (problem.p,) if problem.p else ()
+    assert np.allclose(
+        narrow(0.3, y.tolist(), *given), whole(0.3, y, *given), rtol=4e-15, atol=0
+    )  # math and NumPy differ in last bits
+
+
+def test_every_method_reaches_the_reference(found):
+    least = {}
+    for run in found["runs"]:
+        least[run["method"]] = min(run["error"], least.get(run["method"], 1.0))
+    assert least["exact"] < 1e-15
+    assert least["exact with set-up"] < 1e-15
+    assert least["taylor"] < 1e-14
+    assert least["SciPy DOP853"] < 1e-11
+
+
+def test_tighter_tolerances_give_less_error(found):
+    errors = [run["error"] for run in found["runs"] if run["method"] == "SciPy DOP853"]
+    assert errors[-1] < 1e-6 * errors[0]
+
+
+def test_a_motion_seen_as_one_angle_is_compared_as_a_rotation():
+    """The plan integrates omega_3 and an angle; the closed form returns all; both are one state."""
+    planar = scene(initial={"omega": [0, 0, 1]}, torque=[{"kind": "damping", "linear": "1/10"}])
+    problem = Problem(planar)
+    assert problem.plan.states == ("omega_3", "theta")
+    result = study(planar, "exact,taylor", quick=True)
+    assert max(run["error"] for run in result["runs"] if run["method"].startswith("exact")) < 1e-14
+
+
+def test_a_scene_with_nothing_to_integrate_is_refused():
+    still = scene(initial={"omega": [0, 0, 1]}, output={"quantities": ["omega"]})
+    assert make_plan(still).states == ()
+    with pytest.raises(InputError, match="states to integrate"):
+        study(still)
+
+
+def test_what_cannot_take_part_is_said(monkeypatch):
+    monkeypatch.setattr("symrot.bench.contestants.find_spec", lambda name: None)
+    result = study(scene(torque=[{"kind": "constant_space", "torque": [0, 0, "1/10"]}]), "exact,heyoka,dop853", True)
+    said = {item["method"]: item["why"] for item in result["skipped"]}
+    assert "no closed form" in said["exact"]
+    assert "not installed" in said["heyoka"]
+
+
+@pytest.mark.skipif(find_spec("heyoka") is None, reason="heyoka is an extra")
+def test_heyoka_follows_any_plan_of_ours():
+    problem = Problem(scene(torque=[{"kind": "expression", "torque": ["sin(t)/4", "0", "q1*q2"]}]))
+    heyoka = next(one for one in CONTESTANTS if one.name == "heyoka")
+    last, steps = heyoka.prepare(problem, 1e-15)()
+    assert steps > 3
+    assert problem.error(problem.state(last), reference(problem).state) < 1e-13
+
+
+def test_methods_are_chosen_by_name():
+    assert {one.group for one in chosen("taylor, LSODA", quick=False)} == {"taylor", "LSODA"}
+    assert len(chosen(None, quick=True)) < len(chosen(None, quick=False)) == len(CONTESTANTS)
+    with pytest.raises(InputError, match="'euler'"):
+        chosen("taylor,euler", quick=False)
+
+
+def test_runs_take_turns():
+    order = []
+    entries = [(Measured(name, 0.0, 0, 0.0, 1.0), lambda name=name: order.append(name)) for name in "abc"]
+    race(entries, 2)
+    assert order == list("abcabc")
+    assert all(len(measured.seconds) == 2 for measured, _ in entries)
+
+
+# --- tables -----------------------------------------------------------------------------------------------------------
+
+
+def made(method, error, seconds):
+    return {"method": method, "tolerance": error, "steps": 1, "error": error, "seconds": seconds, "least": seconds}
+
+
+RUNS = [made("taylor", 1e-4, 1.0), made("taylor", 1e-9, 2.0), made("heyoka", 1e-5, 4.0), made("heyoka", 1e-3, 5.0)]
+
+
+def test_decades_take_the_fastest_that_is_good_enough():
+    """A looser run that is slower never counts; no curve is extended."""
+    rows = {row["error"]: row for row in decades(RUNS)}
+    assert set(rows) == {error for error in DECADES if error >= 1e-9}
+    assert rows[1e-3]["methods"]["heyoka"]["seconds"] == 4.0
+    assert rows[1e-3]["methods"]["heyoka"]["ratio"] == 4.0
+    assert rows[1e-5]["fastest"] == "taylor"
+    assert rows[1e-5]["methods"]["heyoka"]["ratio"] == 2.0
+    assert "heyoka" not in rows[1e-6]["methods"]
+
+
+def test_decades_stop_where_the_reference_is_in_doubt():
+    assert min(row["error"] for row in decades(RUNS, floor=5e-8)) == 1e-7
+
+
+def test_ratios_against_peers():
+    (row,) = against(decades(RUNS))
+    assert row["peer"] == "heyoka"
+    assert row["stepped"]["ratios"] == {"1e-02": 4.0, "1e-03": 4.0, "1e-04": 4.0, "1e-05": 2.0}
+    assert row["stepped"]["median"] == 4.0
+    assert row["stepped"]["least"] == 2.0
+
+
+def test_a_study_against_itself_is_one_and_against_a_slower_one_half(found):
+    same = compared(found, found)
+    assert all(ratio == 1.0 for item in same["ratios"].values() for ratio in item["decades"].values())
+    slower = json.loads(json.dumps(found))
+    for row in slower["decades"]:
+        for cell in row["methods"].values():
+            cell["seconds"] *= 2
+    half = compared(slower, found)["ratios"]["taylor"]
+    assert half["mean"] == pytest.approx(0.5)
+    assert "0.50" in "\n".join(lines_of_comparison(compared(slower, found)))
+
+
+def test_studies_of_two_scenes_are_not_compared(found):
+    other = json.loads(json.dumps(found)) | {"scene": {"name": "other", "title": "", "span": [0, 1]}}
+    with pytest.raises(InputError, match="'short' and 'other'"):
+        compared(found, other)
+
+
+def test_the_lines_name_references_and_every_method(found):
+    text = "\n".join(lines(found))
+    for words in ("Taylor series in 40 digits", "long double", "closed form", "exact", "taylor", "SciPy DOP853"):
+        assert words in text
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [("{", "other text"), ("[]", "format"), ('{"format": "symrot work-precision 1"}', "parts missing")],
+)
+def test_a_file_that_is_no_study_is_refused(tmp_path, content, said):
+    path = tmp_path / "x.json"
+    path.write_text(content)
+    with pytest.raises(InputError, match=said):
+        read_study(path)
+    with pytest.raises(InputError, match="expected a study"):
+        read_study(tmp_path / "missing.json")
+
+
+# --- what specialisation saves ----------------------------------------------------------------------------------------
+
+
+def test_the_general_kernel_follows_the_same_motions(monkeypatch):
+    """Full tensor and all torques, those that do not act at zero: the ends agree."""
+    whole = skip.rungs()
+    kept = {name: whole[name] for name in ("full_tensor_all_torques", "free_symmetric", "constant")}
+    monkeypatch.setattr(skip, "rungs", lambda: kept)
+    rows = skip.measure(quick=True)["rows"]
+    assert all(row["agrees"] for row in rows)
+    assert len({row["general"]["operations"] for row in rows}) == 1
+    assert all(row["general"]["operations"] > row["own"]["operations"] for row in rows)
+    assert rows[-1]["own"]["operations"] == 0
+
+
+@pytest.mark.campaign
+def test_no_rung_of_the_ladder_costs_more_than_the_one_above():
+    result = skip.measure(quick=True)
+    counts = [row["own"]["operations"] for row in result["rows"]]
+    assert counts == sorted(counts, reverse=True)
+    assert all(row["agrees"] for row in result["rows"])
+
+
+def test_a_wrong_general_kernel_would_be_seen(monkeypatch):
+    """A torque that should be zero and is not moves the end, and the row says so."""
+    true = skip._nothing
+
+    def wrong(kind):
+        made = true(kind)
+        return made._replace(values={"torque": (Fraction(1, 10**6), *made.values["torque"][1:])}) \
+            if kind == "constant_body" else made  # fmt: skip
+
+    monkeypatch.setattr(skip, "_nothing", wrong)
+    row, _ = skip._row("wrong", scene())
+    assert not row["agrees"]
+
+
+def test_general_torques_are_all_kinds_that_act_together():
+    kinds = {torque.kind for torque in skip.general_plan(scene()).scene.torques}
+    assert kinds == {"constant_body", "constant_space", "gravity", "damping", "spring", "rotor"}
+    orbit = load_scene("gravity_gradient_satellite")
+    assert "gravity" not in {torque.kind for torque in skip.general_plan(orbit).scene.torques}
+    assert replace(orbit, torques=()).torques == ()
+
+
+# --- the suite and the command ----------------------------------------------------------------------------------------
+
+
+def test_the_suite_holds_what_it_promises():
+    abouts = [about for about, _ in suite.motions().values()]
+    assert abouts == [
+        "free symmetric", "free asymmetric", "near the separatrix", "heavy symmetric, loops", "heavy symmetric, cusps",
+        "heavy asymmetric", "gravity gradient", "damped and driven", "extreme inertia", "fast spin",
+    ]  # fmt: skip
+
+
+def test_the_suite_writes_its_files(tmp_path, monkeypatch):
+    monkeypatch.setattr(suite, "motions", lambda: {"one": ("one kind", scene())})
+    result, said = suite.run(tmp_path / "bench", "taylor,DOP853", True, lambda text: None)
+    assert [item["peer"] for item in result["summary"]] == ["SciPy DOP853"]
+    names = {path.name for path in (tmp_path / "bench").iterdir()}
+    assert {"suite.json", "suite.md"} <= names
+    if find_spec("matplotlib"):
+        assert {"one.png", "suite.png"} <= names
+    assert any("one kind" in line for line in said)
+
+
+def test_the_command_studies_compares_and_draws(tmp_path, capsys):
+    file, plot = tmp_path / "mine.toml", tmp_path / "mine.svg"
+    file.write_text(SCENE)
+    out = tmp_path / "a.json"
+    extra = ["--plot", str(plot)] if find_spec("matplotlib") else []
+    assert main(["bench", str(file), "--quick", "--methods", "exact,taylor,dop853", "--out", str(out), *extra]) == 0
+    assert "time against error" in capsys.readouterr().out
+    assert json.loads(out.read_text())["format"] == "symrot work-precision 1"
+    if extra:
+        assert "symrot Taylor" in re.sub(r"<!--|-->", "", plot.read_text())
+    assert main(["bench", "--compare", str(out), str(out), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["ratios"]["taylor"]["mean"] == pytest.approx(1.0)
+    assert main(["bench", "--list"]) == 0
+    assert "symrot.bench.dense" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ([], "exactly one of"),
+        (["--skip", "--list"], "exactly one of"),
+        (["tumbling_prism", "--list"], "takes no SCENE"),
+        (["--skip", "--methods", "taylor"], "takes no --methods"),
+        (["tumbling_prism", "--methods", "euler"], "'euler'"),
+        (["tumbling_prism", "--out", "x.txt"], ".json"),
+        (["tumbling_prism", "--plot", "x.doc"], ".svg"),
+        (["tumbling_prism", "-o", "x"], "takes no -o"),
+        (["no_such_scene"], "no_such_scene"),
+        (["--compare", "a.json", "b.json"], "a.json"),
+    ],
+)
+def test_bad_options_are_one_sentence(words, said, capsys):
+    assert main(["bench", *words]) == 2
+    error = capsys.readouterr().err
+    assert said in error
+    assert error.count("\n") == 1
+
+
+def test_every_study_that_is_listed_is_there():
+    for name in command.STUDIES:
+        assert find_spec(f"symrot.bench.{name}"), name
+    assert {path.stem for path in Path(command.__file__).parent.glob("*.py")} > set(command.STUDIES)
