@@ -12,7 +12,7 @@ from time import perf_counter
 from typing import Any, NoReturn, TextIO
 
 import symrot
-from symrot.errors import InputError, SymrotError
+from symrot.errors import CertificateError, InputError, SymrotError
 from symrot.report.layout import emphasis, one_line
 
 __all__ = ["main"]
@@ -129,6 +129,8 @@ def _emit(options: Namespace) -> int:
         if options.directory is None:
             sys.stdout.write("\n".join(found.values()))
             return GOOD
+        if options.target != "numpy":
+            found |= kernels.certificate_files(options.kernel, options.directory)
         written = kernels.write_files(options.directory, found)
     _progress("")
     _say(str(path) for path in written)
@@ -281,6 +283,40 @@ def _bound(options: Namespace) -> int:
     return GOOD
 
 
+def _certify(options: Namespace) -> int:
+    from symrot.report import certificates
+
+    found, written = certificates.certify(
+        options.kernel, options.box, options.directory, options.objects, not options.no_bounds, _progress
+    )
+    _progress("")
+    _say_json(found) if options.json else _say([*certificates.lines(found), *map(str, written)])
+    return GOOD
+
+
+def _audit(options: Namespace) -> int:
+    from symrot.report import certificates
+
+    found: dict[str, list[str]] = {}
+    try:
+        for path in options.certificates:
+            found[str(path)] = certificates.audit_file(
+                path, options.object, options.rerun_bounds, options.coq, _progress
+            )
+    except CertificateError as reason:
+        _progress("")
+        if options.json:
+            _say_json({"holds": False, "reason": one_line(str(reason)), "certificates": found})
+        sys.stderr.write(f"symrot: {one_line(str(reason))}\n")
+        return FAILED
+    _progress("")
+    if options.json:
+        _say_json({"holds": True, "certificates": found})
+    else:
+        _say(line for each in found.values() for line in each)
+    return GOOD
+
+
 # --- what each takes --------------------------------------------------------------------------------------------------
 
 
@@ -402,6 +438,24 @@ def _bound_arguments(parser: ArgumentParser) -> None:
     _json_option(parser)
 
 
+def _certify_arguments(parser: ArgumentParser) -> None:
+    parser.add_argument("kernel", metavar="KERNEL", help="a kernel of the library, its C file, or a scene")
+    parser.add_argument("--box", metavar="NAME=LOW:HIGH", action="append", default=[],
+                        help="range of an input for the bounds of rounding errors; may be repeated")  # fmt: skip
+    parser.add_argument("--objects", action="store_true", help="compile it, and compare the object code with it")
+    parser.add_argument("--no-bounds", action="store_true", help="leave the bounds of rounding errors out")
+    parser.add_argument("-o", type=Path, metavar="DIR", dest="directory", help="write kernel and certificate there")
+    _json_option(parser)
+
+
+def _audit_arguments(parser: ArgumentParser) -> None:
+    parser.add_argument("certificates", type=Path, nargs="+", metavar="FILE.cert.json", help="the files beside it")
+    parser.add_argument("--object", type=Path, metavar="FILE.o", help="what your compiler made of the C file")
+    parser.add_argument("--rerun-bounds", action="store_true", help="find the bounds of rounding errors again")
+    parser.add_argument("--coq", action="store_true", help="have Coq check the theorem about the kernel")
+    _json_option(parser)
+
+
 COMMANDS: dict[str, tuple[str, Callable[[Namespace], int], Callable[[ArgumentParser], None]]] = {
     "run": ("propagate a scene and summarise its motion", _run, _run_arguments),
     "explain": ("show what is computed for a scene, what is skipped and why", _explain, _explain_arguments),
@@ -410,6 +464,8 @@ COMMANDS: dict[str, tuple[str, Callable[[Namespace], int], Callable[[ArgumentPar
     "check": ("decide whether formulas hold, and what would", _check, _check_arguments),
     "identify": ("say what a formula is, whatever its symbols are called", _identify, _identify_arguments),
     "emit": ("print a kernel of the library, or that of a scene, as C or NumPy", _emit, _emit_arguments),
+    "certify": ("certify a kernel: laws, C text, rounding errors, object code", _certify, _certify_arguments),
+    "audit": ("check that a certificate holds for the files beside it", _audit, _audit_arguments),
     "bound": ("bound the rounding errors of a kernel on a box of inputs", _bound, _bound_arguments),
     "selftest": ("check that this machine computes as the certificates assume", _selftest, _selftest_arguments),
     "bench": ("measure time against error, on a scene of yours", _bench, _bench_arguments),

@@ -3,13 +3,16 @@
 import re
 from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from symrot.errors import InputError
 from symrot.planner import Plan, make_plan
 from symrot.scene import Scene, load_scene
 
-__all__ = ["TARGETS", "Emitted", "emit", "kernel_names", "plan"]
+if TYPE_CHECKING:
+    from symrot.certify.certificate import Subject
+
+__all__ = ["TARGETS", "Emitted", "emit", "kernel_names", "plan", "subject"]
 
 TARGETS = ("c", "numpy")
 
@@ -30,7 +33,9 @@ class Emitted(_Texts):
 
     @cached_property
     def certificate(self) -> str:
-        return _certificate(self.kernel)
+        from symrot.certify.certificate import certificate_text
+
+        return certificate_text(subject(self.kernel))
 
 
 def _scene(source: Scene | str | Path) -> Scene:
@@ -87,9 +92,8 @@ def _is_kernel(kernel: Any) -> bool:
     return isinstance(kernel, str) and kernel in kernel_names()
 
 
-def _certificate(kernel: Scene | str | Path) -> str:
-    """Return the certificate of a kernel or of a scene's own kernel, from the texts that are emitted of it."""
-    from symrot.certify.certificate import certificate_text
+def subject(kernel: Scene | str | Path) -> "Subject":
+    """Return a kernel of the library or a scene's own kernel as something to certify, with the texts emitted of it."""
     from symrot.certify.subjects import library_subject, scene_subject
     from symrot.codegen.c_source import MATH_HEADER
     from symrot.codegen.math_header import math_header
@@ -102,11 +106,11 @@ def _certificate(kernel: Scene | str | Path) -> str:
     files |= {MATH_HEADER: math_header()} if f'"{MATH_HEADER}"' in c.source else {}
     files[f"../numpy/{c.name}.py" if is_kernel else f"../../numpy/scenes/{c.name}.py"] = numpy.source
     if is_kernel:
-        return certificate_text(library_subject(definition(kernel), _library_kernel(kernel, "c")[1], files))
+        return library_subject(definition(kernel), _library_kernel(kernel, "c")[1], files)
     found = plan(kernel)
     equations = equations_of_motion(found.structure)
     lowered, description = _scene_rates(found, equations, "c")
-    return certificate_text(scene_subject(equations, lowered.program, lowered.parameters, description, files))
+    return scene_subject(equations, lowered.program, lowered.parameters, description, files)
 
 
 def kernel_names() -> tuple[str, ...]:

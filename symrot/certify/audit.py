@@ -130,4 +130,6 @@ def _check_readback(data: Data, source: str) -> None:
         if not one.digest() == batch.digest() == said["digest"]:
             raise CertificateError(f"{data['kernel']}.c: expected {name} to be the operations that were certified")
         if said["operations"] != one.counts():
-            raise CertificateError(f"{data['kernel']}.c: expected the operation counts of {name} as they were certified")
+            raise CertificateError(
+                f"{data['kernel']}.c: expected the operation counts of {name} as they were certified"
+            )

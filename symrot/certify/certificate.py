@@ -134,7 +134,9 @@ def _proven(subject: Subject) -> Data:
     known = {str(symbol): value for symbol, value in subject.named} | dict(subject.formulas.values())
     return {
         "laws": [_law(prove_law(subject.name, law, known)) for law in subject.laws],
-        "readback": {f"{subject.name}{suffix}": _readback(subject, suffix, real) for suffix, real in subject.types.items()},
+        "readback": {
+            f"{subject.name}{suffix}": _readback(subject, suffix, real) for suffix, real in subject.types.items()
+        },
     }
 
 
@@ -165,8 +167,9 @@ def _readback(subject: Subject, suffix: str, real: str) -> Data:
     if one.digest() != batch.digest():
         raise CertificateError(f"{file}: expected {name} and {name}_batch to compute the same, and they do not")
     symbols = {place: symbol for place, (symbol, _) in subject.places.items()}
-    proof = prove_equal(one, symbols, {place: f for place, (_, f) in subject.formulas.items()}, subject.named,
-                        subject.parameters)
+    proof = prove_equal(
+        one, symbols, {place: f for place, (_, f) in subject.formulas.items()}, subject.named, subject.parameters
+    )
     return {
         "type": real,
         "operations": one.counts(),
@@ -192,8 +195,10 @@ def seal(data: Data) -> str:
 
 
 SLOTS: dict[str, Callable[[Data, Any], bool]] = {  # what other rooms fill in: whether it is about this certificate
-    "rounding": lambda data, found: [part["operations_sha256"] for part in found["precisions"]]
-    == [function["digest"] for function in data["readback"].values()],
+    "rounding": lambda data, found: (
+        [part["operations_sha256"] for part in found["precisions"]]
+        == [function["digest"] for function in data["readback"].values()]
+    ),
     "objects": lambda data, found: data["files"].get(found["source"]["name"]) == found["source"]["sha256"],
 }
 

@@ -88,4 +88,3 @@ def scene_laws(equations: Equations) -> tuple[Law, ...]:
         wanted = qmul(motion.quaternion, [0, *motion.omega_b]) / 2
         found.append(Law("dq/dt is q (0, omega) / 2", tuple(turned - Matrix(wanted)), relations))
     return tuple(found)
-

@@ -17,12 +17,13 @@ from symrot.kernels.library import definition, kernel_names
 from symrot.report.layout import columns
 from symrot.scene_reader import nearest
 
-__all__ = ["facts", "lines", "target_facts", "target_lines"]
+__all__ = ["facts", "given", "lines", "target_facts", "target_lines"]
 
 PRECISIONS = {"double": "", "float": "f"}
 
 
-def _given(kernel: str, ranges: Sequence[str], precision: str) -> tuple[Operations, Problem, dict[str, Any]]:
+def given(kernel: str, ranges: Sequence[str], precision: str) -> tuple[Operations, Problem, dict[str, Any]]:
+    """Return the operations of a kernel of the library, its problem, and its box with some ranges replaced."""
     if kernel not in kernel_names():
         hint = nearest(kernel, kernel_names())
         raise InputError(
@@ -61,7 +62,7 @@ def facts(kernel: str, ranges: Sequence[str], precision: str) -> dict[str, Any]:
     InputError
         For a kernel or a range that is none, or a box on which an output has no bound.
     """
-    operations, found, box = _given(kernel, ranges, precision)
+    operations, found, box = given(kernel, ranges, precision)
     return {"kernel": operations.name} | rounding_section(operations, None, box, found.region)
 
 
@@ -114,7 +115,7 @@ def target_facts(
     variables : sequence of str
         Inputs whose ranges are resized; all if there are none.
     """
-    operations, found, box = _given(kernel, ranges, precision)
+    operations, found, box = given(kernel, ranges, precision)
     places = [found.place(name) for name in variables] or None
     size, largest = largest_box(operations, box, target, places, found.region)
     bounds = bound_outputs(operations, largest, found.region)

@@ -1,20 +1,28 @@
 """Emitted kernels as files: one, or the library and those of all shipped scenes, and whether the files are stale."""
 
+import json
+import os
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from difflib import unified_diff
+from itertools import repeat
 from pathlib import Path
+from typing import Any
 
+from symrot.certify import recheck
+from symrot.certify.certificate import with_slots
 from symrot.certify.selftest import selftest_files
-from symrot.errors import InputError
 from symrot.codegen.build_files import build_files
+from symrot.errors import InputError
 from symrot.interface import emit
 from symrot.kernels.library import definition, kernel_names
 from symrot.report.files import write
 from symrot.scene_file import shipped_names
 
-__all__ = ["kernel_files", "kernel_lines", "stale", "write_all", "write_files"]
+__all__ = ["certificate_files", "kernel_files", "kernel_lines", "stale", "write_all", "write_files"]
 
-SUFFIXES = {"c": (".c", ".h", ".txt", ".in"), "numpy": (".py",)}
+SUFFIXES = {"c": (".c", ".h", ".json", ".txt", ".in"), "numpy": (".py",)}
+WORKERS = min(os.cpu_count() or 1, 4)
 SCENES = "scenes"  # under the folder of each target: the kernels of shipped scenes; those of the library beside it
 
 
@@ -36,18 +44,47 @@ def kernel_files(kernel: str | Path, target: str) -> dict[str, str]:
     return {f"{found.name}.h": found.header, f"{found.name}.c": found.source} | shared
 
 
-def _all_files(targets: Sequence[str], progress: Callable[[str], object]) -> dict[str, str]:
-    """Return path -> text of the library and of the kernels of all shipped scenes."""
+def certificate_files(kernel: str | Path, directory: Path) -> dict[str, str]:
+    """Return file name -> text of the certificate of a kernel; bounds and verdicts that still hold are kept."""
+    found = emit(kernel, "c")
+    name = f"{found.name}.cert.json"
+    return {name: with_slots(found.certificate, _slots(directory / name))}
+
+
+def _slots(path: Path) -> dict[str, Any]:
+    """Return the certificate that is there, of which bounds and verdicts are kept; nothing for none."""
+    try:
+        found = json.loads(path.read_bytes())
+    except (OSError, ValueError, RecursionError):
+        return {}
+    return found if isinstance(found, dict) else {}
+
+
+def _files_of(name: str, room: str, targets: Sequence[str], directory: Path) -> dict[str, str]:
+    """Return path -> text of one kernel, its certificate included."""
     files: dict[str, str] = {}
-    for room, names in (("", kernel_names()), (f"{SCENES}/", shipped_names())):
-        for name in names:
+    for target in targets:
+        found = kernel_files(name, target)
+        if target == "c":
+            found |= certificate_files(name, directory / target / room)
+        files |= {f"{target}/{room}{file}": text for file, text in found.items()}
+    return files
+
+
+def _all_files(targets: Sequence[str], directory: Path, progress: Callable[[str], object]) -> dict[str, str]:
+    """Return path -> text of the library and of the kernels of all shipped scenes; several processes print them."""
+    work = [(name, room) for room, names in (("", kernel_names()), (f"{SCENES}/", shipped_names())) for name in names]
+    files: dict[str, str] = {}
+    with ProcessPoolExecutor(WORKERS) as pool:
+        names, rooms = zip(*work, strict=True)
+        for name, found in zip(
+            names, pool.map(_files_of, names, rooms, repeat(targets), repeat(directory), chunksize=8), strict=True
+        ):
             progress(f"emitting {name} ..")
-            for target in targets:
-                files |= {f"{target}/{room}{file}": text for file, text in kernel_files(name, target).items()}
+            files |= found
     if "c" in targets:
-        files |= {f"c/{file}": text for file, text in build_files().items()}
-    if "c" in targets:
-        files |= {f"c/{file}": text for file, text in selftest_files().items()}
+        files |= {f"c/{file}": text for file, text in (build_files() | selftest_files()).items()}
+        files["recheck.py"] = Path(recheck.__file__).read_text(encoding="utf-8")
     return files
 
 
@@ -86,7 +123,7 @@ def write_files(directory: Path, files: Mapping[str, str]) -> list[Path]:
 
 def write_all(directory: Path, targets: Sequence[str], progress: Callable[[str], object]) -> list[Path]:
     """Write the library and the kernels of all shipped scenes, remove others, return the paths that changed."""
-    files = _all_files(targets, progress)
+    files = _all_files(targets, directory, progress)
     changed = write_files(directory, files)
     for name in _printed_before(directory, targets):
         if name not in files:
@@ -105,7 +142,7 @@ def stale(directory: Path, targets: Sequence[str], progress: Callable[[str], obj
     """
     if not directory.is_dir():
         raise InputError(f"{str(directory)!r}: expected the folder that `symrot emit --all` writes, there is none")
-    files = _all_files(targets, progress)
+    files = _all_files(targets, directory, progress)
     lines: list[str] = []
     for name in sorted({*files, *_printed_before(directory, targets)}):
         path = directory / name

@@ -1,0 +1,200 @@
+"""Certify kernels and audit certificates, as `symrot certify` and `symrot audit` do."""
+
+import json
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from symrot.certify.audit import audit, operations_of
+from symrot.certify.certificate import Data, Subject, with_slots
+from symrot.errors import CertificateError, InputError
+from symrot.interface import emit, kernel_names, subject
+from symrot.report.kernels import certificate_files, kernel_files, write_files
+from symrot.scene_file import shipped_names
+from symrot.scene_reader import nearest
+
+__all__ = ["audit_file", "certify", "lines"]
+
+
+def _known(data: Data) -> Subject | None:
+    """Return the kernel that a certificate should be about, as it is emitted now; None if symrot knows none."""
+    name = data["kernel"]
+    if name in kernel_names():
+        return subject(name)
+    scene = str(data["regenerate"]).removeprefix("symrot emit ").removesuffix(" --target c")
+    if scene in shipped_names() and emit(scene).name == name:
+        return subject(scene)
+    return None
+
+
+def audit_file(
+    path: Path, object_file: Path | None = None, rerun: bool = False, coq: bool = False,
+    progress: Callable[[str], object] = lambda text: None,
+) -> list[str]:  # fmt: skip
+    """Return, line by line, what of a certificate was found to hold.
+
+    Parameters
+    ----------
+    path : Path
+        NAME.cert.json, the files that it names beside it.
+    object_file : Path, optional
+        What a compiler made of NAME.c: compared with it, rounding for rounding.
+    rerun : bool
+        Whether bounds of rounding errors are found again; else they are compared with their lower bounds.
+    coq : bool
+        Whether Coq checks the theorem about the kernel.
+
+    Raises
+    ------
+    CertificateError
+        With the first thing that does not hold.
+    """
+    progress(f"auditing {path.name} ..")
+    data, found = audit(path, _known)
+    source = path.with_name(f"{data['kernel']}.c")
+    text = source.read_text(encoding="utf-8")
+    found += _bounds(data, text, rerun, progress)
+    if object_file is not None:
+        found += _objects(text, object_file, source.name)
+    if coq:
+        found += _coq(data, progress)
+    return found
+
+
+def _bounds(data: Data, text: str, rerun: bool, progress: Callable[[str], object]) -> list[str]:
+    if data.get("rounding") is None:
+        if rerun:
+            raise CertificateError(f"{data['kernel']}: expected bounds to find again, and the certificate holds none")
+        return ["no bounds of rounding errors (`symrot certify` adds them)"]
+    from symrot.certify.rounding import check_section
+
+    progress("bounding ..")
+    kernels = list(operations_of(data, text).values())
+    check_section(data["rounding"], kernels[0], kernels[1] if len(kernels) > 1 else None, rerun)
+    how = "found again" if rerun else "those of these operations, above their lower bounds"
+    return [f"bounds of rounding errors on the box: {how}"]
+
+
+def _objects(text: str, path: Path, where: str) -> list[str]:
+    from symrot.certify.object_code import compare_object
+
+    verdicts = compare_object(text, path, where=where)
+    refused = [verdict for verdict in verdicts if not verdict.accepted]
+    if refused:
+        raise CertificateError(f"{path}: {refused[0].sentence()}")
+    return [f"{path}: {verdict.sentence()}" for verdict in verdicts]
+
+
+def _coq(data: Data, progress: Callable[[str], object]) -> list[str]:
+    from symrot.certify.coq_check import check_kernel, coqc
+
+    if data["coq"] is None:
+        return ["no theorem of Coq is about this kernel"]
+    if coqc() is None:
+        return ["Coq is not installed (Debian package coq): its theorem was not checked"]
+    progress("checking with Coq ..")
+    result = check_kernel(data["kernel"])
+    if not result:
+        raise CertificateError(f"{data['kernel']}: {result.problems[0]}")
+    return [f"Coq {result.version} accepts the theorem {data['coq']['theorem']} of {data['coq']['file']}"]
+
+
+def certify(
+    kernel: str, ranges: Sequence[str] = (), directory: Path | None = None, objects: bool = False,
+    bounds: bool = True, progress: Callable[[str], object] = lambda text: None,
+) -> tuple[Data, list[Path]]:  # fmt: skip
+    """Return the certificate of a kernel, everything in it found or fetched now, and the files written.
+
+    Parameters
+    ----------
+    kernel : str
+        A kernel of the library, a scene, or NAME.c: a file that has to be what symrot emits.
+    ranges : sequence of str
+        ``NAME=LOW:HIGH`` for the box on which rounding errors are bounded; other ranges are the kernel's own.
+    directory : Path, optional
+        Where the kernel and its certificate are written; nowhere if left out.
+    objects : bool
+        Whether the kernel is compiled, and the object code compared with it, for the compilers that are there.
+    bounds : bool
+        Whether rounding errors are bounded; kernels of the library only.
+
+    Raises
+    ------
+    InputError, CertificateError
+        For a kernel that is none, an edited file, a box that cannot be, a proof that fails.
+    """
+    name = _emitted(kernel) if kernel.endswith(".c") else kernel
+    progress("proving ..")
+    texts = kernel_files(name, "c")
+    (file, text), = certificate_files(name, directory or Path()).items()  # fmt: skip
+    slots: Data = {key: value for key, value in json.loads(text).items() if key in ("rounding", "objects")}
+    if name in kernel_names() and bounds:
+        progress("bounding ..")
+        slots["rounding"] = _rounding(name, ranges)
+    elif ranges:
+        raise InputError(f"--box: expected a kernel of the library, got {name!r}")
+    if objects:
+        progress("comparing object code ..")
+        slots["objects"] = _objects_of(texts, f"{json.loads(text)['kernel']}.c")
+    text = with_slots(text, slots)
+    return json.loads(text), write_files(directory, texts | {file: text}) if directory else []
+
+
+def _emitted(path: str) -> str:
+    """Return the name of the kernel that a C file holds, if the file is as symrot emits it."""
+    name = Path(path).stem
+    if name not in kernel_names():
+        hint = nearest(name, kernel_names())
+        raise InputError(f"{path}: expected the C file of a kernel of the library{f' ({hint})' if hint else ''}")
+    try:
+        text = Path(path).read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as reason:
+        raise InputError(f"{path}: expected a C file that can be read ({reason})") from None
+    if text != emit(name).source:
+        raise CertificateError(f"{path}: expected the text that symrot emits for {name}, and it was edited")
+    return name
+
+
+def _rounding(name: str, ranges: Sequence[str]) -> Data:
+    from symrot.certify.rounding import rounding_section
+    from symrot.certify.rounding_library import operations_of as both
+    from symrot.report.bounds import given
+
+    _, found, box = given(name, ranges, "double")
+    return rounding_section(*both(name, emit(name).source), box, found.region)
+
+
+def _objects_of(texts: dict[str, str], source: str) -> Data:
+    from symrot.certify.object_code_build import objects_section
+
+    with TemporaryDirectory(prefix="symrot-") as directory:
+        write_files(Path(directory), texts)
+        return objects_section(Path(directory) / source)
+
+
+def lines(data: Data) -> list[str]:
+    """Return a certificate in words, line by line."""
+    said = [f"{data['kernel']}: {data['title']}", f"  domain    {data['domain']}"]
+    said += [f"  link 1    {law['law']}: proven" for law in data["laws"]]
+    if data["coq"]:
+        said.append(f"  link 2    theorem {data['coq']['theorem']} of {data['coq']['file']} (`symrot prove` checks it)")
+    for name, each in data["readback"].items():
+        series = "".join(f"; series of {s[0]} leaves out less than {_short(s[3])} of it" for s in each["series"])
+        said.append(
+            f"  link 3    {name} and its batch are the formulas, {sum(each['operations'].values())} operations{series}"
+        )
+    for part in (data.get("rounding") or {"precisions": []})["precisions"]:
+        worst = max(part["outputs"], key=lambda item: float.fromhex(item["absolute"]))
+        said.append(
+            f"  link 4    {part['precision']}: error at most {float.fromhex(worst['absolute']):.3g} on the box ({worst['output']})"
+        )
+    for item in (data.get("objects") or {"objects": []})["objects"]:
+        verdict = "is the C text" if item["accepted"] else "is not the C text"
+        said.append(f"  link 5    {item['compiler']} {item['flags']}: object code {verdict}")
+    required = ", ".join(data["flags"]["required"])
+    return [*said, f"  flags     required {required}; void under {', '.join(data['flags']['void'])}"]
+
+
+def _short(text: str) -> str:
+    above, _, below = text.partition("/")
+    return f"{int(above) / int(below or 1):.2g}"
