@@ -16,7 +16,10 @@ from symrot.report.layout import fields
 __all__ = ["clear_cache", "facts", "lines"]
 
 NEEDED = ("sympy", "numpy", "scipy")
-EXTRAS = {"plot": ("matplotlib",), "test": ("pytest", "pytest-xdist", "hypothesis"), "dev": ("ruff", "mypy")}
+EXTRAS = {
+    "plot": ("matplotlib",), "bench": ("heyoka",), "test": ("pytest", "pytest-xdist", "hypothesis"),
+    "dev": ("ruff", "mypy"),
+}  # fmt: skip
 SECONDS_TO_ANSWER = 10
 TINY = "double symrot_check(double x) { return 3.0*x + 0.5; }\n"
 
