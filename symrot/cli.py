@@ -430,7 +430,7 @@ def _selftest_arguments(parser: ArgumentParser) -> None:
 def _bound_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("kernel", metavar="KERNEL", help="a kernel of the library (see `symrot emit --list`)")
     parser.add_argument("--box", metavar="NAME=LOW:HIGH", action="append", default=[],
-                        help="range of an input, such as theta=-1.4:1.4 (default: the kernel's own); may be repeated")  # fmt: skip
+                        help="range of an input, theta=-1.4:1.4 (default: the kernel's); may be repeated")  # fmt: skip
     parser.add_argument("--target", type=float, metavar="X", help="find the largest box on which no error is above X")
     parser.add_argument("--variable", metavar="NAME", action="append", default=[],
                         help="with --target: resize the range of this input alone; may be repeated")  # fmt: skip

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from symrot.certify.operations import Operations
-from symrot.certify.rounding_adjoint import LIBM_ULP, Region, evaluate
+from symrot.certify.rounding_adjoint import EVERYWHERE, LIBM_ULP, Region, evaluate
 from symrot.certify.rounding_cone import Cone, cone_of
 from symrot.certify.rounding_intervals import DIGITS, Array
 from symrot.certify.rounding_store import Store
@@ -82,7 +82,7 @@ class Task:
 
 
 def tasks(
-    operations: Operations, box: Box, region: Region = Region(), budget: int = BUDGET, libm_ulp: float = LIBM_ULP
+    operations: Operations, box: Box, region: Region = EVERYWHERE, budget: int = BUDGET, libm_ulp: float = LIBM_ULP
 ) -> dict[str, Task]:
     """Return what has to be bounded for each output.
 
@@ -139,7 +139,7 @@ def bound_task(task: Task, fresh: bool = False) -> Search:
 
 
 def bound_outputs(
-    operations: Operations, box: Box, region: Region = Region(), budget: int = BUDGET, libm_ulp: float = LIBM_ULP,
+    operations: Operations, box: Box, region: Region = EVERYWHERE, budget: int = BUDGET, libm_ulp: float = LIBM_ULP,
     fresh: bool = False,
 ) -> tuple[OutputBound, ...]:  # fmt: skip
     """Return the bound of each output on a box.
@@ -204,7 +204,7 @@ def _assumptions(libm_ulp: float) -> list[str]:
 
 
 def rounding_section(
-    operations_double: Operations, operations_float: Operations | None, box: Box, region: Region = Region(),
+    operations_double: Operations, operations_float: Operations | None, box: Box, region: Region = EVERYWHERE,
     budget: int = BUDGET, libm_ulp: float = LIBM_ULP, fresh: bool = False,
 ) -> dict[str, Any]:  # fmt: skip
     """Return link 4 of a certificate as plain data, numbers as hexadecimal text: the same bytes on every machine.
@@ -261,10 +261,10 @@ def _units(value: float) -> str:
     """Return a number in decimal, four digits, rounded up."""
     if value == 0:
         return "0"
-    digits = 4 - len(str(int(value))) if value >= 1 else 4
-    step = Fraction(10) ** -digits
+    exponent = len(str(int(value))) - 1 if value >= 1 else -1
+    step = Fraction(10) ** (exponent - 3)
     up = -(-Fraction(value) // step) * step
-    return f"{float(up):.{max(digits, 0)}f}"
+    return f"{float(up):.{max(3 - exponent, 0)}f}" if exponent < 9 else f"{float(up):.4e}"
 
 
 def check_section(
@@ -282,7 +282,10 @@ def check_section(
     """
     kernels = {kernel.precision: kernel for kernel in (operations_double, operations_float) if kernel is not None}
     try:
-        box = {place: tuple(Fraction(float.fromhex(x)) for x in ends) for place, ends in section["box"].items()}
+        box = {
+            place: (Fraction(float.fromhex(low)), Fraction(float.fromhex(high)))
+            for place, (low, high) in section["box"].items()
+        }
         region = Region(tuple(map(tuple, section["unit_groups"])), float.fromhex(section["clearance"]))
         libm_ulp, budget = float.fromhex(section["libm_ulp"]), int(section["budget"])
         for part in section["precisions"]:
@@ -291,7 +294,9 @@ def check_section(
     except (KeyError, TypeError, ValueError, AttributeError, OverflowError) as error:
         if isinstance(error, CertificateError | InputError):
             raise CertificateError(str(error)) from None
-        raise CertificateError(f"expected a section of rounding bounds, got one without or with a bad {error}") from None
+        raise CertificateError(
+            f"expected a section of rounding bounds, got one without or with a bad {error}"
+        ) from None
     if said != list(kernels):
         raise CertificateError(f"expected bounds for {' and '.join(kernels)}, got {' and '.join(said) or 'none'}")
     if section.get("meaning") != MEANING or section.get("assumptions") != _assumptions(libm_ulp):

@@ -25,10 +25,12 @@ from symrot.certify.operations import Node
 from symrot.certify.rounding_cone import Cone, is_short, places_of
 from symrot.certify.rounding_intervals import DIGITS, Array
 
-__all__ = ["LIBM_ULP", "Evaluation", "Region", "evaluate"]
+__all__ = ["EVERYWHERE", "LIBM_ULP", "UNIT_NORM", "Evaluation", "Region", "evaluate"]
 
 LIBM_ULP = 1.0  # error of sin, cos and atan2, in units in the last place of the exact value
-UNIT_NORM = 2.0**-20  # how far the squared norm of a unit quaternion may be from 1: that of rounded components is nearer
+UNIT_NORM = (
+    2.0**-20
+)  # how far the squared norm of a unit quaternion may be from 1: that of rounded components is nearer
 
 
 @dataclass(frozen=True)
@@ -41,6 +43,9 @@ class Region:
 
     unit: tuple[tuple[str, ...], ...] = ()
     clearance: float = 0.0
+
+
+EVERYWHERE = Region()
 
 
 @dataclass(frozen=True)
@@ -127,7 +132,7 @@ def _power_of_two(node: Node) -> bool:
     if node[0] != "const" or not node[1]:
         return False
     above, below = abs(node[1].numerator), node[1].denominator
-    return above & (above - 1) == 0 and below & (below - 1) == 0
+    return bool(above & (above - 1) == 0 and below & (below - 1) == 0)
 
 
 def _product(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Array | None]:
@@ -204,7 +209,8 @@ def _sinc(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Arr
 
 
 def _arc_ratio(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Array | None]:
-    value, _, _ = functions.arc_ratio_terms(*taken, _length(*taken))
+    s, c = taken
+    value, _, _ = functions.arc_ratio_terms(s, c, _length(s, c))
     return state.relative(value, 2 * state.libm_ulp + 1, 0.0)
 
 
@@ -373,7 +379,7 @@ _POSSIBLE: dict[str, Callable[[Array, Array], Any]] = {  # whether a relation ma
 
 
 def evaluate(
-    cone: Cone, boxes: Array, decided: NDArray[np.int8], region: Region = Region(), libm_ulp: float = LIBM_ULP
+    cone: Cone, boxes: Array, decided: NDArray[np.int8], region: Region = EVERYWHERE, libm_ulp: float = LIBM_ULP
 ) -> Evaluation:
     """Return bounds of the rounding error of an output on boxes.
 

@@ -60,7 +60,9 @@ def loosest(kernel: str) -> float:
     return LOOSEST[max(starts, key=len)]
 
 
-def compare(operations: Operations, bounds: Sequence[OutputBound], measured: Sequence[Measured], kernel: str) -> list[Row]:
+def compare(
+    operations: Operations, bounds: Sequence[OutputBound], measured: Sequence[Measured], kernel: str
+) -> list[Row]:
     """Return a row for each output."""
     unit = 2.0 ** -DIGITS[operations.precision]
     return [

@@ -31,7 +31,8 @@ class Cone:
 
     Beside the kinds of :class:`Operations` there are ``("square", i)``, ``("sin", i)``, ``("cos", i)``,
     ``("atan2", i, j)``, ``("norm", roundings, i, ...)``, ``("sinc", i)``, ``("arc_ratio", i, j)``,
-    ``("gap", name, Cone, i)`` and ``("select", condition, x, y)``; an input is ``("in", number)``. ``conditions`` are (relation, i, j).
+    ``("gap", name, Cone, i)`` and ``("select", condition, x, y)``; an input is ``("in", number)``. ``conditions`` are
+    (relation, i, j).
     """
 
     precision: str
@@ -75,7 +76,7 @@ class Cone:
         """Each condition on what is rounded: its text, and whether its branches differ by whole turns only."""
         found = []
         for number, (relation, i, j) in enumerate(self.conditions):
-            if self.exact[i] and self.exact[j] or relation == "<":
+            if (self.exact[i] and self.exact[j]) or relation == "<":
                 continue
             turns = all(
                 _turned(self, node[2]) == _turned(self, node[3])
@@ -226,10 +227,11 @@ def _at_zero(reader: _Reader, node: Node) -> tuple[Node, Node] | None:
 
 def _sinc(reader: _Reader, node: Node) -> int | None:
     branches = _at_zero(reader, node)
-    if branches and branches[0] == ("const", Fraction(1)):
-        if reader.source[branches[1][1]] == ("call", "sin", (node[2],)):
-            return reader.put("sinc", reader.read(node[2]))
-    return None
+    if not branches or branches[0] != ("const", Fraction(1)):
+        return None
+    if reader.source[branches[1][1]] != ("call", "sin", (node[2],)):
+        return None
+    return reader.put("sinc", reader.read(node[2]))
 
 
 def _arc_ratio(reader: _Reader, node: Node) -> int | None:
@@ -291,6 +293,6 @@ def cone_of(operations: Operations, index: int) -> Cone:
         For a function whose rounding is not modelled.
     """
     reader = _Reader(operations)
-    root = reader.read(index)
+    reader.read(index)
     places = tuple(sorted(reader.numbers, key=reader.numbers.__getitem__))
     return Cone(operations.precision, places, tuple(reader.nodes), tuple(reader.conditions))

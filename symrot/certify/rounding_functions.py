@@ -121,7 +121,11 @@ def _over(numerator: Array, z: Array, power: int) -> Array:
 _times = multiply_loosely
 sinc = _Even(_SINC, lambda z, s, c: s, lambda z, s, c: s, 4.4, 1.0)
 sine_gap = _Even(
-    _SINE_GAP, lambda z, s, c: (1 - s) / (z * z), lambda z, s, c: _over(add(np.ones_like(s), negative(s)), z, 2), 6.0, 1 / 6
+    _SINE_GAP,
+    lambda z, s, c: (1 - s) / (z * z),
+    lambda z, s, c: _over(add(np.ones_like(s), negative(s)), z, 2),
+    6.0,
+    1 / 6,
 )
 tangent_gap = _Even(
     _TANGENT_GAP, lambda z, s, c: (s - c) / (z * z), lambda z, s, c: _over(add(s, negative(c)), z, 2), 5.7, 1 / 3
@@ -175,10 +179,10 @@ def arc_tangent(y: Array, x: Array) -> Array:
 
 
 def arc_ratio_terms(s: Array, c: Array, radius: Array) -> tuple[Array, Array, Array]:
-    """Return enclosures of atan2(s, c)/s and of its derivatives by s and by c, for s >= 0, c >= 0, (s, c) not (0, 0).
+    """Return enclosures of atan2(s, c)/s and of its derivatives by s and by c, for s, c >= 0, not both 0.
 
-    With ``s = r sin(a)``, ``c = r cos(a)`` they are ``1/(r sinc a)``, ``-4 a sine_gap(2a)/(r sinc a)^2`` and ``-1/r^2``,
-    which are finite at ``a = 0``.
+    With ``s = r sin(a)``, ``c = r cos(a)`` they are ``1/(r sinc a)``, ``-4 a sine_gap(2a)/(r sinc a)^2`` and
+    ``-1/r^2``, which are finite at ``a = 0``.
     """
     angle = np.clip(arc_tangent(s, c), 0.0, pi / 2 + SLACK)
     one = np.ones_like(s)

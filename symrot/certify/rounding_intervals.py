@@ -14,8 +14,8 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["ETA", "Array", "add", "binade", "contains_zero", "divide", "half_ulp", "hull", "multiply", "multiply_loosely", "negative",
-           "magnitude", "point", "rounded_to", "square", "square_root", "widened"]  # fmt: skip
+__all__ = ["ETA", "Array", "add", "binade", "contains_zero", "divide", "half_ulp", "hull", "magnitude", "multiply",
+           "multiply_loosely", "negative", "point", "rounded_to", "square", "square_root", "widened"]  # fmt: skip
 
 Array: TypeAlias = NDArray[np.float64]
 
@@ -46,12 +46,12 @@ def hull(a: Array, b: Array) -> Array:
 
 def magnitude(a: Array) -> Array:
     """Return the largest absolute value in each interval."""
-    return np.maximum(-a[0], a[1])
+    return np.asarray(np.maximum(-a[0], a[1]))
 
 
 def contains_zero(a: Array) -> NDArray[np.bool_]:
     """Tell which intervals hold zero."""
-    return (a[0] <= 0) & (a[1] >= 0)
+    return np.asarray((a[0] <= 0) & (a[1] >= 0))
 
 
 def negative(a: Array) -> Array:
@@ -71,7 +71,7 @@ def add(a: Array, b: Array) -> Array:
 def _short(a: Array) -> NDArray[np.bool_]:
     """Tell which numbers have at most 26 significant bits, so that their products are exact."""
     large = a * SPLIT
-    return large - (large - a) == a
+    return np.asarray(large - (large - a) == a)
 
 
 def multiply(a: Array, b: Array) -> Array:

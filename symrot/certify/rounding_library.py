@@ -13,7 +13,7 @@ from math import inf
 from symrot.certify.operations import Operations
 from symrot.certify.readback import read_kernel
 from symrot.certify.rounding import BUDGET, Box, Task, bound_task, tasks
-from symrot.certify.rounding_adjoint import LIBM_ULP, Region
+from symrot.certify.rounding_adjoint import EVERYWHERE, LIBM_ULP, Region
 from symrot.certify.rounding_cone import cone_of
 from symrot.certify.rounding_subdivision import Search, search
 from symrot.errors import InputError
@@ -56,7 +56,7 @@ def problem(found: Definition, operations: Operations) -> Problem:
     }
     box = {place: found.box[symbol] for place, symbol in symbols.items()}
     if not any(node[0] == "call" and node[1] == "atan2" for node in operations.nodes):
-        return Problem(box, Region(), symbols)
+        return Problem(box, EVERYWHERE, symbols)
     quaternions = tuple(
         tuple(f"{each.name}[{i}]" for i in range(4))
         for each in found.inputs
@@ -129,7 +129,7 @@ def resized(box: Box, size: float, places: Sequence[str]) -> dict[str, tuple[Fra
 
 
 def largest_box(
-    operations: Operations, box: Box, target: float, places: Sequence[str] | None = None, region: Region = Region(),
+    operations: Operations, box: Box, target: float, places: Sequence[str] | None = None, region: Region = EVERYWHERE,
     budget: int = BUDGET, libm_ulp: float = LIBM_ULP,
 ) -> tuple[float, dict[str, tuple[Fraction, Fraction]]]:  # fmt: skip
     """Return the largest size, and the box of that size, on which every error is proven to be at most ``target``.
@@ -158,7 +158,9 @@ def largest_box(
 
     low, high = 0.0, 1.0
     if not holds(low):
-        raise InputError(f"{operations.name}: expected a target that is reached in the middle of the box, got {target:g}")
+        raise InputError(
+            f"{operations.name}: expected a target that is reached in the middle of the box, got {target:g}"
+        )
     while holds(high):
         low, high = high, 2 * high
         if high > LARGEST:

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from symrot.certify.operations import RELATIONS, Operations, operands
 from symrot.certify.rounded import meaning
 from symrot.certify.rounding import Box, OutputBound
-from symrot.certify.rounding_adjoint import UNIT_NORM, Region
+from symrot.certify.rounding_adjoint import EVERYWHERE, UNIT_NORM, Region
 from symrot.errors import CertificateError
 
 __all__ = ["Measured", "measure", "points_in"]
@@ -68,7 +68,8 @@ Points = NDArray[Any]  # (inputs, n)
 
 def _replay(operations: Operations, points: Points) -> tuple[list[Any], list[Any]]:
     """Return the rounded and the nearly exact values of all nodes."""
-    kind, wide = _FLOAT[operations.precision], _WIDE[operations.precision]
+    kind: Any = _FLOAT[operations.precision]
+    wide: Any = _WIDE[operations.precision]
     count = points.shape[1]
     computed: list[Any] = []
     exact: list[Any] = []
@@ -79,9 +80,9 @@ def _replay(operations: Operations, points: Points) -> tuple[list[Any], list[Any
             exact.append(value.astype(wide))
         elif node[0] == "const":
             fraction, times_pi = _meant(node[1], operations.precision)
-            value = wide(fraction.numerator) / wide(fraction.denominator)
+            meant: Any = wide(fraction.numerator) / wide(fraction.denominator)
             computed.append(np.full(count, kind(float(node[1]))))
-            exact.append(np.full(count, value * np.arctan2(wide(0), wide(-1)) if times_pi else value))
+            exact.append(np.full(count, meant * np.arctan2(wide(0), wide(-1)) if times_pi else meant))
         elif node[0] == "select":
             holds = RELATIONS[node[1]](computed[node[2]], computed[node[3]])
             computed.append(np.where(holds, computed[node[4]], computed[node[5]]))
@@ -148,11 +149,12 @@ def points_in(
     for group in region.unit:
         rows = [places.index(place) for place in group]
         inside &= np.abs((rounded[rows] ** 2).sum(axis=0) - 1) < 0.9 * UNIT_NORM
-    return rounded[:, inside].astype(kind)
+    chosen_points: Points = rounded[:, inside].astype(kind)
+    return chosen_points
 
 
 def measure(
-    operations: Operations, box: Box, bounds: Sequence[OutputBound], region: Region = Region(), points: int = 100_000,
+    operations: Operations, box: Box, bounds: Sequence[OutputBound], region: Region = EVERYWHERE, points: int = 100_000,
     seed: int = 1,
 ) -> tuple[Measured, ...]:  # fmt: skip
     """Return the largest error found of each output: at random points, near corners, and around the worst of them.

@@ -1,9 +1,9 @@
 """The largest rounding error on a box: halve the worst parts until the bound is near what single points reach.
 
 Best first, in batches: of the parts with the largest bounds, each is halved in the input whose range, shrunk about
-its middle, lowers the bound most, or split into the two branches of a choice that is not decided on it. Parts whose bound
-is not above what a single point reaches (but for ``GAP``) are settled. The work is counted in evaluations of boxes,
-not in time: the same bytes come out everywhere.
+its middle, lowers the bound most, or split into the two branches of a choice that is not decided on it. Parts whose
+bound is not above what a single point reaches (but for ``GAP``) are settled. The work is counted in evaluations of
+boxes, not in time: the same bytes come out everywhere.
 """
 
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from math import inf
 import numpy as np
 from numpy.typing import NDArray
 
-from symrot.certify.rounding_adjoint import LIBM_ULP, Evaluation, Region, evaluate
+from symrot.certify.rounding_adjoint import EVERYWHERE, LIBM_ULP, Evaluation, Region, evaluate
 from symrot.certify.rounding_cone import Cone
 from symrot.certify.rounding_intervals import Array
 
@@ -29,7 +29,8 @@ NARROWEST = 2.0**-24  # of the width of the box: a part this narrow that has no 
 class Search:
     """What was found: no error in the box is larger than ``bound``; the method finds ``pointwise`` at ``worst``.
 
-    ``turns``: the error is that modulo whole turns. ``bound`` is infinite where none was found: then ``obstacle`` is the node in the way, near ``worst``.
+    ``turns``: the error is that modulo whole turns. ``bound`` is infinite where none was found: then ``obstacle`` is
+    the node in the way, near ``worst``.
     """
 
     bound: float
@@ -154,7 +155,7 @@ class _Search:
         bounded = np.isfinite(parts.bound)  # without a bound there is nothing to lower: halve the widest
         if bounded.any():
             widest[bounded] = self.best(parts.take(bounded), relative[:, bounded], widest[bounded])
-        return widest
+        return np.asarray(widest)
 
     def best(self, parts: _Parts, relative: Array, otherwise: NDArray[np.int64]) -> NDArray[np.int64]:
         """Return the input whose range, shrunk about its middle, lowers the bound of each part most."""
@@ -169,7 +170,7 @@ class _Search:
         least = bounds.min(axis=1)
         equal = bounds <= least[:, None] * (1 + 2.0**-30)
         best = np.argmax(np.where(equal, relative.T, -1.0), axis=1)
-        return np.where(least < parts.bound, best, otherwise)
+        return np.asarray(np.where(least < parts.bound, best, otherwise))
 
 
 _UPPER = {"<": True, "<=": True, ">": False, ">=": False}  # whether the left side is the lesser where it holds
@@ -177,7 +178,7 @@ _FIELDS = ("bound", "obstacle", "undecided", "value", "turns")
 
 
 def search(
-    cone: Cone, box: Array, region: Region = Region(), budget: int = 100_000, libm_ulp: float = LIBM_ULP,
+    cone: Cone, box: Array, region: Region = EVERYWHERE, budget: int = 100_000, libm_ulp: float = LIBM_ULP,
     target: float | None = None,
 ) -> Search:  # fmt: skip
     """Return the largest rounding error of an output on a box.

@@ -26,9 +26,8 @@ def given(kernel: str, ranges: Sequence[str], precision: str) -> tuple[Operation
     """Return the operations of a kernel of the library, its problem, and its box with some ranges replaced."""
     if kernel not in kernel_names():
         hint = nearest(kernel, kernel_names())
-        raise InputError(
-            f"expected the name of a kernel (see `symrot emit --list`), got {kernel[:60]!r}{f' ({hint})' if hint else ''}"
-        )
+        said = f"expected the name of a kernel (see `symrot emit --list`), got {kernel[:60]!r}"
+        raise InputError(f"{said} ({hint})" if hint else said)
     operations = read_kernel(emit(kernel).source, f"{kernel}{PRECISIONS[precision]}", f"{kernel}.c")
     found = problem(definition(kernel), operations)
     box = dict(found.box)
@@ -66,7 +65,7 @@ def facts(kernel: str, ranges: Sequence[str], precision: str) -> dict[str, Any]:
     return {"kernel": operations.name} | rounding_section(operations, None, box, found.region)
 
 
-def _said_box(box: Mapping[str, Any], found: Problem | None = None) -> str:
+def _said_box(box: Mapping[str, Any]) -> str:
     return ", ".join(f"{place} {_short(low)} .. {_short(high)}" for place, (low, high) in box.items())
 
 
