@@ -52,13 +52,15 @@ void heavy_top_symmetric(
     const double x2 = omega_3*(A - C);
     const double x3 = 1.0/A;
     const double half_vertical_1 = q1*q3 - q0*q2;
-    const double half_1 = 0.5*omega_1;
-    const double half_2 = 0.5*omega_2;
-    const double half_3 = 0.5*omega_3;
 
     domega[0] = (moment_of_weight_3*half_vertical_2 + omega_2*x2)*x3;
     domega[1] = -((moment_of_weight_3*half_vertical_1 + omega_1*x2)*x3);
     domega[2] = 0.0;
+
+    const double half_1 = 0.5*omega_1;
+    const double half_2 = 0.5*omega_2;
+    const double half_3 = 0.5*omega_3;
+
     dq[0] = -(q1*half_1 + q2*half_2 + q3*half_3);
     dq[1] = q0*half_1 + q2*half_3 - q3*half_2;
     dq[2] = q3*half_1 + q0*half_2 - q1*half_3;
@@ -88,13 +90,15 @@ void heavy_top_symmetric_batch(
         const double x2 = omega_3*(A - C);
         const double x3 = 1.0/A;
         const double half_vertical_1 = q1*q3 - q0*q2;
-        const double half_1 = 0.5*omega_1;
-        const double half_2 = 0.5*omega_2;
-        const double half_3 = 0.5*omega_3;
 
         domega[0*n + k] = (moment_of_weight_3*half_vertical_2 + omega_2*x2)*x3;
         domega[1*n + k] = -((moment_of_weight_3*half_vertical_1 + omega_1*x2)*x3);
         domega[2*n + k] = 0.0;
+
+        const double half_1 = 0.5*omega_1;
+        const double half_2 = 0.5*omega_2;
+        const double half_3 = 0.5*omega_3;
+
         dq[0*n + k] = -(q1*half_1 + q2*half_2 + q3*half_3);
         dq[1*n + k] = q0*half_1 + q2*half_3 - q3*half_2;
         dq[2*n + k] = q3*half_1 + q0*half_2 - q1*half_3;
@@ -120,13 +124,15 @@ void heavy_top_symmetricf(
     const float x2 = omega_3*(A - C);
     const float x3 = 1.0f/A;
     const float half_vertical_1 = q1*q3 - q0*q2;
-    const float half_1 = 0.5f*omega_1;
-    const float half_2 = 0.5f*omega_2;
-    const float half_3 = 0.5f*omega_3;
 
     domega[0] = (moment_of_weight_3*half_vertical_2 + omega_2*x2)*x3;
     domega[1] = -((moment_of_weight_3*half_vertical_1 + omega_1*x2)*x3);
     domega[2] = 0.0f;
+
+    const float half_1 = 0.5f*omega_1;
+    const float half_2 = 0.5f*omega_2;
+    const float half_3 = 0.5f*omega_3;
+
     dq[0] = -(q1*half_1 + q2*half_2 + q3*half_3);
     dq[1] = q0*half_1 + q2*half_3 - q3*half_2;
     dq[2] = q3*half_1 + q0*half_2 - q1*half_3;
@@ -156,13 +162,15 @@ void heavy_top_symmetricf_batch(
         const float x2 = omega_3*(A - C);
         const float x3 = 1.0f/A;
         const float half_vertical_1 = q1*q3 - q0*q2;
-        const float half_1 = 0.5f*omega_1;
-        const float half_2 = 0.5f*omega_2;
-        const float half_3 = 0.5f*omega_3;
 
         domega[0*n + k] = (moment_of_weight_3*half_vertical_2 + omega_2*x2)*x3;
         domega[1*n + k] = -((moment_of_weight_3*half_vertical_1 + omega_1*x2)*x3);
         domega[2*n + k] = 0.0f;
+
+        const float half_1 = 0.5f*omega_1;
+        const float half_2 = 0.5f*omega_2;
+        const float half_3 = 0.5f*omega_3;
+
         dq[0*n + k] = -(q1*half_1 + q2*half_2 + q3*half_3);
         dq[1*n + k] = q0*half_1 + q2*half_3 - q3*half_2;
         dq[2*n + k] = q3*half_1 + q0*half_2 - q1*half_3;

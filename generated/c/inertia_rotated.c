@@ -70,7 +70,7 @@ void inertia_rotated(const double q[4], const double inertia[6], double rotated[
     const double R_21 = x5 + x6;
     const double twice_1 = 2.0*q1;
     const double x16 = q1*twice_1;
-    const double R_22 = 1.0 - (x1 + x16);
+    const double R_22 = 1.0 - x1 - x16;
     const double x18 = twice_1*q0;
     const double x19 = q2*twice_3;
     const double R_23 = x19 - x18;
@@ -125,7 +125,7 @@ void inertia_rotated_batch(
         const double R_21 = x5 + x6;
         const double twice_1 = 2.0*q1;
         const double x16 = q1*twice_1;
-        const double R_22 = 1.0 - (x1 + x16);
+        const double R_22 = 1.0 - x1 - x16;
         const double x18 = twice_1*q0;
         const double x19 = q2*twice_3;
         const double R_23 = x19 - x18;
@@ -177,7 +177,7 @@ void inertia_rotatedf(const float q[4], const float inertia[6], float rotated[6]
     const float R_21 = x5 + x6;
     const float twice_1 = 2.0f*q1;
     const float x16 = q1*twice_1;
-    const float R_22 = 1.0f - (x1 + x16);
+    const float R_22 = 1.0f - x1 - x16;
     const float x18 = twice_1*q0;
     const float x19 = q2*twice_3;
     const float R_23 = x19 - x18;
@@ -232,7 +232,7 @@ void inertia_rotatedf_batch(
         const float R_21 = x5 + x6;
         const float twice_1 = 2.0f*q1;
         const float x16 = q1*twice_1;
-        const float R_22 = 1.0f - (x1 + x16);
+        const float R_22 = 1.0f - x1 - x16;
         const float x18 = twice_1*q0;
         const float x19 = q2*twice_3;
         const float R_23 = x19 - x18;

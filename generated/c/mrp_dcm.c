@@ -51,7 +51,7 @@ void mrp_dcm(const double parameters[3], double dcm[9])
     dcm[1] = x8 - x10;
     dcm[2] = x11 + x12;
     dcm[3] = x8 + x10;
-    dcm[4] = 1.0 - (x5 + x14);
+    dcm[4] = 1.0 - x5 - x14;
     dcm[5] = x15 - x16;
     dcm[6] = x11 - x12;
     dcm[7] = x15 + x16;
@@ -87,7 +87,7 @@ void mrp_dcm_batch(size_t n, const double *SYMROT_RESTRICT parameters, double *S
         dcm[1*n + k] = x8 - x10;
         dcm[2*n + k] = x11 + x12;
         dcm[3*n + k] = x8 + x10;
-        dcm[4*n + k] = 1.0 - (x5 + x14);
+        dcm[4*n + k] = 1.0 - x5 - x14;
         dcm[5*n + k] = x15 - x16;
         dcm[6*n + k] = x11 - x12;
         dcm[7*n + k] = x15 + x16;
@@ -122,7 +122,7 @@ void mrp_dcmf(const float parameters[3], float dcm[9])
     dcm[1] = x8 - x10;
     dcm[2] = x11 + x12;
     dcm[3] = x8 + x10;
-    dcm[4] = 1.0f - (x5 + x14);
+    dcm[4] = 1.0f - x5 - x14;
     dcm[5] = x15 - x16;
     dcm[6] = x11 - x12;
     dcm[7] = x15 + x16;
@@ -158,7 +158,7 @@ void mrp_dcmf_batch(size_t n, const float *SYMROT_RESTRICT parameters, float *SY
         dcm[1*n + k] = x8 - x10;
         dcm[2*n + k] = x11 + x12;
         dcm[3*n + k] = x8 + x10;
-        dcm[4*n + k] = 1.0f - (x5 + x14);
+        dcm[4*n + k] = 1.0f - x5 - x14;
         dcm[5*n + k] = x15 - x16;
         dcm[6*n + k] = x11 - x12;
         dcm[7*n + k] = x15 + x16;

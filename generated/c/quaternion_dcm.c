@@ -48,7 +48,7 @@ void quaternion_dcm(const double q[4], double dcm[9])
     dcm[1] = x5 - x4;
     dcm[2] = x6 + x7;
     dcm[3] = x4 + x5;
-    dcm[4] = 1.0 - (x1 + x9);
+    dcm[4] = 1.0 - x1 - x9;
     dcm[5] = x11 - x10;
     dcm[6] = x7 - x6;
     dcm[7] = x10 + x11;
@@ -80,7 +80,7 @@ void quaternion_dcm_batch(size_t n, const double *SYMROT_RESTRICT q, double *SYM
         dcm[1*n + k] = x5 - x4;
         dcm[2*n + k] = x6 + x7;
         dcm[3*n + k] = x4 + x5;
-        dcm[4*n + k] = 1.0 - (x1 + x9);
+        dcm[4*n + k] = 1.0 - x1 - x9;
         dcm[5*n + k] = x11 - x10;
         dcm[6*n + k] = x7 - x6;
         dcm[7*n + k] = x10 + x11;
@@ -111,7 +111,7 @@ void quaternion_dcmf(const float q[4], float dcm[9])
     dcm[1] = x5 - x4;
     dcm[2] = x6 + x7;
     dcm[3] = x4 + x5;
-    dcm[4] = 1.0f - (x1 + x9);
+    dcm[4] = 1.0f - x1 - x9;
     dcm[5] = x11 - x10;
     dcm[6] = x7 - x6;
     dcm[7] = x10 + x11;
@@ -143,7 +143,7 @@ void quaternion_dcmf_batch(size_t n, const float *SYMROT_RESTRICT q, float *SYMR
         dcm[1*n + k] = x5 - x4;
         dcm[2*n + k] = x6 + x7;
         dcm[3*n + k] = x4 + x5;
-        dcm[4*n + k] = 1.0f - (x1 + x9);
+        dcm[4*n + k] = 1.0f - x1 - x9;
         dcm[5*n + k] = x11 - x10;
         dcm[6*n + k] = x7 - x6;
         dcm[7*n + k] = x10 + x11;

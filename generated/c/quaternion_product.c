@@ -36,7 +36,7 @@ void quaternion_product(const double left[4], const double right[4], double prod
     const double q2 = right[2];
     const double q3 = right[3];
 
-    product[0] = p0*q0 - (p1*q1 + p2*q2 + p3*q3);
+    product[0] = p0*q0 - p1*q1 - p2*q2 - p3*q3;
     product[1] = p0*q1 + q0*p1 + p2*q3 - q2*p3;
     product[2] = p0*q2 + q0*p2 + q1*p3 - p1*q3;
     product[3] = p0*q3 + p1*q2 + q0*p3 - q1*p2;
@@ -57,7 +57,7 @@ void quaternion_product_batch(
         const double q2 = right[2*n + k];
         const double q3 = right[3*n + k];
 
-        product[0*n + k] = p0*q0 - (p1*q1 + p2*q2 + p3*q3);
+        product[0*n + k] = p0*q0 - p1*q1 - p2*q2 - p3*q3;
         product[1*n + k] = p0*q1 + q0*p1 + p2*q3 - q2*p3;
         product[2*n + k] = p0*q2 + q0*p2 + q1*p3 - p1*q3;
         product[3*n + k] = p0*q3 + p1*q2 + q0*p3 - q1*p2;
@@ -75,7 +75,7 @@ void quaternion_productf(const float left[4], const float right[4], float produc
     const float q2 = right[2];
     const float q3 = right[3];
 
-    product[0] = p0*q0 - (p1*q1 + p2*q2 + p3*q3);
+    product[0] = p0*q0 - p1*q1 - p2*q2 - p3*q3;
     product[1] = p0*q1 + q0*p1 + p2*q3 - q2*p3;
     product[2] = p0*q2 + q0*p2 + q1*p3 - p1*q3;
     product[3] = p0*q3 + p1*q2 + q0*p3 - q1*p2;
@@ -96,7 +96,7 @@ void quaternion_productf_batch(
         const float q2 = right[2*n + k];
         const float q3 = right[3*n + k];
 
-        product[0*n + k] = p0*q0 - (p1*q1 + p2*q2 + p3*q3);
+        product[0*n + k] = p0*q0 - p1*q1 - p2*q2 - p3*q3;
         product[1*n + k] = p0*q1 + q0*p1 + p2*q3 - q2*p3;
         product[2*n + k] = p0*q2 + q0*p2 + q1*p3 - p1*q3;
         product[3*n + k] = p0*q3 + p1*q2 + q0*p3 - q1*p2;

@@ -47,20 +47,22 @@ void rigid_body_principal(
     const double omega_1 = omega[0];
     const double omega_2 = omega[1];
     const double omega_3 = omega[2];
-    const double q0 = q[0];
-    const double q1 = q[1];
-    const double q2 = q[2];
-    const double q3 = q[3];
     const double tau_1 = torque[0];
     const double tau_2 = torque[1];
     const double tau_3 = torque[2];
-    const double half_1 = 0.5*omega_1;
-    const double half_2 = 0.5*omega_2;
-    const double half_3 = 0.5*omega_3;
 
     domega[0] = (tau_1 + omega_2*omega_3*(B - C))/A;
     domega[1] = (tau_2 - omega_1*omega_3*(A - C))/B;
     domega[2] = (tau_3 + omega_1*omega_2*(A - B))/C;
+
+    const double q0 = q[0];
+    const double q1 = q[1];
+    const double q2 = q[2];
+    const double q3 = q[3];
+    const double half_1 = 0.5*omega_1;
+    const double half_2 = 0.5*omega_2;
+    const double half_3 = 0.5*omega_3;
+
     dq[0] = -(half_1*q1 + half_2*q2 + half_3*q3);
     dq[1] = half_1*q0 + half_3*q2 - half_2*q3;
     dq[2] = half_1*q3 + half_2*q0 - half_3*q1;
@@ -80,20 +82,22 @@ void rigid_body_principal_batch(
         const double omega_1 = omega[0*n + k];
         const double omega_2 = omega[1*n + k];
         const double omega_3 = omega[2*n + k];
-        const double q0 = q[0*n + k];
-        const double q1 = q[1*n + k];
-        const double q2 = q[2*n + k];
-        const double q3 = q[3*n + k];
         const double tau_1 = torque[0*n + k];
         const double tau_2 = torque[1*n + k];
         const double tau_3 = torque[2*n + k];
-        const double half_1 = 0.5*omega_1;
-        const double half_2 = 0.5*omega_2;
-        const double half_3 = 0.5*omega_3;
 
         domega[0*n + k] = (tau_1 + omega_2*omega_3*(B - C))/A;
         domega[1*n + k] = (tau_2 - omega_1*omega_3*(A - C))/B;
         domega[2*n + k] = (tau_3 + omega_1*omega_2*(A - B))/C;
+
+        const double q0 = q[0*n + k];
+        const double q1 = q[1*n + k];
+        const double q2 = q[2*n + k];
+        const double q3 = q[3*n + k];
+        const double half_1 = 0.5*omega_1;
+        const double half_2 = 0.5*omega_2;
+        const double half_3 = 0.5*omega_3;
+
         dq[0*n + k] = -(half_1*q1 + half_2*q2 + half_3*q3);
         dq[1*n + k] = half_1*q0 + half_3*q2 - half_2*q3;
         dq[2*n + k] = half_1*q3 + half_2*q0 - half_3*q1;
@@ -111,20 +115,22 @@ void rigid_body_principalf(
     const float omega_1 = omega[0];
     const float omega_2 = omega[1];
     const float omega_3 = omega[2];
-    const float q0 = q[0];
-    const float q1 = q[1];
-    const float q2 = q[2];
-    const float q3 = q[3];
     const float tau_1 = torque[0];
     const float tau_2 = torque[1];
     const float tau_3 = torque[2];
-    const float half_1 = 0.5f*omega_1;
-    const float half_2 = 0.5f*omega_2;
-    const float half_3 = 0.5f*omega_3;
 
     domega[0] = (tau_1 + omega_2*omega_3*(B - C))/A;
     domega[1] = (tau_2 - omega_1*omega_3*(A - C))/B;
     domega[2] = (tau_3 + omega_1*omega_2*(A - B))/C;
+
+    const float q0 = q[0];
+    const float q1 = q[1];
+    const float q2 = q[2];
+    const float q3 = q[3];
+    const float half_1 = 0.5f*omega_1;
+    const float half_2 = 0.5f*omega_2;
+    const float half_3 = 0.5f*omega_3;
+
     dq[0] = -(half_1*q1 + half_2*q2 + half_3*q3);
     dq[1] = half_1*q0 + half_3*q2 - half_2*q3;
     dq[2] = half_1*q3 + half_2*q0 - half_3*q1;
@@ -144,20 +150,22 @@ void rigid_body_principalf_batch(
         const float omega_1 = omega[0*n + k];
         const float omega_2 = omega[1*n + k];
         const float omega_3 = omega[2*n + k];
-        const float q0 = q[0*n + k];
-        const float q1 = q[1*n + k];
-        const float q2 = q[2*n + k];
-        const float q3 = q[3*n + k];
         const float tau_1 = torque[0*n + k];
         const float tau_2 = torque[1*n + k];
         const float tau_3 = torque[2*n + k];
-        const float half_1 = 0.5f*omega_1;
-        const float half_2 = 0.5f*omega_2;
-        const float half_3 = 0.5f*omega_3;
 
         domega[0*n + k] = (tau_1 + omega_2*omega_3*(B - C))/A;
         domega[1*n + k] = (tau_2 - omega_1*omega_3*(A - C))/B;
         domega[2*n + k] = (tau_3 + omega_1*omega_2*(A - B))/C;
+
+        const float q0 = q[0*n + k];
+        const float q1 = q[1*n + k];
+        const float q2 = q[2*n + k];
+        const float q3 = q[3*n + k];
+        const float half_1 = 0.5f*omega_1;
+        const float half_2 = 0.5f*omega_2;
+        const float half_3 = 0.5f*omega_3;
+
         dq[0*n + k] = -(half_1*q1 + half_2*q2 + half_3*q3);
         dq[1*n + k] = half_1*q0 + half_3*q2 - half_2*q3;
         dq[2*n + k] = half_1*q3 + half_2*q0 - half_3*q1;

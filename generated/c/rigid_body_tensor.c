@@ -59,10 +59,6 @@ void rigid_body_tensor(
     const double omega_1 = omega[0];
     const double omega_2 = omega[1];
     const double omega_3 = omega[2];
-    const double q0 = q[0];
-    const double q1 = q[1];
-    const double q2 = q[2];
-    const double q3 = q[3];
     const double tau_1 = torque[0];
     const double tau_2 = torque[1];
     const double tau_3 = torque[2];
@@ -80,13 +76,19 @@ void rigid_body_tensor(
     const double cofactor_4 = I_xx*I_zz - I_xz*I_xz;
     const double cofactor_5 = I_xy*I_xz - I_xx*I_yz;
     const double cofactor_6 = I_xx*I_yy - I_xy*I_xy;
-    const double half_1 = 0.5*omega_1;
-    const double half_2 = 0.5*omega_2;
-    const double half_3 = 0.5*omega_3;
 
     domega[0] = cofactor_1*M_1 + cofactor_2*M_2 + cofactor_3*M_3;
     domega[1] = cofactor_2*M_1 + cofactor_4*M_2 + cofactor_5*M_3;
     domega[2] = cofactor_3*M_1 + cofactor_5*M_2 + cofactor_6*M_3;
+
+    const double q0 = q[0];
+    const double q1 = q[1];
+    const double q2 = q[2];
+    const double q3 = q[3];
+    const double half_1 = 0.5*omega_1;
+    const double half_2 = 0.5*omega_2;
+    const double half_3 = 0.5*omega_3;
+
     dq[0] = -(half_1*q1 + half_2*q2 + half_3*q3);
     dq[1] = half_1*q0 + half_3*q2 - half_2*q3;
     dq[2] = half_1*q3 + half_2*q0 - half_3*q1;
@@ -109,10 +111,6 @@ void rigid_body_tensor_batch(
         const double omega_1 = omega[0*n + k];
         const double omega_2 = omega[1*n + k];
         const double omega_3 = omega[2*n + k];
-        const double q0 = q[0*n + k];
-        const double q1 = q[1*n + k];
-        const double q2 = q[2*n + k];
-        const double q3 = q[3*n + k];
         const double tau_1 = torque[0*n + k];
         const double tau_2 = torque[1*n + k];
         const double tau_3 = torque[2*n + k];
@@ -130,13 +128,19 @@ void rigid_body_tensor_batch(
         const double cofactor_4 = I_xx*I_zz - I_xz*I_xz;
         const double cofactor_5 = I_xy*I_xz - I_xx*I_yz;
         const double cofactor_6 = I_xx*I_yy - I_xy*I_xy;
-        const double half_1 = 0.5*omega_1;
-        const double half_2 = 0.5*omega_2;
-        const double half_3 = 0.5*omega_3;
 
         domega[0*n + k] = cofactor_1*M_1 + cofactor_2*M_2 + cofactor_3*M_3;
         domega[1*n + k] = cofactor_2*M_1 + cofactor_4*M_2 + cofactor_5*M_3;
         domega[2*n + k] = cofactor_3*M_1 + cofactor_5*M_2 + cofactor_6*M_3;
+
+        const double q0 = q[0*n + k];
+        const double q1 = q[1*n + k];
+        const double q2 = q[2*n + k];
+        const double q3 = q[3*n + k];
+        const double half_1 = 0.5*omega_1;
+        const double half_2 = 0.5*omega_2;
+        const double half_3 = 0.5*omega_3;
+
         dq[0*n + k] = -(half_1*q1 + half_2*q2 + half_3*q3);
         dq[1*n + k] = half_1*q0 + half_3*q2 - half_2*q3;
         dq[2*n + k] = half_1*q3 + half_2*q0 - half_3*q1;
@@ -157,10 +161,6 @@ void rigid_body_tensorf(
     const float omega_1 = omega[0];
     const float omega_2 = omega[1];
     const float omega_3 = omega[2];
-    const float q0 = q[0];
-    const float q1 = q[1];
-    const float q2 = q[2];
-    const float q3 = q[3];
     const float tau_1 = torque[0];
     const float tau_2 = torque[1];
     const float tau_3 = torque[2];
@@ -178,13 +178,19 @@ void rigid_body_tensorf(
     const float cofactor_4 = I_xx*I_zz - I_xz*I_xz;
     const float cofactor_5 = I_xy*I_xz - I_xx*I_yz;
     const float cofactor_6 = I_xx*I_yy - I_xy*I_xy;
-    const float half_1 = 0.5f*omega_1;
-    const float half_2 = 0.5f*omega_2;
-    const float half_3 = 0.5f*omega_3;
 
     domega[0] = cofactor_1*M_1 + cofactor_2*M_2 + cofactor_3*M_3;
     domega[1] = cofactor_2*M_1 + cofactor_4*M_2 + cofactor_5*M_3;
     domega[2] = cofactor_3*M_1 + cofactor_5*M_2 + cofactor_6*M_3;
+
+    const float q0 = q[0];
+    const float q1 = q[1];
+    const float q2 = q[2];
+    const float q3 = q[3];
+    const float half_1 = 0.5f*omega_1;
+    const float half_2 = 0.5f*omega_2;
+    const float half_3 = 0.5f*omega_3;
+
     dq[0] = -(half_1*q1 + half_2*q2 + half_3*q3);
     dq[1] = half_1*q0 + half_3*q2 - half_2*q3;
     dq[2] = half_1*q3 + half_2*q0 - half_3*q1;
@@ -207,10 +213,6 @@ void rigid_body_tensorf_batch(
         const float omega_1 = omega[0*n + k];
         const float omega_2 = omega[1*n + k];
         const float omega_3 = omega[2*n + k];
-        const float q0 = q[0*n + k];
-        const float q1 = q[1*n + k];
-        const float q2 = q[2*n + k];
-        const float q3 = q[3*n + k];
         const float tau_1 = torque[0*n + k];
         const float tau_2 = torque[1*n + k];
         const float tau_3 = torque[2*n + k];
@@ -228,13 +230,19 @@ void rigid_body_tensorf_batch(
         const float cofactor_4 = I_xx*I_zz - I_xz*I_xz;
         const float cofactor_5 = I_xy*I_xz - I_xx*I_yz;
         const float cofactor_6 = I_xx*I_yy - I_xy*I_xy;
-        const float half_1 = 0.5f*omega_1;
-        const float half_2 = 0.5f*omega_2;
-        const float half_3 = 0.5f*omega_3;
 
         domega[0*n + k] = cofactor_1*M_1 + cofactor_2*M_2 + cofactor_3*M_3;
         domega[1*n + k] = cofactor_2*M_1 + cofactor_4*M_2 + cofactor_5*M_3;
         domega[2*n + k] = cofactor_3*M_1 + cofactor_5*M_2 + cofactor_6*M_3;
+
+        const float q0 = q[0*n + k];
+        const float q1 = q[1*n + k];
+        const float q2 = q[2*n + k];
+        const float q3 = q[3*n + k];
+        const float half_1 = 0.5f*omega_1;
+        const float half_2 = 0.5f*omega_2;
+        const float half_3 = 0.5f*omega_3;
+
         dq[0*n + k] = -(half_1*q1 + half_2*q2 + half_3*q3);
         dq[1*n + k] = half_1*q0 + half_3*q2 - half_2*q3;
         dq[2*n + k] = half_1*q3 + half_2*q0 - half_3*q1;

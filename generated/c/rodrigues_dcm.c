@@ -45,7 +45,7 @@ void rodrigues_dcm(const double parameters[3], double dcm[9])
     dcm[1] = x6 - twice_3;
     dcm[2] = twice_2 + x7;
     dcm[3] = twice_3 + x6;
-    dcm[4] = 1.0 - (x3 + x9);
+    dcm[4] = 1.0 - x3 - x9;
     dcm[5] = x10 - twice_1;
     dcm[6] = x7 - twice_2;
     dcm[7] = twice_1 + x10;
@@ -75,7 +75,7 @@ void rodrigues_dcm_batch(size_t n, const double *SYMROT_RESTRICT parameters, dou
         dcm[1*n + k] = x6 - twice_3;
         dcm[2*n + k] = twice_2 + x7;
         dcm[3*n + k] = twice_3 + x6;
-        dcm[4*n + k] = 1.0 - (x3 + x9);
+        dcm[4*n + k] = 1.0 - x3 - x9;
         dcm[5*n + k] = x10 - twice_1;
         dcm[6*n + k] = x7 - twice_2;
         dcm[7*n + k] = twice_1 + x10;
@@ -104,7 +104,7 @@ void rodrigues_dcmf(const float parameters[3], float dcm[9])
     dcm[1] = x6 - twice_3;
     dcm[2] = twice_2 + x7;
     dcm[3] = twice_3 + x6;
-    dcm[4] = 1.0f - (x3 + x9);
+    dcm[4] = 1.0f - x3 - x9;
     dcm[5] = x10 - twice_1;
     dcm[6] = x7 - twice_2;
     dcm[7] = twice_1 + x10;
@@ -134,7 +134,7 @@ void rodrigues_dcmf_batch(size_t n, const float *SYMROT_RESTRICT parameters, flo
         dcm[1*n + k] = x6 - twice_3;
         dcm[2*n + k] = twice_2 + x7;
         dcm[3*n + k] = twice_3 + x6;
-        dcm[4*n + k] = 1.0f - (x3 + x9);
+        dcm[4*n + k] = 1.0f - x3 - x9;
         dcm[5*n + k] = x10 - twice_1;
         dcm[6*n + k] = x7 - twice_2;
         dcm[7*n + k] = twice_1 + x10;

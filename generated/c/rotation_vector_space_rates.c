@@ -95,9 +95,9 @@ void rotation_vector_space_rates(const double v[3], const double omega[3], doubl
     const double x6 = symrot_sinc(x4);
     const double x7 = 0.25*(x5/x6);
 
-    dv[0] = omega_x - (0.5*cross_1 + (v3*cross_2 - v2*cross_3)*x7);
+    dv[0] = omega_x - 0.5*cross_1 - (v3*cross_2 - v2*cross_3)*x7;
     dv[1] = omega_y + (v3*cross_1 - v1*cross_3)*x7 - 0.5*cross_2;
-    dv[2] = omega_z - (0.5*cross_3 + (v2*cross_1 - v1*cross_2)*x7);
+    dv[2] = omega_z - 0.5*cross_3 - (v2*cross_1 - v1*cross_2)*x7;
 }
 
 void rotation_vector_space_rates_batch(
@@ -123,9 +123,9 @@ void rotation_vector_space_rates_batch(
             const double x6 = symrot_near_sinc(x4);
             const double x7 = 0.25*(x5/x6);
 
-            dv[0*n + k] = omega_x - (0.5*cross_1 + (v3*cross_2 - v2*cross_3)*x7);
+            dv[0*n + k] = omega_x - 0.5*cross_1 - (v3*cross_2 - v2*cross_3)*x7;
             dv[1*n + k] = omega_y + (v3*cross_1 - v1*cross_3)*x7 - 0.5*cross_2;
-            dv[2*n + k] = omega_z - (0.5*cross_3 + (v2*cross_1 - v1*cross_2)*x7);
+            dv[2*n + k] = omega_z - 0.5*cross_3 - (v2*cross_1 - v1*cross_2)*x7;
             beyond += symrot_far(x4);
         }
         const size_t again = beyond == 0 ? start : end;
@@ -145,9 +145,9 @@ void rotation_vector_space_rates_batch(
             const double x6 = symrot_sinc(x4);
             const double x7 = 0.25*(x5/x6);
 
-            dv[0*n + k] = omega_x - (0.5*cross_1 + (v3*cross_2 - v2*cross_3)*x7);
+            dv[0*n + k] = omega_x - 0.5*cross_1 - (v3*cross_2 - v2*cross_3)*x7;
             dv[1*n + k] = omega_y + (v3*cross_1 - v1*cross_3)*x7 - 0.5*cross_2;
-            dv[2*n + k] = omega_z - (0.5*cross_3 + (v2*cross_1 - v1*cross_2)*x7);
+            dv[2*n + k] = omega_z - 0.5*cross_3 - (v2*cross_1 - v1*cross_2)*x7;
         }
     }
 }
@@ -169,9 +169,9 @@ void rotation_vector_space_ratesf(const float v[3], const float omega[3], float 
     const float x6 = symrot_sincf(x4);
     const float x7 = 0.25f*(x5/x6);
 
-    dv[0] = omega_x - (0.5f*cross_1 + (v3*cross_2 - v2*cross_3)*x7);
+    dv[0] = omega_x - 0.5f*cross_1 - (v3*cross_2 - v2*cross_3)*x7;
     dv[1] = omega_y + (v3*cross_1 - v1*cross_3)*x7 - 0.5f*cross_2;
-    dv[2] = omega_z - (0.5f*cross_3 + (v2*cross_1 - v1*cross_2)*x7);
+    dv[2] = omega_z - 0.5f*cross_3 - (v2*cross_1 - v1*cross_2)*x7;
 }
 
 void rotation_vector_space_ratesf_batch(
@@ -197,9 +197,9 @@ void rotation_vector_space_ratesf_batch(
             const float x6 = symrot_near_sincf(x4);
             const float x7 = 0.25f*(x5/x6);
 
-            dv[0*n + k] = omega_x - (0.5f*cross_1 + (v3*cross_2 - v2*cross_3)*x7);
+            dv[0*n + k] = omega_x - 0.5f*cross_1 - (v3*cross_2 - v2*cross_3)*x7;
             dv[1*n + k] = omega_y + (v3*cross_1 - v1*cross_3)*x7 - 0.5f*cross_2;
-            dv[2*n + k] = omega_z - (0.5f*cross_3 + (v2*cross_1 - v1*cross_2)*x7);
+            dv[2*n + k] = omega_z - 0.5f*cross_3 - (v2*cross_1 - v1*cross_2)*x7;
             beyond += symrot_farf(x4);
         }
         const size_t again = beyond == 0 ? start : end;
@@ -219,9 +219,9 @@ void rotation_vector_space_ratesf_batch(
             const float x6 = symrot_sincf(x4);
             const float x7 = 0.25f*(x5/x6);
 
-            dv[0*n + k] = omega_x - (0.5f*cross_1 + (v3*cross_2 - v2*cross_3)*x7);
+            dv[0*n + k] = omega_x - 0.5f*cross_1 - (v3*cross_2 - v2*cross_3)*x7;
             dv[1*n + k] = omega_y + (v3*cross_1 - v1*cross_3)*x7 - 0.5f*cross_2;
-            dv[2*n + k] = omega_z - (0.5f*cross_3 + (v2*cross_1 - v1*cross_2)*x7);
+            dv[2*n + k] = omega_z - 0.5f*cross_3 - (v2*cross_1 - v1*cross_2)*x7;
         }
     }
 }

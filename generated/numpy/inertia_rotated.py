@@ -70,7 +70,7 @@ def inertia_rotated(q, inertia):
     R_21 = x5 + x6
     twice_1 = 2.0*q1
     x16 = q1*twice_1
-    R_22 = 1.0 - (x1 + x16)
+    R_22 = 1.0 - x1 - x16
     x18 = twice_1*q0
     x19 = q2*twice_3
     R_23 = x19 - x18

@@ -51,7 +51,7 @@ def mrp_dcm(parameters):
     dcm[1] = x8 - x10
     dcm[2] = x11 + x12
     dcm[3] = x8 + x10
-    dcm[4] = 1.0 - (x5 + x14)
+    dcm[4] = 1.0 - x5 - x14
     dcm[5] = x15 - x16
     dcm[6] = x11 - x12
     dcm[7] = x15 + x16

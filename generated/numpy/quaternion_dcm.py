@@ -48,7 +48,7 @@ def quaternion_dcm(q):
     dcm[1] = x5 - x4
     dcm[2] = x6 + x7
     dcm[3] = x4 + x5
-    dcm[4] = 1.0 - (x1 + x9)
+    dcm[4] = 1.0 - x1 - x9
     dcm[5] = x11 - x10
     dcm[6] = x7 - x6
     dcm[7] = x10 + x11

@@ -36,7 +36,7 @@ def quaternion_product(left, right):
     q2 = right[2]
     q3 = right[3]
     product = np.empty((4, *np.shape(left)[1:]))
-    product[0] = p0*q0 - (p1*q1 + p2*q2 + p3*q3)
+    product[0] = p0*q0 - p1*q1 - p2*q2 - p3*q3
     product[1] = p0*q1 + q0*p1 + p2*q3 - q2*p3
     product[2] = p0*q2 + q0*p2 + q1*p3 - p1*q3
     product[3] = p0*q3 + p1*q2 + q0*p3 - q1*p2

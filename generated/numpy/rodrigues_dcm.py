@@ -45,7 +45,7 @@ def rodrigues_dcm(parameters):
     dcm[1] = x6 - twice_3
     dcm[2] = twice_2 + x7
     dcm[3] = twice_3 + x6
-    dcm[4] = 1.0 - (x3 + x9)
+    dcm[4] = 1.0 - x3 - x9
     dcm[5] = x10 - twice_1
     dcm[6] = x7 - twice_2
     dcm[7] = twice_1 + x10

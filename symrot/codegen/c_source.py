@@ -107,27 +107,38 @@ def _statement(head: str, formula: str, indent: str, mark: str = "=") -> list[st
 
 
 def _body(program: Program, element: str, indent: str, real: Real, near: bool = False) -> list[str]:
-    """Return the statements; ``element`` is the index of a component in its array, with {i} for its number."""
-    used, lines = _used(program), []
+    """Return the statements, each value before the first output argument that needs it: few are kept at a time.
+
+    ``element`` is the index of a component in its array, with {i} for its number.
+    """
+    results = dict(program.outputs)
+    lines: list[str] = []
+    waiting: dict[str, tuple[set[str], list[str]]] = {}  # name -> names that it needs, its statement
     for argument in program.signature.arguments:
         if argument.role == "in" and not argument.is_scalar:
             place = "{i}" if argument.name == "p" else element
-            lines += [
-                f"{indent}const {real.type} {name} = {argument.name}[{place.format(i=index)}];"
-                for index, (name, *_) in enumerate(argument.components)
-                if name in used
-            ]
+            for index, (name, *_) in enumerate(argument.components):
+                statement = f"{indent}const {real.type} {name} = {argument.name}[{place.format(i=index)}];"
+                waiting[name] = (set(), [statement])
     for name, node in program.temporaries:
-        lines += _statement(f"const {real.type} {name}", c_expression(node, real, near), indent)
-    if lines:
-        lines.append("")
-    results = dict(program.outputs)
+        statements = _statement(f"const {real.type} {name}", c_expression(node, real, near), indent)
+        waiting[name] = (names(node), statements)
     for argument in program.signature.arguments:
         if argument.role == "out":
+            due = _due(set().union(*(names(results[name]) for name, *_ in argument.components)), waiting)
+            lines += [*([""] if due and lines else []), *due, *([""] if due else [])]
             for index, (name, *_) in enumerate(argument.components):
                 place = f"{argument.name}[{element.format(i=index)}]"
                 lines += _statement(place, c_expression(results[name], real, near), indent)
     return lines
+
+
+def _due(needed: set[str], waiting: dict[str, tuple[set[str], list[str]]]) -> list[str]:
+    """Return the statements that some names need, in their order, and take them off the list."""
+    for name, (of, _) in reversed(waiting.items()):
+        if name in needed:
+            needed = needed | of
+    return [line for name in [each for each in waiting if each in needed] for line in waiting.pop(name)[1]]
 
 
 def _silenced(program: Program, indent: str) -> list[str]:

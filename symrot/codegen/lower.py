@@ -409,23 +409,42 @@ class _Writer:
             return top if not node[2] else ("/", top, _chain("*", [self.node(i) for i in node[2]]))
         terms = sorted(node[1], key=lambda item: item[1] < 0)
         first, sign = terms[0]
-        result = self.node(first) if sign > 0 else _negative(self.node(first))
-        for term, sign in terms[1:]:
-            result = ("+" if sign > 0 else "-", result, self.node(term))
-        return result
+        start = self.node(first) if sign > 0 else _negative(self.node(first))
+        return _summed(start, [(sign, self.node(term)) for term, sign in terms[1:]])
 
 
 def _negative(node: Node) -> Node:
-    """Return minus a formula, the sign inside a number or a difference where one is at hand."""
+    """Return minus a formula, the sign inside a number, a sum with a difference or a product where one is at hand."""
     if node[0] == "number":
         return ("number", -node[1])
     if node[0] == "neg":
         return tuple(node[1])
-    if node[0] == "-":
-        return ("-", node[2], node[1])
-    if node[0] in "*/" and node[1][0] in ("number", "*") and _negative(node[1])[0] != "neg":
-        return (node[0], _negative(node[1]), node[2])
+    if node[0] in "+-":
+        terms = _terms(node)
+        first = next((i for i, (sign, _) in enumerate(terms) if sign < 0), None)
+        if first is not None:
+            rest = [*terms[:first], *terms[first + 1 :]]
+            return _summed(terms[first][1], [(-sign, term) for sign, term in rest])
+    if node[0] in "*/":
+        for place in (1, 2) if node[0] == "*" else (1,):
+            turned = _negative(node[place]) if node[place][0] in ("number", "*", "/", "+", "-") else ("neg",)
+            if turned[0] != "neg":
+                return (node[0], turned, node[2]) if place == 1 else (node[0], node[1], turned)
     return ("neg", node)
+
+
+def _terms(node: Node) -> list[tuple[int, Node]]:
+    """Return the terms of a chain of sums and differences, each with its sign."""
+    if node[0] not in "+-":
+        return [(1, node)]
+    return [*_terms(node[1]), (1 if node[0] == "+" else -1, node[2])]
+
+
+def _summed(first: Node, terms: Sequence[tuple[int, Node]]) -> Node:
+    """Return first plus terms, those with a plus before the others."""
+    for sign, term in sorted(terms, key=lambda item: item[0] < 0):
+        first = ("+" if sign > 0 else "-", first, term)
+    return first
 
 
 def lower(

@@ -1,0 +1,148 @@
+"""Kernels as other tools make them of the same textbook formulas: SymPy, SymForce, CasADi, heyoka, and by hand.
+
+Each takes the formulas as they are derived, without the named quantities of symrot's own definitions. What makes C is
+compiled with the flags of symrot's kernels; a tool that is not installed is left out, and named.
+"""
+
+import re
+from collections import Counter
+from collections.abc import Callable, Sequence
+from functools import reduce
+from pathlib import Path
+from typing import Any
+
+import sympy
+from sympy import Matrix
+
+from symrot import symbols
+from symrot.certify.readback import read_kernel
+from symrot.codegen.c_source import c_function
+from symrot.codegen.library_kernels import kernel_program
+from symrot.codegen.lower import to_node
+from symrot.dynamics.equations import angular_acceleration, inverse
+from symrot.expression import Node, children
+from symrot.kernel import Program, Signature
+from symrot.kernels.dynamics import TENSOR
+from symrot.kinematics.euler import rate_jacobian
+from symrot.kinematics.quaternion import dcm_of, quaternion_rates
+
+__all__ = ["PEERS_IN_C", "by_hand", "casadi_function", "counted", "heyoka_function", "textbook"]
+
+BY_HAND = Path(__file__).with_name("kernels_by_hand.c")
+_COUNTED = {"mul": "mul", "add": "add", "sub": "add", "div": "div", "sqrt": "sqrt"}
+
+
+def textbook(name: str) -> list[sympy.Expr]:
+    """Return the formulas of a kernel as a textbook has them, in the order of its outputs."""
+    omega = Matrix(symbols.omega_b)
+    if name == "quaternion_dcm":
+        return list(dcm_of())
+    if name.startswith("euler_"):
+        return list(rate_jacobian(name.split("_")[1].upper()).inverse * omega)
+    rates = list(quaternion_rates("body") * omega)
+    if name == "rigid_body_tensor":
+        moment = Matrix(symbols.torque_b) - omega.cross(TENSOR * omega)
+        return [*(inverse(TENSOR) * moment), *rates]
+    down_b = -dcm_of().T.col(2)
+    weight = symbols.W * Matrix(symbols.center_of_mass).cross(down_b)
+    return [*angular_acceleration(sympy.diag(*symbols.principal), omega, weight), *rates]
+
+
+def _inputs(signature: Signature) -> list[str]:
+    return [name for a in signature.arguments if a.role == "in" for name, *_ in a.components]
+
+
+def _outputs(signature: Signature) -> list[str]:
+    return [name for a in signature.arguments if a.role == "out" for name, *_ in a.components]
+
+
+def _program(name: str, common: Sequence[tuple[Any, Any]], results: Sequence[Any]) -> str:
+    """Return C of common terms and results, as they stand."""
+    signature = kernel_program(name).signature
+    temporaries = tuple((str(symbol), _products(to_node(value))) for symbol, value in common)
+    outputs = tuple(zip(_outputs(signature), (_products(to_node(value)) for value in results), strict=True))
+    return c_function(Program(signature, temporaries, outputs), "static inline ")
+
+
+def _products(node: Node) -> Node:
+    """Return a formula with powers as products, as C has no powers."""
+    if not children(node):
+        return node
+    if node[0] == "**":
+        base = _products(node[1])
+        return reduce(lambda left, right: ("*", left, right), [base] * node[2])
+    if node[0] == "call":
+        return ("call", node[1], tuple(map(_products, node[2])))
+    return (node[0], *map(_products, node[1:]))
+
+
+def _sympy(name: str) -> str:
+    return _program(name, *sympy.cse(textbook(name), symbols=sympy.numbered_symbols("common"), optimizations="basic"))
+
+
+def _symforce(name: str) -> str:
+    import symforce.symbolic as sf
+
+    common, results = sf.cse(
+        [sf.S(str(entry)) for entry in textbook(name)], symbols=(sf.Symbol(f"common{i}") for i in range(1000))
+    )
+    plain = lambda value: sympy.sympify(str(value), locals=_REAL)  # noqa: E731
+    return _program(name, [(symbol, plain(value)) for symbol, value in common], [plain(value) for value in results])
+
+
+_REAL = {name: sympy.Symbol(name, real=True) for name in ("W", "S", "C", "I", "E", "N", "O", "Q")}
+
+
+def by_hand(name: str) -> str | None:
+    """Return C by hand, or None where there is none."""
+    text = BY_HAND.read_text(encoding="utf-8")
+    return text if f" {name}(" in text else None
+
+
+PEERS_IN_C: dict[str, Callable[[str], str | None]] = {"by hand": by_hand, "SymPy cse": _sympy, "SymForce": _symforce}
+
+
+def counted(text: str, name: str) -> Counter[str]:
+    """Return the operations of a function in C, as it is read back; equal operations count once."""
+    text = re.sub(r"^#include.*\n", "", text, flags=re.MULTILINE)
+    counts: Counter[str] = Counter()
+    for node in read_kernel(text, name).nodes:
+        if node[0] in _COUNTED:
+            counts[_COUNTED[node[0]]] += 1
+        elif node[0] == "call":
+            counts[node[1]] += 1
+    return counts
+
+
+def casadi_function(name: str) -> tuple[Any, Counter[str]]:
+    """Return CasADi's function of one vector of inputs, its common terms taken together, and its operations."""
+    import casadi
+
+    signature = kernel_program(name).signature
+    x = casadi.SX.sym("x", len(_inputs(signature)))
+    values = {each: x[i] for i, each in enumerate(_inputs(signature))}
+    node_program = Program(signature, (), tuple(zip(_outputs(signature), map(to_node, textbook(name)), strict=True)))
+    functions = {each: getattr(casadi, each) for each in ("sin", "cos", "tan", "sqrt")}
+    found = casadi.cse(casadi.vertcat(*node_program.evaluate(values, functions, float).values()))
+    function = casadi.Function("peer", [x], [found])
+    kinds = {"OP_ADD": "add", "OP_SUB": "add", "OP_MUL": "mul", "OP_SQ": "mul", "OP_TWICE": "add", "OP_DIV": "div",
+             "OP_INV": "div", "OP_SIN": "sin", "OP_COS": "cos", "OP_SQRT": "sqrt"}  # fmt: skip
+    by_number = {getattr(casadi, kind): said for kind, said in kinds.items()}
+    counts = Counter(
+        by_number[number]
+        for number in (function.instruction_id(k) for k in range(function.n_instructions()))
+        if number in by_number
+    )
+    return function, counts
+
+
+def heyoka_function(name: str) -> Any:
+    """Return heyoka's compiled function of the inputs, samples along the last axis."""
+    import heyoka
+
+    signature = kernel_program(name).signature
+    variables = dict(zip(_inputs(signature), heyoka.make_vars(*_inputs(signature)), strict=True))
+    functions = {each: getattr(heyoka, each) for each in ("sin", "cos", "tan", "sqrt")}
+    node_program = Program(signature, (), tuple(zip(_outputs(signature), map(to_node, textbook(name)), strict=True)))
+    formulas = node_program.evaluate(variables, functions, float)
+    return heyoka.cfunc(list(formulas.values()), list(variables.values()), fast_math=True)
