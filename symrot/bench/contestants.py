@@ -1,7 +1,8 @@
 """Who takes part in a work-precision study: every method of symrot, SciPy's, and heyoka in each of its settings.
 
-A contestant makes, for one tolerance, a function that follows the motion from its start to its end and returns the last
-states and the number of steps. What a user would do once is done before: deriving, compiling, heyoka's own compiling.
+A contestant makes, for one tolerance, a function that follows the motion from its start to a given time and returns
+the states there and the number of steps. What a user would do once is done before: deriving, compiling, heyoka's own
+compiling.
 Everything is called from Python as a user calls it. SciPy gets the NumPy kernel that symrot emits for the scene,
 narrowed to single states by the numbers of Python and :mod:`math`: half the time.
 """
@@ -24,7 +25,7 @@ from symrot.propagation.smoothness import roughness
 __all__ = ["CONTESTANTS", "Contestant", "Run", "chosen"]
 
 Outcome = tuple[Any, int]  # last states, or State; steps
-Run = Callable[[], Outcome]
+Run = Callable[[float], Outcome]
 
 
 def _half_decades(first: int, last: int) -> tuple[float, ...]:
@@ -56,10 +57,11 @@ class Contestant(NamedTuple):
 
 def _exact(problem: Problem, tolerance: float) -> Run:
     """Return the closed form, its constants computed anew each time: from an initial state to the last one."""
-    form, at, attitude = exact_form(problem.scene), np.array([problem.stop - problem.start]), len(problem.names) > 3
+    form, attitude = exact_form(problem.scene), len(problem.names) > 3
     assert form is not None
 
-    def run() -> Outcome:
+    def run(stop: float) -> Outcome:
+        at = np.array([stop - problem.start])
         omega, quaternion = form.motion(problem.scene).evaluate(at, quaternion=attitude)
         return State(omega[0], None if quaternion is None else quaternion[0]), 0  # type: ignore[index]
 
@@ -74,10 +76,10 @@ def _symrot(method: str) -> Callable[[Problem, float], Run]:
     """Return what prepares a propagator, which is then called as a user calls it: with the time asked for."""
 
     def prepare(problem: Problem, tolerance: float) -> Run:
-        found, at = propagator(problem.scene, method, tolerance), np.array([problem.stop])
+        found = propagator(problem.scene, method, tolerance)
 
-        def run() -> Outcome:
-            trajectory = found(at)
+        def run(stop: float) -> Outcome:
+            trajectory = found(np.array([stop]))
             return _last(trajectory), trajectory.stats.accepted
 
         return run
@@ -119,9 +121,8 @@ def _scipy(method: str) -> Callable[[Problem, float], Run]:
 
         right_hand_side, start = with_parameters if p else without, np.array(problem.y0)
 
-        def run() -> Outcome:
-            span = (problem.start, problem.stop)
-            found = solve(right_hand_side, span, start, method=method, rtol=tolerance, atol=tolerance)
+        def run(stop: float) -> Outcome:
+            found = solve(right_hand_side, (problem.start, stop), start, method=method, rtol=tolerance, atol=tolerance)
             return found.y[:, -1] if found.success else np.full(len(start), np.nan), len(found.t) - 1
 
         return run
@@ -139,7 +140,7 @@ def _heyoka(**settings: bool) -> Callable[[Problem, float], Run]:
             problem.kernel.rates, problem.parameters, problem.y0, tolerance, settings, problem.start
         )
         assert run is not None
-        return lambda: run(problem.stop)
+        return run
 
     return prepare
 

@@ -1,4 +1,4 @@
-"""A scene as what contestants follow: its plan and kernel, the state at the start, the end of the span, the error."""
+"""A scene as what contestants follow: its plan and kernel, the state at the start, where it is judged, the error."""
 
 import math
 from collections.abc import Sequence
@@ -15,13 +15,16 @@ from symrot.propagation.propagator import Choice, Motion
 from symrot.scene import Scene
 from symrot.scene_kernel import SceneKernel, bind
 
-__all__ = ["Problem", "State"]
+__all__ = ["PARTS", "Problem", "State"]
 
 Floats = NDArray[np.float64]
 
+PARTS = (0.382, 0.618, 0.854, 1.0)
+"""Of the span, where a motion is judged: an unstable one passes through places where errors all but vanish."""
+
 
 class State(NamedTuple):
-    """Where a body is at the end: angular velocity (3,) in the body, rad/s; attitude (4,), or None if nobody asks."""
+    """Where a body is: angular velocity (3,) in the body, rad/s; attitude (4,), or None if nobody asks."""
 
     omega: Floats
     quaternion: Floats | None
@@ -39,6 +42,7 @@ class Problem:
         if not self.plan.states:
             raise InputError(f"{scene.name}: expected a scene with states to integrate; every state of it is constant")
         self.start, self.stop = float(scene.span.start), float(scene.span.stop)
+        self.ends = (*(self.start + part * (self.stop - self.start) for part in PARTS[:-1]), self.stop)
         self.y0: list[float] = [float(value) for value in self.plan.initial_state]
 
     @cached_property
@@ -65,12 +69,12 @@ class Problem:
     def _motion(self) -> Motion:
         return Motion(self.plan, Choice("scipy", ""), 1e-12)
 
-    def state(self, y: Sequence[Any] | Floats) -> State:
-        """Return the state of the body for the states that were integrated, at the end of the span."""
+    def state(self, y: Sequence[Any] | Floats, t: float) -> State:
+        """Return the state of the body for the states that were integrated, at a time."""
         values = np.array([[float(value) for value in y]])
         if not np.isfinite(values).all():
             return State(np.full(3, np.nan), None)
-        found = self._motion.evaluate(np.array([self.stop]), values, self.names)[0]
+        found = self._motion.evaluate(np.array([t]), values, self.names)[0]
         return State(found[:3], found[3:] if len(found) > 3 else None)
 
     @staticmethod
@@ -85,3 +89,8 @@ class Problem:
         q, r = found.quaternion / np.linalg.norm(found.quaternion), exact.quaternion
         chord = min(float(np.linalg.norm(q - r)), float(np.linalg.norm(q + r)))  # q and -q are one attitude
         return max(worst, 4.0 * math.asin(min(chord, math.sqrt(2.0)) / 2.0))
+
+    @staticmethod
+    def worst(found: Sequence[State], exact: Sequence[State]) -> float:
+        """Return the largest of the errors at several times."""
+        return max(map(Problem.error, found, exact))

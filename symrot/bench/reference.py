@@ -1,4 +1,4 @@
-"""Where a scene's motion really ends: computations that share neither numbers nor method, and their differences.
+"""Where a scene's motion really leads: computations that share neither numbers nor method, and their differences.
 
 ===========================  =====================  ============================  ==========================
 reference                    equations              method                        arithmetic
@@ -21,7 +21,7 @@ import re
 from collections.abc import Callable, Iterable
 from fractions import Fraction
 from pathlib import Path
-from time import perf_counter
+from time import perf_counter, process_time
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -53,9 +53,9 @@ CALLS = re.compile(r"\b(sqrt|sin|cos|tan|exp|log|fabs|sinh|cosh|tanh|asin|acos|a
 
 
 class Reference(NamedTuple):
-    """The last state of a motion, how it was found, and what the other computations say of it."""
+    """The states where a motion is judged, how they were found, and what the other computations say of them."""
 
-    state: State
+    states: tuple[State, ...]
     name: str
     others: tuple[tuple[str, float], ...]  # name, and its difference as errors are measured
     seconds: float
@@ -69,8 +69,9 @@ class Reference(NamedTuple):
     def to_json(self) -> dict[str, Any]:
         return {
             "name": self.name, "others": [{"name": name, "difference": found} for name, found in self.others],
-            "seconds": self.seconds, "skipped": list(self.skipped), "omega": self.state.omega.tolist(),
-            "quaternion": None if self.state.quaternion is None else self.state.quaternion.tolist(),
+            "seconds": self.seconds, "skipped": list(self.skipped),
+            "states": [[*state.omega.tolist(), *([] if state.quaternion is None else state.quaternion.tolist())]
+                       for state in self.states],
         }  # fmt: skip
 
 
@@ -79,7 +80,7 @@ class _Unavailable(Exception):
 
 
 def reference(problem: Problem, say: Say = lambda text: None, seconds: float = MOST_SECONDS) -> Reference:
-    """Return the last state of a scene's motion, from the first of the references, with the differences of the others.
+    """Return the states where a scene's motion is judged, and how far the other references are from the first.
 
     Raises
     ------
@@ -87,7 +88,7 @@ def reference(problem: Problem, say: Say = lambda text: None, seconds: float = M
         If none can be had: the motion ends before its span does, or there is neither series nor compiler.
     """
     began = perf_counter()
-    found: list[tuple[str, State]] = []
+    found: list[tuple[str, list[State]]] = []
     skipped = []
     for name, compute in REFERENCES:
         say(f"reference: {name} ..")
@@ -97,9 +98,9 @@ def reference(problem: Problem, say: Say = lambda text: None, seconds: float = M
             skipped.append(f"{name}: {reason}")
     if not found:
         raise SymrotError(f"{problem.scene.name}: expected a motion with a reference solution; {'; '.join(skipped)}")
-    (name, state), *more = found
-    others = tuple((other, problem.error(end, state)) for other, end in more)
-    return Reference(state, name, others, perf_counter() - began, tuple(skipped))
+    (name, states), *more = found
+    others = tuple((other, problem.worst(theirs, states)) for other, theirs in more)
+    return Reference(tuple(states), name, others, perf_counter() - began, tuple(skipped))
 
 
 # ------------------------------------------------------------------------------------------------ Taylor, 40 digits
@@ -130,8 +131,8 @@ def _exact_start(plan: Plan) -> list[Fraction]:
     return [Fraction(values[name]) for name in plan.states]
 
 
-def _taylor(problem: Problem, say: Say, seconds: float) -> State:
-    """Return the last state by Taylor series in 40 digits, from the cache if it is there."""
+def _taylor(problem: Problem, say: Say, seconds: float) -> list[State]:
+    """Return the states by Taylor series in 40 digits, from the cache if it is there."""
     import mpmath
 
     rough = roughness(problem.plan)
@@ -139,41 +140,46 @@ def _taylor(problem: Problem, say: Say, seconds: float) -> State:
         raise _Unavailable(rough)
     kernel, plan = problem.kernel, problem.plan
     given = _exact_parameters(kernel.rate_parameters, plan), _exact_start(plan)
-    key = f"reference {DIGITS} {ORDER} {TAIL}\n{json.dumps(kernel.data['rates'])}\n{given}\n{plan.scene.span[:2]}"
+    where = f"{problem.start} {problem.ends}"
+    key = f"reference {DIGITS} {ORDER} {TAIL}\n{json.dumps(kernel.data['rates'])}\n{given}\n{where}"
     kept = library.fetch(key)
     with mpmath.workdps(DIGITS):
         if kept is None:
-            last = _series(problem, given, say, seconds)
-            kept = json.dumps([mpmath.nstr(value, DIGITS) for value in last])
+            path = _series(problem, given, say, seconds)
+            kept = json.dumps([[mpmath.nstr(value, DIGITS) for value in state] for state in path])
             library.store(key, kept)
-        return _state(problem, [mpmath.mpf(value) for value in json.loads(kept)])
+        read = [[mpmath.mpf(value) for value in state] for state in json.loads(kept)]
+        return [_state(problem, state, end) for state, end in zip(read, problem.ends, strict=True)]
 
 
-def _series(problem: Problem, given: tuple[dict[str, Fraction], list[Fraction]], say: Say, seconds: float) -> list[Any]:
+def _series(
+    problem: Problem, given: tuple[dict[str, Fraction], list[Fraction]], say: Say, seconds: float
+) -> list[list[Any]]:
+    """Return the integrated states where the motion is judged, step by step."""
     import mpmath
 
-    system, functions = recurrences(problem.kernel.rates), _functions()
+    system, functions, sizes = recurrences(problem.kernel.rates), _functions(), _sizes(problem)
     values: dict[str, Any] = {name: _as_mpf(value) for name, value in given[0].items()}
-    state = [_as_mpf(value) for value in given[1]]
-    now, stop = (_as_mpf(Fraction(time)) for time in problem.scene.span[:2])
-    first, began, spent = now, perf_counter(), 0.0
-    sizes = _sizes(problem)
-    while now < stop:
-        values |= {"t": now, **dict(zip(system.states, state, strict=True))}
-        series = coefficients(system, ORDER, values, functions, _as_mpf)
-        step = stop - now
-        for n in (ORDER - 1, ORDER):
-            largest = max(abs(one[n]) / size for one, size in zip(series, sizes, strict=True))
-            if largest:
-                step = min(step, (TAIL / largest) ** (mpmath.mpf(1) / n))
-        state = [mpmath.polyval(one[::-1], step) for one in series]
-        now += step
-        spent = perf_counter() - began
-        whole = spent * float((stop - first) / (now - first))
-        if whole > 2.0 * seconds or spent > seconds:
-            raise _Unavailable(f"about {whole:.0f} s of work, more than the {seconds:.0f} s allowed")
-        say(f"reference: Taylor series in {DIGITS} digits, {spent:.0f} of about {whole:.0f} s")
-    return state
+    state, path = [_as_mpf(value) for value in given[1]], []
+    now, clock = mpmath.mpf(problem.start), process_time()
+    for end in problem.ends:
+        while now < end:
+            values |= {"t": now, **dict(zip(system.states, state, strict=True))}
+            series = coefficients(system, ORDER, values, functions, _as_mpf)
+            step = end - now
+            for n in (ORDER - 1, ORDER):
+                largest = max(abs(one[n]) / size for one, size in zip(series, sizes, strict=True))
+                if largest:
+                    step = min(step, (TAIL / largest) ** (mpmath.mpf(1) / n))
+            state = [mpmath.polyval(one[::-1], step) for one in series]
+            now += step
+            spent = process_time() - clock
+            whole = spent * float((problem.stop - problem.start) / (now - problem.start))
+            if whole > 2.0 * seconds or spent > seconds:
+                raise _Unavailable(f"about {whole:.0f} s of work, more than the {seconds:.0f} s allowed")
+            say(f"reference: Taylor series in {DIGITS} digits, {spent:.0f} of about {whole:.0f} s")
+        path.append(state)
+    return path
 
 
 def _sizes(problem: Problem) -> list[float]:
@@ -182,14 +188,14 @@ def _sizes(problem: Problem) -> list[float]:
     return [spin if name.startswith("omega") else 1.0 for name in problem.plan.states]
 
 
-def _state(problem: Problem, last: list[Any]) -> State:
+def _state(problem: Problem, last: list[Any], end: float) -> State:
     """Return the state of the body, evaluated in as many digits as it has."""
     import mpmath
 
     kernel, plan = problem.kernel, problem.plan
     values: dict[str, Any] = dict(zip(plan.states, last, strict=True))
     exact = _exact_parameters(kernel.quantity_parameters, plan)
-    values |= {name: _as_mpf(value) for name, value in exact.items()} | {"t": _as_mpf(Fraction(plan.scene.span.stop))}
+    values |= {name: _as_mpf(value) for name, value in exact.items()} | {"t": mpmath.mpf(end)}
     found = kernel.quantities.evaluate(values, _functions(), _as_mpf, problem.names)
     ordered = [found[name] for name in problem.names]
     norm = mpmath.sqrt(sum(q * q for q in ordered[3:])) if len(ordered) > 3 else 1
@@ -206,13 +212,36 @@ def longer(source: str) -> str:
     return re.sub(r"\bdouble\b", "long double", text)
 
 
-def _long_double(problem: Problem, say: Say, seconds: float) -> State:
-    """Return the last state by fixed steps of DOP853 around the most general equations, until steps make no change."""
+def _long_double(problem: Problem, say: Say, seconds: float) -> list[State]:
+    """Return the states by fixed steps of DOP853 around the most general equations, until steps make no change."""
     if library.missing():
         raise _Unavailable("no C compiler")
     if np.finfo(np.longdouble).nmant < LONG_DOUBLE_BITS or ctypes.sizeof(ctypes.c_longdouble) == 8:
         raise _Unavailable("long double is no longer than double here")
     general = Problem(problem.scene, Plan(problem.scene, general_structure(problem.scene), ()))
+    follow, sizes = _fixed_steps(general), np.array(_sizes(general))
+    turned = max(1.0, (problem.stop - problem.start) * sizes[0])
+    steps, before, held = max(FEWEST_STEPS, int(turned)), None, None
+    change, clock = np.inf, process_time()
+    while steps <= MOST_STEPS and process_time() - clock < seconds:
+        path = follow(steps)
+        if np.isfinite(path.astype(float)).all():
+            now = change if before is None else float(np.max(np.abs(path - before) / sizes))
+            if before is not None and now >= change:  # rounding has taken over
+                break
+            if before is not None:
+                held, change = path, now
+            if now <= CONVERGED * turned:
+                break
+            before = path
+        steps = int(steps * 1.5)
+    if held is None:
+        raise _Unavailable("its steps would have to be too small")
+    return [_long_state(general, state, end) for state, end in zip(held, problem.ends, strict=True)]
+
+
+def _fixed_steps(general: Problem) -> Callable[[int], Any]:
+    """Return a function from the number of steps to the integrated states where the motion is judged."""
     here = Path(__file__).parent
     parts = [
         general.kernel.source,
@@ -223,41 +252,30 @@ def _long_double(problem: Problem, say: Say, seconds: float) -> State:
     function = ctypes.CDLL(str(library.build(longer("\n".join(parts)), "long_double"))).dop853
     real = ctypes.c_longdouble
     function.argtypes, function.restype = (real, real, ctypes.c_long, ctypes.c_void_p, ctypes.c_void_p), None
-    given = _exact_parameters(general.kernel.rate_parameters, general.plan)
-    p, start = _long(given.values()), _long(_exact_start(general.plan))
-    began, stop = _long([Fraction(time) for time in problem.scene.span[:2]])
-    turned = max(1.0, float(abs(stop - began)) * _sizes(general)[0])
-    steps = max(FEWEST_STEPS, int(turned))
-    before, change, held = None, np.inf, None
-    clock = perf_counter()
-    while steps <= MOST_STEPS and perf_counter() - clock < seconds:
-        y = start.copy()
-        function(began, stop, steps, y.ctypes.data, p.ctypes.data)
-        if not np.isfinite(y.astype(float)).all():
-            steps *= 2
-            continue
-        if before is not None:
-            now = float(np.max(np.abs(y - before) / np.array(_sizes(general))))
-            if now >= change:  # rounding has taken over
-                break
-            held, change = y, now
-            if now <= CONVERGED * turned:
-                break
-        before = y
-        steps = int(steps * 1.5)
-    if held is None:
-        raise _Unavailable("its steps would have to be too small")
-    found = general.kernel.quantities.evaluate(
-        dict(zip(general.plan.states, held, strict=True))
-        | dict(zip((n for n, _ in general.kernel.quantity_parameters),
-                   _long(_exact_parameters(general.kernel.quantity_parameters, general.plan).values()), strict=True))
-        | {"t": stop},
-        {"sqrt": np.sqrt, "sin": np.sin, "cos": np.cos}, _long_number, problem.names,
-    )  # fmt: skip
-    ordered = np.array([found[name] for name in problem.names])
+    p = _long(_exact_parameters(general.kernel.rate_parameters, general.plan).values())
+    start = _long(_exact_start(general.plan))
+
+    def follow(steps: int) -> Any:
+        y, began, path = start.copy(), general.start, []
+        for end in general.ends:
+            share = max(1, round(steps * (end - began) / (general.stop - general.start)))
+            function(began, end, share, y.ctypes.data, p.ctypes.data)
+            path.append(y.copy())
+            began = end
+        return np.array(path)
+
+    return follow
+
+
+def _long_state(general: Problem, y: Any, end: float) -> State:
+    """Return the state of the body, evaluated in long double."""
+    exact = _exact_parameters(general.kernel.quantity_parameters, general.plan)
+    values: dict[str, Any] = dict(zip(general.plan.states, y, strict=True)) | {"t": np.longdouble(end)}
+    values |= {name: _long_number(value) for name, value in exact.items()}
+    functions = {"sqrt": np.sqrt, "sin": np.sin, "cos": np.cos}
+    found = general.kernel.quantities.evaluate(values, functions, _long_number, general.names)
+    ordered = np.array([found[name] for name in general.names])
     rates, attitude = ordered[:3].astype(float), ordered[3:]
-    if not len(attitude):
-        return State(rates, None)
     return State(rates, (attitude / np.sqrt((attitude * attitude).sum())).astype(float))
 
 
@@ -274,16 +292,17 @@ def _long(values: Iterable[Fraction]) -> Any:
 # ------------------------------------------------------------------------------------------------ closed form
 
 
-def _closed_form(problem: Problem, say: Say, seconds: float) -> State:
+def _closed_form(problem: Problem, say: Say, seconds: float) -> list[State]:
     if exact_form(problem.scene) is None:
         raise _Unavailable("the motion has none")
-    found = propagator(problem.scene, method="exact")([problem.stop])
-    return State(found.omega[0], found.quaternion[0] if problem.plan.structure["attitude"] else None)
+    found = propagator(problem.scene, method="exact")(problem.ends)
+    attitude = found.quaternion if problem.plan.structure["attitude"] else [None] * len(problem.ends)
+    return list(map(State, found.omega, attitude))
 
 
-REFERENCES: tuple[tuple[str, Callable[[Problem, Say, float], State]], ...] = (
+REFERENCES: tuple[tuple[str, Callable[[Problem, Say, float], list[State]]], ...] = (
     (f"Taylor series in {DIGITS} digits", _taylor),
     ("DOP853 in long double, general equations", _long_double),
     ("closed form", _closed_form),
 )
-"""What a motion's end is taken from, the best first."""
+"""What a motion is judged by, the best first."""

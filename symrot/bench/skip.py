@@ -114,7 +114,7 @@ def _row(about: str, scene: Scene) -> tuple[dict[str, Any], dict[str, Callable[[
         runs[f"{side} evaluation"] = _evaluations(problem)
         motion, at = Motion(plan, Choice("taylor", ""), TOLERANCE), np.array([problem.stop])
         runs[f"{side} motion"] = lambda motion=motion, at=at: motion.integrate(at)  # type: ignore[misc]
-        ends[side] = problem.state(motion.integrate(at)[0][0])
+        ends[side] = problem.state(motion.integrate(at)[0][0], problem.stop)
     auto, at = propagator(scene, "auto", TOLERANCE), np.array([float(scene.span.stop)])
     found = auto(at)
     ends["auto"] = State(found.omega[0], found.quaternion[0] if found.has_attitude else None)

@@ -1,9 +1,9 @@
 """The work-precision study of a scene: seconds against the error reached, for every method there is.
 
-Each contestant runs over a range of tolerances. The error is that of the last state against a reference of higher
-precision (:mod:`symrot.bench.reference`); runs are timed in turns (:mod:`symrot.bench.race`). At each decade of the
-error the fastest run counts that is at least as good: no curve is smoothed or extended. What is no more than a few
-times the doubt of the reference counts as that doubt.
+Each contestant runs over a range of tolerances. The error is the largest at four times of the span, each reached by a
+run of its own, against a reference of higher precision (:mod:`symrot.bench.reference`); runs to the end are timed in
+turns (:mod:`symrot.bench.race`). At each decade of the error the fastest run counts that is at least as good: no curve
+is smoothed or extended. Decades that the references cannot tell apart are left out.
 """
 
 import math
@@ -11,6 +11,7 @@ import os
 import platform
 import sys
 from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 from importlib import metadata
 from pathlib import Path
 from statistics import median
@@ -74,7 +75,7 @@ def study(
     taking_part, effort = chosen(methods, quick), QUICK if quick else FULL
     problem = Problem(scene)
     found = reference(problem, say, effort.reference)
-    entries, skipped = _entries(problem, taking_part, effort, found.state, say)
+    entries, skipped = _entries(problem, taking_part, effort, found.states, say)
     ahead = work_ahead((measured for measured, _ in entries), effort.rounds)
 
     def turn(number: int) -> None:
@@ -93,7 +94,7 @@ def study(
 
 
 def _entries(
-    problem: Problem, contestants: Sequence[Contestant], effort: Effort, exact: State, say: Say
+    problem: Problem, contestants: Sequence[Contestant], effort: Effort, exact: Sequence[State], say: Say
 ) -> tuple[list[Entry], list[dict[str, str]]]:
     """Return every run with its error, and what was left out and why."""
     entries: list[Entry] = []
@@ -120,12 +121,15 @@ def _entries(
     return entries, skipped
 
 
-def _entry(problem: Problem, contestant: Contestant, tolerance: float, exact: State) -> Entry:
-    run = contestant.prepare(problem, tolerance)
-    last, steps = run()
-    state = last if isinstance(last, State) else problem.state(last)
-    # what a first call costs once is over: the clock is asked about the second
-    return Measured(contestant.name, tolerance, steps, problem.error(state, exact), seconds_of(run)), run
+def _entry(problem: Problem, contestant: Contestant, tolerance: float, exact: Sequence[State]) -> Entry:
+    follow = contestant.prepare(problem, tolerance)
+    found, steps = [], 0
+    for end in problem.ends:
+        last, steps = follow(end)
+        found.append(last if isinstance(last, State) else problem.state(last, end))
+    run = partial(follow, problem.stop)
+    # what a first call costs once is over: the clock is asked about another one
+    return Measured(contestant.name, tolerance, steps, problem.worst(found, exact), seconds_of(run)), run
 
 
 # ------------------------------------------------------------------------------------------------ reading

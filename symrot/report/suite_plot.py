@@ -48,7 +48,8 @@ def figure(found: Mapping[str, Any]) -> Any:
     axes.set_xlabel("times the time of symrot's steppers at equal error: a dot for each decade, a bar at the median")
     legend = axes.legend(loc="lower left", bbox_to_anchor=(-0.01, 1.0), ncols=len(peers), handlelength=0.8,
                          columnspacing=1.4, markerscale=1.6)  # fmt: skip
-    for handle in legend.legend_handles:
+    handles: Any = legend.legend_handles
+    for handle in handles:
         handle.set_alpha(1.0)
     page.text(0.02, 0.97, "Time against error: others over symrot", fontsize=13, fontweight="bold", va="top")
     machine = studies[0]["machine"]

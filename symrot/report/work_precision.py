@@ -62,8 +62,8 @@ def lines(found: Mapping[str, Any]) -> list[str]:
     title = f"{one_line(scene['title'])} [{one_line(scene['name'])}]: time against error"
     head = fields(
         [
-            ("span", f"{scene['span'][0]:g} to {scene['span'][1]:g} s; the error is that of the last state, attitude "
-                     "in rad, angular velocity relative to its size"),
+            ("span", f"{scene['span'][0]:g} to {scene['span'][1]:g} s; the error is the largest at four times of it, "
+                     "attitude in rad, angular velocity relative to its size"),
             ("reference", "; ".join([reference["name"], *(others or ["no second one to hold it against"])])),
             ("machine", f"{machine['processor']}; {', '.join(versions)}"),
             ("times", "processor time of a call from Python, medians of turns; fastest run at least as good"),

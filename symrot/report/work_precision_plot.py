@@ -55,7 +55,9 @@ def _frontier(runs: Sequence[Mapping[str, Any]]) -> tuple[list[tuple[float, floa
     """Return the runs that none beats in error and seconds, by error, and the others."""
     points = sorted((max(float(run["error"]), LEAST_ERROR), float(run["seconds"])) for run in runs)
     points = [point for point in points if point[0] < OUTERMOST]
-    kept, rest, least = [], [], float("inf")
+    kept: list[tuple[float, float]] = []
+    rest: list[tuple[float, float]] = []
+    least = float("inf")
     for point in points:  # from the least error on: each must be faster than all before it
         (kept if point[1] < least else rest).append(point)
         least = min(least, point[1])
@@ -116,7 +118,7 @@ def figure(found: Mapping[str, Any]) -> Any:
                       rotation=90, va="top", ha="left")  # fmt: skip
     axes.grid(True, which="major")
     axes.tick_params(which="minor", length=2, color="#b0b0b0")
-    axes.set_xlabel("error at the end: attitude in rad, angular velocity relative to its size")
+    axes.set_xlabel("error, the largest of four times: attitude in rad, angular velocity relative to its size")
     axes.set_ylabel("time of one call, s")
     page.canvas.draw()
     _leaders(axes, found)
