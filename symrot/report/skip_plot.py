@@ -34,7 +34,8 @@ def figure(found: Mapping[str, Any]) -> Any:
                 None if row[side][key] is None else max(row[side][key] / unit, LEAST) for side in ("general", "own")
             ]
             if None not in ends:
-                axes.plot(tuple(ends), (height, height), color="#c8c8c8", linewidth=2.0, zorder=1)
+                pair: Any = tuple(ends)
+                axes.plot(pair, (height, height), color="#c8c8c8", linewidth=2.0, zorder=1)
             for end, colour, marker in zip(ends, (GENERAL, OWN), "os", strict=True):
                 if end is not None:
                     axes.plot(end, height, marker, color=colour, markersize=6, zorder=2)
