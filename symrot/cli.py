@@ -374,6 +374,8 @@ def _prove_arguments(parser: ArgumentParser) -> None:
 
 def _check_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("claim", metavar="CLAIM", nargs="?", help="'left == right', LaTeX, or a FILE.toml of claims")
+    parser.epilog = ("Budget: 20 000 characters and 1 000 000 products of terms a claim; beyond it a claim is refused, "
+                     "or undecided with this reason. Counted, never timed: all machines give one verdict.")  # fmt: skip
     parser.add_argument("--textbook", metavar="NAME", help="check what a document says: chen, sahakian, brown, "
                         "beer-johnston, or all")  # fmt: skip
     parser.add_argument("--all", action="store_true", help="with --textbook all: write the page of errata")

@@ -24,8 +24,8 @@ PRODUCT_OF_INERTIA = re.compile(r"[IJP]_?(xy|yx|xz|zx|yz|zy|12|21|13|31|23|32)",
 """Names of moments of inertia, and of products of inertia."""
 
 
-MOST_TERMS = 400
-"""Terms of a residual that is still factored."""
+MOST_TERMS, LARGEST_DEGREE = 400, 24
+"""Terms, and the degree, of a residual that is still factored."""
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,7 @@ def requirements(
 def _shared_factors(ring: FormulaRing, numerators: Sequence[PolyElement]) -> list[PolyElement]:
     """Return the irreducible factors common to all residuals; none where looking for them is costly."""
     smallest = min(numerators, key=len)
-    if not ring.generators or len(smallest) > MOST_TERMS:
+    if not ring.generators or len(smallest) > MOST_TERMS or max(map(sum, smallest)) > LARGEST_DEGREE:
         return []
     shared = reduce(lambda a, b: a if a.is_ground else a.gcd(b), sorted(numerators, key=len))
     return [] if shared.is_ground else [factor for factor, _ in shared.factor_list()[1]]

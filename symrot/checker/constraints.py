@@ -35,7 +35,7 @@ class Constraints:
     positive, nonnegative, negative, whole : frozenset of int
         Generators > 0, >= 0, < 0, and integer.
     products : tuple of PolyElement
-        Further polynomials that are >= 0: a root over its denominator.
+        Further polynomials that are >= 0: a root over its denominator, what the text takes roots of.
     free : frozenset of int
         Generators that can have any values which all this allows.
     complete : bool
@@ -101,6 +101,11 @@ def constraints_of(ring: FormulaRing) -> Constraints:
                 products.append(target.gens[place] * ring.ratio(below).numerator.set_ring(target))
     hypotheses = [poly.set_ring(target) for poly in ring.hypothesis_numerators if poly]
     kept = [poly for poly in hypotheses if occurring([poly]) <= free]
+    for formula in ring.domain:
+        value = ring.ratio(formula)
+        signed = (value.numerator * ring.ratios.denominator(value)).set_ring(target)
+        if signed and not signed.is_ground and occurring([signed]) <= set(symbols.values()):
+            products.append(signed)
     factors = [poly.set_ring(target) for poly in ring.ratios.factors]
 
     def having(assumption: str) -> frozenset[int]:

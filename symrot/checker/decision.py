@@ -1,7 +1,7 @@
 """Two sides and hypotheses in, a verdict with its evidence out. The mathematics is that of :mod:`symrot.exact`."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from sympy import Derivative, Expr, Mul, Pow, pi, zeros
@@ -20,7 +20,7 @@ from symrot.exact.counterexample import Counterexample as Witness
 from symrot.exact.counterexample import closed_form_witness, rational_witness
 from symrot.exact.decide import flatten
 from symrot.exact.intervals import surely_nonnegative_number
-from symrot.exact.ratio import TooLarge
+from symrot.exact.ratio import MOST_PRODUCTS, TooLarge
 from symrot.exact.ring import FormulaRing, as_zero
 
 __all__ = ["Decision", "Problem", "decide_problem", "shown"]
@@ -45,7 +45,7 @@ class Problem:
 
 @dataclass(frozen=True)
 class Decision:
-    """The outcome: ``verdict``, and what goes with it."""
+    """The outcome: ``verdict``, and what goes with it; ``products`` of terms were needed to expand the formulas."""
 
     verdict: str
     conditions: tuple[str, ...] = ()
@@ -53,6 +53,7 @@ class Decision:
     counterexample: Counterexample | None = None
     reason: str = ""
     notes: tuple[str, ...] = ()
+    products: int = 0
 
 
 class _Printer(StrPrinter):  # type: ignore[misc]
@@ -87,14 +88,18 @@ def decide_problem(problem: Problem) -> Decision:
     try:
         ring = FormulaRing([*lefts, *rights, *problem.divisors, *problem.nonzero], relations, problem.radicands)
     except TooLarge as reason:
-        return Decision("undecided", reason=str(reason))
+        return Decision("undecided", reason=str(reason), products=MOST_PRODUCTS)
     try:
-        return _decided(ring, problem, lefts, rights, shape)
+        return replace(_decided(ring, problem, lefts, rights, shape), products=ring.ratios.products)
     except TooLarge as reason:
-        witness = _witness([closed_form_witness], ring, lefts, rights, range(len(lefts)), shape)
+        searches = [_within(ring, rational_witness), closed_form_witness]
+        try:
+            witness = _witness(searches, ring, lefts, rights, range(len(lefts)), shape)
+        except TooLarge:
+            witness = None
         if witness:
-            return Decision("false", counterexample=_as_text(witness))
-        return Decision("undecided", reason=str(reason))
+            return Decision("false", counterexample=_as_text(witness), products=MOST_PRODUCTS)
+        return Decision("undecided", reason=str(reason), products=MOST_PRODUCTS)
 
 
 def _decided(
@@ -224,7 +229,10 @@ def _branches(
 
     An empty list where no condition is needed; None where none is known.
     """
-    found = branch_requirements(ring, numerators) if ring.roots else None
+    try:
+        found = branch_requirements(ring, numerators) if ring.roots else None
+    except TooLarge:
+        return None, ()
     if found is None and len(numerators) == 1:
         for lift in lifts(ring, numerators[0]):
             found = branch_requirements(lift.ring, [poly for poly in lift.numerators if poly])

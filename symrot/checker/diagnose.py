@@ -31,6 +31,9 @@ MOST_PAIRS_OF = 90
 MOST_PROOFS = 10
 MOST_REPAIRS = 3
 
+MOST_EXPANDED = 1_000_000
+"""Products of terms in the expansions of the claim and of all repairs that are tried; at a fourth, none is tried."""
+
 AS_NEAR = 0.35
 """Cost by which another way of writing may exceed the nearest repair."""
 
@@ -45,7 +48,10 @@ def diagnose(claim: Claim, decision: Decision) -> tuple[Diagnosis, tuple[Repair,
     decision : Decision
         Its outcome, ``"false"`` or ``"conditional"``.
     """
-    repairs = _Search(claim, conditional=bool(decision.requires)).repairs()
+    if 4 * decision.products > MOST_EXPANDED:
+        text = f"the formula is too large to look for repairs: it took {decision.products} products of terms to expand"
+        return Diagnosis("none", text), ()
+    repairs = _Search(claim, decision).repairs()
     if decision.requires:
         needed = decision.requires[0]
         return Diagnosis(needed.code, f"{TEXTS[needed.code]}: {needed.text}"), repairs
@@ -55,9 +61,10 @@ def diagnose(claim: Claim, decision: Decision) -> tuple[Diagnosis, tuple[Repair,
 
 
 class _Search:
-    def __init__(self, claim: Claim, conditional: bool) -> None:
+    def __init__(self, claim: Claim, decision: Decision) -> None:
         self.sieve = Sieve(claim)
-        self.conditional = conditional  # what it lacks is the condition, then, not a term
+        self.conditional = bool(decision.requires)  # what it lacks is the condition, then, not a term
+        self.products = decision.products
         self.seen: set[tuple[float, ...]] = set()
         self.alike: list[Found] = []  # what has the values of something that was tried before
         self.offered: list[Found] = []
@@ -148,7 +155,7 @@ class _Search:
         repairs: list[Repair] = []
         attempts = 0
         for cost, code, changes in passed:
-            if attempts >= MOST_PROOFS or len(repairs) == most:
+            if attempts >= MOST_PROOFS or len(repairs) == most or self.products > MOST_EXPANDED:
                 break
             if self.conditional and code == "missing_term":
                 continue
@@ -170,6 +177,7 @@ class _Search:
                 decision = decide_problem(self.sieve.edited(shown).problem())
             except InputError:
                 continue
+            self.products += decision.products
             if decision.verdict == "true":
                 repairs.append(Repair(offered, code, round(cost, 3)))
                 self.offered.append((cost, code, shown))

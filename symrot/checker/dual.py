@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 __all__ = [
-    "Dual", "Meaningless", "absolute", "arctangent", "as_dual", "cosine", "inverse", "minus", "plain", "power", "sine",
-    "square_root",
+    "Dual", "Meaningless", "absolute", "arctangent", "as_dual", "cosine", "exponential", "inverse", "logarithm",
+    "minus", "plain", "power", "sine", "square_root",
 ]  # fmt: skip
 
 
@@ -103,6 +103,19 @@ def arctangent(y: Any, x: Any) -> Any:
         below = inverse(x.value * x.value + y.value * y.value)
         return Dual(arctangent(y.value, x.value), (x.value * y.slope + -(y.value * x.slope)) * below)
     return math.atan2(y, x)
+
+
+def exponential(x: Any) -> Any:
+    """Return e^x."""
+    if isinstance(x, Dual):
+        value = exponential(x.value)
+        return Dual(value, value * x.slope)
+    return _plainly(np.exp, x)
+
+
+def logarithm(x: Any) -> Any:
+    """Return the natural logarithm of a positive number."""
+    return Dual(logarithm(x.value), inverse(x.value) * x.slope) if isinstance(x, Dual) else _plainly(np.log, x)
 
 
 def power(x: Any, exponent: float) -> Any:

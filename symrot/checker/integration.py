@@ -4,6 +4,8 @@
 integrand is real, so what carries an ``i`` in the end is zero and is left out.
 """
 
+from functools import lru_cache
+
 from sympy import Add, Expr, I, Integer, Mul, Symbol, cos, exp, factorial, sin
 
 from symrot.errors import InputError
@@ -14,7 +16,8 @@ LARGEST_DEGREE = 40
 MOST_TERMS = 2000
 
 
-def definite_integral(integrand: Expr, variable: Symbol, lower: Expr, upper: Expr) -> tuple[Expr, list[Expr]]:
+@lru_cache(maxsize=64)
+def definite_integral(integrand: Expr, variable: Symbol, lower: Expr, upper: Expr) -> tuple[Expr, tuple[Expr, ...]]:
     """Return the integral over an interval, and the coefficients by which it divides.
 
     Parameters
@@ -36,7 +39,7 @@ def definite_integral(integrand: Expr, variable: Symbol, lower: Expr, upper: Exp
     total = [_antiderivative(term, variable, divisors) for term in Add.make_args(real)]
     primitive = Add(*total)
     difference = _value(primitive, variable, upper) - _value(primitive, variable, lower)
-    return difference.expand(), divisors
+    return difference.expand(), tuple(divisors)
 
 
 def _rewritten(integrand: Expr, variable: Symbol) -> Expr:

@@ -16,17 +16,18 @@ from sympy.core.function import AppliedUndef
 from symrot.checker.integration import definite_integral
 from symrot.checker.reader import complaint
 from symrot.checker.size import (
+    LARGE_MATRIX,
     LARGEST_INVERSE,
     MOST_ANGLE_TERMS,
     MOST_DIFFERENTIATED,
     MOST_PIECES,
     MOST_PRODUCTS,
-    pieces,
     products_of_determinant,
     terms_of_angle,
 )
 from symrot.checker.tree import Node
 from symrot.errors import InputError
+from symrot.exact.extent import pieces
 from symrot.kinematics.quaternion import dcm_of, qmul
 from symrot.kinematics.rotations import elementary_rotation, skew, vee
 
@@ -427,7 +428,17 @@ def _determinant(meaning: Meaning, matrix: ImmutableMatrix, node: Node, most_pro
         raise meaning.fail(
             node, f"a matrix whose determinant has at most {most_products} products instead of {products}"
         )
-    return matrix.det(method="berkowitz")
+    return _by_cofactors(matrix) if pieces(matrix) > LARGE_MATRIX else matrix.det(method="berkowitz")
+
+
+def _by_cofactors(matrix: ImmutableMatrix) -> Expr:
+    """Return a determinant as products of entries, nothing multiplied out."""
+    if matrix.rows == 1:
+        return matrix[0, 0]
+    rest = matrix[1:, :]
+    minors = [ImmutableMatrix.hstack(rest[:, :column], rest[:, column + 1 :]) for column in range(matrix.cols)]
+    places = [column for column in range(matrix.cols) if matrix[0, column] != 0]
+    return sympy.Add(*((-1) ** place * matrix[0, place] * _by_cofactors(minors[place]) for place in places))
 
 
 def _inverse_of(meaning: Meaning, node: Node) -> ImmutableMatrix:

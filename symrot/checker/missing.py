@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from sympy import Add, factor
+from sympy import Add, Expr, Integer, factor
 
 from symrot.checker.decision import shown
 from symrot.checker.edits import Edit
@@ -12,8 +12,10 @@ from symrot.checker.reader import read_expression
 from symrot.checker.sieve import SIDES, Change, Found, Sieve, at, cells_of, pieces, speaks
 from symrot.checker.tree import Node, Path, number, product, replaced, sum_of, text, walk
 from symrot.errors import InputError
-from symrot.exact.decide import flatten, normal_form
+from symrot.exact.branches import vanishes
+from symrot.exact.decide import flatten
 from symrot.exact.ratio import TooLarge
+from symrot.exact.ring import FormulaRing, as_zero
 
 __all__ = ["lacking_matrix", "lacking_term", "renamed"]
 
@@ -26,6 +28,9 @@ MOST_TERMS = 60
 MOST_LETTERS = 240
 """Length of a missing term that is still offered."""
 
+MOST_TERMS_READ, MOST_ROOTS_READ = 1000, 12
+"""Of a difference of the sides that is still brought to its shortest form to see whether it is one term."""
+
 
 def lacking_term(sieve: Sieve) -> Iterator[Found]:
     """Yield the claim with the one term that it lacks, read off the exact difference of its sides."""
@@ -34,7 +39,7 @@ def lacking_term(sieve: Sieve) -> Iterator[Found]:
     if shape != other:
         return
     try:
-        residuals = [normal_form(a - b, problem.hypotheses) for a, b in zip(lefts, rights, strict=True)]
+        residuals = [_short_form(a - b, problem.hypotheses) for a, b in zip(lefts, rights, strict=True)]
     except (TooLarge, InputError):
         return
     lacking = {n: residual for n, residual in enumerate(residuals) if residual != 0}
@@ -49,6 +54,15 @@ def lacking_term(sieve: Sieve) -> Iterator[Found]:
         if len(lacking) == 1 and lacking.keys() <= cells.keys():
             ((number_of, residual),) = lacking.items()
             yield from _inside(sieve, place, cells[number_of], sign * residual, problem.hypotheses)
+
+
+def _short_form(formula: Expr, hypotheses: Sequence[Any]) -> Expr:
+    """Return a normal form; ``TooLarge`` where it is far too long to be one term."""
+    ring = FormulaRing([formula], [as_zero(hypothesis) for hypothesis in hypotheses])
+    residual = ring.reduce(ring.ratio(formula).numerator)
+    if len(residual) > MOST_TERMS_READ or len(ring.roots) > MOST_ROOTS_READ:
+        raise TooLarge("the difference of the sides is too long to be one term")
+    return Integer(0) if vanishes(ring, residual) else ring.expression(ring.ratio(formula))
 
 
 def _whole(sieve: Sieve, place: str, lacking: Mapping[Path, Any]) -> Iterator[Found]:
@@ -76,7 +90,7 @@ def _inside(sieve: Sieve, place: str, cell: Path, residual: Any, hypotheses: Seq
     for path, piece in [found for found in brackets if found[0]][:most]:
         ends = [meaning.read(replaced(whole, path, always(number(value)))) for value in (0, 1)]
         try:
-            term = _term(normal_form(residual / (ends[1] - ends[0]), hypotheses), whole)
+            term = _term(_short_form(residual / (ends[1] - ends[0]), hypotheses), whole)
         except (TooLarge, InputError):
             continue
         if term is not None:

@@ -19,7 +19,9 @@ from symrot.checker.dual import (
     absolute,
     arctangent,
     cosine,
+    exponential,
     inverse,
+    logarithm,
     minus,
     plain,
     power,
@@ -95,7 +97,7 @@ class Point:
         key = id(node)
         if key in self.known:
             return self.known[key]
-        self.spent[0] += self.weight
+        self.spent[0] += self.weight * (1 + len(node.args) // 8)  # long sums and products cost more
         value = _VALUE[node.kind](self, node)
         if key in self.kept:
             self.known[key] = value
@@ -259,10 +261,24 @@ def _product_of_quaternions(*factors: Any) -> Rows:
     return column(total)
 
 
+def _other_leg(x: Any) -> Any:
+    return square_root(1.0 + -(x * x))
+
+
+def _hyperbolic(x: Any) -> tuple[Any, Any]:
+    """Return (sinh x, cosh x)."""
+    grown, shrunk = exponential(x), exponential(-x)
+    return (grown + -shrunk) * 0.5, (grown + shrunk) * 0.5
+
+
 _SPREAD: dict[str, Callable[..., Any]] = {"skew": skew, "dcm_of": turning}
 _FUNCTIONS: dict[str, Callable[..., Any]] = {
     "sin": sine, "cos": cosine, "sqrt": square_root, "abs": absolute, "atan2": arctangent, "Matrix": _matrix,
     "cross": _cross,
+    "exp": exponential, "log": logarithm, "atan": lambda x: arctangent(x, 1.0),
+    "asin": lambda x: arctangent(x, _other_leg(x)), "acos": lambda x: arctangent(_other_leg(x), x),
+    "sinh": lambda x: _hyperbolic(x)[0], "cosh": lambda x: _hyperbolic(x)[1],
+    "tanh": lambda x: _hyperbolic(x)[0] * inverse(_hyperbolic(x)[1]),
     "tan": lambda x: sine(x) * inverse(cosine(x)), "cot": lambda x: cosine(x) * inverse(sine(x)),
     "sec": lambda x: inverse(cosine(x)), "csc": lambda x: inverse(sine(x)),
     "Rx": rotation(0), "Ry": rotation(1), "Rz": rotation(2), "hstack": _hstack, "qmul": _product_of_quaternions,
@@ -286,14 +302,17 @@ _VALUE: dict[str, Callable[[Point, Node], Any]] = {
 
 def points(
     symbols: Sequence[str], functions: Sequence[str], definitions: Mapping[str, Node],
-    hypotheses: Sequence[tuple[Node, Node]], kept: frozenset[int], count: int = 2,
+    hypotheses: Sequence[tuple[Node, Node]], kept: frozenset[int], count: int = 2, most: float = 1.7,
 ) -> list[Point]:  # fmt: skip
-    """Return seeded points that obey the hypotheses to double precision (fewer where Newton's method fails)."""
+    """Return seeded points, symbols between 0.3 and ``most``, that obey the hypotheses to double precision.
+
+    They are fewer where Newton's method fails.
+    """
     found = []
     for seed in range(3 * count):
         source = Random(seed)
         point = Point(
-            {name: source.uniform(0.3, 1.7) for name in symbols},
+            {name: source.uniform(0.3, most) for name in symbols},
             {name: tuple(source.uniform(0.3, 1.3) for _ in range(DERIVATIVES)) for name in functions},
             definitions,
             kept,

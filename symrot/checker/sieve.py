@@ -57,7 +57,9 @@ class Sieve:
         loose = {name for name, called in found if not called and claim.implied and name != "pi"}
         self.symbols = sorted({*claim.symbols, *loose, "t"} - {*self.functions})
         hypotheses = [relation[1:] for relation in claim.given if relation[0] == "=="]
-        self.points = points(self.symbols, self.functions, self.definitions, hypotheses, kept)
+        narrow = any(node.value in ("asin", "acos") for tree in trees for _, node in walk(tree))
+        most = 0.9 if narrow else 1.7
+        self.points = points(self.symbols, self.functions, self.definitions, hypotheses, kept, most=most)
         self.matrix_names = {name for name, value in meaning.values.items() if getattr(value, "is_Matrix", False)}
         self.moving = any(node.kind == "call" and node.value == "diff" for tree in trees for _, node in walk(tree))
         self.used = self._used_definitions()

@@ -1,14 +1,19 @@
 """How large a formula would become, before it is built: counts that refuse what no machine can multiply out."""
 
-from collections.abc import Iterable
 from typing import Any
 
 from sympy import Expr
 
 __all__ = [
-    "LARGEST_INVERSE", "MOST_ANGLE_TERMS", "MOST_DIFFERENTIATED", "MOST_PIECES", "MOST_PRODUCTS", "pieces",
-    "products_of_determinant", "terms_of_angle",
-]  # fmt: skip
+    "LARGEST_INVERSE",
+    "LARGE_MATRIX",
+    "MOST_ANGLE_TERMS",
+    "MOST_DIFFERENTIATED",
+    "MOST_PIECES",
+    "MOST_PRODUCTS",
+    "products_of_determinant",
+    "terms_of_angle",
+]
 
 MOST_PIECES = 200_000
 """Symbols, numbers and operations that a value may be made of, those that occur twice counted twice."""
@@ -22,20 +27,11 @@ MOST_PRODUCTS = 2_000
 LARGEST_INVERSE = 200
 """The same for a matrix that is inverted, whose minors are all needed; a full 5 x 5 matrix has 120."""
 
+LARGE_MATRIX = 1_000
+"""Pieces of a matrix from which on its determinant is written by cofactors, without shortening."""
+
 MOST_ANGLE_TERMS = 2_000
 """Terms of a sine, written in sines and cosines of the angles in its argument; a sum of eleven has 1024."""
-
-
-def pieces(entries: Iterable[Expr]) -> int:
-    """Return how many pieces expressions are made of, written out; common parts are visited once."""
-    known: dict[Expr, int] = {}
-
-    def count(node: Expr) -> int:
-        if node not in known:
-            known[node] = 1 + sum(map(count, node.args))
-        return known[node]
-
-    return sum(map(count, entries))
 
 
 def products_of_determinant(matrix: Any) -> int:

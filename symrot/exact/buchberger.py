@@ -51,12 +51,13 @@ def groebner_basis(
 class _Basis:
     def __init__(self, ring: PolyRing, most_products: int, spent: list[int]) -> None:
         self.ring, self.most, self.spent = ring, most_products, spent
+        self.weight = 1 + ring.ngens // 16  # a long monomial costs more
         self.key: Callable[[Monomial], Any] = ring.order
         self.members: list[Terms] = []
         self.leads: list[Monomial] = []
 
     def spend(self, products: int) -> None:
-        self.spent[0] += products
+        self.spent[0] += products * self.weight
         if self.spent[0] > self.most:
             raise TooLarge(f"relating the hypotheses takes more than {self.most} products of terms")
 

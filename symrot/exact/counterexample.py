@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
+from math import prod
 from random import Random
 from typing import Any
 
@@ -18,8 +19,9 @@ from sympy.polys.rings import PolyElement
 
 from symrot.errors import InputError
 from symrot.exact.angles import base_angle
+from symrot.exact.extent import pieces
 from symrot.exact.intervals import enclosure, surely_nonnegative_number
-from symrot.exact.ratio import Ratio
+from symrot.exact.ratio import Ratio, TooLarge
 from symrot.exact.ring import FormulaRing
 
 __all__ = ["Counterexample", "closed_form_witness", "rational_witness"]
@@ -29,6 +31,12 @@ ATTEMPTS = 60
 
 SIMPLER_TERMS = 200_000
 """Terms of the residual that may be evaluated to make a point simpler."""
+
+UNMOVED = 20
+"""Random points that are taken as they are drawn; later ones are moved into the domain first, where they miss it."""
+
+MOST_ROOTS_SHORTENED = 6
+"""Roots in a number that is still multiplied out to see whether it is rational: each doubles its terms."""
 
 _INVERSE = (asin, acos, atan, atan2)
 _TRIANGLES = [Rational(n, d) for n, d in ((3, 5), (-4, 5), (3, 4), (-4, 3), (1, 1), (-1, 1), (2, 1), (-2, 1), (1, 2))]
@@ -77,9 +85,8 @@ def rational_witness(
     if ring.outside_scope or ring.roots or ring.fine or ring.exponentials or not _angles_are_free(ring):
         return None
     coordinates, solved = _coordinates(ring)
-    sides = ring.ratio(left), ring.ratio(right)
+    differ, size = _difference(ring, left, right)
     domain = [ring.ratio(formula) for formula in ring.domain]
-    residual = ring.difference(left, right).numerator
 
     def point(choices: Sequence[tuple[Fraction, ...]]) -> dict[int, Fraction] | None:
         """Return the value of every generator, or None where a side is undefined or the sides are equal."""
@@ -95,7 +102,7 @@ def rational_witness(
             and all(_value(factor, values) for factor in ring.ratios.factors)
             and all(_ratio_value(ring, formula, values) >= 0 for formula in domain)
         )
-        return values if admissible and _value(residual, values) else None
+        return values if admissible and differ(values) else None
 
     source = Random(1)
     for _ in range(ATTEMPTS):
@@ -104,7 +111,7 @@ def rational_witness(
             break
     else:
         return None
-    affordable = SIMPLER_TERMS // max(len(residual), 1)
+    affordable = SIMPLER_TERMS // max(size, 1)
     for place, coordinate in enumerate(coordinates):
         for simpler in coordinate.simple:
             affordable -= 1
@@ -116,9 +123,32 @@ def rational_witness(
                 break
     values = point(choices)
     assert values is not None
-    lhs, rhs = (_rational(_ratio_value(ring, side, values)) for side in sides)
+    lhs, rhs = (_rational(_formula_value(ring, side, values, {})) for side in (left, right))
     used = set().union(*(preorder_traversal(formula) for formula in (left, right, *ring.hypotheses)))
     return Counterexample(tuple(_named(ring, coordinates, values, used)), entry, lhs, rhs)
+
+
+def _difference(ring: FormulaRing, left: Expr, right: Expr) -> tuple[Callable[[dict[int, Fraction]], bool], int]:
+    """Return whether the sides are defined and differ at values of the generators, and what an answer costs, in terms.
+
+    The polynomial of the difference is asked, or the formulas as they are written where it is longer or too large.
+    """
+    written = pieces((left, right))
+    try:
+        residual = ring.difference(left, right).numerator
+        if len(residual) <= written:
+            return lambda values: bool(_value(residual, values)), len(residual)
+    except TooLarge:
+        ring.ratios.products = 0  # its symbols, sines and cosines are read on their own
+
+    def differ(values: dict[int, Fraction]) -> bool:
+        known: dict[Expr, Fraction] = {}
+        try:
+            return _formula_value(ring, left, values, known) != _formula_value(ring, right, values, known)
+        except ZeroDivisionError:
+            return False
+
+    return differ, written
 
 
 def closed_form_witness(
@@ -142,6 +172,7 @@ def closed_form_witness(
     if left.has(*_INVERSE) or right.has(*_INVERSE):
         simple = _TRIANGLES
     angles = _pure_angles(ring)
+    within = [*(found.base for found in ring.radicals.values() if found.base != -1), *ring.domain]
     for attempt in range(ATTEMPTS):
         early = attempt < ATTEMPTS // 2
         pool = simple if early else [Rational(n, 7) for n in range(-40, 41) if n]
@@ -150,14 +181,16 @@ def closed_form_witness(
             continue
         if any(_value(hypothesis, numbers) for hypothesis in ring.hypothesis_numerators):
             continue
-        values = {places[number]: _rational(value) for number, value in numbers.items()}
+        fixed = {places[number]: _rational(value) for number, value in numbers.items()}
+        values = dict(fixed)
         if not all(_assumed(leaf, value) for leaf, value in values.items()):
             continue
         for leaf in variables:
             if leaf not in values:
                 choices = _TURNS if early and leaf in angles else pool
                 values[leaf] = source.choice([v for v in choices if _assumed(leaf, v)] or [Rational(1)])
-        within = [*(found.base for found in ring.radicals.values() if found.base != -1), *ring.domain]
+        if attempt >= UNMOVED:
+            _move_within(within, values, [leaf for leaf in variables if leaf not in fixed], simple)
         if not all(surely_nonnegative_number(formula.xreplace(values)) for formula in within):
             continue
         if not all(_nonzero(source.xreplace(values)) for source in ring.ratios.sources):
@@ -167,6 +200,19 @@ def closed_form_witness(
         if None not in enclosures and 0 not in enclosures[0] - enclosures[1]:
             return Counterexample(tuple(sorted(values.items(), key=str)), entry, *map(_shortest, sides))
     return None
+
+
+def _move_within(
+    formulas: Sequence[Expr], values: dict[Expr, Expr], movable: Sequence[Expr], simple: Sequence[Expr]
+) -> None:
+    """Change one value for each formula that is negative, so that it is not: of the first symbol that can do it."""
+    for formula in formulas:
+        if surely_nonnegative_number(formula.xreplace(values)):
+            continue
+        own = formula.free_symbols
+        trials = ({**values, leaf: v} for leaf in movable if leaf in own for v in simple if _assumed(leaf, v))
+        found = next((t for t in trials if surely_nonnegative_number(formula.xreplace(t))), values)
+        values.update(found)
 
 
 def _pure_angles(ring: FormulaRing) -> set[Expr]:
@@ -182,11 +228,13 @@ def _nonzero(number: Expr) -> bool:
 
 
 def _shortest(number: Expr) -> Expr:
-    """Return a number as a rational where it is one."""
+    """Return a number as a rational where it is one and few roots make it up."""
     if number.is_Rational or not number.is_number:
         return number
     try:
         own = FormulaRing([number])
+        if len(own.roots) > MOST_ROOTS_SHORTENED:
+            return number
         found = own.expression(own.ratio(number))
     except InputError:  # beyond the budget
         return number
@@ -325,6 +373,23 @@ def _value(poly: PolyElement, values: dict[int, Fraction]) -> Fraction:
 
 def _ratio_value(ring: FormulaRing, ratio: Ratio, values: dict[int, Fraction]) -> Fraction:
     return _value(ratio.numerator, values) / _value(ring.ratios.denominator(ratio), values)
+
+
+def _formula_value(ring: FormulaRing, node: Expr, values: dict[int, Fraction], known: dict[Expr, Fraction]) -> Fraction:
+    """Return the value of a formula as it is written; ``ZeroDivisionError`` where it has none."""
+    if node in ring.symbols:
+        return values[ring.symbols[node]]
+    if node not in known:
+        if node.is_Rational:
+            known[node] = Fraction(int(node.p), int(node.q))
+        elif node.is_Add or node.is_Mul:
+            parts = [_formula_value(ring, part, values, known) for part in node.args]
+            known[node] = sum(parts, Fraction(0)) if node.is_Add else prod(parts, start=Fraction(1))
+        elif node.is_Pow and node.exp.is_Integer:
+            known[node] = _formula_value(ring, node.base, values, known) ** int(node.exp)
+        else:
+            known[node] = _ratio_value(ring, ring.ratio(node), values)
+    return known[node]
 
 
 def _named(

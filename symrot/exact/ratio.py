@@ -17,7 +17,7 @@ from sympy.polys.rings import PolyElement, PolyRing
 
 from symrot.errors import InputError
 
-__all__ = ["Ratio", "Ratios", "TooLarge"]
+__all__ = ["MOST_PRODUCTS", "Ratio", "Ratios", "TooLarge"]
 
 MOST_PRODUCTS = 1_000_000
 """Products of two terms that one problem may need: seconds of work, counted, so that all machines agree.
@@ -133,7 +133,7 @@ class Ratios:
         return below
 
     def _spend(self, products: int) -> None:
-        self.products += products * (1 + len(self.generators) // 32)  # a long monomial costs more
+        self.products += products * (1 + len(self.generators) // 8)  # a long monomial costs more
         if self.products > MOST_PRODUCTS:
             raise TooLarge(f"expanding the formula takes more than {MOST_PRODUCTS} products of terms")
 

@@ -13,8 +13,12 @@ from sympy.polys.domains import ZZ
 from sympy.polys.rings import PolyElement
 
 from symrot.exact.buchberger import groebner_basis
+from symrot.exact.ratio import TooLarge
 
 __all__ = ["Relations", "Rule", "relate"]
+
+MOST_TERMS = 500_000
+"""Terms that one relation may make of a polynomial, those of long monomials counted more."""
 
 
 @dataclass(frozen=True)
@@ -104,6 +108,9 @@ def _replace(poly: PolyElement, rule: Rule) -> PolyElement:
             low[mono] = coefficient
     if not high:
         return poly
+    weight = 1 + poly.ring.ngens // 8
+    if weight * sum(len(terms) * len(rule.replacement) ** times for times, terms in high.items()) > MOST_TERMS:
+        raise TooLarge(f"reducing the formula makes more than {MOST_TERMS} terms at once")
     total = poly.new(low)
     for times in sorted(high):
         total = total + poly.new(high[times]) * rule.replacement**times
