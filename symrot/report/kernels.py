@@ -22,6 +22,7 @@ from symrot.scene_file import shipped_names
 __all__ = ["certificate_files", "kernel_files", "kernel_lines", "stale", "write_all", "write_files"]
 
 SUFFIXES = {"c": (".c", ".h", ".json", ".txt", ".in"), "numpy": (".py",)}
+RECHECK = ("recheck.py", "recheck_formulas.py")  # what re-checks certificates without symrot
 WORKERS = min(os.cpu_count() or 1, 4)
 SCENES = "scenes"  # under the folder of each target: the kernels of shipped scenes; those of the library beside it
 
@@ -84,7 +85,7 @@ def _all_files(targets: Sequence[str], directory: Path, progress: Callable[[str]
             files |= found
     if "c" in targets:
         files |= {f"c/{file}": text for file, text in (build_files() | selftest_files()).items()}
-        files["recheck.py"] = Path(recheck.__file__).read_text(encoding="utf-8")
+        files |= {name: Path(recheck.__file__).with_name(name).read_text(encoding="utf-8") for name in RECHECK}
     return files
 
 
