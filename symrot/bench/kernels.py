@@ -1,6 +1,6 @@
 """Measure kernels against those of other tools: operations, ns for one sample, in a batch in cache, in one of 10^6.
 
-    python -m symrot.bench.kernels [--rounds 15] [--all-sequences]
+    python -m symrot.bench.kernels [--rounds 15] [--many 1000000] [--kernels NAME ..]
 
 All contestants take turns in one run and compute the same numbers, which is checked. What makes C is compiled with the
 same compiler and flags. heyoka's functions and CasADi's own evaluation are called from Python: a batch of 1000 counts
@@ -172,7 +172,7 @@ def _symrot_text(name: str) -> str:
 
 
 def _without_call(run: Callable[[int], Callable[[int], object]]) -> Callable[[], float]:
-    """Return seconds per sample of a batch that is called from Python, less those of a batch of one."""
+    """Return seconds per sample of a batch that is called from Python, by what it takes longer than a batch of one."""
     least, more = _timed(run(1), 1), _timed(run(CACHED), 1)
     calls, batches = [least()], [more()]
 
@@ -270,11 +270,10 @@ def _casadi_text(name: str, function: Any) -> str:
 
 def measure(contestants: Sequence[Contestant], rounds: int) -> None:
     """Let all contestants take their turns."""
-    for number in range(rounds):
+    for _ in range(rounds):
         for contestant in contestants:
             for shape, run in contestant.runs.items():
-                if shape != "many" or number < max(3, rounds // 3):
-                    contestant.seconds[shape].append(run())
+                contestant.seconds[shape].append(run())
 
 
 def _line(contestant: Contestant) -> str:
