@@ -25,7 +25,8 @@ __all__ = ["Measured", "measure", "points_in"]
 
 BITS = 600
 CONFIRMED = 12  # points per output that are done again
-ROUNDS = 6  # of looking around the worst points
+ROUNDS = 48  # of looking around the worst points
+LEAST_ROUND = 40  # points
 
 _FLOAT = {"binary64": np.float64, "binary32": np.float32}
 _WIDE = {"binary64": np.longdouble, "binary32": np.float64}
@@ -125,7 +126,7 @@ def _confirmed(operations: Operations, computed: Sequence[Any], column: int, roo
 
 def points_in(
     box: Box, places: Sequence[str], region: Region, count: int, rng: np.random.Generator, centre: Any = None,
-    spread: float = 1.0, kind: Any = np.float64,
+    kind: Any = np.float64,
 ) -> Points:  # fmt: skip
     """Return random points of a region: of the whole, near its corners, or near ``centre``."""
     low = np.array([[float(box[place][0])] for place in places])
@@ -137,8 +138,8 @@ def points_in(
         found = low + (high - low) * part
     else:
         chosen = centre[:, rng.integers(0, centre.shape[1], count)]
-        moved = rng.random(chosen.shape) < 0.6
-        step = (high - low) * spread * rng.standard_normal(chosen.shape) * moved
+        moved = rng.random(chosen.shape) < rng.choice([1.5 / len(places), 0.6], size=count)
+        step = (high - low) * 10.0 ** rng.uniform(-16, -1, count) * rng.standard_normal(chosen.shape) * moved
         found = np.clip(chosen + step, low, high)
     for group in region.unit:
         rows = [places.index(place) for place in group]
@@ -181,13 +182,13 @@ def measure(
         middle = {place: float((box[place][0] + box[place][1]) / 2) for place in places}
         worst[each.output][:, 0] = [start.get(place, middle[place]) for place in places]
     scanned = points_in(box, places, region, points // 2, rng, kind=kind)
-    share = max(points // (2 * ROUNDS * max(len(bounds), 1)), 50)
+    share = max(points // (2 * ROUNDS * max(len(bounds), 1)), LEAST_ROUND)
     errors, used = _scan(operations, box, region, scanned)
     best = {each.output: (scanned[:, _top(errors[each.output])],) for each in bounds}
-    for round_ in range(ROUNDS):
+    for _ in range(ROUNDS):
         for each in bounds:
             centre = np.concatenate([*best[each.output], worst[each.output]], axis=1).astype(np.float64)
-            near = points_in(box, places, region, share, rng, centre, 0.2 * 8.0**-round_, kind)
+            near = points_in(box, places, region, share, rng, centre, kind)
             both = np.concatenate([near, *best[each.output]], axis=1)
             found, number = _scan(operations, box, region, both)
             used += number
