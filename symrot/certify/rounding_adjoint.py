@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from symrot.certify import rounding_functions as functions
 from symrot.certify import rounding_intervals as intervals
 from symrot.certify.operations import Node
+from symrot.certify.rounding_centred import Centred
 from symrot.certify.rounding_cone import Cone, is_short, places_of
 from symrot.certify.rounding_intervals import DIGITS, Array
 
@@ -73,6 +74,7 @@ class _State:
     values: list[Array]
     errors: list[Array | None]
     outside: NDArray[np.bool_]
+    centred: Centred | None
     cuts: dict[int, NDArray[np.bool_]]  # where the atan2 of a node may be on both sides of its cut
 
     def __post_init__(self) -> None:
@@ -85,6 +87,12 @@ class _State:
         if factor != 1.0:
             return intervals.widened(exact, error), error
         return intervals.rounded_to(exact, self.precision), error
+
+    def refined(self, node: Node, values: Sequence[Array], plain: Array) -> Array:
+        """Return an enclosure of an exact result, by its mean value form if these are asked for."""
+        if self.centred is None:
+            return plain
+        return self.centred.refined(node, places_of(node), values, plain)
 
     def relative(self, exact: Array, units: float, least: float) -> tuple[Array, Array]:
         """Return what is computed with a relative error, in unit roundoffs, and that error."""
@@ -119,7 +127,7 @@ def _step(state: _State, index: int) -> Array:
 
 def _sum(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Array | None]:
     a, b = taken[0], taken[1] if node[0] == "add" else intervals.negative(taken[1])
-    value, error = state.rounded(intervals.add(a, b))
+    value, error = state.rounded(state.refined(node, taken, intervals.add(a, b)))
     error = np.minimum(error, np.minimum(intervals.magnitude(a), intervals.magnitude(b)))  # RN(a+b) is as near as a, b
     near = (a[0] > 0) & (b[1] < 0) & (-2 * b[1] >= a[1]) & (2 * a[0] >= -b[0])  # Sterbenz: b/2 <= a <= 2b is exact
     near |= (b[0] > 0) & (a[1] < 0) & (-2 * a[1] >= b[1]) & (2 * b[0] >= -a[0])
@@ -136,7 +144,7 @@ def _power_of_two(node: Node) -> bool:
 
 
 def _product(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Array | None]:
-    value, error = state.rounded(intervals.multiply(*taken))
+    value, error = state.rounded(state.refined(node, taken, intervals.multiply(*taken)))
     factors = [state.cone.nodes[i] for i in node[1:]]
     scaled = [factor for factor in factors if _power_of_two(factor)]
     if scaled:  # exact, but for results below the least normal number
@@ -145,7 +153,7 @@ def _product(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, 
 
 
 def _square(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Array | None]:
-    return state.rounded(intervals.square(taken[0]))
+    return state.rounded(state.refined(node, taken, intervals.square(taken[0])))
 
 
 def _quotient(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Array | None]:
@@ -379,8 +387,9 @@ _POSSIBLE: dict[str, Callable[[Array, Array], Any]] = {  # whether a relation ma
 
 
 def evaluate(
-    cone: Cone, boxes: Array, decided: NDArray[np.int8], region: Region = EVERYWHERE, libm_ulp: float = LIBM_ULP
-) -> Evaluation:
+    cone: Cone, boxes: Array, decided: NDArray[np.int8], region: Region = EVERYWHERE,
+    libm_ulp: float = LIBM_ULP, centred: bool = False,
+) -> Evaluation:  # fmt: skip
     """Return bounds of the rounding error of an output on boxes.
 
     Parameters
@@ -395,9 +404,12 @@ def evaluate(
         Restrictions; a box outside of them gets the bound -1.
     libm_ulp : float
         Largest error of sin, cos and atan2, in units in the last place.
+    centred : bool
+        Enclose polynomials by mean value forms: tighter, and slower.
     """
     count = boxes.shape[2]
-    state = _State(cone, boxes, decided.copy(), region, libm_ulp, [], [], np.zeros(count, bool), {})
+    state = _State(cone, boxes, decided.copy(), region, libm_ulp, [], [], np.zeros(count, bool),
+                   Centred(boxes) if centred else None, {})  # fmt: skip
     undecided = np.full(count, -1, np.int64)
     waiting: dict[int, list[int]] = {}
     for number, (_, i, j) in enumerate(cone.conditions):
@@ -408,6 +420,8 @@ def evaluate(
             value, error = FORWARD[node[0]](state, node, [state.values[i] for i in places_of(node)])
             state.values.append(value)
             state.errors.append(error)
+            if state.centred is not None:
+                state.centred.close(node, places_of(node), error)
             for number in waiting.get(index, ()):
                 undecided = _decide(state, number, undecided)
         bound, obstacle, turns = _backwards(state)

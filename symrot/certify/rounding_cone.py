@@ -22,6 +22,7 @@ from symrot.errors import CertificateError
 
 __all__ = ["Cone", "cone_of"]
 
+POLYNOMIAL = ("in", "const", "neg", "add", "sub", "mul", "square")
 CALLS = ("sin", "cos", "atan2")
 
 
@@ -60,6 +61,11 @@ class Cone:
                 taken = (*taken, *self.conditions[node[1]][1:])
             found.append(frozenset().union(*(found[i] for i in taken)))
         return tuple(found)
+
+    @cached_property
+    def is_polynomial(self) -> bool:
+        """Whether the output is a polynomial in its inputs."""
+        return all(node[0] in POLYNOMIAL for node in self.nodes)
 
     @cached_property
     def exact(self) -> tuple[bool, ...]:

@@ -11,7 +11,7 @@ from symrot.codegen import library
 
 __all__ = ["Store"]
 
-_METHOD = ("intervals", "functions", "cone", "adjoint", "subdivision")
+_METHOD = ("intervals", "functions", "cone", "centred", "adjoint", "subdivision")
 _NUMBERS = ("bound", "pointwise", "largest_value")
 
 

@@ -6,7 +6,7 @@ bound is not above what a single point reaches (but for ``GAP``) are settled. Th
 boxes, not in time: the same bytes come out everywhere.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf
 
 import numpy as np
@@ -21,6 +21,7 @@ __all__ = ["Search", "search"]
 GAP = 1.02  # a bound within 2 % of what a point reaches is converged
 BATCH = 256  # parts that are halved at once
 CHUNK = 2048  # boxes evaluated at once
+MOST_CENTRED = 8  # inputs of a polynomial that is searched with mean value forms, if one without is not converged
 SHRUNK = 8.0  # a range is shrunk to an eighth to see what halving it again and again would do
 NARROWEST = 2.0**-24  # of the width of the box: a part this narrow that has no bound is at a singular point
 
@@ -66,7 +67,8 @@ class _Parts:
 
 
 class _Search:
-    def __init__(self, cone: Cone, box: Array, region: Region, libm_ulp: float) -> None:
+    def __init__(self, cone: Cone, box: Array, region: Region, libm_ulp: float, centred: bool) -> None:
+        self.centred = centred
         self.cone, self.box, self.region, self.libm_ulp = cone, box, region, libm_ulp
         self.width = box[1] - box[0]
         places = cone.places
@@ -84,7 +86,10 @@ class _Search:
         count = boxes.shape[2]
         self.evaluations += count
         found = [
-            evaluate(self.cone, boxes[:, :, k : k + CHUNK], decided[:, k : k + CHUNK], self.region, self.libm_ulp)
+            evaluate(
+                self.cone, boxes[:, :, k : k + CHUNK], decided[:, k : k + CHUNK], self.region, self.libm_ulp,
+                self.centred,
+            )  # fmt: skip
             for k in range(0, count, CHUNK)
         ]
         return Evaluation(*(np.concatenate([getattr(part, name) for part in found]) for name in _FIELDS))
@@ -198,7 +203,23 @@ def search(
     target : float, optional
         Stop as soon as it is known whether the bound is at most this.
     """
-    run = _Search(cone, box, region, libm_ulp)
+    found = _searched(_Search(cone, box, region, libm_ulp, False), budget, target)
+    decided = target is not None and (found.bound <= target or found.pointwise > target)
+    if found.converged or decided or not cone.is_polynomial or len(cone.places) > MOST_CENTRED:
+        return found
+    again = _searched(_Search(cone, box, region, libm_ulp, True), budget, target)
+    best = min(found, again, key=lambda each: each.bound)
+    reached = max(found, again, key=lambda each: each.pointwise)
+    return replace(
+        best, pointwise=reached.pointwise, worst=reached.worst if best.bound < inf else best.worst,
+        largest_value=max(found.largest_value, again.largest_value),
+        evaluations=found.evaluations + again.evaluations, converged=best.bound <= GAP * reached.pointwise,
+    )  # fmt: skip
+
+
+def _searched(run: _Search, budget: int, target: float | None) -> Search:
+    """Return what one search finds."""
+    cone, box = run.cone, run.box
     conditions = len(cone.conditions)
     parts = run.parts(box[:, :, None].copy(), np.full((conditions, 1), -1, np.int8))
     settled = -1.0
