@@ -8,24 +8,29 @@ however well proven, passes for it.
 
 import json
 from collections.abc import Callable, Mapping
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
 from symrot.certify import recheck
-from symrot.certify.certificate import Data, Subject, printed, statement
+from symrot.certify.certificate import Data, Subject, printed, shown, statement
 from symrot.certify.header import check_header
 from symrot.certify.operations import Operations
 from symrot.certify.readback import read_batch, read_kernel
+from symrot.certify.rounded import meaning
 from symrot.errors import CertificateError
+from symrot.kernels.removable import REMOVABLE
 
 __all__ = ["audit", "load"]
 
 LARGEST = 2**24  # bytes of a certificate
-PARTS = {  # what a certificate holds, and of what type
+PARTS: dict[str, Any] = {  # what a certificate holds, and of what type
     "schema": str, "kernel": str, "title": str, "regenerate": str, "convention": str, "domain": str, "derivation": str,
     "files": dict, "inputs": list, "spec": dict, "coq": (dict, type(None)), "flags": dict, "trusted": dict,
     "laws": list, "readback": dict, "rounding": (dict, type(None)), "objects": (dict, type(None)), "seal": str,
 }  # fmt: skip
+CASE = ["case", "steps", "relations", "entries"]
+LAW = ["law", "vanishing", "given", "cases"]
 OPTIONAL = ("rounding", "objects")
 PROVEN = ("laws", "readback", *OPTIONAL, "seal")
 
@@ -85,9 +90,14 @@ def audit(path: Path, subject_of: Callable[[Data], Subject | None]) -> tuple[Dat
     """
     data = load(path)
     try:
-        found = [recheck.check(path)]
+        return data, [recheck.check(path), *_audited(path, data, subject_of)]
+    except CertificateError:
+        raise
     except recheck.REFUSALS as reason:
         raise CertificateError(f"{path}: {recheck.sentence(reason)}") from None
+
+
+def _audited(path: Path, data: Data, subject_of: Callable[[Data], Subject | None]) -> list[str]:
     name = data["kernel"]
     source, header = ((path.parent / f"{name}{end}").read_text(encoding="utf-8") for end in (".c", ".h"))
     check_header(header, source, name)
@@ -96,21 +106,18 @@ def audit(path: Path, subject_of: Callable[[Data], Subject | None]) -> tuple[Dat
         raise CertificateError(f"{path}: expected a certificate as symrot prints it, got another layout")
     subject = subject_of(data)
     if subject is None:
-        found.append(f"{name} is no kernel that symrot knows: its formulas and laws are those of the certificate")
-        return data, found
+        return [f"{name} is no kernel that symrot knows: its formulas and laws are those of the certificate"]
     _compare(path, data, statement(subject))
     laws = [[law.text, list(map(str, law.vanishing)), list(map(str, law.relations))] for law in subject.laws]
-    if [[law["law"], law["vanishing"], law["given"]] for law in data["laws"]] != laws:
+    if [list(law.values())[:3] for law in data["laws"]] != laws or any(
+        list(law) != LAW or any(list(case) != CASE for case in law["cases"]) for law in data["laws"]
+    ):
         raise CertificateError(f"{path}: expected the laws of {name} as symrot derives them, got others")
-    found.append("formulas, laws, domain, units, flags and assumptions are those that symrot derives")
-    return data, found
+    return ["formulas, laws, domain, units, flags and assumptions are those that symrot derives"]
 
 
 def _compare(path: Path, data: Mapping[str, Any], wanted: Mapping[str, Any]) -> None:
-    files = {name: digest for name, digest in wanted["files"].items() if name in data["files"]}
-    for name, value in [*wanted.items(), ("files", files)]:
-        if name == "files" and value is wanted["files"]:
-            continue
+    for name, value in wanted.items():
         if json.dumps(data[name]) != json.dumps(value):
             raise CertificateError(f"{path}: expected {name!r} as symrot prints it now, and it is not (emit it anew)")
     others = sorted(set(data) - set(wanted) - set(PROVEN))
@@ -124,12 +131,23 @@ def operations_of(data: Data, source: str) -> dict[str, Operations]:
 
 
 def _check_readback(data: Data, source: str) -> None:
+    """Refuse what is said of the operations if it is not what is read now, in the order in which it is read."""
+    where = f"{data['kernel']}.c"
     for name, said in data["readback"].items():
-        one = read_kernel(source, name, f"{data['kernel']}.c")
-        batch = read_batch(source, f"{name}_batch", f"{data['kernel']}.c")
-        if not one.digest() == batch.digest() == said["digest"]:
-            raise CertificateError(f"{data['kernel']}.c: expected {name} to be the operations that were certified")
-        if said["operations"] != one.counts():
-            raise CertificateError(
-                f"{data['kernel']}.c: expected the operation counts of {name} as they were certified"
-            )
+        one, batch = read_kernel(source, name, where), read_batch(source, f"{name}_batch", where)
+        constants = list(dict.fromkeys(str(node[1]) for node in one.nodes if node[0] == "const"))
+        listed = [written for written, _ in said["constants"]]
+        series = [function for function, *_ in said["series"]]
+        end = "f" if said["type"] == "float" else ""
+        checks = {
+            "keys": list(said) == ["type", "operations", "digest", "constants", "series"],
+            "digest": one.digest() == batch.digest() == said["digest"],
+            "counts": said["operations"] == one.counts(),
+            "constants": listed == [each for each in constants if each in listed]
+            and all(means == shown(meaning(Fraction(written), one.precision)) for written, means in said["constants"]),
+            "series": series == [each for each in REMOVABLE if f"symrot_{each}{end}(" in source]
+            and all(str(Fraction(text)) == text for _, split, _, rest in said["series"] for text in (split, rest)),
+        }
+        for what, holds in checks.items():
+            if not holds:
+                raise CertificateError(f"{where}: expected the {what} of the operations of {name}, got others")

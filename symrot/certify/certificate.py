@@ -7,7 +7,6 @@ links are filled in by their rooms. Same kernel, same bytes, on every machine.
 import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from fractions import Fraction
 from functools import cache
 from hashlib import sha256
 from pathlib import Path
@@ -20,13 +19,14 @@ from symrot.certify.equality import Equality, prove_equal
 from symrot.certify.flags import flags_section
 from symrot.certify.laws import CaseProof, LawProof, prove_law
 from symrot.certify.readback import read_batch, read_kernel
+from symrot.certify.rounded import Meant
 from symrot.codegen import library
 from symrot.codegen.banner import Description
 from symrot.errors import CertificateError
 from symrot.kernel import Argument
 from symrot.kernels.definition import Law
 
-__all__ = ["SCHEMA", "Data", "Subject", "certificate_text", "printed", "seal", "statement", "with_slots"]
+__all__ = ["SCHEMA", "Data", "Subject", "certificate_text", "printed", "seal", "shown", "statement", "with_slots"]
 
 SCHEMA = "symrot.certificate/1"
 Data = dict[str, Any]
@@ -174,13 +174,14 @@ def _readback(subject: Subject, suffix: str, real: str) -> Data:
         "type": real,
         "operations": one.counts(),
         "digest": one.digest(),
-        "constants": [[str(each.written), _meaning(each.fraction, each.times_pi)] for each in proof.rounded],
+        "constants": [[str(each.written), shown(each)] for each in proof.rounded],
         "series": _series(proof),
     }
 
 
-def _meaning(fraction: Fraction, times_pi: bool) -> str:
-    return f"{fraction}*pi" if times_pi else str(fraction)
+def shown(meant: Meant) -> str:
+    """Return what a constant stands for, as text."""
+    return f"{meant.fraction}*pi" if meant.times_pi else str(meant.fraction)
 
 
 def _series(proof: Equality) -> list[list[Any]]:

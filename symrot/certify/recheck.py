@@ -3,6 +3,7 @@
 Hashes; link 3, that the C text is its formulas, exactly; link 1, that the formulas obey their laws. Exit 0 and a line
 for each certificate that holds, exit 1 and a sentence for the first that does not. Its exact arithmetic is that of
 recheck_formulas.py beside it. It trusts the two files, and Python."""
+
 # ruff: noqa
 # mypy: ignore-errors
 # fmt: off
@@ -48,6 +49,7 @@ def near(text):
 def equal(name, data, found):
     """Link 3: a function, of one sample and of many, is the formulas."""
     said, spec, places = data["readback"][name], data["spec"], {place: symbol for place, symbol, _ in data["inputs"]}
+    need(len(places) == len(data["inputs"]) and all(map(str.isidentifier, places.values())), "an input is no symbol")
     formulas, real, end = {p: text for p, _, text in spec["formulas"]}, said["type"], "f" * (said["type"] == "float")
     sizes = {place.partition("[")[0]: 0 for place in (*places, *formulas)}
     for place in (*places, *formulas): sizes[place.partition("[")[0]] += "[" in place
@@ -110,7 +112,7 @@ def check(path):
     need(not lines[-1].strip() and shown == named, f"expected the functions {', '.join(named)}")
     for each in data["readback"]: equal(each, data, found)
     formulas = [*data["spec"]["named"], *(item[1:] for item in data["spec"]["formulas"])]
-    for law in data["laws"]:
+    for law in need(data["laws"], "there are no laws"):
         need(complete([case["case"] for case in law["cases"]]), f"cases of the law {law['law']!r} are missing")
         for case in law["cases"]: prove(law, case, formulas)
     functions, laws = " and ".join(data["readback"]), len(data["laws"])
