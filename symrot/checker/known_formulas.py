@@ -204,7 +204,8 @@ def derived() -> Iterator[Named]:
         found = catalogue.derivation(name)
         for number, step in enumerate(found.steps, start=1):
             claim = " ".join(step.claim.split()).rstrip(".:")
-            for side in (step.left, step.right):
+            between = (side for _, before, after in step.via for side in (before, after))
+            for side in (step.left, step.right, *between):
                 yield f"{found.title}: {claim}", f"derivations/{name}.md, step {number}", side
 
 
