@@ -122,7 +122,8 @@ REFUSALS = (LookupError, TypeError, AttributeError, SyntaxError, MemoryError, Re
             ArithmeticError, OSError)
 def sentence(reason):
     return str(reason) if isinstance(reason, (ValueError, OSError)) else f"no certificate of the schema ({reason!r})"
-if __name__ == "__main__":
-    for path in sys.argv[1:] or sys.exit("usage: python recheck.py NAME.cert.json .."):
+def main(paths):
+    for path in paths or sys.exit("usage: python recheck.py NAME.cert.json .."):
         try: print(check(path), "hold", sep=": ")
         except REFUSALS as reason: sys.exit(f"{path}: {sentence(reason)}")
+if __name__ == "__main__": main(sys.argv[1:])

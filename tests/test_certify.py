@@ -1,0 +1,264 @@
+"""Certificates: what they say is proven, re-checked without symrot, audited; and whatever is altered is refused."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+from random import Random
+
+import pytest
+
+import symrot
+from symrot.certify import recheck
+from symrot.certify.audit import audit
+from symrot.certify.certificate import certificate_text, printed, with_slots
+from symrot.certify.header import check_header
+from symrot.certify.laws import prove_law, prove_laws
+from symrot.certify.mutations import Files, corrupted_c, says_the_same, tampered_certificates
+from symrot.cli import main
+from symrot.errors import CertificateError
+from symrot.interface import emit, subject
+from symrot.kernels.definition import Law
+from symrot.kernels.library import definition, kernel_names
+from symrot.scene_file import shipped_names
+from symrot.symbols import constant
+
+SLICE = ("quaternion_dcm", "quaternion_of_dcm", "euler_zyx_body_rates", "euler_zxz_of_quaternion", "mrp_shadow",
+         "rotation_vector_body_rates", "rotation_vector_of_quaternion", "torque_gravity", "gravity_gradient_satellite",
+         "heavy_top_loops")  # fmt: skip
+RECHECK = Path(recheck.__file__)
+
+
+@pytest.fixture(scope="module")
+def kernels(tmp_path_factory):
+    """Some kernels in a folder, as they are emitted."""
+    directory = tmp_path_factory.mktemp("kernels")
+    return {name: Files(directory, subject(name), emit(name).certificate) for name in SLICE}
+
+
+def resealed(files, **changes):
+    files.path.write_text(printed(files.data | changes), encoding="utf-8")
+
+
+@pytest.fixture
+def dcm(kernels):
+    files = kernels["quaternion_dcm"]
+    yield files
+    files.restore()
+
+
+def refused(files, said, *options):
+    """Both checkers refuse the files; the audit says why."""
+    with pytest.raises(recheck.REFUSALS):
+        recheck.check(files.path)
+    with pytest.raises(CertificateError, match=said) as caught:
+        audit(files.path, lambda data: files.subject)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("name", SLICE)
+def test_a_certificate_holds_and_is_rechecked_without_symrot(kernels, name):
+    files = kernels[name]
+    assert files.accepted() == ["recheck", "audit"]
+    assert emit(name).certificate == files.path.read_text(encoding="utf-8")
+    assert certificate_text(files.subject) == emit(name).certificate
+
+
+def test_recheck_is_short_and_imports_nothing_of_symrot(kernels, tmp_path):
+    """It runs where there is neither symrot nor any package, from a copy."""
+    for path in (RECHECK, RECHECK.with_name("recheck_formulas.py")):
+        (tmp_path / path.name).write_bytes(path.read_bytes())
+    assert len(RECHECK.read_text(encoding="utf-8").splitlines()) < 150
+    paths = [str(files.path) for files in kernels.values()]
+    command = [sys.executable, "-I", "-S", str(tmp_path / "recheck.py")]
+    code = "import sys; sys.path.insert(0, sys.argv[1]); import recheck; recheck.main(sys.argv[2:])"
+    done = subprocess.run([*command[:3], "-c", code, str(tmp_path), *paths], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.count("hold") == len(paths)
+    kernels["quaternion_dcm"].path.write_text("{}", encoding="utf-8")
+    done = subprocess.run([sys.executable, str(tmp_path / "recheck.py"), paths[0]], capture_output=True, text=True)
+    kernels["quaternion_dcm"].restore()
+    assert done.returncode == 1 and done.stderr.count("\n") == 1 and "schema" in done.stderr
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("name", (*kernel_names(), *shipped_names()))
+def test_every_certificate_holds(name, tmp_path):
+    assert Files(tmp_path, subject(name), emit(name).certificate).accepted() == ["recheck", "audit"]
+
+
+# --- link 1 -----------------------------------------------------------------------------------------------------------
+
+
+def test_a_law_that_does_not_follow_is_refused():
+    q = [constant(f"q{i}") for i in range(4)]
+    norm = sum(each**2 for each in q) - 1
+    formulas = dict(definition("quaternion_dcm").formulas)
+    first = constant("R_11")
+    wrong = Law("wrong", (first - 1 + 2 * q[2] ** 2 + 2 * q[3] ** 2 + q[0],), (norm,))
+    with pytest.raises(CertificateError, match="'wrong' to follow"):
+        prove_law("kernel", wrong, formulas)
+    with pytest.raises(CertificateError, match="to follow"):  # without its hypothesis
+        prove_law("kernel", Law("bare", (norm,)), {})
+    assert prove_law("kernel", Law("given", (norm * q[0],), (norm,)), {}).cases[0].entries[0].cofactors == ((0, "q0"),)
+
+
+@pytest.mark.parametrize("name", ["euler_equations_principal", "torque_rotor", "mrp_of_quaternion"])
+def test_laws_are_proven_in_every_case(name):
+    for proof in prove_laws(definition(name)):
+        assert recheck.complete([[list(choice) for choice in case.case] for case in proof.cases])
+        assert len(proof.cases) == (2 if name == "mrp_of_quaternion" else 1)
+
+
+def test_cases_that_are_missing_are_noticed():
+    less, more = ["a", "<", "b"], ["a", ">=", "b"]
+    assert recheck.complete([[]]) and recheck.complete([[less], [more]])
+    assert recheck.complete([[less], [more, ["c", "<", "d"]], [more, ["c", ">=", "d"]]])
+    for cases in ([], [[less]], [[less], [less]], [[], []], [[less], [more], []], [[less], ["b", ">=", "a"]]):
+        assert not recheck.complete(cases)
+
+
+# --- what is hostile --------------------------------------------------------------------------------------------------
+
+
+def edit(files, name, old, new):
+    path = files.directory / name
+    text = path.read_text(encoding="utf-8")
+    assert old in text
+    path.write_text(text.replace(old, new, 1), encoding="utf-8")
+
+
+def test_a_kernel_edited_by_hand_is_refused(dcm):
+    edit(dcm, "quaternion_dcm.c", " - ", " + ")
+    refused(dcm, "quaternion_dcm.c is not what was certified")
+
+
+def test_a_header_with_a_macro_is_refused(dcm):
+    source, header = (dcm.texts[f"quaternion_dcm{end}"] for end in (".c", ".h"))
+    check_header(header, source, "quaternion_dcm")
+    edit(dcm, "quaternion_dcm.h", "#include <stddef.h>", "#include <stddef.h>\n#define sin cos")
+    refused(dcm, "quaternion_dcm.h is not what was certified")
+    for old, new in (
+        ("#include <stddef.h>", "#include <stddef.h>\n#define sin cos"), ("#include <stddef.h>", "#include <math.h>"),
+        ("__restrict\n", "__restrict\n#define q p\n"), ("double dcm[9]);", "float dcm[9]);"),
+        ("/* one sample */", "/* one sample */\n#define dcm cdm"), ("/* one sample */", "void more(double x);"),
+        ("/* one sample */", "??=define sin cos"), ("\n#endif\n", "\n#define cos sin\n#endif\n"),
+        ("/* one sample */", "/* */ \\"), ("const double q[4], ", "double q[4], "),
+    ):  # fmt: skip
+        assert old in header
+        with pytest.raises(CertificateError, match="quaternion_dcm.h"):
+            check_header(header.replace(old, new, 1), source, "quaternion_dcm")
+
+
+def test_a_certificate_of_another_file_is_refused(kernels, dcm):
+    other = kernels["mrp_shadow"]
+    dcm.path.write_text(other.path.read_text(encoding="utf-8"), encoding="utf-8")
+    refused(dcm, "of another file")
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (b"", "as JSON"), (b'{"schema": "symrot.certificate/1", "kernel', "as JSON"), (b"[]", "a JSON object"),
+        (b"{}", "'schema' in a certificate"), (b"\xff\xfe\x00", "as JSON"), (b"[" * 100000, "as JSON"),
+        (b'{"schema": 1, "schema": 2}', "twice"), (b'{"schema": NaN}', "NaN"), (b'{"schema": 1e999}', "'schema'"),
+        (b'{"schema": ' + b"9" * 5000 + b"}", "as JSON"),
+    ],
+)  # fmt: skip
+def test_a_file_that_is_no_certificate_is_refused(dcm, content, said):
+    dcm.path.write_bytes(content)
+    refused(dcm, said)
+
+
+def test_wrong_schemas_missing_parts_and_huge_numbers_are_refused(dcm):
+    resealed(dcm, schema="symrot.certificate/2")
+    refused(dcm, "schema")
+    dcm.path.write_text(printed({k: v for k, v in dcm.data.items() if k != "laws"}), encoding="utf-8")
+    refused(dcm, "'laws'")
+    spec = dcm.data["spec"]
+    for text in ("q0**99999999999", "1/0", "9" * 5000, "(" * 3000 + "q0" + ")" * 3000, "__import__('os')", "q0.real"):
+        formulas = [[spec["formulas"][0][0], spec["formulas"][0][1], text], *spec["formulas"][1:]]
+        resealed(dcm, spec=spec | {"formulas": formulas})
+        refused(dcm, "expected|formula|power|division|schema|digits")
+    resealed(dcm, title="direction cosine matrix of any quaternion")
+    with pytest.raises(CertificateError, match="'title' as symrot prints"):
+        audit(dcm.path, lambda data: dcm.subject)
+    dcm.path.write_text(json.dumps(dcm.data), encoding="utf-8")
+    with pytest.raises(CertificateError, match="another layout"):
+        audit(dcm.path, lambda data: dcm.subject)
+
+
+def test_corrupted_c_files_are_refused(kernels):
+    """With their hash put right and the certificate sealed anew: the meaning of the text alone refuses them."""
+    campaign = corrupted_c(list(kernels.values()), 90, Random(11))
+    assert campaign.survivors == []
+    assert campaign.same.total() < 9 and len(campaign.tried) > 9
+
+
+def test_tampered_certificates_are_refused(kernels):
+    assert tampered_certificates(list(kernels.values()), 150, Random(12), sealed=False).survivors == []
+    campaign = tampered_certificates(list(kernels.values()), 30, Random(13), sealed=True)
+    assert campaign.survivors == []
+    assert campaign.words
+
+
+def test_what_is_the_same_certificate():
+    data = json.loads(emit("quaternion_dcm").certificate)
+    assert says_the_same(data, data, True) and says_the_same(data, data, False)
+    other = json.loads(emit("mrp_dcm").certificate)
+    assert not says_the_same(data, other, False) and not says_the_same(data, data | {"domain": "all"}, True)
+
+
+# --- commands ---------------------------------------------------------------------------------------------------------
+
+
+def test_certify_and_audit(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(["emit", "quaternion_product", "-o", "k"]) == 0
+    assert sorted(path.name for path in Path("k").iterdir()) == [
+        "quaternion_product.c", "quaternion_product.cert.json", "quaternion_product.h"]  # fmt: skip
+    assert main(["certify", "quaternion_product", "-o", "k"]) == 0
+    said = capsys.readouterr().out
+    assert "link 1" in said and "link 3" in said and "link 4" in said and "-ffp-contract=off" in said
+    kept = Path("k/quaternion_product.cert.json").read_text(encoding="utf-8")
+    assert main(["emit", "quaternion_product", "-o", "k"]) == 0
+    assert Path("k/quaternion_product.cert.json").read_text(encoding="utf-8") == kept  # bounds are kept
+    assert main(["audit", "k/quaternion_product.cert.json", "--rerun-bounds"]) == 0
+    assert "found again" in capsys.readouterr().out
+    assert main(["certify", "k/quaternion_product.c", "--no-bounds", "--json"]) == 0
+    text = Path("k/quaternion_product.c").read_text(encoding="utf-8")
+    Path("k/quaternion_product.c").write_text(text.replace(" - ", " + ", 1), encoding="utf-8")
+    capsys.readouterr()
+    assert main(["audit", "k/quaternion_product.cert.json"]) == 1
+    assert main(["certify", "k/quaternion_product.c"]) == 2
+    assert main(["audit", "k/nothing.cert.json"]) == 1
+    assert main(["certify", "quaternion_produkt"]) == 2
+    said = capsys.readouterr()
+    assert said.out == "" and said.err.count("\n") == 4 and "Traceback" not in said.err
+    assert sorted(path.name for path in Path("k").iterdir()) == [
+        "quaternion_product.c", "quaternion_product.cert.json", "quaternion_product.h"]  # fmt: skip
+
+
+def test_bounds_of_other_operations_are_not_kept():
+    text = emit("quaternion_dcm").certificate
+    found = {"precisions": [{"operations_sha256": "0"}, {"operations_sha256": "1"}]}
+    assert with_slots(text, {"rounding": found, "objects": {"source": 1}}) == text
+    digests = [each["digest"] for each in json.loads(text)["readback"].values()]
+    found = {"precisions": [{"operations_sha256": digest} for digest in digests]}
+    assert json.loads(with_slots(text, {"rounding": found}))["rounding"] == found
+
+
+def test_certificates_are_the_same_bytes_whatever_the_seed_of_hashes():
+    code = (
+        "import symrot; print(''.join(symrot.emit(n).certificate for n in ('euler_zyx_body_rates', 'heavy_top_loops')))"
+    )
+    texts = {
+        subprocess.run(
+            [sys.executable, "-c", code],
+            capture_output=True,
+            check=True,
+            env={"PYTHONHASHSEED": seed, "SYMROT_CACHE": "/nowhere"},
+        ).stdout
+        for seed in ("1", "2")
+    }
+    assert len(texts) == 1 and symrot.emit("heavy_top_loops").certificate.encode() in texts.pop()
