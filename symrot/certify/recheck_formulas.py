@@ -1,6 +1,7 @@
 """Exact arithmetic of formulas and of their laws, for recheck.py: standard library, nothing of symrot.
 
 Expressions, of formulas and of emitted C, become fractions of polynomials over names and atoms: values of functions."""
+
 # ruff: noqa
 # mypy: ignore-errors
 # fmt: off

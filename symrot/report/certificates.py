@@ -185,9 +185,8 @@ def lines(data: Data) -> list[str]:
         )
     for part in (data.get("rounding") or {"precisions": []})["precisions"]:
         worst = max(part["outputs"], key=lambda item: float.fromhex(item["absolute"]))
-        said.append(
-            f"  link 4    {part['precision']}: error at most {float.fromhex(worst['absolute']):.3g} on the box ({worst['output']})"
-        )
+        most = f"{float.fromhex(worst['absolute']):.3g}"
+        said.append(f"  link 4    {part['precision']}: error at most {most} on the box ({worst['output']})")
     for item in (data.get("objects") or {"objects": []})["objects"]:
         verdict = "is the C text" if item["accepted"] else "is not the C text"
         said.append(f"  link 5    {item['compiler']} {item['flags']}: object code {verdict}")
