@@ -146,7 +146,7 @@ def test_a_header_with_a_macro_is_refused(dcm):
         ("/* one sample */", "/* */ \\"), ("const double q[4], ", "double q[4], "),
     ):  # fmt: skip
         assert old in header
-        with pytest.raises(CertificateError, match="quaternion_dcm.h"):
+        with pytest.raises(CertificateError, match=r"quaternion_dcm\.h"):
             check_header(header.replace(old, new, 1), source, "quaternion_dcm")
 
 

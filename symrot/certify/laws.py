@@ -91,7 +91,8 @@ def prove_law(name: str, law: Law, formulas: Mapping[str, Expr]) -> LawProof:
         If it does not follow.
     """
     names = _inputs(law, formulas)
-    fewest, bases, cases = FEWEST, {}, []
+    fewest, cases = FEWEST, []
+    bases: dict[str, Fraction] = {}
     waiting: list[tuple[Choice, ...]] = [()]
     while waiting:
         decided = waiting.pop()

@@ -361,7 +361,11 @@ def _said_in_full(data: Data) -> Data:
 
 def _mathematics(data: Data) -> set[Any]:
     """Return what is claimed, one item each: a set that holds less claims less."""
-    spec, meaning = data["spec"], lambda text: ast.dump(ast.parse(text.strip(), mode="eval"))
+
+    def meaning(text: str) -> str:
+        return ast.dump(ast.parse(text.strip(), mode="eval"))
+
+    spec = data["spec"]
     claims: set[Any] = {("file", *item) for item in data["files"].items()}
     claims |= {("input", place, symbol) for place, symbol, *_ in data["inputs"]}
     claims |= {("parameter", symbol, meaning(text)) for symbol, text in spec["parameters"].items()}
