@@ -22,6 +22,7 @@ __all__ = ["LOOSEST", "Row", "compare", "loosest", "rows"]
 
 LOOSEST = {"quaternion_": 1.5, "euler_": 4.0, "euler_equations_tensor": 12.0, "rigid_body_tensor": 12.0}
 """Beginning of a name -> largest ratio of bound and measured error; the longest beginning counts, others have none."""
+LONGER = 10  # times as many points where a bound looks loose
 OPEN = ("_of_quaternion", "quaternion_of_dcm")  # angles and choices: no bar
 
 
@@ -76,7 +77,12 @@ def rows(name: str, text: str, points: int, seed: int = 1, budget: int = BUDGET)
     for operations in operations_of(name, text):
         given = problem(definition(name), operations)
         bounds = bound_outputs(operations, given.box, given.region, budget)
-        yield compare(operations, bounds, measure(operations, given.box, bounds, given.region, points, seed), name)
+        found = compare(operations, bounds, measure(operations, given.box, bounds, given.region, points, seed), name)
+        if not all(row.tight for row in found):  # a larger error may only be rare: look for it longer
+            more = measure(operations, given.box, bounds, given.region, LONGER * points, seed + 1)
+            again = compare(operations, bounds, more, name)
+            found = [max(pair, key=lambda row: row.measured) for pair in zip(found, again, strict=True)]
+        yield found
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

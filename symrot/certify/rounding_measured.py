@@ -21,12 +21,12 @@ from symrot.certify.rounding import Box, OutputBound
 from symrot.certify.rounding_adjoint import EVERYWHERE, UNIT_NORM, Region
 from symrot.errors import CertificateError
 
-__all__ = ["Measured", "measure", "points_in"]
+__all__ = ["Measured", "measure", "points_in", "points_near"]
 
 BITS = 600
 CONFIRMED = 12  # points per output that are done again
-ROUNDS = 48  # of looking around the worst points
-LEAST_ROUND = 40  # points
+CHAINS = 64  # climbs per output
+LEAST_ROUNDS = 20
 
 _FLOAT = {"binary64": np.float64, "binary32": np.float32}
 _WIDE = {"binary64": np.longdouble, "binary32": np.float64}
@@ -125,33 +125,47 @@ def _confirmed(operations: Operations, computed: Sequence[Any], column: int, roo
 
 
 def points_in(
-    box: Box, places: Sequence[str], region: Region, count: int, rng: np.random.Generator, centre: Any = None,
-    kind: Any = np.float64,
-) -> Points:  # fmt: skip
-    """Return random points of a region: of the whole, near its corners, or near ``centre``."""
-    low = np.array([[float(box[place][0])] for place in places])
-    high = np.array([[float(box[place][1])] for place in places])
-    if centre is None:
-        part = rng.random((len(places), count))
-        ends = rng.random(part.shape) < rng.choice([0.0, 0.5, 0.9], size=count)
-        part = np.where(ends, np.round(part) + (0.5 - np.round(part)) * 2.0 ** -rng.integers(4, 50, part.shape), part)
-        found = low + (high - low) * part
-    else:
-        chosen = centre[:, rng.integers(0, centre.shape[1], count)]
-        moved = rng.random(chosen.shape) < rng.choice([1.5 / len(places), 0.6], size=count)
-        step = (high - low) * 10.0 ** rng.uniform(-16, -1, count) * rng.standard_normal(chosen.shape) * moved
-        found = np.clip(chosen + step, low, high)
+    box: Box, places: Sequence[str], region: Region, count: int, rng: np.random.Generator, kind: Any = np.float64
+) -> Points:
+    """Return random points of a region: anywhere, near its sides, near its corners."""
+    low, high = _ends(box, places)
+    part = rng.random((len(places), count))
+    ends = rng.random(part.shape) < rng.choice([0.0, 0.5, 0.9], size=count)
+    part = np.where(ends, np.round(part) + (0.5 - np.round(part)) * 2.0 ** -rng.integers(4, 50, part.shape), part)
+    found, inside = _inside(low + (high - low) * part, box, places, region, kind)
+    return np.asarray(found[:, inside])
+
+
+def points_near(
+    points: Points, box: Box, places: Sequence[str], region: Region, rng: np.random.Generator
+) -> tuple[Points, NDArray[np.intp]]:
+    """Return points of a region, each near one of ``points``, and near which."""
+    low, high = _ends(box, places)
+    moved = rng.random(points.shape) < 1.5 / len(places)
+    step = (high - low) * 10.0 ** rng.uniform(-16.5, -0.5, points.shape) * rng.standard_normal(points.shape) * moved
+    found, inside = _inside(np.clip(points.astype(np.float64) + step, low, high), box, places, region, points.dtype)
+    return found[:, inside], np.flatnonzero(inside)
+
+
+def _ends(box: Box, places: Sequence[str]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    return np.array([[float(box[p][0])] for p in places]), np.array([[float(box[p][1])] for p in places])
+
+
+def _inside(
+    found: NDArray[np.float64], box: Box, places: Sequence[str], region: Region, kind: Any
+) -> tuple[Points, NDArray[np.bool_]]:
+    """Return points rounded to a precision, on the unit spheres of a region, and which are in it."""
+    low, high = _ends(box, places)
     for group in region.unit:
         rows = [places.index(place) for place in group]
         length = np.sqrt((found[rows] ** 2).sum(axis=0))
         found[rows] /= np.where(length > 0, length, 1.0)
     rounded = found.astype(kind).astype(np.float64)
-    inside = ((rounded >= low) & (rounded <= high)).all(axis=0)
+    inside: NDArray[np.bool_] = np.asarray(((rounded >= low) & (rounded <= high)).all(axis=0))
     for group in region.unit:
         rows = [places.index(place) for place in group]
-        inside &= np.abs((rounded[rows] ** 2).sum(axis=0) - 1) < 0.9 * UNIT_NORM
-    chosen_points: Points = rounded[:, inside].astype(kind)
-    return chosen_points
+        inside = inside & (np.abs((rounded[rows] ** 2).sum(axis=0) - 1) < 0.9 * UNIT_NORM)
+    return rounded.astype(kind), inside
 
 
 def measure(
@@ -178,26 +192,44 @@ def measure(
         return tuple(Measured(each.output, 0.0, (), 0) for each in bounds)
     worst = {each.output: np.full((len(places), 1), np.nan) for each in bounds}
     for each in bounds:
-        start = dict(each.at)
+        known = dict(each.at)
         middle = {place: float((box[place][0] + box[place][1]) / 2) for place in places}
-        worst[each.output][:, 0] = [start.get(place, middle[place]) for place in places]
+        worst[each.output][:, 0] = [known.get(place, middle[place]) for place in places]
     scanned = points_in(box, places, region, points // 2, rng, kind=kind)
-    share = max(points // (2 * ROUNDS * max(len(bounds), 1)), LEAST_ROUND)
     errors, used = _scan(operations, box, region, scanned)
-    best = {each.output: (scanned[:, _top(errors[each.output])],) for each in bounds}
-    for _ in range(ROUNDS):
-        for each in bounds:
-            centre = np.concatenate([*best[each.output], worst[each.output]], axis=1).astype(np.float64)
-            near = points_in(box, places, region, share, rng, centre, kind)
-            both = np.concatenate([near, *best[each.output]], axis=1)
-            found, number = _scan(operations, box, region, both)
-            used += number
-            best[each.output] = (both[:, _top(found[each.output])],)
-    return tuple(_confirm(operations, each, best[each.output][0], used) for each in bounds)
+    found = []
+    for each in bounds:
+        top = _top(errors[each.output])
+        start = np.concatenate([scanned[:, top], worst[each.output].astype(kind)], axis=1)
+        rounds = max(points // (2 * len(bounds) * CHAINS), LEAST_ROUNDS)
+        climbed, number = _climbed(operations, box, region, each.output, start, rounds, rng)
+        used += number
+        found.append((each, np.concatenate([climbed, scanned[:, top[:CONFIRMED]]], axis=1)))
+    return tuple(_confirm(operations, each, best, used) for each, best in found)
+
+
+def _climbed(
+    operations: Operations, box: Box, region: Region, output: str, start: Points, rounds: int, rng: np.random.Generator
+) -> tuple[Points, int]:
+    """Return points that a climb from each start led to, the largest errors first, and the points looked at.
+
+    A step changes one or two inputs, by anything from their last bit to a third of their range.
+    """
+    points = start[:, rng.integers(0, start.shape[1], CHAINS)]
+    points[:, : start.shape[1]] = start[:, :CHAINS]
+    errors = _scan(operations, box, region, points)[0][output]
+    used = points.shape[1]
+    for _ in range(rounds):
+        near, chain = points_near(points, box, operations.inputs, region, rng)
+        found = _scan(operations, box, region, near)[0][output]
+        used += near.shape[1]
+        better = found > errors[chain]
+        points[:, chain[better]], errors[chain[better]] = near[:, better], found[better]
+    return points[:, _top(errors)[:CONFIRMED]], used
 
 
 def _top(errors: NDArray[np.float64]) -> NDArray[np.intp]:
-    return np.argsort(-errors, kind="stable")[:CONFIRMED]
+    return np.argsort(-errors, kind="stable")[:CHAINS]
 
 
 def _scan(operations: Operations, box: Box, region: Region, points: Points) -> tuple[dict[str, Any], int]:

@@ -87,9 +87,13 @@ class _Search:
         self.evaluations += count
         found = [
             evaluate(
-                self.cone, boxes[:, :, k : k + CHUNK], decided[:, k : k + CHUNK], self.region, self.libm_ulp,
+                self.cone,
+                boxes[:, :, k : k + CHUNK],
+                decided[:, k : k + CHUNK],
+                self.region,
+                self.libm_ulp,
                 self.centred,
-            )  # fmt: skip
+            )
             for k in range(0, count, CHUNK)
         ]
         return Evaluation(*(np.concatenate([getattr(part, name) for part in found]) for name in _FIELDS))
