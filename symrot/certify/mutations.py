@@ -12,6 +12,7 @@ import re
 from argparse import ArgumentParser
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from hashlib import sha256
 from pathlib import Path
 from random import Random
@@ -405,9 +406,9 @@ def main(argv: Sequence[str] | None = None) -> int:
             folder.mkdir()
             kernels.append(Files(folder, subject(name), emit(name).certificate))
         for title, run in (
-            ("corrupted C files", lambda: corrupted_c(kernels, options.c, random)),
-            ("tampered certificates", lambda: tampered_certificates(kernels, options.certificates, random, False)),
-            ("tampered, sealed anew", lambda: tampered_certificates(kernels, options.certificates, random, True)),
+            ("corrupted C files", partial(corrupted_c, kernels, options.c, random)),
+            ("tampered certificates", partial(tampered_certificates, kernels, options.certificates, random, False)),
+            ("tampered, sealed anew", partial(tampered_certificates, kernels, options.certificates, random, True)),
         ):
             start = process_time()
             campaign = run()
