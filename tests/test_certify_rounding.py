@@ -91,6 +91,11 @@ def test_underflow_is_part_of_the_bound():
     assert 0 < found.bound < 1e-318
 
 
+def test_fused_products_are_covered_where_nothing_else_takes_them():
+    assert bound_of("x[0]*x[1] + x[2]", -1, 1).contraction_safe
+    assert not bound_of("x[0]*x[1] + x[2] + (x[2] - x[0]*x[1])", -1, 1).contraction_safe
+
+
 def test_a_derivative_that_is_infinite_at_a_point_only_by_parts():
     """The root of a sum of squares, sin(x)/x: no bound by their parts at zero, one as a whole."""
     assert bound_of("sqrt(x[0]*x[0] + x[1]*x[1])", -1, 1).bound < 4 * 2.0**-53
@@ -262,6 +267,10 @@ def _other_libm(section):
     section["libm_ulp"] = (0.5).hex()
 
 
+def _unsafe_choice(section):
+    section["precisions"][0]["outputs"][0]["choices"] = ["q[0] >= q[1]"]
+
+
 def _garbage(section):
     section["precisions"][0]["outputs"][0]["at"] = {"q[0]": 3}
 
@@ -277,7 +286,7 @@ def _other_operations(section):
 @pytest.mark.parametrize(
     "tamper",
     [_halved, _halved_throughout, _without_output, _infinite, _smaller_box, _other_libm, _garbage, _without_float,
-     _other_operations],
+     _other_operations, _unsafe_choice],
 )  # fmt: skip
 def test_a_tampered_section_is_refused_at_once(section, tamper):
     found, kernels = section

@@ -41,7 +41,8 @@ class OutputBound:
     """The bound of one output: no error is larger than ``bound``; by the same method a point reaches ``pointwise``.
 
     ``at`` is that point; ``scale`` a power of two not below the values met; ``turns``: the error is that modulo whole
-    turns; ``choices`` are the comparisons of rounded numbers, whose branch is taken as computed.
+    turns; ``choices`` are the comparisons of rounded numbers, whose branch is taken as computed; ``contraction_safe``:
+    the bound holds for fused multiply-adds too.
     """
 
     output: str
@@ -53,6 +54,7 @@ class OutputBound:
     converged: bool
     turns: bool
     choices: tuple[str, ...]
+    contraction_safe: bool
 
 
 @dataclass(frozen=True)
@@ -181,10 +183,15 @@ def _found(operations: Operations, place: str, task: Task, found: Search) -> Out
             f"{what} is not known to stay away from its singular values near {where}"
         )
     scale = 2.0 ** np.ceil(np.log2(found.largest_value)) if found.largest_value > 0 else 1.0
-    choices = tuple(f"{text}{', by whole turns' if turns else ''}" for text, turns in task.cone.choices)
+    choices = tuple(_said_choices(task))
     return OutputBound(
-        place, found.bound, found.pointwise, at, float(scale), found.evaluations, found.converged, found.turns, choices
-    )
+        place, found.bound, found.pointwise, at, float(scale), found.evaluations, found.converged, found.turns, choices,
+        task.cone.contraction_safe,
+    )  # fmt: skip
+
+
+def _said_choices(task: Task) -> list[str]:
+    return [f"{text}, by whole turns" if turns else text for text, turns in task.cone.choices]
 
 
 # --- the section of the certificate -----------------------------------------------------------------------------------
@@ -197,7 +204,7 @@ MEANING = (
 
 def _assumptions(libm_ulp: float) -> list[str]:
     return [
-        "IEEE 754, rounding to nearest, subnormal numbers kept",
+        "IEEE 754, rounding to nearest, subnormal numbers kept; operations as written, fused only where it is said",
         f"sin, cos and atan2 within {libm_ulp:g} unit in the last place; sin and cos within [-1, 1], sincos alike",
         "link 3: constants are rounded to nearest, series leave out at most a quarter of a unit in the last place",
     ]
@@ -220,9 +227,10 @@ def rounding_section(
     -------
     dict
         ``{"meaning", "assumptions", "libm_ulp", "budget", "box": {place: [hex, hex]}, "unit_groups", "clearance",
-        "precisions": [{"precision", "operations_sha256", "unit", "outputs": [{"output", "absolute", "units",
-        "pointwise", "at", "scale", "evaluations", "converged", "modulo_turns", "choices"}]}]}``; ``absolute`` is the
-        bound, ``units`` the same in units of ``unit`` (2^-53 or 2^-24), rounded up.
+        "precisions": [{"precision", "operations_sha256", "unit", "outputs": [..]}]}``, each output with ``"output",
+        "absolute", "units", "pointwise", "at", "scale", "evaluations", "converged", "modulo_turns", "choices",
+        "contraction_safe"``; ``absolute`` is the bound, ``units`` the same in units of ``unit`` (2^-53 or 2^-24),
+        rounded up.
 
     Raises
     ------
@@ -248,6 +256,7 @@ def _precision(
             "pointwise": found.pointwise.hex(), "at": {name: x.hex() for name, x in found.at},
             "scale": found.scale.hex(), "evaluations": found.evaluations, "converged": found.converged,
             "modulo_turns": found.turns, "choices": list(found.choices),
+            "contraction_safe": found.contraction_safe,
         }
         for found in bound_outputs(operations, box, region, budget, libm_ulp, fresh)
     ]  # fmt: skip
@@ -320,6 +329,9 @@ def _check_precision(
         at = np.array([float.fromhex(item["at"][place]) for place in task.cone.places])
         if not isfinite(said) or said < 0 or item["units"] != _units(said / unit):
             raise CertificateError(f"{name}: expected a finite bound of {item['output']}, got {item['units']}")
+        choices, safe = _said_choices(task), task.cone.contraction_safe
+        if item["choices"] != choices or item["contraction_safe"] is not safe:
+            raise CertificateError(f"{name}: expected the choices of {item['output']} as they are in its operations")
         if at.size and not ((task.box[0] <= at) & (at <= task.box[1])).all():
             raise CertificateError(f"{name}: expected a point of the box for {item['output']}, got another")
         reached = _reached(task, at)

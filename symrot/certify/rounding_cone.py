@@ -68,6 +68,24 @@ class Cone:
         return all(node[0] in POLYNOMIAL for node in self.nodes)
 
     @cached_property
+    def contraction_safe(self) -> bool:
+        """Whether the bound holds for fused multiply-adds too: each product that a sum takes is used by nothing else.
+
+        A fused product has no rounding error of its own, and the sum errs by no more than both did. A product that is
+        fused in one place and rounded in another has two errors, which derivatives of opposite sign do not cancel.
+        """
+        users: list[list[int]] = [[] for _ in self.nodes]
+        for index in range(len(self.nodes) - 1, -1, -1):
+            for place in places_of(self.nodes[index]):
+                users[place] += users[index] if self.nodes[index][0] == "neg" else [index]
+        fused = all(
+            len(users[k]) == 1 or not any(self.nodes[user][0] in ("add", "sub") for user in users[k])
+            for k, node in enumerate(self.nodes)
+            if node[0] in ("mul", "square")
+        )
+        return fused and all(node[2].contraction_safe for node in self.nodes if node[0] == "gap")
+
+    @cached_property
     def exact(self) -> tuple[bool, ...]:
         """Which nodes are computed without any error before them: inputs, their signs, short constants."""
         found: list[bool] = []
