@@ -297,16 +297,14 @@ def _certify(options: Namespace) -> int:
 def _audit(options: Namespace) -> int:
     from symrot.report import certificates
 
-    found: dict[str, list[str]] = {}
     try:
-        for path in options.certificates:
-            found[str(path)] = certificates.audit_file(
-                path, options.object, options.rerun_bounds, options.coq, _progress
-            )
+        found = certificates.audit_files(
+            options.certificates, options.object, options.rerun_bounds, options.coq, _progress
+        )
     except CertificateError as reason:
         _progress("")
         if options.json:
-            _say_json({"holds": False, "reason": one_line(str(reason)), "certificates": found})
+            _say_json({"holds": False, "reason": one_line(str(reason))})
         sys.stderr.write(f"symrot: {one_line(str(reason))}\n")
         return FAILED
     _progress("")

@@ -12,7 +12,7 @@ from symrot.scene import Scene, load_scene
 if TYPE_CHECKING:
     from symrot.certify.certificate import Subject
 
-__all__ = ["TARGETS", "Emitted", "emit", "kernel_names", "plan", "subject"]
+__all__ = ["TARGETS", "Emitted", "emit", "kernel_names", "plan", "scene_kernel_name", "subject"]
 
 TARGETS = ("c", "numpy")
 
@@ -136,6 +136,12 @@ def _scene_kernel(scene: Scene | str | Path, target: str) -> tuple[Any, Any]:
     return with_values(lowered.program, lowered.parameters, found.constants), description
 
 
+def scene_kernel_name(scene: str) -> str:
+    """Return the name of a scene's own kernel."""
+    name = re.sub(r"\W", "_", f"{scene}_rates", flags=re.ASCII)
+    return name if name[0].isalpha() else f"scene_{name}"
+
+
 def _scene_rates(found: Plan, equations: Any, target: str) -> tuple[Any, Any]:
     """Return the right-hand side of a plan, and what the emitted file says of it."""
     from symrot.codegen.scene_kernels import rates_program, scene_description
@@ -144,6 +150,6 @@ def _scene_rates(found: Plan, equations: Any, target: str) -> tuple[Any, Any]:
         raise InputError(
             f"{found.scene.name}: expected a scene with states to integrate; every state of it is constant"
         )
-    name = re.sub(r"\W", "_", f"{found.scene.name}_rates", flags=re.ASCII)
-    name = name if name[0].isalpha() else f"scene_{name}"
-    return rates_program(equations, name), scene_description(found.scene.title, found.scene.name, target)
+    return rates_program(equations, scene_kernel_name(found.scene.name)), scene_description(
+        found.scene.title, found.scene.name, target
+    )

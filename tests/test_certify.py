@@ -52,7 +52,7 @@ def refused(files, said, *options):
     with pytest.raises(recheck.REFUSALS):
         recheck.check(files.path)
     with pytest.raises(CertificateError, match=said) as caught:
-        audit(files.path, lambda data: files.subject)
+        audit(files.path, lambda data: files.said)
     assert "\n" not in str(caught.value)
 
 
@@ -182,10 +182,10 @@ def test_wrong_schemas_missing_parts_and_huge_numbers_are_refused(dcm):
         refused(dcm, "expected|formula|power|division|schema|digits")
     resealed(dcm, title="direction cosine matrix of any quaternion")
     with pytest.raises(CertificateError, match="'title' as symrot prints"):
-        audit(dcm.path, lambda data: dcm.subject)
+        audit(dcm.path, lambda data: dcm.said)
     dcm.path.write_text(json.dumps(dcm.data), encoding="utf-8")
     with pytest.raises(CertificateError, match="another layout"):
-        audit(dcm.path, lambda data: dcm.subject)
+        audit(dcm.path, lambda data: dcm.said)
 
 
 def test_corrupted_c_files_are_refused(kernels):

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from symrot.certify import recheck
-from symrot.certify.certificate import Data, Subject, printed, shown, statement
+from symrot.certify.certificate import Data, Said, printed, shown
 from symrot.certify.header import check_header
 from symrot.certify.operations import Operations
 from symrot.certify.readback import read_batch, read_kernel
@@ -72,16 +72,16 @@ def _refused(text: str) -> Any:
     raise ValueError(f"the number {text}")
 
 
-def audit(path: Path, subject_of: Callable[[Data], Subject | None]) -> tuple[Data, list[str]]:
+def audit(path: Path, said_by: Callable[[Data], Said | None]) -> tuple[Data, list[str]]:
     """Return a certificate that holds, and what was found of it.
 
     Parameters
     ----------
     path : Path
         NAME.cert.json, the files that it names beside it.
-    subject_of : callable
-        Takes a certificate and returns the kernel that it should be about, as symrot emits it now; None if that is
-        none that symrot knows.
+    said_by : callable
+        Takes a certificate and returns what symrot says of that kernel now
+        (:func:`symrot.certify.certificate.said_of`); None if it knows none of that name.
 
     Raises
     ------
@@ -90,25 +90,25 @@ def audit(path: Path, subject_of: Callable[[Data], Subject | None]) -> tuple[Dat
     """
     data = load(path)
     try:
-        return data, [recheck.check(path), *_audited(path, data, subject_of)]
+        return data, [recheck.check(path), *_audited(path, data, said_by)]
     except CertificateError:
         raise
     except recheck.REFUSALS as reason:
         raise CertificateError(f"{path}: {recheck.sentence(reason)}") from None
 
 
-def _audited(path: Path, data: Data, subject_of: Callable[[Data], Subject | None]) -> list[str]:
+def _audited(path: Path, data: Data, said_by: Callable[[Data], Said | None]) -> list[str]:
     name = data["kernel"]
     source, header = ((path.parent / f"{name}{end}").read_text(encoding="utf-8") for end in (".c", ".h"))
     check_header(header, source, name)
     _check_readback(data, source)
     if path.read_text(encoding="utf-8") != printed(data):
         raise CertificateError(f"{path}: expected a certificate as symrot prints it, got another layout")
-    subject = subject_of(data)
-    if subject is None:
+    said = said_by(data)
+    if said is None:
         return [f"{name} is no kernel that symrot knows: its formulas and laws are those of the certificate"]
-    _compare(path, data, statement(subject))
-    laws = [[law.text, list(map(str, law.vanishing)), list(map(str, law.relations))] for law in subject.laws]
+    stated, laws = said
+    _compare(path, data, stated)
     if [list(law.values())[:3] for law in data["laws"]] != laws or any(
         list(law) != LAW or any(list(case) != CASE for case in law["cases"]) for law in data["laws"]
     ):

@@ -26,10 +26,22 @@ from symrot.errors import CertificateError
 from symrot.kernel import Argument
 from symrot.kernels.definition import Law
 
-__all__ = ["SCHEMA", "Data", "Subject", "certificate_text", "printed", "seal", "shown", "statement", "with_slots"]
+__all__ = [
+    "SCHEMA",
+    "Data",
+    "Subject",
+    "certificate_text",
+    "printed",
+    "said_of",
+    "seal",
+    "shown",
+    "statement",
+    "with_slots",
+]
 
 SCHEMA = "symrot.certificate/1"
 Data = dict[str, Any]
+Said = tuple[Data, list[list[Any]]]
 
 TRUSTED = {
     "formulas and laws": "recheck.py alone, or the reader and the prover of symrot; both in exact arithmetic",
@@ -127,6 +139,12 @@ def statement(subject: Subject) -> Data:
         "flags": flags_section(),
         "trusted": TRUSTED,
     }
+
+
+def said_of(subject: Subject) -> Said:
+    """Return what a certificate says without proof, and its laws as (text, what vanishes, what is given)."""
+    laws = [[law.text, list(map(str, law.vanishing)), list(map(str, law.relations))] for law in subject.laws]
+    return statement(subject), laws
 
 
 def _proven(subject: Subject) -> Data:

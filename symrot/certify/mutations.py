@@ -22,7 +22,7 @@ from typing import Any
 
 from symrot.certify import recheck
 from symrot.certify.audit import audit
-from symrot.certify.certificate import Data, Subject, printed
+from symrot.certify.certificate import Data, Subject, printed, said_of
 from symrot.certify.operations import Operations
 from symrot.certify.readback import read_batch, read_kernel
 from symrot.errors import CertificateError
@@ -234,6 +234,7 @@ class Files:
         is_scene = any(name.startswith("../../") for name in subject.files)
         self.directory = directory / "c" / "scenes" if is_scene else directory / "c"
         self.subject, self.name, self.texts = subject, subject.name, subject.files
+        self.said = said_of(subject)
         self.data: Data = json.loads(certificate)
         self.path = self.directory / f"{self.name}.cert.json"
         self.directory.mkdir(parents=True, exist_ok=True)
@@ -260,7 +261,7 @@ class Files:
         except recheck.REFUSALS:
             pass
         try:
-            audit(self.path, lambda data: self.subject)
+            audit(self.path, lambda data: self.said)
             found.append("audit")
         except CertificateError:
             pass

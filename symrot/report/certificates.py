@@ -2,29 +2,57 @@
 
 import json
 from collections.abc import Callable, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from functools import cache
+from hashlib import sha256
+from importlib.metadata import version
+from itertools import repeat
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+import symrot
 from symrot.certify.audit import audit, operations_of
-from symrot.certify.certificate import Data, Subject, with_slots
+from symrot.certify.certificate import Data, Said, said_of, with_slots
+from symrot.codegen import library
 from symrot.errors import CertificateError, InputError
-from symrot.interface import emit, kernel_names, subject
-from symrot.report.kernels import certificate_files, kernel_files, write_files
+from symrot.interface import emit, kernel_names, scene_kernel_name, subject
+from symrot.report.kernels import WORKERS, certificate_files, kernel_files, write_files
 from symrot.scene_file import shipped_names
 from symrot.scene_reader import nearest
 
-__all__ = ["audit_file", "certify", "lines"]
+__all__ = ["audit_file", "audit_files", "certify", "lines"]
+
+MANY = 12  # certificates: fewer are audited in this process
 
 
-def _known(data: Data) -> Subject | None:
-    """Return the kernel that a certificate should be about, as it is emitted now; None if symrot knows none."""
+def _said(data: Data) -> Said | None:
+    """Return what symrot says of the kernel that a certificate should be about; None if it knows none.
+
+    It is derived once, and kept in the cache by the programs that derive it.
+    """
     name = data["kernel"]
-    if name in kernel_names():
-        return subject(name)
     scene = str(data["regenerate"]).removeprefix("symrot emit ").removesuffix(" --target c")
-    if scene in shipped_names() and emit(scene).name == name:
-        return subject(scene)
-    return None
+    if name not in kernel_names():
+        if scene not in shipped_names() or scene_kernel_name(scene) != name:
+            return None
+        name = scene
+    key = f"said of {name} by {_programs()}"
+    kept = library.fetch(key)
+    if kept is None:
+        kept = json.dumps(said_of(subject(name)))
+        library.store(key, kept)
+    stated, laws = json.loads(kept)
+    return stated, laws
+
+
+@cache
+def _programs() -> str:
+    """Return the SHA-256 of all of symrot, and of the SymPy it derives with."""
+    root = Path(symrot.__file__).parent
+    digest = sha256(version("sympy").encode())
+    for path in sorted(each for each in root.rglob("*") if each.suffix in (".py", ".toml", ".v", ".c")):
+        digest.update(path.read_bytes())
+    return digest.hexdigest()
 
 
 def audit_file(
@@ -50,7 +78,7 @@ def audit_file(
         With the first thing that does not hold.
     """
     progress(f"auditing {path.name} ..")
-    data, found = audit(path, _known)
+    data, found = audit(path, _said)
     source = path.with_name(f"{data['kernel']}.c")
     text = source.read_text(encoding="utf-8")
     found += _bounds(data, text, rerun, progress)
@@ -58,6 +86,32 @@ def audit_file(
         found += _objects(text, object_file, source.name)
     if coq:
         found += _coq(data, progress)
+    return found
+
+
+def audit_files(
+    paths: Sequence[Path], object_file: Path | None = None, rerun: bool = False, coq: bool = False,
+    progress: Callable[[str], object] = lambda text: None,
+) -> dict[str, list[str]]:  # fmt: skip
+    """Return what :func:`audit_file` finds of each certificate; many are audited by several processes at once.
+
+    Raises
+    ------
+    CertificateError
+        For the first one, in the order given, that does not hold.
+    """
+    if len(paths) < MANY:
+        return {str(path): audit_file(path, object_file, rerun, coq, progress) for path in paths}
+    found = {}
+    options = map(repeat, (object_file, rerun, coq))
+    with ProcessPoolExecutor(WORKERS) as pool:
+        try:
+            for path, said in zip(paths, pool.map(audit_file, paths, *options, chunksize=8), strict=True):
+                progress(f"audited {path.name} ..")
+                found[str(path)] = said
+        except CertificateError:
+            pool.shutdown(cancel_futures=True)
+            raise
     return found
 
 
