@@ -83,7 +83,7 @@ def _sympy(name: str) -> str:
 def _symforce(name: str) -> str:
     import symforce.symbolic as sf
 
-    common, results = sf.cse(
+    common, results = sf.cse(  # type: ignore[no-untyped-call, unused-ignore]
         [sf.S(str(entry)) for entry in textbook(name)], symbols=(sf.Symbol(f"common{i}") for i in range(1000))
     )
     plain = lambda value: sympy.sympify(str(value), locals=_REAL)  # noqa: E731

@@ -82,9 +82,7 @@ def _rescaled(r: Floats, w: Floats, middle: Floats, h: float) -> Floats:
 
 def _secant(r: Floats, w: Floats, middle: Floats, h: float) -> Floats:
     speed = float(np.linalg.norm(middle))
-    return (
-        _turned(middle / speed, 2.0 * math.atan(h * speed / 2.0), r) if speed else r
-    )  # Cayley's
+    return _turned(middle / speed, 2.0 * math.atan(h * speed / 2.0), r) if speed else r  # Cayley's
 
 
 def _rotation(r: Floats, w: Floats, middle: Floats, h: float) -> Floats:
