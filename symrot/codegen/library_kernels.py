@@ -4,11 +4,11 @@ from collections.abc import Mapping
 from functools import cache
 
 from symrot import number
-from symrot.codegen.banner import Description
+from symrot.codegen.banner import CONTRACT, Description
 from symrot.codegen.lower import lower
 from symrot.expression import Node, children, evaluate
 from symrot.kernel import Program, Signature
-from symrot.kernels.definition import Definition
+from symrot.kernels.definition import Box, Definition
 from symrot.kernels.library import definition
 
 __all__ = ["kernel_description", "kernel_program"]
@@ -46,4 +46,14 @@ def kernel_description(found: Definition, target: str) -> Description:
     return Description(
         title=found.title, domain=found.domain, derivation=found.derivation,
         command=f"symrot emit {found.name} --target {target}",
+        contract=(("Box", _box(found.box)), *CONTRACT) if target == "c" else (),
     )  # fmt: skip
+
+
+def _box(box: Box) -> str:
+    """Return the ranges of the inputs on which rounding errors are bounded, equal ones together."""
+    names: dict[tuple[str, str], list[str]] = {}
+    for name, (low, high) in box.items():
+        names.setdefault((str(low), str(high)), []).append(name)
+    ranges = [f"{', '.join(each)} in [{low}, {high}]" for (low, high), each in names.items()]
+    return f"{'; '.join(ranges)}: there rounding errors are bounded"

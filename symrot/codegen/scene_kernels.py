@@ -8,7 +8,7 @@ from typing import Any
 from sympy import Expr, Symbol
 
 from symrot import symbols
-from symrot.codegen.banner import Description
+from symrot.codegen.banner import CONTRACT, Description
 from symrot.codegen.c_source import c_function
 from symrot.codegen.lower import Lowered, lower
 from symrot.dynamics.equations import PLANAR_ANGLE, Equations, equations_of_motion
@@ -118,4 +118,5 @@ def scene_description(title: str, name: str, target: str) -> Description:
         domain="all states of finite size; a quaternion is of unit norm, and its rate keeps the norm",
         derivation="derivations/euler_equations.md, derivations/quaternion_rates.md",
         command=f"symrot emit {name} --target {target}",
+        contract=CONTRACT if target == "c" else (),
     )
