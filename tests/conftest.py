@@ -1,9 +1,10 @@
-"""What all tests share: a cache of compiled kernels of their own, so that no test reads or fills the user's."""
+"""What all tests share: a cache of compiled kernels of their own, and a precision of mpmath that none may change."""
 
 import os
 from collections.abc import Iterator
 
 import pytest
+from mpmath import mp
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -16,3 +17,12 @@ def session_cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
         del os.environ["SYMROT_CACHE"]
     else:
         os.environ["SYMROT_CACHE"] = before
+
+
+@pytest.fixture(autouse=True)
+def precision_is_left_alone() -> Iterator[None]:
+    """Refuse a test, or the code under it, that leaves mpmath's global precision changed: results would depend on order."""
+    before = mp.prec
+    yield
+    after, mp.prec = mp.prec, before
+    assert after == before, f"mpmath was left at {after} bits, it began with {before}"

@@ -6,6 +6,7 @@ Every counterexample is evaluated again here, by mpmath, from the text of the cl
 import re
 
 import pytest
+from mpmath import mp, workdps
 from sympy import Eq, Matrix, cos, sin, symbols
 
 import symrot
@@ -65,11 +66,9 @@ def number(source):
     return values_at(f"{source} == 0", {})[0]
 
 
+@workdps(40)
 def values_at(claim, values):
     """Both sides by mpmath, straight from the text (scalars only); angles given by cosine and sine are recovered."""
-    from mpmath import mp
-
-    mp.dps = 40
     names = {f: getattr(mp, f) for f in ("sin", "cos", "tan", "cot", "sqrt", "pi")} | {"abs": abs}
     for key, value in values.items():
         found = mp.mpf(eval(re.sub(r"(\d+)", r"mpf(\1)", value), {"mpf": mp.mpf, "pi": mp.pi, "sqrt": mp.sqrt}))

@@ -4,7 +4,7 @@ import re
 from random import Random
 
 import pytest
-from mpmath import mp
+from mpmath import mp, workdps
 
 from symrot.checker.campaign import RULES, UNDER, Outcome, campaign, claims, main
 from symrot.checker.judge import RationalPoint, Undefined, random_point, truth
@@ -70,9 +70,9 @@ def test_points_obey_every_hypothesis_of_the_table(seed):
     ("exp(u)*exp(v/2)", lambda k, n, u, v: mp.exp(u + v / 2)),
     ("abs(-k) + sqrt(l**2)", lambda k, n, u, v: abs(k) + abs(n)),
 ])  # fmt: skip
+@workdps(30)
 def test_wider_values_agree_with_thirty_digits(formula, function):
     """Inverse functions, exponentials and roots over the rationals, against mpmath at the same point."""
-    mp.dps = 30
     for seed in range(4):
         point = wider_point(Random(seed))
         k, n = (mp.mpf(point.values[name].numerator) / point.values[name].denominator for name in "kl")
@@ -95,6 +95,7 @@ def test_values_that_are_not_rational_are_undefined(formula):
 
 
 @pytest.mark.parametrize("seed", range(6))
+@workdps(30)
 def test_the_exact_values_agree_with_fifty_digits(seed):
     """Claims evaluated over the rationals and, independently, in double precision at the same point."""
     source = Random(seed)
@@ -102,7 +103,6 @@ def test_the_exact_values_agree_with_fifty_digits(seed):
         if given or any(name in claim for name in (*WIDER, "sqrt", "abs")):
             continue
         exact = random_point(source)
-        mp.dps = 30
         angles = {
             name: float(2 * mp.atan2(mp.mpf(s.numerator) / s.denominator, mp.mpf(c.numerator) / c.denominator))
             for name, (c, s) in exact.halves.items()

@@ -188,7 +188,8 @@ def test_formula_trees_keep_the_value():
     expr = (a - b) ** 2 / (c * sympy.sqrt(a)) - 3 * b**-2 + sympy.Abs(c - a)
     values = {"A": mpmath.mpf(3), "B": mpmath.mpf(2), "C": mpmath.mpf(7)}
     found = evaluate(to_node(expr), values, MP, lambda v: mpmath.mpf(v.numerator) / v.denominator)
-    assert mpmath.almosteq(found, mpmath.mpf(str(sympy.N(expr.subs({a: 3, b: 2, c: 7}), 30))))
+    expected = mpmath.mpf(str(sympy.N(expr.subs({a: 3, b: 2, c: 7}), 30)))
+    assert mpmath.almosteq(found, expected, rel_eps=1e-15)
 
 
 # --- the emitted text -------------------------------------------------------------------------------------------------
