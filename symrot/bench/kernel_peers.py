@@ -8,6 +8,7 @@ import re
 from collections import Counter
 from collections.abc import Callable, Sequence
 from functools import reduce
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -81,12 +82,14 @@ def _sympy(name: str) -> str:
 
 
 def _symforce(name: str) -> str:
-    import symforce.symbolic as sf
-
-    common, results = sf.cse(  # type: ignore[no-untyped-call, unused-ignore]
+    sf: Any = import_module("symforce.symbolic")
+    common, results = sf.cse(
         [sf.S(str(entry)) for entry in textbook(name)], symbols=(sf.Symbol(f"common{i}") for i in range(1000))
     )
-    plain = lambda value: sympy.sympify(str(value), locals=_REAL)  # noqa: E731
+
+    def plain(value: object) -> sympy.Expr:
+        return sympy.sympify(str(value), locals=_REAL)
+
     return _program(name, [(symbol, plain(value)) for symbol, value in common], [plain(value) for value in results])
 
 
