@@ -11,9 +11,11 @@ from typing import Any
 from sympy import Symbol
 
 from symrot.checker.decision import Problem
+from symrot.checker.functions import BUILT_IN
 from symrot.checker.latex import Names, read_latex
-from symrot.checker.meaning import BUILT_IN, CONSTANTS, Meaning, is_matrix, time
+from symrot.checker.meaning import CONSTANTS, Meaning, time
 from symrot.checker.reader import Relation, read_expression, read_relation
+from symrot.checker.scope import is_matrix
 from symrot.checker.tree import Node, text, walk
 from symrot.checker.units import read_unit
 from symrot.errors import InputError

@@ -1,9 +1,9 @@
 """Functions, roots, fractions, derivatives and integrals in LaTeX."""
 
+from symrot.checker.functions import BUILT_IN
 from symrot.checker.latex_cursor import CLOSING, TIME
 from symrot.checker.latex_names import NamesPart
 from symrot.checker.latex_tokens import GREEK, Token
-from symrot.checker.meaning import BUILT_IN
 from symrot.checker.tree import Node, number, product, walk
 
 __all__ = ["DOTS", "FUNCTIONS", "CalculusPart"]

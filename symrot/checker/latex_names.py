@@ -1,8 +1,8 @@
 """Names in LaTeX: subscripts, primes, arguments of time, marks of vectors, words in upright letters."""
 
+from symrot.checker.functions import BUILT_IN
 from symrot.checker.latex_cursor import CLOSING, Cursor
 from symrot.checker.latex_tokens import GREEK, Token
-from symrot.checker.meaning import BUILT_IN
 from symrot.checker.tree import Node
 
 __all__ = ["NAME_MARKS", "OPERATORS", "VECTOR_MARKS", "NamesPart"]

@@ -10,9 +10,9 @@ from typing import Any
 
 from symrot.checker.claims import Claim
 from symrot.checker.edits import Edit
+from symrot.checker.functions import BUILT_IN
 from symrot.checker.latex_cursor import TIME
 from symrot.checker.latex_matrices import MATRIX_CALLS
-from symrot.checker.meaning import BUILT_IN
 from symrot.checker.points import Meaningless, Point, agree, entries_of, points
 from symrot.checker.tree import Node, Path, text, walk
 
