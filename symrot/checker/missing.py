@@ -20,7 +20,7 @@ from symrot.exact.ring import FormulaRing, as_zero
 __all__ = ["lacking_matrix", "lacking_term", "renamed"]
 
 MOST_BRACKETS = 12
-MOST_BRACKETS_OF_LARGE = 4
+MOST_BRACKETS_OF_LARGE = 2
 LARGE = 300
 """Pieces of an entry from which on fewer brackets are looked into."""
 

@@ -97,7 +97,7 @@ class Point:
         key = id(node)
         if key in self.known:
             return self.known[key]
-        self.spent[0] += self.weight * (1 + len(node.args) // 8)  # long sums and products cost more
+        self.spent[0] += self.weight * (1 + len(node.args) // 4)  # long sums and products cost more
         value = _VALUE[node.kind](self, node)
         if key in self.kept:
             self.known[key] = value

@@ -62,7 +62,7 @@ def footer(derivation: Derivation) -> str:
     rest = "" if all(sides) else "; the others are names, or words, for what was proven"
     shown = f"Printed from the proof, or read back and decided: {sum(sides)} of {len(sides)} sides{rest}."
     return (
-        f"{proven} when this page was printed: the normal form of left minus right is zero. {shown}{rest} "
+        f"{proven} when this page was printed: the normal form of left minus right is zero. {shown} "
         f"Derived in `symrot/catalogue/{derivation.name}.py`, printed by `symrot derive "
         f"{derivation.name}`; do not edit."
     )
