@@ -58,13 +58,15 @@ class Series(NamedTuple):
 class Recurrences(NamedTuple):
     """The recurrences of a program: all series in an order in which each coefficient can be computed.
 
-    ``rates`` holds one sum per state: its series is the rate of the state.
+    ``rates`` holds one sum per state: its series is the rate of the state. States beyond those of the program, if any,
+    have their start from ``seeds``: formulas of the states and t, see :mod:`symrot.codegen.companions`.
     """
 
     states: tuple[str, ...]
     parameters: tuple[str, ...]
     series: tuple[Series, ...]
     rates: tuple[Series, ...]
+    seeds: tuple[Node, ...] = ()
 
 
 class _Linear(NamedTuple):
@@ -416,6 +418,8 @@ def coefficients(
     state = {series.number: run.found[i] for i, series in enumerate(system.series) if series.rule == "state"}
     for i, name in enumerate(system.states):
         state.setdefault(i, []).append(values[name])
+    for i, seed in enumerate(system.seeds, start=len(system.states)):
+        state[i].append(run.constant(seed))
     for n in range(order):
         for series, own in zip(system.series, run.found, strict=True):
             if series.rule != "state":

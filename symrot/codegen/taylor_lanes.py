@@ -14,7 +14,7 @@ from typing import NamedTuple
 from symrot.codegen.recurrences import Recurrences, Series, split_sign
 from symrot.expression import Node
 
-__all__ = ["LANES", "Address", "Column", "Layout", "Pack", "Row", "Slot", "Term", "lay_out"]
+__all__ = ["LANES", "Address", "Column", "Layout", "Pack", "Row", "Slot", "Term", "cost", "lay_out"]
 
 LANES = 4
 MOST_USES = (1, 2)  # sums in which a product may stand without a row of its own
@@ -75,13 +75,18 @@ class Row(NamedTuple):
 
 
 class Layout(NamedTuple):
-    """Rows in the order of their computation: first the states, then the rest; ``rates`` has one row per state row."""
+    """Rows in the order of their computation: first the states, then their companions, then the rest.
+
+    ``rates`` has one row per row of states and of companions; ``seeds`` the formulas of coefficient 0 of companions.
+    """
 
     series: tuple[Series, ...]
     rows: tuple[Row, ...]
     rates: tuple[Row, ...]
     columns: tuple[Column, ...]
     states: tuple[tuple[int, ...], ...]  # the numbers of the states in each row of states
+    names: tuple[str, ...]  # of the states
+    seeds: tuple[tuple[Node, ...], ...] = ()  # one per row of companions
 
 
 def lay_out(system: Recurrences, edges: Sequence[int]) -> Layout:
@@ -90,10 +95,10 @@ def lay_out(system: Recurrences, edges: Sequence[int]) -> Layout:
     A product in two sums is computed once, or once in each: what is quicker is tried.
     """
     bundled = _with_bundles(system)
-    return min((_Placer(bundled, edges, uses).layout() for uses in MOST_USES), key=_cost)
+    return min((_Placer(bundled, edges, uses).layout() for uses in MOST_USES), key=cost)
 
 
-def _cost(layout: Layout) -> int:
+def cost(layout: Layout) -> int:
     """Return a measure of the time an order takes: convolutions, and rows that wait for one another."""
     return len(layout.columns) + len(layout.rows)
 
@@ -144,11 +149,13 @@ class _Placer:
         self.columns: list[Column] = []
         self.place: dict[int, Address] = {}
         numbers = {s.number: i for i, s in enumerate(self.series) if s.rule == "state"}
+        count = edges[-1]
         self.state_rows = [
             tuple(range(first, min(first + LANES, high)))
-            for low, high in pairwise(edges)
+            for low, high in pairwise([*edges, count + len(system.seeds)])
             for first in range(low, high, LANES)
         ]
+        self.companion_rows = [states for states in self.state_rows if states[0] >= count]
         for states in self.state_rows:
             self.put(Row("state", tuple(numbers.get(s) for s in states)))
         self.inlined = self._inlined(most_uses)
@@ -199,7 +206,12 @@ class _Placer:
         for states in self.state_rows:
             sums = [self.system.rates[s] for s in states]
             rates.append(self._sum_row((*(None for _ in range(LANES)),), [*sums, *[None] * (LANES - len(sums))]))
-        return Layout(self.series, tuple(self.rows), tuple(rates), tuple(self.columns), tuple(self.state_rows))
+        count = len(self.system.states)
+        seeds = tuple(tuple(self.system.seeds[number - count] for number in numbers) for numbers in self.companion_rows)
+        states = tuple(self.state_rows[: len(self.state_rows) - len(seeds)])
+        return Layout(
+            self.series, tuple(self.rows), tuple(rates), tuple(self.columns), states, self.system.states, seeds
+        )
 
     def _shape(self, i: int) -> tuple[int, ...]:
         """Return what series are sorted by within a level: pairs first, then sums with many products."""

@@ -7,13 +7,14 @@ coefficients. Nothing is unrolled over the order, so the code stays small whatev
 The text stands between :file:`taylor.h`, which has the operations on four lanes, and :file:`taylor.c`, which steps.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from symrot.codegen.c_source import c_expression
+from symrot.codegen.companions import with_companions
 from symrot.codegen.recurrences import recurrences
-from symrot.codegen.taylor_lanes import LANES, Address, Layout, Pack, Row, lay_out
+from symrot.codegen.taylor_lanes import LANES, Address, Layout, Pack, Row, cost, lay_out
 from symrot.errors import InputError
-from symrot.expression import Node, rename
+from symrot.expression import Node, children, names, rename
 from symrot.kernel import Program
 
 __all__ = ["ORDER", "jet_source", "taylor_definitions"]
@@ -50,7 +51,7 @@ def taylor_definitions(program: Program, edges: Sequence[int], scales: Sequence[
             f"blocks of {count} states rise from 0 to {count} and have one scale each; got blocks {list(edges)} and "
             f"scales {list(scales)}"
         )
-    layout = lay_out(system, edges)
+    layout = min((lay_out(one, edges) for one in (system, with_companions(system))), key=cost)
     blocks = [next(b for b in range(len(scales)) if states[0] < edges[b + 1]) for states in layout.states]
     return "\n".join(
         (
@@ -84,14 +85,14 @@ class _Jet:
 
     def __init__(self, layout: Layout, parameters: Sequence[str]) -> None:
         self.layout, self.rows, self.parameters = layout, layout.rows, parameters
-        self.state_rows = len(layout.states)
+        self.state_rows, self.own_rows = len(layout.rates), len(layout.states)
         self.constants: dict[tuple[Node, ...], int] = {}
         self.packs: dict[Pack, int] = {}  # those with coefficients of their own
         self.stored: set[int] = set()  # rows that are not states and whose coefficients are kept
         for column in layout.columns:
             for pack in (column.a, column.b):
                 if _is_row(pack) or _is_broadcast(pack):
-                    self.stored |= {pack[0].row} - set(range(self.state_rows))
+                    self.stored |= {pack[0].row} - set(range(self.own_rows))
                 else:
                     self.packs.setdefault(pack, len(self.packs))
 
@@ -108,7 +109,7 @@ class _Jet:
         return row if _is_row(pack) else f"V_ALL(V_LANE({row}, {pack[0].lane}))"
 
     def _array(self, row: int) -> str:
-        return f"x[{row}]" if row < self.state_rows else f"u{row}"
+        return f"x[{row}]" if row < self.own_rows else f"u{row}"
 
     def newest(self, pack: Pack) -> str:
         """Return a pack's coefficient of the order in work, from registers."""
@@ -248,6 +249,30 @@ class _Jet:
         row, lane = next((r, row.lanes.index(series)) for r, row in enumerate(self.rows) if series in row.lanes)
         return f"V_LANE(r{row}, {lane})"
 
+    def seeds(self) -> list[str]:
+        """Return the statements that set coefficient 0 of the companions of the states."""
+        lines: list[str] = []
+        formulas = [formula for row in self.layout.seeds for formula in row]
+        places = {name: f"V_LANE({self.constant((('symbol', name),) * LANES)}, 0)"
+                  for name in self.parameters if any(name in names(formula) for formula in formulas)}  # fmt: skip
+        for row, states in enumerate(self.layout.states):
+            for lane, number in enumerate(states):
+                if any(self.layout.names[number] in names(formula) for formula in formulas):
+                    places[self.layout.names[number]] = f"y{number}"
+                    lines.append(f"const double y{number} = V_LANE(x[{row}][0], {lane});")
+        calls: dict[Node, str] = {}
+        for formula in formulas:
+            for call in _calls(formula):
+                if call not in calls:
+                    calls[call] = f"e{len(calls)}"
+                    lines.append(f"const double {calls[call]} = {c_expression(rename(call, places))};")
+        for row, seeds in enumerate(self.layout.seeds, start=self.own_rows):
+            parts = [c_expression(rename(_with_calls(formula, calls), places)) for formula in seeds]
+            lines.append(f"symrot_v4 r{row} = V_SET({', '.join([*parts, *['0.0'] * (LANES - len(parts))])});")
+            if row in self.stored:
+                lines.append(f"u{row}[0] = r{row};")
+        return lines
+
     # -------------------------------------------------------------------------------------------- orders
 
     def order(self, n: str, phase: str, sums: str) -> list[str]:
@@ -275,7 +300,8 @@ class _Jet:
             lines.append(f"const symrot_v4 x{number} = {self.sum(rate, phase, sums, 's')};")
         for number in range(self.state_rows):
             lines.append(f"r{number} = x{number};")
-            lines.append(f"x[{number}][{following}] = r{number};")
+            if number < self.own_rows or number in self.stored:
+                lines.append(f"{self._array(number)}[{following}] = r{number};")
         return lines
 
     def loops(self) -> list[str]:
@@ -321,7 +347,8 @@ class _Jet:
             "(void)t;",
             *(f"symrot_v4 k{i}[SYMROT_ORDER + 1];" for i in self.packs.values()),
             *(f"symrot_v4 u{i}[SYMROT_ORDER + 1];" for i in sorted(self.stored)),
-            *(f"symrot_v4 r{i} = x[{i}][0];" for i in range(self.state_rows)),
+            *(f"symrot_v4 r{i} = x[{i}][0];" for i in range(self.own_rows)),
+            *self.seeds(),
             *(f"symrot_v4 r{i};" for i in range(self.state_rows, len(self.rows))),
             *(f"symrot_v4 d{i};" for i in divisors),
             "{", *_indented(orders["0"]), "}",
@@ -351,6 +378,22 @@ class _Jet:
             *_indented(body),
             "}",
         ]) + "\n"  # fmt: skip
+
+
+def _calls(node: Node) -> list[Node]:
+    """Return the calls of functions in a formula."""
+    if node[0] == "call":
+        return [node]
+    return [call for child in children(node) for call in _calls(child)]
+
+
+def _with_calls(node: Node, calls: Mapping[Node, str]) -> Node:
+    """Return a formula with names in the place of calls."""
+    if node in calls:
+        return ("symbol", calls[node])
+    if node[0] in ("number", "symbol"):
+        return node
+    return (node[0], *(_with_calls(child, calls) for child in children(node)))
 
 
 def _indented(lines: Iterable[str]) -> list[str]:
