@@ -115,7 +115,9 @@ class EulerMotion(Motion):
             kernel, count = SceneKernel(json.loads(saved)), self._moving
             edges, scales = [0, *([count] if count else []), count + 3], [RATE_SCALE] * (count > 0) + [ATTITUDE_SCALE]
             if self.choice.method == "taylor":
-                text = taylor.translation_unit(kernel.rates, edges, scales, taylor.order_for(self.tolerance))
+                text = taylor.translation_unit(
+                    kernel.rates, edges, scales, taylor.order_for(self.tolerance, kernel.rates)
+                )
             else:
                 sizes = count + 3, len(kernel.rate_parameters)
                 text = dop853.translation_unit(kernel.source, "symrot_rates", *sizes, edges, scales)

@@ -103,7 +103,7 @@ def taylor_library(plan: Plan, kernel: SceneKernel, tolerance: float) -> Path:
     from symrot.propagation import taylor
     from symrot.propagation.invariants import invariant_source
 
-    order = taylor.order_for(tolerance)
+    order = taylor.order_for(tolerance, kernel.rates)
     key = f"taylor {order}\n{kernel_key(plan)}"
     source = library.fetch(key)
     if source is None:

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from symrot.errors import CompilerError, InputError
+from symrot.expression import operations
 from symrot.kernel import Program
 from symrot.propagation.stepping import (
     MAX_STEPS,
@@ -42,7 +43,11 @@ PROJECTION = "/* PROJECTION */\n"  # where taylor.c takes projection.c
 NO_INVARIANTS = "#define SYMROT_INVARIANTS 0\n#define SYMROT_INVARIANT_PARAMETERS 0\n"
 PROJECTED_EVERY = 16  # steps: by measurement, seldom enough to cost a few percent and often enough to lose nothing
 PROJECTED_FROM = 1e-11  # of the tolerance down: looser motions leave their invariants by more than is put right
-ORDERS = ((1e-3, 12), (1e-6, 16), (0.0, 20))  # from which tolerance on which order is fastest, see order_for
+MANY_PRODUCTS = 40  # of a right-hand side: from there on the work of a step is in its sums, which grow as order squared
+ORDERS = {  # by whether there are many: from which tolerance on which order is fastest, see order_for
+    False: ((1e-3, 14), (1e-6, 16), (0.0, 20)),
+    True: ((3e-2, 8), (1e-3, 10), (1e-5, 12), (1e-7, 16), (0.0, 20)),
+}
 
 
 def step_tail(tolerance: float) -> tuple[float, float]:
@@ -58,12 +63,14 @@ def step_tail(tolerance: float) -> tuple[float, float]:
     return tolerance, 1.0 / STEPS_OF_ALL
 
 
-def order_for(tolerance: float) -> int:
-    """Return the order that is fastest for a tolerance; any order keeps its promise.
+def order_for(tolerance: float, program: Program | None = None) -> int:
+    """Return the order that is fastest for a tolerance and the products of a right-hand side; any keeps its promise.
 
     Measured by ``python -m symrot.bench.taylor --orders``: below 1e-6 orders 16 to 24 lie within a tenth of each other.
     """
-    return next(order for least, order in ORDERS if tolerance >= least)
+    formulas = (*program.temporaries, *program.outputs) if program else ()
+    products = sum(operations(formula)["mul"] for _, formula in formulas)
+    return next(order for least, order in ORDERS[products >= MANY_PRODUCTS] if tolerance >= least)
 
 
 def refusal(program: Program) -> str:
