@@ -26,16 +26,20 @@ class _Texts(NamedTuple):
 class Emitted(_Texts):
     """An emitted kernel: the name of its function, the text, and in C the header (empty otherwise).
 
-    ``certificate`` is the text of its certificate, proven when it is asked for.
+    ``certificate`` is the text of its certificate, proven when it is asked for; for a kernel of the library with the
+    bounds of its rounding errors on its own box.
     """
 
     kernel: Any = None
 
     @cached_property
     def certificate(self) -> str:
-        from symrot.certify.certificate import certificate_text
+        from symrot.certify.certificate import certificate_text, with_slots
+        from symrot.certify.rounding_words import library_section
 
-        return certificate_text(subject(self.kernel))
+        text = certificate_text(subject(self.kernel))
+        section = library_section(self.name, self.source) if _is_kernel(self.kernel) else None
+        return with_slots(text, {"rounding": section}) if isinstance(section, dict) else text
 
 
 def _scene(source: Scene | str | Path) -> Scene:
@@ -83,6 +87,9 @@ def emit(kernel: Scene | str | Path, target: str = "c") -> Emitted:
     else:
         reals = (DOUBLE, FLOAT) if is_kernel else (DOUBLE,)
         source = c_source(program, description, reals, is_kernel)
+        if is_kernel:  # the head says the bounds of what is under it
+            description = _library_kernel(kernel, target, source)[1]
+            source = c_source(program, description, reals, is_kernel)
         found = Emitted(name, source, c_header(program, description, reals))
     found.kernel = kernel
     return found
@@ -120,11 +127,13 @@ def kernel_names() -> tuple[str, ...]:
     return library.kernel_names()
 
 
-def _library_kernel(name: Any, target: str) -> tuple[Any, Any]:
+def _library_kernel(name: Any, target: str, source: str = "") -> tuple[Any, Any]:
+    """Return a kernel of the library, and what the emitted file says of it; of rounding errors, if its C is given."""
+    from symrot.certify.rounding_words import in_words
     from symrot.codegen.library_kernels import kernel_description, kernel_program
     from symrot.kernels.library import definition
 
-    return kernel_program(name), kernel_description(definition(name), target)
+    return kernel_program(name), kernel_description(definition(name), target, in_words(name, source) if source else "")
 
 
 def _scene_kernel(scene: Scene | str | Path, target: str) -> tuple[Any, Any]:

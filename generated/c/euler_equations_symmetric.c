@@ -19,8 +19,8 @@
  *
  * Convention: body axes; quaternion scalar first, Hamilton, body to space (symrot conventions).
  * Domain: positive definite inertia.
- * Box: A, C in [1, 4]; omega_1, omega_2, omega_3, tau_1, tau_2, tau_3 in [-10, 10]: there rounding errors are
- *     bounded.
+ * Box: A, C in [1, 4]; omega_1, omega_2, omega_3, tau_1, tau_2, tau_3 in [-10, 10].
+ * Errors: on the box at most 1.43e-13 [7.65e-05] rad/s^2 in domega (float functions in brackets).
  * Certificate: euler_equations_symmetric.cert.json; re-check it by `python recheck.py
  *     euler_equations_symmetric.cert.json` or `symrot audit`.
  * Assumes: IEEE 754 arithmetic, rounding to nearest; outputs do not overlap inputs; for bounds of rounding

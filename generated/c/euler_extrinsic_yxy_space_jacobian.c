@@ -19,7 +19,8 @@
  *
  * Convention: body axes; quaternion scalar first, Hamilton, body to space (symrot conventions).
  * Domain: all finite angles.
- * Box: phi, theta, psi in [-22/7, 22/7]: there rounding errors are bounded.
+ * Box: phi, theta, psi in [-22/7, 22/7].
+ * Errors: on the box at most 2.78e-16 [1.50e-07] in jacobian (float functions in brackets).
  * Certificate: euler_extrinsic_yxy_space_jacobian.cert.json; re-check it by `python recheck.py
  *     euler_extrinsic_yxy_space_jacobian.cert.json` or `symrot audit`.
  * Assumes: IEEE 754 arithmetic, rounding to nearest; outputs do not overlap inputs; for bounds of rounding

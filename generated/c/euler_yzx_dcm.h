@@ -19,7 +19,8 @@
  *
  * Convention: body axes; quaternion scalar first, Hamilton, body to space (symrot conventions).
  * Domain: all finite angles.
- * Box: phi, theta, psi in [-22/7, 22/7]: there rounding errors are bounded.
+ * Box: phi, theta, psi in [-22/7, 22/7].
+ * Errors: on the box at most 6.48e-16 [3.49e-07] in dcm (float functions in brackets).
  * Certificate: euler_yzx_dcm.cert.json; re-check it by `python recheck.py euler_yzx_dcm.cert.json` or `symrot
  *     audit`.
  * Assumes: IEEE 754 arithmetic, rounding to nearest; outputs do not overlap inputs; for bounds of rounding

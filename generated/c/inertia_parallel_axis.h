@@ -35,8 +35,8 @@
  *
  * Convention: body axes; quaternion scalar first, Hamilton, body to space (symrot conventions).
  * Domain: all finite values.
- * Box: I_xx, I_yy, I_zz in [1, 4]; I_xy, I_xz, I_yz in [-1/4, 1/4]; m in [1/10, 10]; d_x, d_y, d_z in [-1, 1]:
- *     there rounding errors are bounded.
+ * Box: I_xx, I_yy, I_zz in [1, 4]; I_xy, I_xz, I_yz in [-1/4, 1/4]; m in [1/10, 10]; d_x, d_y, d_z in [-1, 1].
+ * Errors: on the box at most 7.11e-15 [3.82e-06] kg m^2 in moved (float functions in brackets).
  * Certificate: inertia_parallel_axis.cert.json; re-check it by `python recheck.py
  *     inertia_parallel_axis.cert.json` or `symrot audit`.
  * Assumes: IEEE 754 arithmetic, rounding to nearest; outputs do not overlap inputs; for bounds of rounding

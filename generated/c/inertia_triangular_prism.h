@@ -28,7 +28,9 @@
  *
  * Convention: body axes; quaternion scalar first, Hamilton, body to space (symrot conventions).
  * Domain: dimensions of a body that is there.
- * Box: m, b, h, e, L in [1/10, 10]: there rounding errors are bounded.
+ * Box: m, b, h, e, L in [1/10, 10].
+ * Errors: on the box at most 7.83e-14 [4.21e-05] kg m^2 in inertia; 1.60e-15 [8.55e-07] m in center_of_mass
+ *     (float functions in brackets).
  * Certificate: inertia_triangular_prism.cert.json; re-check it by `python recheck.py
  *     inertia_triangular_prism.cert.json` or `symrot audit`.
  * Assumes: IEEE 754 arithmetic, rounding to nearest; outputs do not overlap inputs; for bounds of rounding

@@ -12,7 +12,8 @@
  *
  * Convention: body axes; quaternion scalar first, Hamilton, body to space (symrot conventions).
  * Domain: all finite parameters.
- * Box: s1, s2, s3 in [-4, 4]: there rounding errors are bounded.
+ * Box: s1, s2, s3 in [-4, 4].
+ * Errors: on the box at most 5.00e-16 [2.69e-07] in switched (float functions in brackets).
  * Certificate: mrp_shadow.cert.json; re-check it by `python recheck.py mrp_shadow.cert.json` or `symrot audit`.
  * Assumes: IEEE 754 arithmetic, rounding to nearest; outputs do not overlap inputs; for bounds of rounding
  *     errors, functions of <math.h> within 1 unit in the last place.

@@ -19,7 +19,8 @@
  *
  * Convention: body axes; quaternion scalar first, Hamilton, body to space (symrot conventions).
  * Domain: unit quaternions.
- * Box: q0, q1, q2, q3 in [-1, 1]: there rounding errors are bounded.
+ * Box: q0, q1, q2, q3 in [-1, 1].
+ * Errors: on the box at most 4.45e-16 [2.39e-07] in dcm (float functions in brackets).
  * Certificate: quaternion_dcm.cert.json; re-check it by `python recheck.py quaternion_dcm.cert.json` or `symrot
  *     audit`.
  * Assumes: IEEE 754 arithmetic, rounding to nearest; outputs do not overlap inputs; for bounds of rounding

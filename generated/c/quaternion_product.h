@@ -19,7 +19,8 @@
  *
  * Convention: body axes; quaternion scalar first, Hamilton, body to space (symrot conventions).
  * Domain: all quaternions.
- * Box: p0, p1, p2, p3, q0, q1, q2, q3 in [-1, 1]: there rounding errors are bounded.
+ * Box: p0, p1, p2, p3, q0, q1, q2, q3 in [-1, 1].
+ * Errors: on the box at most 7.78e-16 [4.18e-07] in product (float functions in brackets).
  * Certificate: quaternion_product.cert.json; re-check it by `python recheck.py quaternion_product.cert.json` or
  *     `symrot audit`.
  * Assumes: IEEE 754 arithmetic, rounding to nearest; outputs do not overlap inputs; for bounds of rounding

@@ -18,7 +18,8 @@
  *
  * Convention: body axes; quaternion scalar first, Hamilton, body to space (symrot conventions).
  * Domain: all quaternions; the rate keeps the norm.
- * Box: q0, q1, q2, q3 in [-1, 1]; omega_x, omega_y, omega_z in [-10, 10]: there rounding errors are bounded.
+ * Box: q0, q1, q2, q3 in [-1, 1]; omega_x, omega_y, omega_z in [-10, 10].
+ * Errors: on the box at most 3.11e-15 [1.67e-06] 1/s in dq (float functions in brackets).
  * Certificate: quaternion_space_rates.cert.json; re-check it by `python recheck.py
  *     quaternion_space_rates.cert.json` or `symrot audit`.
  * Assumes: IEEE 754 arithmetic, rounding to nearest; outputs do not overlap inputs; for bounds of rounding

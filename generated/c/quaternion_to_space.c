@@ -17,7 +17,8 @@
  *
  * Convention: body axes; quaternion scalar first, Hamilton, body to space (symrot conventions).
  * Domain: unit quaternions.
- * Box: q0, q1, q2, q3, vector_1, vector_2, vector_3 in [-1, 1]: there rounding errors are bounded.
+ * Box: q0, q1, q2, q3, vector_1, vector_2, vector_3 in [-1, 1].
+ * Errors: on the box at most 3.11e-15 [1.67e-06] in turned (float functions in brackets).
  * Certificate: quaternion_to_space.cert.json; re-check it by `python recheck.py quaternion_to_space.cert.json`
  *     or `symrot audit`.
  * Assumes: IEEE 754 arithmetic, rounding to nearest; outputs do not overlap inputs; for bounds of rounding

@@ -13,7 +13,8 @@
  *
  * Convention: body axes; quaternion scalar first, Hamilton, body to space (symrot conventions).
  * Domain: all finite parameters.
- * Box: g1, g2, g3 in [-1, 1]: there rounding errors are bounded.
+ * Box: g1, g2, g3 in [-1, 1].
+ * Errors: on the box at most 3.35e-16 [1.80e-07] in q (float functions in brackets).
  * Certificate: rodrigues_quaternion.cert.json; re-check it by `python recheck.py rodrigues_quaternion.cert.json`
  *     or `symrot audit`.
  * Assumes: IEEE 754 arithmetic, rounding to nearest; outputs do not overlap inputs; for bounds of rounding

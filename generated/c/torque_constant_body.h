@@ -13,7 +13,8 @@
  *
  * Convention: body axes; quaternion scalar first, Hamilton, body to space (symrot conventions).
  * Domain: all finite values.
- * Box: torque_1, torque_2, torque_3 in [-1, 1]: there rounding errors are bounded.
+ * Box: torque_1, torque_2, torque_3 in [-1, 1].
+ * Errors: on the box at most 0 [0] N m in torque_b (float functions in brackets).
  * Certificate: torque_constant_body.cert.json; re-check it by `python recheck.py torque_constant_body.cert.json`
  *     or `symrot audit`.
  * Assumes: IEEE 754 arithmetic, rounding to nearest; outputs do not overlap inputs; for bounds of rounding

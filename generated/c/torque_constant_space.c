@@ -18,7 +18,8 @@
  *
  * Convention: body axes; quaternion scalar first, Hamilton, body to space (symrot conventions).
  * Domain: unit quaternions.
- * Box: q0, q1, q2, q3, torque_1, torque_2, torque_3 in [-1, 1]: there rounding errors are bounded.
+ * Box: q0, q1, q2, q3, torque_1, torque_2, torque_3 in [-1, 1].
+ * Errors: on the box at most 3.56e-15 [1.91e-06] N m in torque_b (float functions in brackets).
  * Certificate: torque_constant_space.cert.json; re-check it by `python recheck.py
  *     torque_constant_space.cert.json` or `symrot audit`.
  * Assumes: IEEE 754 arithmetic, rounding to nearest; outputs do not overlap inputs; for bounds of rounding

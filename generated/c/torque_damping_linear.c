@@ -16,8 +16,8 @@
  *
  * Convention: body axes; quaternion scalar first, Hamilton, body to space (symrot conventions).
  * Domain: all finite values.
- * Box: omega_1, omega_2, omega_3 in [-10, 10]; linear_1, linear_2, linear_3 in [-1, 1]: there rounding errors
- *     are bounded.
+ * Box: omega_1, omega_2, omega_3 in [-10, 10]; linear_1, linear_2, linear_3 in [-1, 1].
+ * Errors: on the box at most 8.89e-16 [4.77e-07] N m in torque_b (float functions in brackets).
  * Certificate: torque_damping_linear.cert.json; re-check it by `python recheck.py
  *     torque_damping_linear.cert.json` or `symrot audit`.
  * Assumes: IEEE 754 arithmetic, rounding to nearest; outputs do not overlap inputs; for bounds of rounding

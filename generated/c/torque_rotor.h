@@ -18,7 +18,8 @@
  * Convention: body axes; quaternion scalar first, Hamilton, body to space (symrot conventions).
  * Domain: all finite values.
  * Box: omega_1, omega_2, omega_3 in [-10, 10]; angular_momentum_1, angular_momentum_2, angular_momentum_3 in
- *     [-1, 1]: there rounding errors are bounded.
+ *     [-1, 1].
+ * Errors: on the box at most 3.56e-15 [1.91e-06] N m in torque_b (float functions in brackets).
  * Certificate: torque_rotor.cert.json; re-check it by `python recheck.py torque_rotor.cert.json` or `symrot
  *     audit`.
  * Assumes: IEEE 754 arithmetic, rounding to nearest; outputs do not overlap inputs; for bounds of rounding

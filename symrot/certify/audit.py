@@ -18,7 +18,10 @@ from symrot.certify.header import check_header
 from symrot.certify.operations import Operations
 from symrot.certify.readback import read_batch, read_kernel
 from symrot.certify.rounded import meaning
+from symrot.certify.rounding import check_section
+from symrot.certify.rounding_words import library_section
 from symrot.errors import CertificateError
+from symrot.kernels.library import kernel_names
 from symrot.kernels.removable import REMOVABLE
 
 __all__ = ["audit", "load"]
@@ -30,8 +33,9 @@ PARTS: dict[str, Any] = {  # what a certificate holds, and of what type
     "laws": list, "readback": dict, "rounding": (dict, type(None)), "objects": (dict, type(None)), "seal": str,
 }  # fmt: skip
 CASE = ["case", "steps", "relations", "entries"]
-LAW = ["law", "vanishing", "given", "cases"]
+LAW = ["law", "vanishing", "given", "witness", "cases"]
 OPTIONAL = ("rounding", "objects")
+QUESTION = ("box", "unit_groups", "clearance", "libm_ulp", "budget")  # what a bound is found for
 PROVEN = ("laws", "readback", *OPTIONAL, "seal")
 
 
@@ -90,7 +94,8 @@ def audit(path: Path, said_by: Callable[[Data], Said | None]) -> tuple[Data, lis
     """
     data = load(path)
     try:
-        return data, [recheck.check(path), *_audited(path, data, said_by)]
+        said = [recheck.check(path), *_audited(path, data, said_by)]
+        return data, [*said, _bounds(path, data, (path.parent / f"{data['kernel']}.c").read_text(encoding="utf-8"))]
     except CertificateError:
         raise
     except recheck.REFUSALS as reason:
@@ -123,6 +128,25 @@ def _compare(path: Path, data: Mapping[str, Any], wanted: Mapping[str, Any]) -> 
     others = sorted(set(data) - set(wanted) - set(PROVEN))
     if others:
         raise CertificateError(f"{path}: expected nothing but what a certificate holds, got {others[0]!r}")
+
+
+def _bounds(path: Path, data: Data, source: str) -> str:
+    """Refuse bounds of rounding errors that are not those of the operations that are read now."""
+    section = data.get("rounding")
+    own = library_section(data["kernel"], source) if data["kernel"] in kernel_names() else None
+    if section is None:
+        if isinstance(own, dict):
+            raise CertificateError(f"{path}: expected bounds of rounding errors, there are none (emit it anew)")
+        return "no bounds of rounding errors" + (f": {own}" if own else "")
+    if section == own:
+        return "bounds of rounding errors are those that symrot knows of these operations on the kernel's own box"
+    if isinstance(own, dict) and all(section.get(part) == own[part] for part in QUESTION):
+        raise CertificateError(
+            f"{path}: expected the bounds of rounding errors that symrot finds on this box, got others"
+        )
+    kernels = list(operations_of(data, source).values())
+    check_section(section, kernels[0], kernels[1] if len(kernels) > 1 else None)
+    return "bounds of rounding errors on a box of your own are those of these operations, above their lower bounds"
 
 
 def operations_of(data: Data, source: str) -> dict[str, Operations]:

@@ -13,7 +13,7 @@ import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from math import inf, isfinite, nextafter
+from math import frexp, inf, isfinite, ldexp, nextafter
 from typing import Any
 
 import numpy as np
@@ -27,13 +27,13 @@ from symrot.certify.rounding_subdivision import Search, search
 from symrot.errors import CertificateError, InputError
 from symrot.number import show
 
-__all__ = ["BUDGET", "Box", "OutputBound", "Task", "bound_outputs", "bound_task", "check_section", "rounding_section",
-           "tasks"]  # fmt: skip
+__all__ = ["BUDGET", "STORE", "Box", "OutputBound", "Task", "bound_outputs", "bound_task", "check_section",
+           "rounding_section", "tasks"]  # fmt: skip
 
 Box = Mapping[str, tuple[Fraction, Fraction]]  # place of an input, such as "q[1]" -> least and largest value
 
 BUDGET = 100_000  # evaluations of boxes per output
-_STORE = Store()
+STORE = Store()
 
 
 @dataclass(frozen=True)
@@ -133,10 +133,10 @@ def _check_box(operations: Operations, box: Box) -> None:
 
 def bound_task(task: Task, fresh: bool = False) -> Search:
     """Return the bound of one computation, from the store if it is known and ``fresh`` does not forbid it."""
-    known = None if fresh else _STORE.get(task.key)
+    known = None if fresh else STORE.get(task.key)
     if known is None:
         known = search(task.cone, task.box, task.region, task.budget, task.libm_ulp)
-        _STORE.put(task.key, known)
+        STORE.put(task.key, known)
     return known
 
 
@@ -182,7 +182,8 @@ def _found(operations: Operations, place: str, task: Task, found: Search) -> Out
             f"{operations.name}: expected a box without singular points, got one where {place} has no bound: "
             f"{what} is not known to stay away from its singular values near {where}"
         )
-    scale = 2.0 ** np.ceil(np.log2(found.largest_value)) if found.largest_value > 0 else 1.0
+    mantissa, exponent = frexp(found.largest_value)
+    scale = ldexp(1.0, exponent - (mantissa == 0.5)) if found.largest_value > 0 else 1.0
     choices = tuple(_said_choices(task))
     return OutputBound(
         place, found.bound, found.pointwise, at, float(scale), found.evaluations, found.converged, found.turns, choices,

@@ -12,7 +12,7 @@ from math import inf
 
 from symrot.certify.operations import Operations
 from symrot.certify.readback import read_kernel
-from symrot.certify.rounding import BUDGET, Box, Task, bound_task, tasks
+from symrot.certify.rounding import BUDGET, STORE, Box, Task, bound_task, tasks
 from symrot.certify.rounding_adjoint import EVERYWHERE, LIBM_ULP, Region
 from symrot.certify.rounding_cone import cone_of
 from symrot.certify.rounding_subdivision import Search, search
@@ -78,7 +78,7 @@ def _work(task: Task) -> Search:
 
 def prepare(
     kernels: Iterable[tuple[str, str]], workers: int = 2, budget: int = BUDGET, libm_ulp: float = LIBM_ULP,
-    progress: Callable[[str], object] = lambda text: None,
+    progress: Callable[[str], object] = lambda text: None, with_table: bool = True,
 ) -> int:  # fmt: skip
     """Bound the outputs of kernels of the library, each computation once, and keep what was found in the store.
 
@@ -91,20 +91,20 @@ def prepare(
         As for :func:`symrot.certify.rounding.bound_outputs`.
     progress : callable
         Takes a line of text, now and then.
+    with_table : bool
+        Whether the bounds that come with symrot are not to be found again.
 
     Returns
     -------
     int
         How many computations had to be bounded.
     """
-    from symrot.certify.rounding import _STORE
-
     waiting: dict[str, Task] = {}
     for name, text in kernels:
         for operations in operations_of(name, text):
             given = problem(definition(name), operations)
             for task in tasks(operations, given.box, given.region, budget, libm_ulp).values():
-                if _STORE.get(task.key) is None:
+                if STORE.get(task.key, with_table) is None:
                     waiting[task.key] = task
     largest_first = sorted(waiting.values(), key=lambda task: (-len(task.cone.nodes) * len(task.low), task.key))
     if workers == 1 or len(waiting) < 2:
@@ -113,7 +113,7 @@ def prepare(
         return len(waiting)
     with ProcessPoolExecutor(workers) as pool:
         for number, (task, found) in enumerate(zip(largest_first, pool.map(_work, largest_first), strict=True)):
-            _STORE.put(task.key, found)
+            STORE.put(task.key, found)
             progress(f"bounding {number + 1} of {len(waiting)} ..")
     return len(waiting)
 

@@ -41,12 +41,13 @@ def _with(node: Node, values: Mapping[str, Node]) -> Node:
     return (node[0], *(_with(child, values) for child in node[1:]))
 
 
-def kernel_description(found: Definition, target: str) -> Description:
-    """Return what an emitted file says of a kernel."""
+def kernel_description(found: Definition, target: str, errors: str = "") -> Description:
+    """Return what an emitted file says of a kernel; in C also its box and the rounding ``errors`` there, if known."""
+    known = (("Box", _box(found.box)), *((("Errors", errors),) if errors else ()))
     return Description(
         title=found.title, domain=found.domain, derivation=found.derivation,
         command=f"symrot emit {found.name} --target {target}",
-        contract=(("Box", _box(found.box)), *CONTRACT) if target == "c" else (),
+        contract=(*known, *CONTRACT) if target == "c" else (),
     )  # fmt: skip
 
 
@@ -56,4 +57,4 @@ def _box(box: Box) -> str:
     for name, (low, high) in box.items():
         names.setdefault((str(low), str(high)), []).append(name)
     ranges = [f"{', '.join(each)} in [{low}, {high}]" for (low, high), each in names.items()]
-    return f"{'; '.join(ranges)}: there rounding errors are bounded"
+    return "; ".join(ranges)

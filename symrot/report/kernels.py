@@ -46,10 +46,15 @@ def kernel_files(kernel: str | Path, target: str) -> dict[str, str]:
 
 
 def certificate_files(kernel: str | Path, directory: Path) -> dict[str, str]:
-    """Return file name -> text of the certificate of a kernel; bounds and verdicts that still hold are kept."""
+    """Return file name -> text of the certificate of a kernel; verdicts on object code that still hold are kept.
+
+    Bounds of rounding errors are those of the kernel's own box; a scene has none, and those that hold are kept.
+    """
     found = emit(kernel, "c")
     name = f"{found.name}.cert.json"
-    return {name: with_slots(found.certificate, _slots(directory / name))}
+    known = _slots(directory / name)
+    own = json.loads(found.certificate).get("rounding")
+    return {name: with_slots(found.certificate, known | ({"rounding": own} if own else {}))}
 
 
 def _slots(path: Path) -> dict[str, Any]:
