@@ -10,8 +10,10 @@ import mpmath
 import numpy as np
 import pytest
 
+from symrot.bench import ulps
 from symrot.codegen.build_files import FLAGS, build_files
 from symrot.codegen.math_header import FAR, math_header
+from symrot.interface import emit
 
 ROOT = Path(__file__).parents[1]
 KERNELS = ROOT / "generated" / "c"
@@ -94,6 +96,29 @@ def test_sine_and_cosine_campaign(flags, tmp_path):
     assert found.worst_double(5_000_000, float(FAR["binary64"]), 1) <= 1
     assert found.worst_double(5_000_000, 4.0, 2) <= 1
     assert found.worst_float(0, bits(float(FAR["binary32"])) + 1) <= 1
+
+
+@needs_cc
+def test_what_kernels_call_is_within_its_stated_error():
+    """One sample and batch, double and float: 4 units in the last place at removable singularities, 1 for sines."""
+    found = list(ulps.measured(500, ("fused",)))
+    both, one, batch = ({"one", "batch"}, {"one"}, {"batch"})
+    stated = {"sinc": both, "sine_gap": both, "tangent_gap": both, "arc_ratio": one, "sin": batch, "cos": batch}
+    assert {(row.name, row.real, row.form) for row in found} == {
+        (name, real, form) for name, forms in stated.items() for real in ("double", "float") for form in forms
+    }
+    assert [row for row in found if not row.ulp <= (1 if row.name in ("sin", "cos") else 4)] == []
+
+
+@needs_cc
+def test_a_coefficient_that_is_off_in_its_last_digits_is_seen(monkeypatch):
+    def altered(name):
+        found = emit(name)
+        return found._replace(source=found.source.replace("0.16666666666666666 +", "0.16666666666666682 +"))
+
+    monkeypatch.setattr(ulps, "emit", altered)
+    monkeypatch.setattr(ulps, "FUNCTIONS", [each for each in ulps.FUNCTIONS if each.name == "sine_gap"])
+    assert all(row.ulp > 4 for row in ulps.measured(200, ("unfused",)) if row.real == "double")
 
 
 def test_coefficients_are_the_series_to_the_last_bit():

@@ -27,7 +27,7 @@ from symrot.kernels.dynamics import TENSOR
 from symrot.kinematics.euler import rate_jacobian
 from symrot.kinematics.quaternion import dcm_of, quaternion_rates
 
-__all__ = ["PEERS_IN_C", "by_hand", "casadi_function", "counted", "heyoka_function", "textbook"]
+__all__ = ["PEERS_IN_C", "by_hand", "casadi_function", "counted", "input_names", "textbook", "textbook_program"]
 
 BY_HAND = Path(__file__).with_name("kernels_by_hand.c")
 _COUNTED = {"mul": "mul", "add": "add", "sub": "add", "div": "div", "sqrt": "sqrt"}
@@ -49,8 +49,15 @@ def textbook(name: str) -> list[sympy.Expr]:
     return [*angular_acceleration(sympy.diag(*symbols.principal), omega, weight), *rates]
 
 
-def _inputs(signature: Signature) -> list[str]:
-    return [name for a in signature.arguments if a.role == "in" for name, *_ in a.components]
+def input_names(name: str) -> list[str]:
+    """Return the names of the inputs of a kernel, component by component."""
+    return [name for a in kernel_program(name).signature.arguments if a.role == "in" for name, *_ in a.components]
+
+
+def textbook_program(name: str) -> Program:
+    """Return the textbook formulas of a kernel as a program, nothing shared."""
+    signature = kernel_program(name).signature
+    return Program(signature, (), tuple(zip(_outputs(signature), map(to_node, textbook(name)), strict=True)))
 
 
 def _outputs(signature: Signature) -> list[str]:
@@ -121,12 +128,10 @@ def casadi_function(name: str) -> tuple[Any, Counter[str]]:
     """Return CasADi's function of one vector of inputs, its common terms taken together, and its operations."""
     import casadi
 
-    signature = kernel_program(name).signature
-    x = casadi.SX.sym("x", len(_inputs(signature)))
-    values = {each: x[i] for i, each in enumerate(_inputs(signature))}
-    node_program = Program(signature, (), tuple(zip(_outputs(signature), map(to_node, textbook(name)), strict=True)))
+    x = casadi.SX.sym("x", len(input_names(name)))
+    values = {each: x[i] for i, each in enumerate(input_names(name))}
     functions = {each: getattr(casadi, each) for each in ("sin", "cos", "tan", "sqrt")}
-    found = casadi.cse(casadi.vertcat(*node_program.evaluate(values, functions, float).values()))
+    found = casadi.cse(casadi.vertcat(*textbook_program(name).evaluate(values, functions, float).values()))
     function = casadi.Function("peer", [x], [found])
     kinds = {"OP_ADD": "add", "OP_SUB": "add", "OP_MUL": "mul", "OP_SQ": "mul", "OP_TWICE": "add", "OP_DIV": "div",
              "OP_INV": "div", "OP_SIN": "sin", "OP_COS": "cos", "OP_SQRT": "sqrt"}  # fmt: skip
@@ -137,15 +142,3 @@ def casadi_function(name: str) -> tuple[Any, Counter[str]]:
         if number in by_number
     )
     return function, counts
-
-
-def heyoka_function(name: str) -> Any:
-    """Return heyoka's compiled function of the inputs, samples along the last axis."""
-    import heyoka
-
-    signature = kernel_program(name).signature
-    variables = dict(zip(_inputs(signature), heyoka.make_vars(*_inputs(signature)), strict=True))
-    functions = {each: getattr(heyoka, each) for each in ("sin", "cos", "tan", "sqrt")}
-    node_program = Program(signature, (), tuple(zip(_outputs(signature), map(to_node, textbook(name)), strict=True)))
-    formulas = node_program.evaluate(variables, functions, float)
-    return heyoka.cfunc(list(formulas.values()), list(variables.values()), fast_math=True)

@@ -2,9 +2,10 @@
 
     python -m symrot.bench.kernels [--rounds 15] [--many 1000000] [--kernels NAME ..]
 
-All contestants take turns in one run and compute the same numbers, which is checked. What makes C is compiled with the
-same compiler and flags. heyoka's functions and CasADi's own evaluation are called from Python: a batch of 1000 counts
-by what it takes longer than a batch of one, so that the call is not held against them.
+All contestants take turns in one run, on one thread, on the same memory, and compute the same numbers, which is
+checked. What makes C is compiled with the same compiler and flags; heyoka's machine code, with its sines of 3.5 ulp, is
+linked to the same loops. CasADi's own evaluation is called from Python. "moves only" reads each input and writes each
+output of a batch with no more than a sum between: what a batch of 10^6 is from the memory alone.
 """
 
 import argparse
@@ -12,30 +13,33 @@ import ctypes
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from functools import cache
+from functools import cache, partial
 from time import perf_counter
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from symrot.bench.kernel_peers import PEERS_IN_C, casadi_function, counted, heyoka_function
+from symrot.bench.kernel_heyoka import LANES, heyoka_code
+from symrot.bench.kernel_peers import PEERS_IN_C, casadi_function, counted
 from symrot.codegen import library
 from symrot.codegen.c_source import MATH_HEADER
 from symrot.codegen.library_kernels import kernel_program
 from symrot.codegen.math_header import math_header
 from symrot.interface import emit
-from symrot.kernel import Signature
+from symrot.kernel import Argument, Signature
 from symrot.kernels.library import definition
 
 __all__ = ["Contestant", "contest", "main"]
 
-FLAGS = ("-std=c99", "-O3", library.NATIVE, "-fno-math-errno", "-ffp-contract=fast", "-fno-tree-slp-vectorize", "-fPIC",
-         "-fno-semantic-interposition", "-shared")  # fmt: skip
+FLAGS = ("-std=c99", "-O3", library.NATIVE, "-fno-math-errno", "-ffp-contract=fast", "-fno-tree-slp-vectorize",
+         "-falign-functions=64", "-falign-loops=64", "-fPIC", "-fno-semantic-interposition", "-shared")  # fmt: skip
 CACHED, MANY = 1000, 1_000_000  # no power of two, at which all arrays would share cache lines
 PROPER = ("zxz", "zyz", "xyx", "xzx", "yxy", "yzy")
 TAIT_BRYAN = ("zyx", "zxy", "xyz", "xzy", "yxz", "yzx")
 SHORTEST = 1e-3  # s, one measurement
+BAR = 1.05  # of the least time of the others
+FLOOR = "moves only"
 
 Floats = NDArray[np.float64]
 SHAPES = ("one", "cached", "many")
@@ -52,11 +56,7 @@ class Contestant:
 
     def nanoseconds(self, shape: str) -> float | None:
         """Return the least time per sample in ns, None where it was not measured."""
-        return (
-            (self.seconds[shape][-1] if self.name == "heyoka" and shape == "cached" else min(self.seconds[shape])) * 1e9
-            if self.seconds[shape]
-            else None
-        )
+        return min(self.seconds[shape]) * 1e9 if self.seconds[shape] else None
 
 
 def _samples(name: str, count: int) -> list[Floats]:
@@ -71,13 +71,22 @@ def _samples(name: str, count: int) -> list[Floats]:
 
 
 @cache
-def _arrays(name: str, shape: str, count: int) -> list[Floats]:
-    """Return inputs and outputs, the same for all contestants: where they lie in memory matters."""
-    outputs = [a for a in kernel_program(name).signature.arguments if a.role == "out"]
-    given, found = _samples(name, count), [np.zeros((a.size, count)) for a in outputs]
-    if shape == "one":
-        return [np.ascontiguousarray(array.T) for array in [*given, *found]]
-    return [*given, *found]
+def _block(name: str, shape: str, count: int) -> tuple[Floats, Floats]:
+    """Return inputs and outputs, the same memory for all contestants: one sample in a row, in a batch in a column."""
+    given = np.concatenate(_samples(name, count))
+    found = np.zeros((sum(a.size for a in kernel_program(name).signature.arguments if a.role == "out"), count))
+    return (np.ascontiguousarray(given.T), np.ascontiguousarray(found.T)) if shape == "one" else (given, found)
+
+
+def _addresses(name: str, shape: str, count: int) -> Any:
+    """Return the addresses of the arguments of a kernel in that memory."""
+    found, offsets = [], {"in": 0, "out": 0}
+    for argument in kernel_program(name).signature.arguments:
+        block = _block(name, shape, count)[argument.role == "out"]
+        part = slice(offsets[argument.role], None)
+        found.append((block[:, part] if shape == "one" else block[part]).ctypes.data)
+        offsets[argument.role] += argument.size
+    return (ctypes.c_void_p * len(found))(*found)
 
 
 def _drivers(signature: Signature, batch: bool) -> str:
@@ -85,48 +94,94 @@ def _drivers(signature: Signature, batch: bool) -> str:
     inputs = [a for a in signature.arguments if a.role == "in"]
     outputs = [a for a in signature.arguments if a.role == "out"]
     every = [*inputs, *outputs]
-    one = ", ".join(f"a[{i}][k]" if a.is_scalar else f"a[{i}] + {a.size}*k" for i, a in enumerate(every))
-    lines = []
-    if not batch:
-        pointers = [f"{'const ' if a in inputs else ''}double *restrict {a.name}" for a in every]
-        loaded = [f"{a.name}[{f'{i}*n + ' if not a.is_scalar else ''}k]" for a in inputs for i in range(a.size)]
-        local = iter(loaded)
-        lines += [f"void batch(size_t n, {', '.join(pointers)})", "{", "    _Pragma(\"GCC ivdep\")",
-                  "    for (size_t k = 0; k < n; ++k) {"]  # fmt: skip
-        for a in inputs:
-            values = ", ".join(next(local) for _ in range(a.size))
-            lines.append(f"        const double {a.name}_k{'' if a.is_scalar else f'[{a.size}]'} = "
-                         + (values if a.is_scalar else f"{{{values}}}") + ";")  # fmt: skip
-        lines += [f"        double {a.name}_k[{a.size}];" for a in outputs]
-        lines.append(f"        {signature.name}({', '.join(f'{a.name}_k' for a in every)});")
-        lines += [f"        {a.name}[{i}*n + k] = {a.name}_k[{i}];" for a in outputs for i in range(a.size)]
-        lines += ["    }", "}"]
-    called = f"{signature.name}_batch" if batch else "batch"
+    apart = [sum(a.size for a in (inputs if each in inputs else outputs)) for each in every]
+    one = ", ".join(f"{'' if a.is_scalar else '&'}a[{i}][{apart[i]}*k]" for i, a in enumerate(every))
+    lines = [] if batch else _batch_of_one(signature.name, inputs, outputs)
     taken = [f"{'const ' if a in inputs else ''}double {'' if a.is_scalar else '*'}{a.name}" for a in every]
     lines += [f"static __attribute__((noinline)) void single({', '.join(taken)})", "{",
               f"    {signature.name}({', '.join(a.name for a in every)});", "}"]  # fmt: skip
     arguments = ", ".join(f"a[{i}]" for i in range(len(every)))
     return "\n".join([
         "#include <stddef.h>", *lines,
-        "void repeat_one(size_t repeats, size_t n, double **a)", "{",
-        "    for (size_t r = 0; r < repeats; ++r)", "        for (size_t k = 0; k < n; ++k) {",
-f"            single({one});",
-        '            __asm__ volatile("" ::: "memory"); /* one sample at a time */', "        }", "}",
-        "void repeat_batch(size_t repeats, size_t n, double **a)", "{",
-        "    for (size_t r = 0; r < repeats; ++r) {", f"        {called}(n, {arguments});",
-        '        __asm__ volatile("" ::: "memory");', "    }", "}",
-    ]) + "\n"  # fmt: skip
+        _REPEAT_ONE.format(call=f"single({one})"),
+        _REPEAT_BATCH.format(call=f"{f'{signature.name}_batch' if batch else 'batch'}(n, {arguments})"),
+    ])  # fmt: skip
 
 
-def _addresses(arrays: Sequence[Floats]) -> Any:
-    return (ctypes.c_void_p * len(arrays))(*(array.ctypes.data for array in arrays))
+_REPEAT_ONE = """void repeat_one(size_t repeats, size_t n, double **a)
+{{
+    for (size_t r = 0; r < repeats; ++r)
+        for (size_t k = 0; k < n; ++k) {{
+            {call};
+            __asm__ volatile("" ::: "memory"); /* one sample at a time */
+        }}
+}}
+"""
+_REPEAT_BATCH = """void repeat_batch(size_t repeats, size_t n, double **a)
+{{
+    for (size_t r = 0; r < repeats; ++r) {{
+        {call};
+        __asm__ volatile("" ::: "memory");
+    }}
+}}
+"""
+
+
+def _batch_of_one(name: str, inputs: Sequence[Argument], outputs: Sequence[Argument]) -> list[str]:
+    """Return C of a batch around a one-sample function that is inlined into its loop."""
+    every = [*inputs, *outputs]
+    pointers = [f"{'const ' if a in inputs else ''}double *restrict {a.name}" for a in every]
+    lines = [f"static void batch(size_t n, {', '.join(pointers)})", "{", '    _Pragma("GCC ivdep")',
+             "    for (size_t k = 0; k < n; ++k) {"]  # fmt: skip
+    for a in inputs:
+        values = ", ".join(f"{a.name}[{i}*n + k]" for i in range(a.size))
+        held = f"{a.name}_k = {values}" if a.is_scalar else f"{a.name}_k[{a.size}] = {{{values}}}"
+        lines.append(f"        const double {held};")
+    lines += [f"        double {a.name}_k[{a.size}];" for a in outputs]
+    lines.append(f"        {name}({', '.join(f'{a.name}_k' for a in every)});")
+    lines += [f"        {a.name}[{i}*n + k] = {a.name}_k[{i}];" for a in outputs for i in range(a.size)]
+    return [*lines, "    }", "}"]
+
+
+def _heyoka_drivers(signature: Signature) -> str:
+    """Return C that repeats heyoka's compiled functions, of one sample and of ``LANES`` neighbours in a batch."""
+    sizes = {role: sum(a.size for a in signature.arguments if a.role == role) for role in ("in", "out")}
+    out = sum(a.role == "in" for a in signature.arguments)
+    return "\n".join([
+        "#include <stddef.h>",
+        "typedef void (*of_one)(double *, const double *, const double *, const double *);",
+        "typedef void (*of_batch)(double *, const double *, const double *, const double *, size_t);",
+        "static of_one one;", "static of_batch neighbour, neighbours;",
+        "void take(of_one a, of_batch b, of_batch c)", "{", "    one = a, neighbour = b, neighbours = c;", "}",
+        "static void batch(size_t n, const double *in, double *out)", "{", "    size_t k = 0;",
+        f"    for (; k + {LANES} <= n; k += {LANES})", "        neighbours(out + k, in + k, 0, 0, n);",
+        "    for (; k < n; ++k)", "        neighbour(out + k, in + k, 0, 0, n);", "}",
+        _REPEAT_ONE.format(call=f"one(a[{out}] + {sizes['out']}*k, a[0] + {sizes['in']}*k, 0, 0)"),
+        _REPEAT_BATCH.format(call=f"batch(n, a[0], a[{out}])"),
+    ])  # fmt: skip
+
+
+def _moving(signature: Signature) -> str:
+    """Return C that reads every input and writes every output of a batch."""
+    inputs, outputs = ([a for a in signature.arguments if a.role == role] for role in ("in", "out"))
+    heads = [f"const double *restrict {a.name}" for a in inputs] + [f"double *restrict {a.name}" for a in outputs]
+    total = " + ".join(f"{a.name}[{i}*n + k]" for a in inputs for i in range(a.size))
+    lines = ["#include <stddef.h>", f"static void batch(size_t n, {', '.join(heads)})", "{", '    _Pragma("GCC ivdep")',
+             "    for (size_t k = 0; k < n; ++k) {", f"        const double total = {total};",
+             *(f"        {a.name}[{i}*n + k] = total;" for a in outputs for i in range(a.size)),
+             "    }", "}"]  # fmt: skip
+    arguments = ", ".join(f"a[{i}]" for i in range(len(inputs) + len(outputs)))
+    return "\n".join([*lines, _REPEAT_BATCH.format(call=f"batch(n, {arguments})")])
 
 
 def _timed(run: Callable[[int], object], samples: int) -> Callable[[], float]:
     """Return a measurement: seconds per sample of ``run(repeats)``, repeated until the clock can see it."""
-    began = perf_counter()
-    run(1)
-    repeats = max(1, int(SHORTEST / max(perf_counter() - began, 1e-7)))
+    repeats, taken = 1, 0.0
+    while taken < SHORTEST:  # the first runs find nothing in cache
+        repeats *= 2 if taken else 1
+        began = perf_counter()
+        run(repeats)
+        taken = perf_counter() - began
 
     def measure() -> float:
         start = perf_counter()
@@ -136,32 +191,32 @@ def _timed(run: Callable[[int], object], samples: int) -> Callable[[], float]:
     return measure
 
 
-def _repeated(function: Any, count: int, arrays: Sequence[Floats]) -> Callable[[int], object]:
-    addresses = _addresses(arrays)
-
-    def run(repeats: int, kept: Sequence[Floats] = arrays) -> None:  # the arrays live as long as the run
-        function(repeats, count, addresses)
-
-    return run
-
-
-def _in_c(name: str, text: str, batch: bool, many: int) -> tuple[dict[str, Callable[[], float]], list[Floats]]:
-    signature = kernel_program(name).signature
-    loaded = ctypes.CDLL(str(library.build(text + _drivers(signature, batch), f"bench_{name}", FLAGS)))
-    outputs = [a for a in signature.arguments if a.role == "out"]
-    sizes = {"one": CACHED, "cached": CACHED} | ({"many": many} if many else {})
-    runs, results = {}, []
-    for shape, count in sizes.items():
-        kept = _arrays(name, shape, count)
+def _runs(name: str, loaded: ctypes.CDLL, shapes: Sequence[str], many: int) -> dict[str, Callable[[], float]]:
+    """Return a measurement for each shape of the functions in a compiled driver."""
+    runs = {}
+    for shape in shapes:
+        count = many if shape == "many" else CACHED
         function = loaded.repeat_one if shape == "one" else loaded.repeat_batch
         function.argtypes = (ctypes.c_size_t, ctypes.c_size_t, ctypes.c_void_p)
+        addresses = _addresses(name, shape, count)
+        if count:
+            runs[shape] = _timed(partial(_call, function, count, addresses), count)
+    return runs
 
-        repeat = _repeated(function, count, kept)
-        runs[shape] = _timed(repeat, count)
-        if shape == "cached":
-            repeat(1)
-            results = [array.copy() for array in kept[len(kept) - len(outputs) :]]
-    return runs, results
+
+def _call(function: Any, count: int, addresses: Any, repeats: int) -> None:
+    function(repeats, count, addresses)
+
+
+def _in_c(
+    name: str, text: str, many: int, shapes: Sequence[str] = SHAPES, prepare: Callable[[Any], object] = id
+) -> tuple[dict[str, Callable[[], float]], Floats]:
+    """Return the measurements of a text with its drivers, and the numbers that it finds for the batch in cache."""
+    loaded = ctypes.CDLL(str(library.build(text, f"bench_{name}", FLAGS)))
+    prepare(loaded)
+    runs = _runs(name, loaded, shapes, many)
+    runs["cached"]()
+    return runs, _block(name, "cached", CACHED)[1].copy()
 
 
 def _symrot_text(name: str) -> str:
@@ -171,45 +226,21 @@ def _symrot_text(name: str) -> str:
     )
 
 
-def _without_call(run: Callable[[int], Callable[[int], object]]) -> Callable[[], float]:
-    """Return seconds per sample of a batch that is called from Python, by what it takes longer than a batch of one."""
-    least, more = _timed(run(1), 1), _timed(run(CACHED), 1)
-    calls, batches = [least()], [more()]
-
-    def measure() -> float:
-        calls.append(least())
-        batches.append(more())
-        return (min(batches) - min(calls)) / (CACHED - 1)
-
-    return measure
-
-
-def _heyoka(name: str, many: int) -> tuple[dict[str, Callable[[], float]], list[Floats]]:
-    function = heyoka_function(name)
-    size = sum(a.size for a in kernel_program(name).signature.arguments if a.role == "out")
-
-    def run(count: int) -> Callable[[int], object]:
-        given, found = np.concatenate(_samples(name, count)), np.empty((size, count))
-        return lambda repeats: [function(given, outputs=found) for _ in range(repeats)]
-
-    runs = {"cached": _without_call(run)} | ({"many": _timed(run(many), many)} if many else {})
-    return runs, [function(np.concatenate(_samples(name, CACHED)))]
-
-
 def contest(name: str, many: int = MANY) -> tuple[list[Contestant], list[str]]:
     """Return the contestants of a kernel, symrot first, their numbers compared, and the tools that are missing."""
-    contestants, missing = [], []
-    text = _symrot_text(name)
-    runs, wanted = _in_c(name, text, True, many)
+    contestants: list[Contestant] = []
+    missing: list[str] = []
+    signature = kernel_program(name).signature
+    runs, reference = _in_c(name, _symrot_text(name) + _drivers(signature, True), many)
     contestants.append(Contestant("symrot", counted(emit(name).source, name), runs))
-    reference = np.concatenate(wanted)
 
-    def add(tool: str, operations: Counter[str], runs: dict[str, Callable[[], float]], found: list[Floats]) -> None:
-        error = float(np.max(np.abs(np.concatenate(found) - reference)) / np.max(np.abs(reference)))
+    def add(tool: str, operations: Counter[str], runs: dict[str, Callable[[], float]], found: Floats) -> None:
+        error = float(np.max(np.abs(found - reference)) / np.max(np.abs(reference)))
         if not error < 1e-11:
             raise AssertionError(f"{tool}: expected the numbers of symrot for {name}, differs by {error:.1e}")
         contestants.append(Contestant(tool, operations, runs))
 
+    around = _drivers(signature, False)
     for tool, make in PEERS_IN_C.items():
         try:
             peer = make(name)
@@ -217,22 +248,23 @@ def contest(name: str, many: int = MANY) -> tuple[list[Contestant], list[str]]:
             missing.append(tool)
             continue
         if peer is not None:
-            add(tool, counted(peer, name), *_in_c(name, "#include <math.h>\n" + peer, False, many))
+            add(tool, counted(peer, name), *_in_c(name, f"#include <math.h>\n{peer}{around}", many))
     try:
         function, operations = casadi_function(name)
-        add("CasADi C", operations, *_in_c(name, _casadi_text(name, function), False, many))
-        machine, found = _casadi_machine(name, function)
-        add("CasADi VM", operations, machine, found)
+        add("CasADi C", operations, *_in_c(name, _casadi_text(name, function) + around, many))
+        add("CasADi VM", operations, *_casadi_machine(name, function))
     except ImportError:
         missing.append("CasADi")
     try:
-        add("heyoka", Counter(), *_heyoka(name, many))
+        code = heyoka_code(name)
+        add("heyoka", Counter(), *_in_c(name, _heyoka_drivers(signature), many, prepare=lambda c: c.take(*code)))
     except ImportError:
         missing.append("heyoka")
+    contestants.append(Contestant(FLOOR, Counter(), _in_c(name, _moving(signature), many, SHAPES[1:])[0]))
     return contestants, missing
 
 
-def _casadi_machine(name: str, function: Any) -> tuple[dict[str, Callable[[], float]], list[Floats]]:
+def _casadi_machine(name: str, function: Any) -> tuple[dict[str, Callable[[], float]], Floats]:
     """Return CasADi's own evaluation of a batch, by its map over samples."""
     import casadi
 
@@ -241,7 +273,7 @@ def _casadi_machine(name: str, function: Any) -> tuple[dict[str, Callable[[], fl
         return lambda repeats: [mapped(given) for _ in range(repeats)]
 
     found = np.array(function.map(CACHED)(casadi.DM(np.concatenate(_samples(name, CACHED)))))
-    return {"cached": _timed(run(CACHED), CACHED)}, [found]
+    return {"cached": _timed(run(CACHED), CACHED)}, found
 
 
 def _casadi_text(name: str, function: Any) -> str:
@@ -279,21 +311,59 @@ def measure(contestants: Sequence[Contestant], rounds: int) -> None:
 def _line(contestant: Contestant) -> str:
     counts = contestant.operations
     said = ", ".join(f"{counts[kind]} {kind}" for kind in ("mul", "add", "div", "sin", "cos") if counts[kind]) or "-"
+    total = f"{sum(counts.values())}: " if counts else ""
     times = (contestant.nanoseconds(shape) for shape in SHAPES)
-    return f"  {contestant.name:10} {said:38}" + "".join(f"{time:10.2f}" if time else f"{'-':>10}" for time in times)
+    return f"  {contestant.name:10} {total + said:38}" + "".join(f"{t:10.2f}" if t else f"{'-':>10}" for t in times)
 
 
-def _verdict(contestants: Sequence[Contestant]) -> str:
-    """Return how symrot stands to the best of the others: flops, and the time of each shape."""
-    own, others = contestants[0], contestants[1:]
-    flops = [sum(c.operations.values()) for c in others if c.operations]
-    parts = [f"operations {sum(own.operations.values())} to {min(flops)}"] if flops else []
+def _operations(contestants: Sequence[Contestant]) -> tuple[int, int]:
+    """Return the operations of symrot, and the least of the others."""
+    mine, *others = (sum(c.operations.values()) for c in contestants if c.operations)
+    return mine, min(others)
+
+
+def _ratios(contestants: Sequence[Contestant]) -> dict[str, float]:
+    """Return the time of symrot over that of the best of the others, for each shape.
+
+    Least times are compared; where the memory decides, which is shared with all that runs, the times of one round are:
+    the median of their ratios, the largest over the others.
+    """
+    own, others = contestants[0], [c for c in contestants[1:] if c.name != FLOOR]
+    found = {}
     for shape in SHAPES:
-        times = [time for c in others if (time := c.nanoseconds(shape))]
-        mine = own.nanoseconds(shape)
-        if times and mine:
-            parts.append(f"{shape} {mine / min(times):.2f}")
-    return "  symrot to the best of the others: " + ", ".join(parts)
+        rivals = [c.seconds[shape] for c in others if c.seconds[shape]]
+        mine = own.seconds[shape]
+        if mine and shape == "many":
+            found[shape] = max(float(np.median(np.divide(mine, each))) for each in rivals)
+        elif mine:
+            found[shape] = min(mine) / min(map(min, rivals))
+    return found
+
+
+def _table(name: str, contestants: Sequence[Contestant]) -> list[str]:
+    """Return the lines on a kernel: its contestants, and symrot to the best of the others."""
+    parts = [f"operations {mine} to {best}" for mine, best in (_operations(contestants),)]
+    parts += [f"{shape} {ratio:.2f}" for shape, ratio in _ratios(contestants).items()]
+    lines = [
+        f"{name:51}" + "".join(f"{shape:>10}" for shape in SHAPES),
+        *map(_line, contestants),
+        f"  symrot to the best of the others: {', '.join(parts)}",
+    ]
+    own, floor = contestants[0].seconds["many"], contestants[-1].seconds["many"]
+    if own and floor:
+        moved = 8 * sum(a.size for a in kernel_program(name).signature.arguments)
+        lines.append(
+            f"  {moved} bytes a sample: symrot {moved / min(own) / 1e9:.1f} GB/s, moves only "
+            f"{moved / min(floor) / 1e9:.1f} GB/s; symrot to moves only: {np.median(np.divide(own, floor)):.2f}"
+        )
+    return lines
+
+
+def _missed(name: str, contestants: Sequence[Contestant]) -> list[str]:
+    """Return the cells in which symrot is over its bar: more operations than the best, or more than 1.05 of its ns."""
+    mine, best = _operations(contestants)
+    over = [f"{name} {shape} {ratio:.3f}" for shape, ratio in _ratios(contestants).items() if ratio > BAR]
+    return [f"{name} operations {mine} to {best}"] * (mine > best) + over
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -307,14 +377,17 @@ def main(arguments: list[str] | None = None) -> None:
     names = options.kernels or ["quaternion_dcm", *rates, "rigid_body_tensor", "heavy_top"]
     print(f"ns per sample: one at a time, {CACHED} in a batch, {options.many} in a batch; {' '.join(FLAGS[1:6])}")
     absent: set[str] = set()
+    cells, over = 0, []
     for name in names:
         contestants, missing = contest(name, options.many)
         absent |= set(missing)
         measure(contestants, options.rounds)
-        print(f"{name}{'':{max(1, 51 - len(name))}}" + "".join(f"{shape:>10}" for shape in SHAPES))
-        print("\n".join(map(_line, contestants)))
-        print(_verdict(contestants), flush=True)
+        print("\n".join(_table(name, contestants)), flush=True)
+        cells += 1 + len(_ratios(contestants))
+        over += _missed(name, contestants)
     print(f"not installed, left out: {', '.join(sorted(absent))}" if absent else "every tool took part")
+    print(f"{cells - len(over)} of {cells} cells within the bar (operations no more than the best of the others, ns "
+          f"{BAR} of it); over it: {'; '.join(over) or 'none'}")  # fmt: skip
 
 
 if __name__ == "__main__":

@@ -1,0 +1,208 @@
+"""Measure the error of what kernels call, in units in the last place: removable singularities, sines of batches.
+
+    python -m symrot.bench.ulps [--points 20000]
+
+Each function is taken from emitted C, compiled without and with fused operations, in double and in float, as one
+sample calls it (``one``, with the C library) and as a batch does (``batch``, without a branch, angles within the range
+of ``symrot_math.h``); the reference is mpmath at 60 digits. Points: every scale from the least normal number to the
+reach below, both sides of the place where a series takes over, neighbours of multiples of pi/2.
+
+Reach: for one sample |x| up to 1e100 in double, 1e12 in float, beyond which x^3 overflows; for a batch the range of
+``symrot_math.h``, beyond which it calls what one sample calls; tangent_gap up to pi, before its first zero.
+"""
+
+import argparse
+import ctypes
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import product
+from math import frexp, inf, ldexp, pi
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symrot.codegen import library
+from symrot.codegen.c_source import DOUBLE, FLOAT, MATH_HEADER, Real
+from symrot.codegen.math_header import FAR, math_header
+from symrot.interface import emit
+from symrot.kernels.removable import REMOVABLE
+
+__all__ = ["FUNCTIONS", "Measured", "main", "measured"]
+
+CONTRACTION = {"unfused": ("-ffp-contract=off",), "fused": ("-ffp-contract=fast", library.NATIVE)}
+FLAGS = ("-std=c99", "-O2", "-fPIC", "-shared")
+DIGITS = {"binary64": (53, -1074), "binary32": (24, -149)}  # of the fraction; exponent of the least number
+LEAST = {"binary64": 2.0**-1021, "binary32": 2.0**-125}
+REACH = {"binary64": 1e100, "binary32": 1e12}  # for one sample
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Function:
+    """A function that kernels call: its exact value in mpmath, its reach, and whether batches have a form of it."""
+
+    name: str
+    exact: Callable[..., Any]
+    kernel: str  # whose text has it
+    forms: tuple[tuple[str, str], ...] = (("one", "symrot_"), ("batch", "symrot_near_"))
+    reach: float = inf  # largest |x|
+
+
+@dataclass(frozen=True)
+class Measured:
+    """The largest error of a function in one form, and where it is."""
+
+    name: str
+    real: str
+    form: str
+    contraction: str
+    ulp: float
+    where: tuple[float, ...]
+
+
+def _series(name: str, x: Any) -> Any:
+    """Return a removable function by its exact series near zero, by its quotient elsewhere."""
+    import mpmath
+
+    which = REMOVABLE[name]
+    if abs(x) > 1:
+        return (x - mpmath.sin(x)) / x**3 if name == "sine_gap" else (mpmath.sin(x) - x * mpmath.cos(x)) / x**3
+    return mpmath.fsum(mpmath.mpf(a.numerator) / a.denominator * x ** (2 * k) for k, a in enumerate(which.taylor(26)))
+
+
+def _sinc(x: Any) -> Any:
+    import mpmath
+
+    return mpmath.sin(x) / x if x else mpmath.mpf(1)
+
+
+def _arc_ratio(s: Any, c: Any) -> Any:
+    import mpmath
+
+    return mpmath.atan2(s, c) / s if s else 1 / c
+
+
+def _sin(x: Any) -> Any:
+    import mpmath
+
+    return mpmath.sin(x)
+
+
+def _cos(x: Any) -> Any:
+    import mpmath
+
+    return mpmath.cos(x)
+
+
+_BATCH = (("batch", "symrot_"),)
+FUNCTIONS = (
+    Function("sinc", _sinc, "rotation_vector_quaternion"),
+    Function("sine_gap", lambda x: _series("sine_gap", x), "rotation_vector_body_jacobian"),
+    Function("tangent_gap", lambda x: _series("tangent_gap", x), "rotation_vector_body_rates", reach=pi),
+    Function("arc_ratio", _arc_ratio, "rotation_vector_of_quaternion", (("one", "symrot_"),)),
+    Function("sin", _sin, "rotation_vector_quaternion", _BATCH),
+    Function("cos", _cos, "rotation_vector_quaternion", _BATCH),
+)
+
+
+def _points(function: Function, real: Real, form: str, count: int) -> Floats:
+    """Return arguments, one column for each; both components of a unit vector for two."""
+    draw = np.random.default_rng(3)
+    far = float(FAR[real.precision])
+    reach = min(function.reach, REACH[real.precision] if form == "one" else far)
+    kind = np.float32 if real.suffix else np.float64
+    sizes = np.exp(draw.uniform(np.log(LEAST[real.precision]), np.log(reach), count // 4))
+    if function.name == "arc_ratio":
+        angles = np.concatenate([[0.0], sizes[sizes < pi], draw.uniform(0, pi, count - len(sizes))])
+        return np.array([np.sin(angles), np.cos(angles)]).astype(kind).astype(float)
+    turns = np.rint(draw.uniform(1, min(reach, far) * 2 / pi, count // 4)) * (pi / 2)
+    splits = [float(each.split) ** 0.5 for each in REMOVABLE.values()]
+    around = [split + np.arange(-40, 41) * float(np.spacing(kind(split))) for split in splits]
+    wide = draw.uniform(-min(reach, far), min(reach, far), count // 4)
+    close = draw.uniform(0, min(reach, 8.0), count // 4)
+    found = np.concatenate([[0.0], sizes, -sizes[:99], turns, *around, wide, close]).astype(kind).astype(float)
+    kept: Floats = found[np.abs(found) <= reach][None, :]
+    return kept
+
+
+def _text(function: Function) -> str:
+    """Return emitted C that has a function, and for each of its forms a loop over arrays."""
+    emitted = emit(function.kernel)
+    source = emitted.source.replace(f'#include "{MATH_HEADER}"', "")
+    text = math_header() + source.replace(f'#include "{function.kernel}.h"', emitted.header)
+    for real in (DOUBLE, FLOAT):
+        for form, prefix in function.forms:
+            taken = ", ".join(f"x[{i}*n + k]" for i in range(1 + (function.name == "arc_ratio")))
+            text += (
+                f"\nvoid {form}{real.suffix}(size_t n, const {real.type} *x, {real.type} *y)\n{{\n"
+                "    for (size_t k = 0; k < n; ++k)\n"
+                f"        y[k] = {prefix}{function.name}{real.suffix}({taken});\n}}\n"
+            )
+    return text
+
+
+def _ulps(found: float, exact: Any, real: Real) -> float:
+    """Return the distance to an exact value in units in the last place of that value."""
+    digits, least = DIGITS[real.precision]
+    if not exact:
+        return 0.0 if found == 0 else float("inf")
+    unit = ldexp(1.0, max(frexp(float(exact))[1] - digits, least))
+    return abs(float((found - exact) / unit)) if np.isfinite(found) else float("inf")
+
+
+def measured(points: int = 20_000, contraction: Sequence[str] = tuple(CONTRACTION)) -> Iterator[Measured]:
+    """Yield the largest error of each function in each form, precision and contraction.
+
+    Parameters
+    ----------
+    points : int
+        About how many arguments each function is asked for.
+    contraction : sequence of str
+        ``"unfused"``, ``"fused"``: whether the compiler may fuse a product and a sum.
+    """
+    import mpmath
+
+    for function in FUNCTIONS:
+        text = _text(function)
+        built = {each: library.build(text, "ulps", (*FLAGS, *CONTRACTION[each])) for each in contraction}
+        for real, (form, _) in product((DOUBLE, FLOAT), function.forms):
+            arguments = _points(function, real, form, points)
+            with mpmath.workdps(60):
+                exact = [function.exact(*map(mpmath.mpf, each)) for each in arguments.T.tolist()]
+                for each, path in built.items():
+                    values = _called(ctypes.CDLL(str(path)), f"{form}{real.suffix}", arguments, real)
+                    errors = [_ulps(value, right, real) for value, right in zip(values, exact, strict=True)]
+                    worst = int(np.argmax(errors))
+                    where = tuple(arguments[:, worst].tolist())
+                    yield Measured(function.name, real.type, form, each, errors[worst], where)
+
+
+def _called(loaded: ctypes.CDLL, name: str, arguments: Floats, real: Real) -> list[float]:
+    given = np.ascontiguousarray(arguments.astype(np.float32 if real.suffix else np.float64))
+    found = np.empty(given.shape[1], given.dtype)
+    function = getattr(loaded, name)
+    function.argtypes = (ctypes.c_size_t, ctypes.c_void_p, ctypes.c_void_p)
+    function(given.shape[1], given.ctypes.data, found.ctypes.data)
+    values: list[float] = found.astype(float).tolist()
+    return values
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(prog="python -m symrot.bench.ulps", description=(__doc__ or "").split("\n")[0])
+    parser.add_argument("--points", type=int, default=20_000)
+    points = parser.parse_args(arguments).points
+    print(f"largest error in ulp over about {points} points\n{'':14}{'':8}{'':8}{'':10}{'ulp':>7}  at")
+    rows = []
+    for row in measured(points):
+        rows.append(row)
+        where = ", ".join(map(repr, row.where))
+        print(f"{row.name:14}{row.real:8}{row.form:8}{row.contraction:10}{row.ulp:7.3f}  {where}", flush=True)
+    worst = max(rows, key=lambda row: row.ulp)
+    print(f"largest of all: {worst.ulp:.3f} ulp, {worst.name} in {worst.real}, {worst.form}, {worst.contraction}")
+
+
+if __name__ == "__main__":
+    main()
