@@ -7,9 +7,13 @@ reference                    equations              method                      
 ``dop853 in long double``    most general: full     Dormand-Prince, fixed steps,  the C compiler's long
                              tensor, no shortcut    halved until nothing changes  double, where it is longer
 ``closed form``              none                   theta functions               double-double, double
+``extrapolated midpoints``   the scene's own        Gragg's rule, order 16,       long double
+                                                    halved likewise
 ===========================  =====================  ============================  ==========================
 
-The first that can be had counts, the others are held against it. All start from the exact numbers of the scene, not
+The first that can be had counts, the others are held against it: references that contradict one another are refused,
+and errors below what they differ by mean nothing. The last is computed where but one of the others can be had, as with
+torques that have no Taylor series. All start from the exact numbers of the scene, not
 from what rounding made of them: what a method loses by rounding its parameters is an error of that method. A result of
 minutes is kept in the cache of kernels.
 """
@@ -18,7 +22,7 @@ import ctypes
 import json
 import math
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from fractions import Fraction
 from pathlib import Path
 from time import perf_counter, process_time
@@ -44,9 +48,12 @@ Say = Callable[[str], object]
 
 DIGITS, ORDER, TAIL = 40, 28, 1e-26
 MOST_SECONDS = 150.0  # for the series; a longer one is not begun
-MOST_STEPS = 2_000_000  # in long double
+MOST_LONG_SECONDS = 20.0  # for fixed steps in long double
+MOST_STEPS = 2_000_000  # likewise
 FEWEST_STEPS = 64
+CONTRADICTION = 1e-6  # references this far apart are of two motions: one of them is wrong
 CONVERGED = 4e-19  # times the number of radians turned, at least one: what long double can hold
+ROUNDED = 1e-15  # likewise, from where on changes may be of rounding; larger ones are of corners in the torque
 LONG_DOUBLE_BITS = 63  # of its fraction, at least, for it to be worth the name
 LITERAL = re.compile(r"(?<![\w.])(\d+\.\d*(?:[eE][+-]?\d+)?|\d+[eE][+-]?\d+)(?![\w.])")
 CALLS = re.compile(r"\b(sqrt|sin|cos|tan|exp|log|fabs|sinh|cosh|tanh|asin|acos|atan|atan2|pow)\(")
@@ -85,12 +92,15 @@ def reference(problem: Problem, say: Say = lambda text: None, seconds: float = M
     Raises
     ------
     SymrotError
-        If none can be had: the motion ends before its span does, or there is neither series nor compiler.
+        If none can be had: the motion ends before its span does, or there is neither series nor compiler. If none
+        confirms the first: one of them is wrong.
     """
     began = perf_counter()
     found: list[tuple[str, list[State]]] = []
     skipped = []
     for name, compute in REFERENCES:
+        if compute is _extrapolated and len(found) > 1:
+            continue
         say(f"reference: {name} ..")
         try:
             found.append((name, compute(problem, say, seconds)))
@@ -100,7 +110,14 @@ def reference(problem: Problem, say: Say = lambda text: None, seconds: float = M
         raise SymrotError(f"{problem.scene.name}: expected a motion with a reference solution; {'; '.join(skipped)}")
     (name, states), *more = found
     others = tuple((other, problem.worst(theirs, states)) for other, theirs in more)
-    return Reference(tuple(states), name, others, perf_counter() - began, tuple(skipped))
+    result = Reference(tuple(states), name, others, perf_counter() - began, tuple(skipped))
+    if others and not result.doubt <= CONTRADICTION:
+        apart = "; ".join(f"{other} by {difference:.1e}" for other, difference in others)
+        raise SymrotError(
+            f"{problem.scene.name}: expected references that agree within {CONTRADICTION:g}, got {name} contradicted "
+            f"({apart}): one of them is wrong, or the motion is too unstable to be judged over this span"
+        )
+    return result
 
 
 # ------------------------------------------------------------------------------------------------ Taylor, 40 digits
@@ -213,43 +230,52 @@ def longer(source: str) -> str:
 
 
 def _long_double(problem: Problem, say: Say, seconds: float) -> list[State]:
-    """Return the states by fixed steps of DOP853 around the most general equations, until steps make no change."""
+    """Return the states by fixed steps of DOP853 around the most general equations."""
+    general = Problem(problem.scene, Plan(problem.scene, general_structure(problem.scene), ()))
+    tableau = Path(__file__).parent.parent / "propagation" / "dop853_tableau.h"
+    return _converged(general, "dop853", (tableau, Path(__file__).with_name("fixed_step.c")), seconds)
+
+
+def _extrapolated(problem: Problem, say: Say, seconds: float) -> list[State]:
+    """Return the states by fixed steps of extrapolated midpoint rules around the scene's own equations."""
+    return _converged(problem, "extrapolation", (Path(__file__).with_name("extrapolation.c"),), seconds)
+
+
+def _converged(general: Problem, name: str, files: Sequence[Path], seconds: float) -> list[State]:
+    """Return the states by fixed steps in long double, until smaller steps make no change."""
     if library.missing():
         raise _Unavailable("no C compiler")
     if np.finfo(np.longdouble).nmant < LONG_DOUBLE_BITS or ctypes.sizeof(ctypes.c_longdouble) == 8:
         raise _Unavailable("long double is no longer than double here")
-    general = Problem(problem.scene, Plan(problem.scene, general_structure(problem.scene), ()))
-    follow, sizes = _fixed_steps(general), np.array(_sizes(general))
-    turned = max(1.0, (problem.stop - problem.start) * sizes[0])
+    follow, sizes = _fixed_steps(general, name, files), np.array(_sizes(general))
+    turned = max(1.0, (general.stop - general.start) * max(sizes))
     steps, before, held = max(FEWEST_STEPS, int(turned)), None, None
     change, clock = np.inf, process_time()
-    while steps <= MOST_STEPS and process_time() - clock < seconds:
+    while steps <= MOST_STEPS and process_time() - clock < min(seconds, MOST_LONG_SECONDS) / 3.0:  # the next takes half
         path = follow(steps)
         if np.isfinite(path.astype(float)).all():
             now = change if before is None else float(np.max(np.abs(path - before) / sizes))
-            if before is not None and now >= change:  # rounding has taken over
+            if before is not None and now >= change and change <= ROUNDED * turned:  # rounding has taken over
                 break
             if before is not None:
-                held, change = path, now
+                held, change = path, min(now, change)
             if now <= CONVERGED * turned:
                 break
             before = path
         steps = int(steps * 1.5)
     if held is None:
         raise _Unavailable("its steps would have to be too small")
-    return [_long_state(general, state, end) for state, end in zip(held, problem.ends, strict=True)]
+    return [_long_state(general, state, end) for state, end in zip(held, general.ends, strict=True)]
 
 
-def _fixed_steps(general: Problem) -> Callable[[int], Any]:
+def _fixed_steps(general: Problem, name: str, files: Sequence[Path]) -> Callable[[int], Any]:
     """Return a function from the number of steps to the integrated states where the motion is judged."""
-    here = Path(__file__).parent
     parts = [
         general.kernel.source,
         f"#define N {len(general.y0)}",
-        (here.parent / "propagation" / "dop853_tableau.h").read_text(encoding="utf-8"),
-        (here / "fixed_step.c").read_text(encoding="utf-8"),
+        *(file.read_text(encoding="utf-8") for file in files),
     ]
-    function = ctypes.CDLL(str(library.build(longer("\n".join(parts)), "long_double"))).dop853
+    function = getattr(ctypes.CDLL(str(library.build(longer("\n".join(parts)), "long_double"))), name)
     real = ctypes.c_longdouble
     function.argtypes, function.restype = (real, real, ctypes.c_long, ctypes.c_void_p, ctypes.c_void_p), None
     p = _long(_exact_parameters(general.kernel.rate_parameters, general.plan).values())
@@ -276,6 +302,8 @@ def _long_state(general: Problem, y: Any, end: float) -> State:
     found = general.kernel.quantities.evaluate(values, functions, _long_number, general.names)
     ordered = np.array([found[name] for name in general.names])
     rates, attitude = ordered[:3].astype(float), ordered[3:]
+    if not len(attitude):
+        return State(rates, None)
     return State(rates, (attitude / np.sqrt((attitude * attitude).sum())).astype(float))
 
 
@@ -304,5 +332,6 @@ REFERENCES: tuple[tuple[str, Callable[[Problem, Say, float], list[State]]], ...]
     (f"Taylor series in {DIGITS} digits", _taylor),
     ("DOP853 in long double, general equations", _long_double),
     ("closed form", _closed_form),
+    ("extrapolated midpoints in long double", _extrapolated),
 )
 """What a motion is judged by, the best first."""
