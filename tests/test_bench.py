@@ -4,6 +4,7 @@ No test looks at a time: those are of the machine.
 """
 
 import json
+import math
 import re
 from dataclasses import replace
 from fractions import Fraction
@@ -14,15 +15,16 @@ import numpy as np
 import pytest
 
 from symrot.bench import command, skip, suite
+from symrot.bench import reference as reference_module
 from symrot.bench.contestants import CONTESTANTS, chosen
 from symrot.bench.peers import scalar_kernel
 from symrot.bench.problem import Problem, State
 from symrot.bench.race import Measured, race
 from symrot.bench.reference import REFERENCES, longer, reference
-from symrot.bench.work_precision import DECADES, against, decades, study
+from symrot.bench.work_precision import DECADES, against, decades, digest, study
 from symrot.cli import main
 from symrot.codegen.numpy_kernel import load_numpy_kernel
-from symrot.errors import InputError
+from symrot.errors import InputError, SymrotError
 from symrot.planner import make_plan
 from symrot.report.work_precision import compared, lines, lines_of_comparison, read_study
 from symrot.scene import Scene, load_scene
@@ -44,7 +46,7 @@ def scene(**more):
 
 @pytest.fixture(scope="module")
 def found():
-    return study(scene(), "exact,taylor,DOP853", quick=True)
+    return study(scene(), "exact,taylor,DOP853", quick=True, rounds=2)
 
 
 # --- references -------------------------------------------------------------------------------------------------------
@@ -75,11 +77,45 @@ def test_a_reference_starts_from_the_exact_numbers():
     assert Problem.worst(ends[0], ends[1]) < 2e-16
 
 
-def test_a_rough_torque_has_no_series_and_says_so():
+def test_a_rough_torque_has_no_series_and_says_so(monkeypatch):
     rough = scene(torque=[{"kind": "expression", "torque": ["-abs(omega_1)/10", "0", "0"]}])
+    monkeypatch.setattr(reference_module, "MOST_LONG_SECONDS", 0.3)
     result = reference(Problem(rough))
-    assert "long double" in result.name
+    assert "DOP853 in long double" in result.name
     assert any("abs" in why for why in result.skipped)
+    assert 1e-14 < result.doubt < 1e-6  # steps of any method stumble over corners, and the report says how far
+
+
+def test_a_motion_without_series_has_two_references_that_share_no_coefficient():
+    """Dormand and Prince on general equations, Gragg's extrapolated midpoints on the scene's own."""
+    result = reference(Problem(scene(torque=[{"kind": "damping", "quadratic": "1/10"}])))
+    assert "DOP853 in long double" in result.name
+    ((name, difference),) = result.others
+    assert "midpoints" in name
+    assert difference < 1e-15
+
+
+@pytest.mark.parametrize("wrong", [0, 1])
+def test_a_wrong_reference_is_refused(wrong, monkeypatch):
+    """Whichever of two is wrong, in one component, by 1e-5: errors against it would mean nothing."""
+    table = list(REFERENCES[:2])
+    name, true = table[wrong]
+
+    def shifted(*given):
+        return [State(state.omega + np.array([0, 1e-5, 0]), state.quaternion) for state in true(*given)]
+
+    table[wrong] = (name, shifted)
+    monkeypatch.setattr(reference_module, "REFERENCES", tuple(table))
+    with pytest.raises(SymrotError, match="one of them is wrong") as caught:
+        reference(Problem(scene()))
+    assert "Taylor series in 40 digits contradicted (DOP853 in long double" in str(caught.value)
+
+
+def test_a_reference_that_is_no_number_confirms_nothing(monkeypatch):
+    lost = ("lost", lambda *given: [State(np.full(3, np.nan), None)] * 4)
+    monkeypatch.setattr(reference_module, "REFERENCES", (REFERENCES[0], lost))
+    with pytest.raises(SymrotError, match="lost by inf"):
+        reference(Problem(scene()))
 
 
 def test_every_reference_is_refused_by_the_measure_when_it_is_wrong():
@@ -100,7 +136,7 @@ def test_long_text_has_every_double_long():
 
 
 def test_references_cover_what_a_study_needs():
-    assert [name.split()[0] for name, _ in REFERENCES] == ["Taylor", "DOP853", "closed"]
+    assert [name.split()[0] for name, _ in REFERENCES] == ["Taylor", "DOP853", "closed", "extrapolated"]
 
 
 # --- contestants ------------------------------------------------------------------------------------------------------
@@ -155,6 +191,16 @@ def test_what_cannot_take_part_is_said(monkeypatch):
     said = {item["method"]: item["why"] for item in result["skipped"]}
     assert "no closed form" in said["exact"]
     assert "not installed" in said["heyoka"]
+    with pytest.raises(InputError, match="heyoka: not installed: pip install"):
+        study(scene(), "heyoka", True)
+
+
+def test_tolerances_are_those_that_a_method_can_hold():
+    result = study(scene(), "exact,taylor,DOP853", True, tolerances=(1e-4, 1e-15), rounds=1)
+    asked = {(run["method"], run["tolerance"]) for run in result["runs"]}
+    assert {("taylor", 1e-4), ("SciPy DOP853", 1e-4), ("exact", None)} <= asked
+    assert ("SciPy DOP853", 1e-15) not in asked
+    assert all(run["turns"] == 1 for run in result["runs"])
 
 
 @pytest.mark.skipif(find_spec("heyoka") is None, reason="heyoka is an extra")
@@ -230,6 +276,29 @@ def test_studies_of_two_scenes_are_not_compared(found):
     other = json.loads(json.dumps(found)) | {"scene": {"name": "other", "title": "", "span": [0, 1]}}
     with pytest.raises(InputError, match="'short' and 'other'"):
         compared(found, other)
+    changed = found | {"scene": found["scene"] | {"digest": "another"}}
+    with pytest.raises(InputError, match="two motions that are both named 'short'"):
+        compared(found, changed)
+    with pytest.raises(InputError, match="in common"):
+        compared(found, found | {"decades": []})
+
+
+def test_the_digest_is_that_of_the_motion():
+    """A title changes nothing, a moment does."""
+    base, titled, heavier = (
+        digest(Problem(scene(**more))) for more in ({}, {"title": "other"}, {"body": {"principal": [1, 2, "5/2"]}})
+    )
+    assert base == titled != heavier
+
+
+@pytest.mark.parametrize("value", ["x", 0, -1.0, math.nan, None, [1]])
+def test_a_study_with_an_impossible_time_is_refused(found, value, tmp_path):
+    broken = json.loads(json.dumps(found))
+    broken["decades"][0]["methods"]["taylor"]["seconds"] = value
+    path = tmp_path / "x.json"
+    path.write_text(json.dumps(broken))
+    with pytest.raises(InputError, match="missing or impossible"):
+        read_study(path)
 
 
 def test_the_lines_name_references_and_every_method(found):
@@ -309,13 +378,39 @@ def test_the_suite_holds_what_it_promises():
 
 def test_the_suite_writes_its_files(tmp_path, monkeypatch):
     monkeypatch.setattr(suite, "motions", lambda: {"one": ("one kind", scene())})
-    result, said = suite.run(tmp_path / "bench", "taylor,DOP853", True, lambda text: None)
+    result, said = suite.run(tmp_path / "bench", "taylor,DOP853", True, lambda text: None, rounds=1)
     assert [item["peer"] for item in result["summary"]] == ["SciPy DOP853"]
     names = {path.name for path in (tmp_path / "bench").iterdir()}
-    assert {"suite.json", "suite.md"} <= names
-    if find_spec("matplotlib"):
-        assert {"one.png", "suite.png"} <= names
+    figures = {"motions.png", "suite.png"} if find_spec("matplotlib") else set()
+    assert names == {"suite.json", "suite.md"} | figures
+    assert json.loads((tmp_path / "bench" / "suite.json").read_text())["format"] == "symrot suite 1"
     assert any("one kind" in line for line in said)
+
+
+def test_an_interrupted_suite_goes_on(tmp_path, monkeypatch, found):
+    """What was finished is kept; the files of an earlier suite stay whole; other options begin anew."""
+    studied, broken = [], True
+
+    def pretended(one, *rest):
+        if one.name == "second" and broken:
+            raise KeyboardInterrupt
+        studied.append(one.name)
+        return found | {"scene": found["scene"] | {"digest": digest(Problem(one))}}
+
+    motions = {name: (name, Scene.from_dict(SHORT, name)) for name in ("first", "second")}
+    monkeypatch.setattr(suite, "motions", lambda: motions)
+    monkeypatch.setattr(suite, "study", pretended)
+    with pytest.raises(KeyboardInterrupt):
+        suite.run(tmp_path, None, True, lambda text: None)
+    assert [path.name for path in tmp_path.iterdir()] == ["unfinished.json"]
+    broken = False
+    _, said = suite.run(tmp_path, None, True, lambda text: None)
+    assert studied == ["first", "second"]
+    assert "1 of 2 motions are of an earlier run, which was interrupted." in said
+    assert not (tmp_path / "unfinished.json").exists()
+    (tmp_path / "unfinished.json").write_text("{")
+    suite.run(tmp_path, None, False, lambda text: None)
+    assert studied == ["first", "second"] * 2
 
 
 def test_the_command_studies_compares_and_draws(tmp_path, capsys):
@@ -342,6 +437,13 @@ def test_the_command_studies_compares_and_draws(tmp_path, capsys):
         (["tumbling_prism", "--list"], "takes no SCENE"),
         (["--skip", "--methods", "taylor"], "takes no --methods"),
         (["tumbling_prism", "--methods", "euler"], "'euler'"),
+        (["tumbling_prism", "--tolerances", "1e-3,nan"], "'1e-3,nan'"),
+        (["tumbling_prism", "--tolerances", "-1"], "'-1'"),
+        (["tumbling_prism", "--tolerances", "1e-9,1e-3"], "that fall"),
+        (["tumbling_prism", "--tolerances", ""], "that fall"),
+        (["tumbling_prism", "--rounds", "0"], "at least 1, got 0"),
+        (["--skip", "--rounds", "3"], "takes no --rounds"),
+        (["--suite", "-o", "/dev/null/x"], "cannot be made"),
         (["tumbling_prism", "--out", "x.txt"], ".json"),
         (["tumbling_prism", "--plot", "x.doc"], ".svg"),
         (["tumbling_prism", "-o", "x"], "takes no -o"),

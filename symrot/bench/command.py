@@ -29,7 +29,7 @@ class Mode(NamedTuple):
 
     option: str
     about: str
-    takes: frozenset[str]  # of scene, methods, quick, plot, out, json, directory
+    takes: frozenset[str]  # of the names of options
     run: Callable[[Namespace, Say], Outcome]
     more: Mapping[str, Any] | None = None  # what argparse needs to know of the option beyond its name
 
@@ -40,7 +40,7 @@ def _study(options: Namespace, say: Say) -> Outcome:
     from symrot.scene import load_scene
 
     _targets(options)
-    found = study(load_scene(options.scene), options.methods, options.quick, say)
+    found = study(load_scene(options.scene), options.methods, options.quick, say, options.tolerances, options.rounds)
     if options.plot:
         from symrot.report.work_precision_plot import save
 
@@ -74,7 +74,8 @@ def _suite(options: Namespace, say: Say) -> Outcome:
     from symrot.bench import suite
 
     _targets(options)
-    return Outcome(*suite.run(options.directory or Path("generated/bench"), options.methods, options.quick, say))
+    where = options.directory or Path("generated/bench")
+    return Outcome(*suite.run(where, options.methods, options.quick, say, options.tolerances, options.rounds))
 
 
 def _skip(options: Namespace, say: Say) -> Outcome:
@@ -121,17 +122,18 @@ def _list(options: Namespace, say: Say) -> Outcome:
     return Outcome(found, ["What is measured, and by which command", "", *columns([*modes, *rows])])
 
 
-SCENE_STUDY = frozenset({"scene", "methods", "quick", "plot", "out", "json"})
+SWEEP = frozenset({"methods", "tolerances", "rounds", "quick"})
+SCENE_STUDY = SWEEP | {"scene", "plot", "out", "json"}
 MODES: tuple[Mode, ...] = (
     Mode("", "time against error for every method, on a scene of yours", SCENE_STUDY, _study),
     Mode(
         "--compare", "one study against an earlier one of the same scene", frozenset({"out", "json"}), _compare,
         {"nargs": 2, "metavar": ("BEFORE.json", "NOW.json")},
     ),
-    Mode("--suite", "the fixed suite, with its figures", frozenset({"methods", "quick", "json", "directory", "out"}),
-         _suite, {"action": "store_true"}),
-    Mode("--skip", "what specialisation saves: a ladder of scenes, or the scene given", SCENE_STUDY - {"methods"},
-         _skip, {"action": "store_true"}),
+    Mode("--suite", "the fixed suite, with its figures; goes on where it was interrupted",
+         SWEEP | {"json", "directory", "out"}, _suite, {"action": "store_true"}),
+    Mode("--skip", "what specialisation saves: a ladder of scenes, or the scene given",
+         frozenset({"scene", "quick", "plot", "out", "json"}), _skip, {"action": "store_true"}),
     Mode("--stability", "how errors grow over 1e5 revolutions, or over the span of the scene given",
          frozenset({"scene", "long", "plot", "json", "out"}), _stability, {"action": "store_true"}),
     Mode("--list", "list the modes, and the studies of one question each", frozenset({"json"}), _list,
@@ -151,7 +153,9 @@ def arguments(parser: ArgumentParser) -> None:
             add(mode.option, help=mode.about, **(mode.more or {}))
     add("--methods", metavar="NAMES", help="of exact, taylor, dop853, scipy, heyoka, DOP853, RK45, LSODA, Radau; "
         "commas between (default: all)")  # fmt: skip
-    add("--quick", action="store_true", help="fewer tolerances and turns")
+    add("--tolerances", metavar="LIST", help="such as 1e-3,1e-6,1e-9 (default: one or two to a decade)")
+    add("--rounds", type=int, metavar="N", help="turns of each run, whose median counts (default: 9, with --quick 5)")
+    add("--quick", action="store_true", help="fewer tolerances and turns, heyoka in its default settings alone")
     add("--long", action="store_true", help="with --stability: 1e6 revolutions")
     add("--plot", type=Path, metavar="FILE", help="draw time against error: FILE.png, .pdf or .svg")
     add("--out", type=Path, metavar="FILE", help="write the study as FILE.json, for --compare")
@@ -172,14 +176,18 @@ def run(options: Namespace, say: Say) -> Outcome:
     if len(asked) > 1 or (not asked and options.scene is None):
         raise InputError(f"bench: expected a SCENE or exactly one of {names} (see `symrot bench --help`)")
     mode = asked[0] if asked else MODES[0]
-    for name in ("scene", "methods", "quick", "long", "plot", "out", "directory"):
-        if getattr(options, name) and name not in mode.takes:
+    for name in ("scene", "methods", "tolerances", "rounds", "quick", "long", "plot", "out", "directory"):
+        if getattr(options, name) not in (None, False) and name not in mode.takes:
             spoken = SPOKEN.get(name, f"--{name}")
             raise InputError(f"bench: {mode.option or 'a SCENE'} takes no {spoken} (see `symrot bench --help`)")
-    if options.methods is not None:
-        from symrot.bench.contestants import chosen
+    if options.methods is not None or options.tolerances is not None:
+        from symrot.bench.contestants import chosen, tolerances_from
 
         chosen(options.methods, options.quick)
+        options.tolerances = tolerances_from(options.tolerances) if options.tolerances is not None else None
+    if options.rounds is not None and options.rounds < 1:
+        raise InputError(f"--rounds: expected at least 1, got {options.rounds}")
+    options.tolerances = options.tolerances or ()
     outcome = mode.run(options, say)
     if options.out:
         import json

@@ -22,7 +22,7 @@ from symrot.errors import InputError
 from symrot.propagation.propagator import propagator
 from symrot.propagation.smoothness import roughness
 
-__all__ = ["CONTESTANTS", "Contestant", "Run", "chosen"]
+__all__ = ["CONTESTANTS", "Contestant", "Run", "chosen", "tolerances_from"]
 
 Outcome = tuple[Any, int]  # last states, or State; steps
 Run = Callable[[float], Outcome]
@@ -50,6 +50,11 @@ class Contestant(NamedTuple):
     missing: Callable[[Problem], str]
     prepare: Callable[[Problem, float], Run]
     quick: bool = True  # whether a quick study has it
+
+    def at(self, tolerances: Sequence[float]) -> "Contestant":
+        """Return the contestant with other tolerances, those that it can hold; a closed form has none."""
+        least = self.tolerances[-1]
+        return self._replace(tolerances=tuple(t for t in tolerances if t >= least)) if least else self
 
 
 # ------------------------------------------------------------------------------------------------ symrot
@@ -194,3 +199,23 @@ def chosen(methods: str | None, quick: bool) -> Sequence[Contestant]:
         if name not in GROUPS:
             raise InputError(f"--methods: expected names among {', '.join(GROUPS)}, with commas between, got {name!r}")
     return [one for one in CONTESTANTS if one.group in names and (one.quick or not quick)]
+
+
+def tolerances_from(text: str) -> tuple[float, ...]:
+    """Return the tolerances of a comma-separated list.
+
+    Raises
+    ------
+    InputError
+        For anything but numbers between 0 and 1 that fall.
+    """
+    try:
+        found = tuple(float(part) for part in text.split(","))
+    except ValueError:
+        found = ()
+    if not found or not all(0.0 < value < 1.0 for value in found) or list(found) != sorted(set(found), reverse=True):
+        raise InputError(
+            f"--tolerances: expected numbers between 0 and 1 that fall, commas between, such as 1e-3,1e-6,1e-9, "
+            f"got {text!r}"
+        )
+    return found

@@ -1,13 +1,13 @@
 """The report of :mod:`symrot.bench.stability` on one page: errors and drift, singularities, the growth of a body."""
 
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
 import numpy as np
 
-from symrot.report.files import write
 from symrot.report.layout import one_line
-from symrot.report.plot import COLOURS, GREY, STYLE, UNDATED
+from symrot.report.picture import save_page
+from symrot.report.plot import COLOURS, GREY, STYLE
 
 __all__ = ["figure", "save"]
 
@@ -29,7 +29,7 @@ def figure(found: Any) -> Any:
     data = found["growth"]
     flips = "omega" in data
     with rc_context(STYLE):
-        page = Figure(figsize=(11.0, 8.6 if flips else 7.8), layout="constrained")
+        page = Figure(figsize=(9.6, 8.4 if flips else 7.4), layout="constrained")
         rows = page.add_gridspec(3 if flips else 2, 6, height_ratios=[0.55, 1.6, 1.0] if flips else [1.6, 1.0])
         if flips:
             _rates(page.add_subplot(rows[0, :]), data)
@@ -120,6 +120,7 @@ def _passes(axes: Any, rows: Any) -> None:
         points = [(row["distance"], row[key]["steps"]) for row in near if "steps" in row[key]]
         axes.plot(*zip(*points, strict=True), "o-", color=colour, label=label, markersize=3.5)
     axes.set_xscale("log")
+    axes.tick_params(axis="x", which="minor", length=0)
     axes.invert_xaxis()
     axes.set_ylim(0, None)
     axes.grid(True)
@@ -157,9 +158,4 @@ def _points(axes: Any, rows: Any) -> None:
 
 def save(found: Any, path: Path) -> None:
     """Write the page."""
-    page = figure(found)
-
-    def put(stream: BinaryIO) -> None:
-        page.savefig(stream, format=path.suffix.lower().lstrip("."), dpi=140, metadata=UNDATED[path.suffix.lower()])
-
-    write(path, put)
+    save_page(figure(found), path, 140)

@@ -1,20 +1,25 @@
 """The fixed suite: the work-precision study of one motion of each kind, its figures and its table.
 
-``symrot bench --suite`` writes into a folder, ``generated/bench`` unless told otherwise: ``NAME.png`` for each motion,
-``suite.png`` with the ratios of all, ``suite.json`` with every study, and ``suite.md``, which quotes them. Seconds are
-those of one machine: these files are not held against anything by ``--check``.
+``symrot bench --suite`` writes into a folder, ``generated/bench`` unless told otherwise: ``suite.png`` with the ratios
+of all motions, ``motions.png`` with the curves of each, ``suite.json`` with every study, and ``suite.md``, which quotes
+them. Seconds are those of one machine: these files are not held against anything by ``--check``.
+
+They are written together, when all motions are done. Until then finished ones wait in ``unfinished.json``, from where
+the same command goes on if it was interrupted.
 """
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from importlib.util import find_spec
 from pathlib import Path
 from statistics import median
 from typing import Any
 
-from symrot.bench.work_precision import study
+from symrot import __version__
+from symrot.bench.problem import Problem
+from symrot.bench.work_precision import digest, machine, study
 from symrot.errors import InputError
-from symrot.report.files import write
+from symrot.report.files import check_target, write
 from symrot.report.layout import columns, one_line
 from symrot.report.work_precision import ROUNDING
 from symrot.scene import Scene, load_scene
@@ -38,41 +43,93 @@ def motions() -> dict[str, tuple[str, Scene]]:
     return found
 
 
-def run(directory: Path, methods: str | None, quick: bool, say: Say) -> tuple[dict[str, Any], list[str]]:
+class _Kept:
+    """The studies of an interrupted run, in a file that only the same run reads."""
+
+    def __init__(self, directory: Path, **asked: Any) -> None:
+        self.path = directory / "unfinished.json"
+        of = {name: value for name, value in machine().items() if name != "load"}
+        self.asked = {"format": "symrot unfinished suite 1", "symrot": __version__, "machine": of, **asked}
+        self.studies: dict[str, Any] = {}
+        try:
+            found = json.loads(self.path.read_text(encoding="utf-8"))
+            if isinstance(found, dict) and isinstance(studies := found.pop("studies", None), dict):
+                self.studies = studies if found == json.loads(json.dumps(self.asked)) else {}
+        except (OSError, ValueError, RecursionError):
+            self.studies = {}
+
+    def add(self, name: str, one: dict[str, Any]) -> None:
+        self.studies[name] = one
+        text = json.dumps({**self.asked, "studies": self.studies})
+        write(self.path, lambda stream: stream.write(text.encode("utf-8")))
+
+    def done(self) -> None:
+        self.path.unlink(missing_ok=True)
+
+
+def run(
+    directory: Path,
+    methods: str | None,
+    quick: bool,
+    say: Say,
+    tolerances: Sequence[float] = (),
+    rounds: int | None = None,
+) -> tuple[dict[str, Any], list[str]]:
     """Study every motion, write the files, and return data for JSON and lines for people.
 
     Raises
     ------
     InputError
-        If the folder cannot be made.
+        If the folder cannot be made, or nothing can be written there.
     """
     try:
         directory.mkdir(parents=True, exist_ok=True)
     except OSError as reason:
         raise InputError(f"-o: {str(directory)!r} cannot be made: {reason.strerror or reason}") from None
+    check_target(directory / "suite.json", (".json",), "-o")
     drawing = find_spec("matplotlib") is not None
-    studies = {}
-    chosen = motions()
+    kept = _Kept(directory, methods=methods, quick=quick, tolerances=list(tolerances), rounds=rounds)
+    earlier = len(kept.studies)
+    studies, chosen = {}, motions()
     for number, (name, (about, scene)) in enumerate(chosen.items(), start=1):
 
         def tell(text: str, number: int = number) -> None:
             say(f"{number} of {len(chosen)}: {text}")
 
-        studies[name] = {"about": about, **study(scene, methods, quick, tell)}
-        if drawing:
-            from symrot.report.work_precision_plot import save
-
-            save(studies[name], directory / f"{name}.png")
+        one = kept.studies.get(name)
+        if one is None or one["scene"]["digest"] != digest(Problem(scene)):
+            one = {"about": about, **study(scene, methods, quick, tell, tolerances, rounds)}
+            kept.add(name, one)
+        studies[name] = one
     found = {"format": "symrot suite 1", "studies": studies, "summary": summary(studies)}
-    texts = {"suite.json": json.dumps(found, indent=1, ensure_ascii=False) + "\n", "suite.md": page(found)}
+    texts = {"suite.json": _compact(found), "suite.md": page(found)}
     for file, text in texts.items():
         write(directory / file, lambda stream, text=text: stream.write(text.encode("utf-8")))  # type: ignore[misc]
     if drawing:
-        from symrot.report.suite_plot import save as save_suite
+        from symrot.report.suite_plot import save
 
-        save_suite(found, directory / "suite.png")
+        save(found, directory)
+    kept.done()
     note = [] if drawing else ["", "No figures: matplotlib is not installed (pip install 'symrot[plot]')."]
+    if earlier:
+        note += ["", f"{earlier} of {len(studies)} motions are of an earlier run, which was interrupted."]
     return found, [*lines(found), *note, "", f"written to {directory}"]
+
+
+def _compact(found: Mapping[str, Any]) -> str:
+    """Return JSON with a line for each motion, and of each number the digits that mean something."""
+    studies = found["studies"].items()
+    rows = ",\n".join(f"{json.dumps(name)}: {json.dumps(_short(one), ensure_ascii=False)}" for name, one in studies)
+    rest = ",\n".join(f"{json.dumps(key)}: {json.dumps(value)}" for key, value in found.items() if key != "studies")
+    return f'{{{rest},\n"studies": {{\n{rows}\n}}}}\n'
+
+
+def _short(value: Any, name: str = "") -> Any:
+    if isinstance(value, dict):
+        return {key: _short(each, key) for key, each in value.items()}
+    if isinstance(value, list):
+        return [_short(each, name) for each in value]
+    return float(f"{value:.4g}") if isinstance(value, float) and name != "states" else value
 
 
 def summary(studies: Mapping[str, Mapping[str, Any]]) -> list[dict[str, Any]]:
@@ -93,7 +150,14 @@ def summary(studies: Mapping[str, Mapping[str, Any]]) -> list[dict[str, Any]]:
 
 def _cell(one: Mapping[str, Any], peer: str, side: str = "stepped") -> str:
     found = next((item for item in one["against"] if item["peer"] == peer and side in item), None)
-    return f"{found[side]['median']:.3g} ({found[side]['least']:.2g})" if found else "-"
+    return _ratio(found[side]["median"], found[side]["least"]) if found else "-"
+
+
+def _ratio(middle: float, least: float) -> str:
+    """Return a median and the least in brackets: two digits at least, no powers of ten."""
+    return " ".join(
+        form.format(f"{value:.{0 if value >= 10 else 1}f}") for form, value in (("{}", middle), ("({})", least))
+    )
 
 
 def _least(one: Mapping[str, Any], method: str) -> str:
@@ -115,7 +179,7 @@ def _rows(found: Mapping[str, Any]) -> list[list[str]]:
                 "-" if doubt is None else f"{max(doubt, ROUNDING):.0e}",
             ]
         )  # fmt: skip
-    overall = {item["peer"]: f"{item['median']:.3g} ({item['least']:.2g})" for item in found["summary"]}
+    overall = {item["peer"]: _ratio(item["median"], item["least"]) for item in found["summary"]}
     rows.append(["all motions and decades", *(overall.get(peer, "-") for peer in peers), "", "", "", ""])
     return rows
 
@@ -145,5 +209,5 @@ def page(found: Mapping[str, Any]) -> str:
     text += [f"| {' | '.join(head)} |", f"| --- |{' ---: |' * (len(head) - 1)}"]
     text += [f"| {' | '.join(row)} |" for row in rows]
     text += ["", "![ratios of all motions](suite.png)", ""]
-    text += [f"![{one['about']}]({name}.png)" for name, one in found["studies"].items()]
+    text += ["![time against error of each motion](motions.png)"]
     return "\n".join(text) + "\n"

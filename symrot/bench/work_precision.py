@@ -6,6 +6,7 @@ turns (:mod:`symrot.bench.race`). At each decade of the error the fastest run co
 is smoothed or extended. Decades that the references cannot tell apart are left out.
 """
 
+import hashlib
 import math
 import os
 import platform
@@ -25,10 +26,10 @@ from symrot.bench.problem import Problem, State
 from symrot.bench.race import Measured, race, seconds_of, work_ahead
 from symrot.bench.reference import reference
 from symrot.codegen import library
-from symrot.errors import SymrotError
+from symrot.errors import InputError, SymrotError
 from symrot.scene import Scene
 
-__all__ = ["DECADES", "FORMAT", "Effort", "decades", "machine", "study"]
+__all__ = ["DECADES", "FORMAT", "Effort", "decades", "digest", "machine", "study"]
 
 FORMAT = "symrot work-precision 1"
 DECADES = tuple(float(f"1e-{k}") for k in range(2, 16))
@@ -52,7 +53,12 @@ Entry = tuple[Measured, Callable[[], object]]
 
 
 def study(
-    scene: Scene, methods: str | None = None, quick: bool = False, say: Say = lambda text: None
+    scene: Scene,
+    methods: str | None = None,
+    quick: bool = False,
+    say: Say = lambda text: None,
+    tolerances: Sequence[float] = (),
+    rounds: int | None = None,
 ) -> dict[str, Any]:
     """Return the study as data for JSON.
 
@@ -66,16 +72,30 @@ def study(
         Half the tolerances, fewer turns, heyoka in its default settings only.
     say : callable
         Hears what is being done.
+    tolerances : sequence of float, optional
+        Falling; each method takes those that it can hold. Default: two to a decade, or one.
+    rounds : int, optional
+        Turns of each run. Default: 9, quick 5.
 
     Raises
     ------
     InputError
-        For a method that is none, or a scene with nothing to integrate.
+        For a method that is none, or a scene with nothing to integrate, or when no method can take part.
+    SymrotError
+        If the references contradict one another.
     """
     taking_part, effort = chosen(methods, quick), QUICK if quick else FULL
+    if rounds is not None:
+        effort = effort._replace(rounds=rounds)
+    if tolerances:
+        taking_part = [one.at(tolerances) for one in taking_part]
+        effort = effort._replace(every=1)
     problem = Problem(scene)
     found = reference(problem, say, effort.reference)
     entries, skipped = _entries(problem, taking_part, effort, found.states, say)
+    if not entries:
+        why = "; ".join(f"{item['method']}: {item['why']}" for item in skipped) or "no tolerance that one can hold"
+        raise InputError(f"{scene.name}: expected a method that can follow this motion; {why}")
     ahead = work_ahead((measured for measured, _ in entries), effort.rounds)
 
     def turn(number: int) -> None:
@@ -87,10 +107,18 @@ def study(
     rows = decades(runs, floor)
     return {
         "format": FORMAT, "symrot": __version__,
-        "scene": {"name": scene.name, "title": scene.title, "span": [problem.start, problem.stop]},
+        "scene": {"name": scene.name, "title": scene.title, "span": [problem.start, problem.stop],
+                  "digest": digest(problem)},
         "machine": machine(), "quick": quick, "reference": found.to_json(), "runs": runs, "decades": rows,
         "against": against(rows), "skipped": skipped,
     }  # fmt: skip
+
+
+def digest(problem: Problem) -> str:
+    """Return what tells motions apart: the same for the same body, start, torques and span, whatever the title."""
+    scene = problem.scene
+    moving = (scene.body.inertia, scene.initial, scene.torques, scene.span.start, scene.span.stop, problem.names)
+    return hashlib.sha256(repr(moving).encode()).hexdigest()[:16]
 
 
 def _entries(

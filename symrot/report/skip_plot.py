@@ -2,18 +2,19 @@
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
 from symrot import __version__
-from symrot.report.files import write
-from symrot.report.plot import COLOURS, GREY, STYLE, UNDATED
+from symrot.report.picture import save_page
+from symrot.report.plot import COLOURS, GREY, STYLE
+from symrot.report.work_precision_plot import DPI
 
 __all__ = ["figure", "save"]
 
 PANELS = (
-    ("operations", 1.0, "operations of the rates"),
+    ("operations", 1.0, "operations of one evaluation"),
     ("evaluation", 1e-9, "ns of one evaluation in C"),
-    ("motion", 1e-6, "us of the motion from Python"),
+    ("motion", 1e-6, "µs of the motion from Python"),
 )
 GENERAL, OWN, AUTO = COLOURS[1], COLOURS[0], COLOURS[6]
 LEAST = 0.6  # where no operation at all is drawn
@@ -22,10 +23,11 @@ LEAST = 0.6  # where no operation at all is drawn
 def figure(found: Mapping[str, Any]) -> Any:
     """Return a matplotlib Figure of what :func:`symrot.bench.skip.measure` found."""
     from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
 
     rows = found["rows"]
-    page = Figure(figsize=(11.0, 1.9 + 0.38 * len(rows)))
-    grid = page.add_gridspec(1, len(PANELS), left=0.215, right=0.985, top=0.8, bottom=0.14, wspace=0.08)
+    page = Figure(figsize=(9.6, 1.6 + 0.38 * len(rows)))
+    grid = page.add_gridspec(1, len(PANELS), left=0.22, right=0.985, top=0.83, bottom=0.14, wspace=0.08)
     for number, (key, unit, title) in enumerate(PANELS):
         axes = page.add_subplot(grid[number])
         axes.set_xscale("log")
@@ -53,9 +55,11 @@ def figure(found: Mapping[str, Any]) -> Any:
         axes.set_xlim(low / 2, high * 1.2)
     page.text(0.02, 0.965, "What is saved by leaving out what a motion does not need", fontsize=13,
               fontweight="bold", va="top")  # fmt: skip
-    for place, words, colour in ((0.215, "general: full tensor, all torques", GENERAL),
-                                 (0.48, "the scene's own", OWN), (0.735, "what auto takes", AUTO)):  # fmt: skip
-        page.text(place, 0.845, words, fontsize=9, color=colour, fontweight="bold")
+    looks = (("general kernel: full tensor, all torques", "o", GENERAL, 6), ("the scene's own", "s", OWN, 6),
+             ("what auto takes", "D", AUTO, 4))  # fmt: skip
+    handles = [Line2D([], [], color=colour, marker=marker, markersize=size, linestyle="", label=words)
+               for words, marker, colour, size in looks]  # fmt: skip
+    page.legend(handles=handles, loc="upper left", bbox_to_anchor=(0.212, 0.905), ncols=3, handletextpad=0.2)
     page.text(0.985, 0.02, f"symrot {__version__}", fontsize=7.5, color=GREY, ha="right")
     return page
 
@@ -64,11 +68,5 @@ def save(found: Mapping[str, Any], path: Path) -> None:
     """Draw the ladder into a file, whose suffix decides the format."""
     import matplotlib
 
-    suffix = path.suffix.lower()
     with matplotlib.rc_context({**matplotlib.rcParamsDefault, **STYLE}):
-        page = figure(found)
-
-        def draw(stream: BinaryIO) -> None:
-            page.savefig(stream, format=suffix[1:], dpi=150, metadata=UNDATED[suffix])
-
-        write(path, draw)
+        save_page(figure(found), path, DPI)

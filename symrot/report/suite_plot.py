@@ -1,17 +1,18 @@
-"""The suite as one figure: how many times longer each peer takes, for every motion and every decade of the error."""
+"""The suite as two figures: how many times longer each peer takes, by motion and decade of the error; all curves."""
 
 from collections.abc import Mapping
 from pathlib import Path
 from statistics import median
-from typing import Any, BinaryIO
+from typing import Any
 
 from symrot import __version__
-from symrot.report.files import write
-from symrot.report.plot import GREY, STYLE, UNDATED
-from symrot.report.work_precision_plot import LOOKS, OTHER
+from symrot.report.picture import save_page
+from symrot.report.plot import GREY, STYLE
+from symrot.report.work_precision_plot import LOOKS, OTHER, OUTERMOST, SPOKEN, frontier
 
-__all__ = ["figure", "save"]
+__all__ = ["curves", "figure", "save"]
 
+COLUMNS = 2
 PEERS = ("heyoka", "heyoka, best setting", "SciPy LSODA", "SciPy DOP853", "SciPy RK45", "SciPy Radau")
 
 
@@ -23,8 +24,8 @@ def figure(found: Mapping[str, Any]) -> Any:
     peers = [peer for peer in PEERS if any(item["peer"] == peer for one in studies for item in one["against"])]
     if "heyoka, best setting" in peers:
         peers.remove("heyoka")
-    page = Figure(figsize=(9.2, 1.6 + 0.42 * len(studies)))
-    axes = page.add_axes((0.2, 0.14, 0.775, 0.68))
+    page = Figure(figsize=(8.0, 1.5 + 0.44 * len(studies)))
+    axes = page.add_axes((0.205, 0.125, 0.775, 0.725))
     axes.set_xscale("log")
     step = 0.7 / max(len(peers), 1)
     for row, one in enumerate(studies):
@@ -36,38 +37,75 @@ def figure(found: Mapping[str, Any]) -> Any:
                 continue
             look = LOOKS.get(peer.partition(",")[0], OTHER)
             ratios, height = list(item["stepped"]["ratios"].values()), row + (number - (len(peers) - 1) / 2) * step
-            axes.plot(ratios, [height] * len(ratios), look.marker, color=look.colour, markersize=3.2, alpha=0.45,
+            axes.plot(ratios, [height] * len(ratios), look.marker, color=look.colour, markersize=3.6, alpha=0.5,
                       label=peer if row == 0 else None, markeredgewidth=0)  # fmt: skip
             axes.plot([median(ratios)] * 2, (height - 0.45 * step, height + 0.45 * step), color=look.colour,
                       linewidth=2.4)  # fmt: skip
-    axes.axvline(1.0, color="#000000", linewidth=1.0)
+    axes.axvline(1.0, color="#000000", linewidth=1.2)
+    axes.annotate("symrot", (1.0, 0.0), xycoords=("data", "axes fraction"), xytext=(-4, 5), rotation=90,
+                  textcoords="offset points", va="bottom", ha="right", fontsize=8.5)  # fmt: skip
+    axes.xaxis.set_major_formatter("{x:g}")
     axes.set_ylim(len(studies) - 0.5, -0.5)
     axes.set_yticks(range(len(studies)), [one["about"] for one in studies])
     axes.tick_params(axis="y", length=0)
     axes.grid(True, axis="x")
-    axes.set_xlabel("times the time of symrot's steppers at equal error: a dot for each decade, a bar at the median")
+    axes.set_xlabel("times the time of symrot's steppers at equal error; dots: decades of it, bars: medians")
     legend = axes.legend(loc="lower left", bbox_to_anchor=(-0.01, 1.0), ncols=len(peers), handlelength=0.8,
                          columnspacing=1.4, markerscale=1.6)  # fmt: skip
     handles: Any = legend.legend_handles
     for handle in handles:
         handle.set_alpha(1.0)
-    page.text(0.02, 0.97, "Time against error: others over symrot", fontsize=13, fontweight="bold", va="top")
+    page.text(0.02, 0.975, "Others over symrot, at equal error", fontsize=13, fontweight="bold", va="top")
     machine = studies[0]["machine"]
     versions = ", ".join(f"{name} {machine[name]}" for name in ("scipy", "heyoka") if machine[name])
-    page.text(0.985, 0.965, f"{machine['processor']}; {versions}; symrot {__version__}", fontsize=7.5, color=GREY,
+    page.text(0.985, 0.97, f"{machine['processor']}; {versions}; symrot {__version__}", fontsize=7.5, color=GREY,
               va="top", ha="right")  # fmt: skip
     return page
 
 
-def save(found: Mapping[str, Any], path: Path) -> None:
-    """Draw a suite into a file, whose suffix decides the format."""
+def curves(found: Mapping[str, Any]) -> Any:
+    """Return a matplotlib Figure of a suite: time against error, a panel for each motion, axes shared."""
+    from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
+
+    studies = list(found["studies"].values())
+    rows = -(-len(studies) // COLUMNS)
+    names = [name for name in LOOKS if any(run["method"] == name for one in studies for run in one["runs"])]
+    height = 1.1 + 1.75 * rows  # inches
+    page = Figure(figsize=(8.0, height))
+    grid = page.subplots(rows, COLUMNS, sharex=True, sharey=True, squeeze=False,
+                         gridspec_kw={"left": 0.085, "right": 0.985, "hspace": 0.2, "wspace": 0.04,
+                                      "bottom": 0.5 / height, "top": 1 - 0.9 / height})  # fmt: skip
+    for axes in grid.flat[len(studies) :]:
+        axes.set_visible(False)
+    for axes, one in zip(grid.flat, studies, strict=False):
+        for name in names:
+            kept, _ = frontier([run for run in one["runs"] if run["method"] == name])
+            look = LOOKS[name]
+            if kept:
+                axes.plot(*zip(*kept, strict=True), color=look.colour, marker=look.marker, markersize=2.6,
+                          linewidth=0.7 * look.width, linestyle=look.dashes)  # fmt: skip
+        axes.set_xscale("log")
+        axes.set_yscale("log")
+        axes.grid(True, which="major")
+        axes.tick_params(which="minor", length=0)
+        axes.set_title(one["about"], fontsize=9, pad=3)
+    grid[0, 0].set_xlim(OUTERMOST, 1e-16)
+    grid[0, 0].set_xticks([10.0**-k for k in range(0, 16, 4)])
+    page.supxlabel("error (the largest at four times): attitude in rad, angular velocity relative", fontsize=9, y=0.008)
+    page.supylabel("processor time of one call, s", fontsize=9, x=0.004)
+    handles = [
+        Line2D([], [], color=LOOKS[name].colour, marker=LOOKS[name].marker, markersize=4, linewidth=LOOKS[name].width,
+               linestyle=LOOKS[name].dashes, label=SPOKEN.get(name, name)) for name in names
+    ]  # fmt: skip
+    page.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.53, 0.998), ncols=4, fontsize=8)
+    return page
+
+
+def save(found: Mapping[str, Any], directory: Path) -> None:
+    """Draw a suite into a folder: ``suite.png`` and ``motions.png``."""
     import matplotlib
 
-    suffix = path.suffix.lower()
     with matplotlib.rc_context({**matplotlib.rcParamsDefault, **STYLE}):
-        page = figure(found)
-
-        def draw(stream: BinaryIO) -> None:
-            page.savefig(stream, format=suffix[1:], dpi=150, metadata=UNDATED[suffix])
-
-        write(path, draw)
+        save_page(figure(found), directory / "suite.png", 130)
+        save_page(curves(found), directory / "motions.png", 130)

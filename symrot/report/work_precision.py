@@ -24,13 +24,30 @@ def _number(value: float) -> str:
 
 
 def _decades(found: Mapping[str, Any]) -> list[str]:
-    names = list(dict.fromkeys(name for row in found["decades"] for name in row["methods"]))
-    short = [name.replace("high accuracy", "accurate").replace("fast math", "fast") for name in names]
-    rows = [["error <=", "fastest", "takes", *short]]
-    for row in found["decades"]:
-        ratios = [_number(row["methods"][name]["ratio"]) if name in row["methods"] else "-" for name in names]
-        rows.append([f"{row['error']:.0e}", row["fastest"], duration(row["seconds"]), *ratios])
-    return columns(rows, width=200, wrap=1, right=(0, 2, *range(3, len(rows[0]))))
+    """Return a column for each decade, a row for each method: its time over the least, which stands in the first."""
+    table = found["decades"]
+    names = list(dict.fromkeys(name for row in table for name in row["methods"]))
+    rows = [["error <=", *(f"{row['error']:.0e}" for row in table)]]
+    rows.append(["fastest, us", *(_short(row["seconds"] * 1e6) for row in table)])
+    for name in names:
+        cells = [_short(row["methods"][name]["ratio"]) if name in row["methods"] else "-" for row in table]
+        rows.append([name, *("1" if name == row["fastest"] else cell for cell, row in zip(cells, table, strict=True))])
+    return columns(rows, width=200, wrap=0, right=range(1, len(rows[0])))
+
+
+def _short(value: float) -> str:
+    """Return a number in five places at most."""
+    if not math.isfinite(value):
+        return "-"
+    return (
+        f"{value:.2f}"
+        if value < 10
+        else f"{value:.1f}"
+        if value < 100
+        else f"{value:.0f}"
+        if value < 1e5
+        else f"{value:.0e}"
+    )
 
 
 def _floors(runs: Sequence[Mapping[str, Any]]) -> list[str]:
@@ -71,7 +88,7 @@ def lines(found: Mapping[str, Any]) -> list[str]:
     )  # fmt: skip
     skipped = fields([(f"{item['method']}:", one_line(item["why"])) for item in found["skipped"]])
     parts: list[Iterable[str]] = [[title], [f"  {line}" for line in head]]
-    parts += [["for each decade of the error: the fastest, and how many times its time the others take"]]
+    parts += [["for each decade of the error: time of the fastest (1), and how many times as long the others take"]]
     parts[-1] = [*parts[-1], *(f"  {line}" for line in _decades(found))]
     for name, table in (("how many times longer, median over the decades", _against(found)),
                         ("where each method ends", _floors(found["runs"])), ("left out", skipped)):  # fmt: skip
@@ -103,10 +120,20 @@ def read_study(path: Path) -> dict[str, Any]:
     if not isinstance(found, dict) or found.get("format") != FORMAT:
         raise InputError(f"{label}: expected a study of `symrot bench`, whose format is {FORMAT!r}")
     try:
-        lines(found)
-    except (KeyError, TypeError, AttributeError, ValueError, IndexError):
-        raise InputError(f"{label}: expected a whole study of `symrot bench`, got one with parts missing") from None
+        whole = _positive(found) and bool(lines(found))
+    except (KeyError, TypeError, AttributeError, ValueError, IndexError, OverflowError):
+        whole = False
+    if not whole:
+        raise InputError(f"{label}: expected a whole study of `symrot bench`, got one with parts missing or impossible")
     return found
+
+
+def _positive(found: Mapping[str, Any]) -> bool:
+    """Whether every time of a study is a number above zero, and every error one that is not below."""
+    times = [cell["seconds"] for row in found["decades"] for cell in (row, *row["methods"].values())]
+    errors = [run["error"] for run in found["runs"]] + [row["error"] for row in found["decades"]]
+    times += [run["seconds"] for run in found["runs"]]
+    return all(0.0 < value < math.inf for value in times) and all(value >= 0.0 for value in errors)
 
 
 def compared(first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, Any]:
@@ -120,6 +147,10 @@ def compared(first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, A
     names = [study["scene"]["name"] for study in (first, second)]
     if names[0] != names[1]:
         raise InputError(f"--compare: expected two studies of one scene, got {names[0]!r} and {names[1]!r}")
+    if len({study["scene"].get("digest") for study in (first, second)}) > 1:
+        raise InputError(
+            f"--compare: expected two studies of one scene, got two motions that are both named {names[0]!r}"
+        )
     before = {row["error"]: row["methods"] for row in first["decades"]}
     methods: dict[str, Any] = {}
     for row in second["decades"]:
@@ -128,6 +159,8 @@ def compared(first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, A
             if then:
                 methods.setdefault(name, {})[f"{row['error']:.0e}"] = now["seconds"] / then["seconds"]
     floors = [_least_errors(study) for study in (first, second)]
+    if not methods:
+        raise InputError("--compare: expected studies with a method and a decade of the error in common, got none")
     return {
         "format": "symrot comparison 1",
         "scene": second["scene"],

@@ -6,19 +6,20 @@ runs that no other run of the same method beats in both; the others are faint po
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, BinaryIO, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from symrot import __version__
-from symrot.report.files import write
 from symrot.report.layout import one_line
-from symrot.report.plot import GREY, STYLE, UNDATED
+from symrot.report.picture import save_page
+from symrot.report.plot import GREY, STYLE
 
-__all__ = ["figure", "save"]
+__all__ = ["LOOKS", "OTHER", "OUTERMOST", "SPOKEN", "figure", "frontier", "save"]
 
 LEAST_ERROR = 1e-17  # what is drawn of an error of zero
 APART = 0.042  # of the height of the panel, between two names
+DPI = 150
 OUTERMOST = 1.5  # error from which on nothing is shown
 
 
@@ -51,7 +52,7 @@ OTHER = Look("#606060", ".", 1.0)
 SPOKEN = {"exact": "exact", "taylor": "symrot Taylor", "dop853": "symrot DOP853", "symrot scipy": "symrot, no compiler"}
 
 
-def _frontier(runs: Sequence[Mapping[str, Any]]) -> tuple[list[tuple[float, float]], list[tuple[float, float]]]:
+def frontier(runs: Sequence[Mapping[str, Any]]) -> tuple[list[tuple[float, float]], list[tuple[float, float]]]:
     """Return the runs that none beats in error and seconds, by error, and the others."""
     points = sorted((max(float(run["error"]), LEAST_ERROR), float(run["seconds"])) for run in runs)
     points = [point for point in points if point[0] < OUTERMOST]
@@ -89,13 +90,13 @@ def figure(found: Mapping[str, Any]) -> Any:
     """Return a matplotlib Figure of a study."""
     from matplotlib.figure import Figure
 
-    page = Figure(figsize=(9.2, 5.8))
-    axes = page.add_axes((0.085, 0.135, 0.685, 0.72))
+    page = Figure(figsize=(8.0, 5.4))
+    axes = page.add_axes((0.09, 0.145, 0.665, 0.7))
     axes.set_xscale("log")
     axes.set_yscale("log")
     ends, least, most = [], 1.0, 0.0
     for name in dict.fromkeys(run["method"] for run in found["runs"]):
-        kept, rest = _frontier([run for run in found["runs"] if run["method"] == name])
+        kept, rest = frontier([run for run in found["runs"] if run["method"] == name])
         if not kept:
             continue
         look = LOOKS.get(name, OTHER)
@@ -118,8 +119,8 @@ def figure(found: Mapping[str, Any]) -> Any:
                       rotation=90, va="top", ha="left")  # fmt: skip
     axes.grid(True, which="major")
     axes.tick_params(which="minor", length=2, color="#b0b0b0")
-    axes.set_xlabel("error, the largest of four times: attitude in rad, angular velocity relative to its size")
-    axes.set_ylabel("time of one call, s")
+    axes.set_xlabel("error (the largest at four times): attitude in rad, angular velocity relative")
+    axes.set_ylabel("processor time of one call, s")
     page.canvas.draw()
     _leaders(axes, found)
     _names(axes, ends)
@@ -131,7 +132,7 @@ def _leaders(axes: Any, found: Mapping[str, Any]) -> None:
     """Lead the eye from the last point of each curve to the right edge, where its name is."""
     right = axes.get_xlim()[1]
     for name in dict.fromkeys(run["method"] for run in found["runs"]):
-        kept, _ = _frontier([run for run in found["runs"] if run["method"] == name])
+        kept, _ = frontier([run for run in found["runs"] if run["method"] == name])
         if kept:
             error, seconds = kept[0]
             colour = LOOKS.get(name, OTHER).colour
@@ -145,10 +146,10 @@ def _literal(text: str) -> str:
 
 def _words(page: Any, found: Mapping[str, Any]) -> None:
     scene, machine, reference = found["scene"], found["machine"], found["reference"]
-    page.text(0.02, 0.965, _literal(scene["title"])[:85], fontsize=13, fontweight="bold", va="top")
+    page.text(0.02, 0.965, _literal(scene["title"])[:75], fontsize=13, fontweight="bold", va="top")
     versions = ", ".join(f"{name} {machine[name]}" for name in ("scipy", "heyoka") if machine[name])
     line = f"t = {scene['span'][0]:g} to {scene['span'][1]:g} s, one core of {machine['processor']}; {versions}"
-    page.text(0.02, 0.915, _literal(line)[:150], fontsize=8.5, color=GREY, va="top")
+    page.text(0.02, 0.915, _literal(line)[:130], fontsize=8.5, color=GREY, va="top")
     others = "; ".join(f"{other['name']} within {max(other['difference'], 1e-16):.0e}" for other in reference["others"])
     caption = f"reference: {reference['name']}" + (f"; {others}" if others else "")
     page.text(0.02, 0.018, _literal(caption), fontsize=7.5, color=GREY)
@@ -167,11 +168,5 @@ def save(found: Mapping[str, Any], path: Path) -> None:
     """
     import matplotlib
 
-    suffix = path.suffix.lower()
     with matplotlib.rc_context({**matplotlib.rcParamsDefault, **STYLE}):
-        page = figure(found)
-
-        def draw(stream: BinaryIO) -> None:
-            page.savefig(stream, format=suffix[1:], dpi=150, metadata=UNDATED[suffix])
-
-        write(path, draw)
+        save_page(figure(found), path, DPI)
