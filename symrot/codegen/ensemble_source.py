@@ -328,18 +328,38 @@ class _Jet:
         terms = [(i, sign, c) for i in group for sign, c in self.slots[i].terms]
         left, right = sorted({c.a for *_, c in terms}), sorted({c.b for *_, c in terms})
         lines = [f"symrot_v a{i} = V_ALL(0.0), b{i} = a{i};" for i in group]
-        lines.append(f"for (int64_t k = 1; k < {'n/2' if square else 'n - 1'}; ++k) {{")
+        if not square:
+            return lines + self._products(terms, left, right)
+        lines.append("for (int64_t k = 1; k < n/2; ++k) {")
         lines += [f"    const symrot_v h{i} = {self.at(i, 'n - k')};" for i in right]
         lines += [f"    const symrot_v f{i} = {self.at(i, 'k')}, g{i} = {self.at(i, 'k + 1')};" for i in left]
         for i, sign, (a, b, _) in terms:
             lines.append(f"    {_add(f'a{i}', sign, f'f{a}, h{b}')}")
             lines.append(f"    {_add(f'b{i}', sign, f'g{a}, h{b}')}")
         lines.append("}")
-        if square:
-            lines += [f"{sums}{i} = V_ADD({sums}{i}, {sums}{i});" for i in group for sums in "ab"]
-        first, second = ("n/2", "n/2") if square else ("n - 1", "1")
-        lines += [_add(f"a{i}", sign, f"{self.at(c.a, first)}, {self.at(c.b, second)}") for i, sign, c in terms]
+        lines += [f"{sums}{i} = V_ADD({sums}{i}, {sums}{i});" for i in group for sums in "ab"]
+        lines += [_add(f"a{i}", sign, f"{self.at(c.a, 'n/2')}, {self.at(c.b, 'n/2')}") for i, sign, c in terms]
         return lines
+
+    def _products(
+        self, terms: Sequence[tuple[int, int, Convolution]], left: Sequence[int], right: Sequence[int]
+    ) -> list[str]:
+        """Return a loop of products: two numbers k at a time, one factor of the right after the other."""
+        lines = ["{", *(f"    symrot_v f{i} = {self.at(i, '1')};" for i in left)]
+        lines.append("    for (int64_t k = 1; k < n - 1; k += 2) {")
+        for new, old, ahead, behind in (("g", "f", "k + 1", "n - k"), ("f", "g", "k + 2", "n - k - 1")):
+            kind = "const symrot_v " if new == "g" else ""
+            lines += [f"        {kind}{new}{i} = {self.at(i, ahead)};" for i in left]
+            for factor in right:
+                value = f"{'h' if new == 'g' else 'j'}{factor}"
+                lines.append(f"        const symrot_v {value} = {self.at(factor, behind)};")
+                for i, sign, c in terms:
+                    if c.b == factor:
+                        lines.append(f"        {_add(f'a{i}', sign, f'{old}{c.a}, {value}')}")
+                        lines.append(f"        {_add(f'b{i}', sign, f'{new}{c.a}, {value}')}")
+        lines.append("    }")
+        lines += [f"    {_add(f'a{i}', sign, f'f{c.a}, ' + self.at(c.b, '1'))}" for i, sign, c in terms]
+        return [*lines, "}"]
 
     def between(self) -> list[str]:
         """Return the terms of order m that hold coefficient n, which has just been computed."""

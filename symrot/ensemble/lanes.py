@@ -18,15 +18,17 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from symrot.codegen import library
 from symrot.errors import CompilerError
 from symrot.kernel import Program
 from symrot.propagation.stepping import DONE, NOT_FINITE, UNDERFLOW, Floats, PathLike, cut_off
 from symrot.propagation.taylor import step_tail
 
-__all__ = ["Lanes", "Outcome", "around", "follow", "lanes", "order_for", "translation_unit"]
+__all__ = ["FLAGS", "Lanes", "Outcome", "around", "follow", "lanes", "order_for", "translation_unit"]
 
 Integers = NDArray[np.int64]
 
+FLAGS = (*library.FLAGS, "-fno-tree-pre")  # it keeps loaded numbers in registers that the sums need
 MAX_STEPS = 1_000_000_000
 STEPS_PER_CALL = 20_000  # of all lanes at once: some 20 ms, after which Python can see an interrupt
 TOO_MANY = 5
@@ -36,10 +38,10 @@ REASONS = {
     TOO_MANY: "{steps} steps were not enough",
 }
 ORDERS = (
-    (3e-3, 12),
+    (3e-2, 10),
+    (3e-4, 12),
     (3e-6, 14),
-    (3e-8, 16),
-    (3e-9, 18),
+    (3e-9, 16),
     (0.0, 20),
 )  # from which tolerance on which order is fastest, see order_for
 

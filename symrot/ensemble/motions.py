@@ -119,7 +119,7 @@ def lane_library(plan: Plan, kernel: SceneKernel, tolerance: float) -> Any:
 
         system = lane_definitions(kernel.rates, *error_blocks(plan), order)
         library.store(key, system)
-    return library.build(lanes.around(system), "lanes")
+    return library.build(lanes.around(system), "lanes", lanes.FLAGS)
 
 
 class _Stepped:
