@@ -20,7 +20,7 @@ from symrot.checker.tree import Node, text, walk
 from symrot.checker.units import read_unit
 from symrot.errors import InputError
 
-__all__ = ["Claim", "Refusal", "claim_of_text", "read_claims", "read_entries", "shown_relation"]
+__all__ = ["Claim", "Refusal", "claim_of_text", "named_formula", "read_claims", "read_entries", "shown_relation"]
 
 
 @dataclass(frozen=True)
@@ -158,6 +158,19 @@ def claim_of_text(source: str, given: Sequence[str] = (), units: Mapping[str, st
         sources=sources,
         units=_units(dict(units or {}), used, "claim"),
     )
+
+
+def named_formula(claim: Claim) -> tuple[str, Node] | None:
+    """Return (name, formula) of a claim one side of which is a name that occurs nowhere else; None for others."""
+    assert claim.relation is not None
+    _, left, right = claim.relation
+    trees = [side for relation in claim.given for side in relation[1:]] + [tree for _, tree in claim.define]
+    for name, formula in ((left, right), (right, left)):
+        held = [node.value for tree in (formula, *trees) for _, node in walk(tree) if node.kind in ("name", "call")]
+        defined = {defined for defined, _ in claim.define}
+        if name.kind == "name" and formula.kind != "name" and name.value not in {*held, *defined, "pi", "t"}:
+            return str(name.value), formula
+    return None
 
 
 # -- TOML -------------------------------------------------------------------------------------------------------------

@@ -13,7 +13,7 @@ from typing import Any
 from sympy import Expr, Function, ImmutableMatrix, Rational, Symbol
 from sympy.matrices import MatrixBase
 
-from symrot.checker.claims import Claim
+from symrot.checker.claims import Claim, claim_of_text, named_formula
 from symrot.checker.decision import shown
 from symrot.checker.fingerprint import PRIME, Outside, Print, Values, fingerprint, values_at
 from symrot.checker.known_formulas import Known, by_fingerprint
@@ -25,7 +25,7 @@ from symrot.errors import InputError
 from symrot.exact.decide import decide, flatten
 from symrot.exact.ratio import TooLarge
 
-__all__ = ["Identification", "identify", "named_parts"]
+__all__ = ["Identification", "identified", "identify", "named_parts"]
 
 MOST = 8
 MOST_TRIES = 720
@@ -60,9 +60,14 @@ class Identification:
     source: str
     proven: bool = True
 
+    @property
+    def renamed(self) -> str:
+        """``"with a for dphi"``: what stands for which symbol of the known formula; empty where no name differs."""
+        pairs = ", ".join(f"{other} for {own}" for own, other in self.mapping.items())
+        return f"with {pairs}" if pairs else ""
+
     def __str__(self) -> str:
-        renamed = ", ".join(f"{other} for {own}" for own, other in self.mapping.items())
-        return "; ".join(part for part in (self.name, self.how, f"with {renamed}" if renamed else "") if part)
+        return "; ".join(part for part in (self.name, self.how, self.renamed) if part)
 
     def to_json(self) -> dict[str, Any]:
         """Return the identification as JSON data."""
@@ -98,7 +103,7 @@ def identify(formula: Any, *, most: int = MOST) -> list[Identification]:
     >>> identify("Matrix([[sin(b)*sin(c), cos(c), 0], [sin(b)*cos(c), -sin(c), 0], [cos(b), 0, 1]])")[0].name
     'ZXZ body-frame rate Jacobian, omega = B dq/dt'
     """
-    return list(islice(_identified(_value(formula)), most))
+    return list(islice(identified(_value(formula)), most))
 
 
 def _value(formula: Any) -> Any:
@@ -109,6 +114,8 @@ def _value(formula: Any) -> Any:
     if not isinstance(formula, str):
         raise InputError(f"expected a formula as text or a SymPy value to identify, got {type(formula).__name__}")
     latex = "\\" in formula or "$" in formula
+    if "=" in formula and (named := named_formula(claim_of_text(formula))) is not None:
+        return Meaning(implied=True).read(named[1], formula)
     if not latex and "=" in formula:
         raise complaint(formula, "", formula.index("="), "one formula without '=' to identify")
     text = read_latex_formula(formula) if latex else formula
@@ -121,7 +128,7 @@ def named_parts(claim: Claim) -> tuple[str, ...]:
         f"{place} is the {identification}"
         for place, value in _parts(claim)
         if isinstance(value, MatrixBase) and len(value) > 2 and len(value.atoms(Function, Symbol) - {time}) > 1
-        for identification in islice(_identified(ImmutableMatrix(value), steps=False), 1)
+        for identification in islice(identified(ImmutableMatrix(value), steps=False), 1)
     )
 
 
@@ -138,7 +145,8 @@ def _parts(claim: Claim) -> Iterator[tuple[str, Any]]:
             yield name, meaning.values[name]
 
 
-def _identified(value: Any, steps: bool = True) -> Iterator[Identification]:
+def identified(value: Any, steps: bool = True) -> Iterator[Identification]:
+    """Yield what a SymPy value is, nearest names first; steps of derivations only where asked for."""
     entries, shape = flatten(value)
     try:
         own = fingerprint(entries)

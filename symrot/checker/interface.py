@@ -164,11 +164,12 @@ def _decide(claim: Claim) -> tuple[Decision, Verdict]:
 def _diagnosed(claim: Claim, decision: Decision, verdict: Verdict) -> Verdict:
     from symrot.checker.diagnose import diagnose
     from symrot.checker.identification import named_parts
+    from symrot.checker.nearby import nearby
 
     diagnosis, repairs = diagnose(claim, decision)
     if diagnosis.code == "none" and verdict.dimension.status == "inconsistent":
         diagnosis = Diagnosis("dimension", f"the units do not fit: {verdict.dimension.text}")
-    notes = (*verdict.notes, *named_parts(claim))
+    notes = (*verdict.notes, *named_parts(claim), *nearby(claim))
     return replace(verdict, diagnosis=diagnosis, repairs=repairs, notes=notes)
 
 

@@ -193,9 +193,23 @@ def _torques() -> Iterator[Named]:
 
 
 def stated() -> Iterator[Named]:
-    """Yield the formulas of kinematics, inertia and dynamics, in a fixed order."""
+    """Yield the formulas of kinematics, inertia and dynamics, in a fixed order, the components of columns last."""
+    columns: list[Named] = []
     for group in (_axes, _sequences, _quaternions, _vectors, _solids, _mechanics, _torques):
-        yield from group()
+        for name, source, value in group():
+            yield name, source, value
+            if getattr(value, "shape", None) in COMPONENTS:
+                columns.append((name, source, value))
+    for name, source, column in columns:
+        for place, entry in zip(COMPONENTS[column.shape], column, strict=True):
+            if len(entry.free_symbols) >= LEAST_OF_COMPONENT:
+                yield f"{place} component of the {name}", source, entry
+
+
+COMPONENTS = {(3, 1): ("first", "second", "third"), (4, 1): ("scalar", "first", "second", "third")}
+"""Shape of a column -> how its components are called; those of a quaternion begin with the scalar one."""
+LEAST_OF_COMPONENT = 3
+"""Symbols of a component that is looked up by itself: one of fewer is too many things."""
 
 
 def derived() -> Iterator[Named]:
