@@ -93,7 +93,7 @@ def _curves(axes: Any, data: Any, what: str) -> None:
     axes.set_xlabel("t (s)" if linear else "revolutions")
     if what == "attitude":
         axes.set_title("Error of the attitude" + (", the largest so far" if linear else ""))
-        axes.set_ylabel("rad")
+        axes.set_ylabel("error, rad")
         axes.legend(loc="upper left", fontsize=8, ncols=3)
     else:
         names = [name for name in data["curves"][0]["invariants"] if name != "quaternion norm"]

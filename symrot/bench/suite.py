@@ -13,6 +13,7 @@ from collections.abc import Callable, Mapping, Sequence
 from importlib.util import find_spec
 from pathlib import Path
 from statistics import median
+from time import perf_counter
 from typing import Any
 
 from symrot import __version__
@@ -98,7 +99,9 @@ def run(
 
         one = kept.studies.get(name)
         if one is None or one["scene"]["digest"] != digest(Problem(scene)):
+            began = perf_counter()
             one = {"about": about, **study(scene, methods, quick, tell, tolerances, rounds)}
+            one["took"] = perf_counter() - began
             kept.add(name, one)
         studies[name] = one
     found = {"format": "symrot suite 1", "studies": studies, "summary": summary(studies)}
@@ -204,7 +207,9 @@ def page(found: Mapping[str, Any]) -> str:
     one = next(iter(found["studies"].values()))
     machine = one["machine"]
     versions = ", ".join(f"{name} {machine[name]}" for name in ("python", "numpy", "scipy", "heyoka") if machine[name])
-    text = ["# Time against error", "", "Printed by `symrot bench --suite`; seconds are of one machine.", ""]
+    text = ["# Time against error", "", "", ""]
+    quick, took = " --quick" if one["quick"] else "", sum(each["took"] for each in found["studies"].values())
+    text[2] = f"Printed by `symrot bench --suite{quick}` in {took / 60.0:.0f} minutes; seconds are of one machine."
     text += [LEGEND, "", f"{one_line(machine['processor'])}; {versions}.", ""]
     text += [f"| {' | '.join(head)} |", f"| --- |{' ---: |' * (len(head) - 1)}"]
     text += [f"| {' | '.join(row)} |" for row in rows]

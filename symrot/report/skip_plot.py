@@ -27,7 +27,7 @@ def figure(found: Mapping[str, Any]) -> Any:
 
     rows = found["rows"]
     page = Figure(figsize=(9.6, 1.6 + 0.38 * len(rows)))
-    grid = page.add_gridspec(1, len(PANELS), left=0.22, right=0.985, top=0.83, bottom=0.14, wspace=0.08)
+    grid = page.add_gridspec(1, len(PANELS), left=0.245, right=0.985, top=0.83, bottom=0.14, wspace=0.08)
     for number, (key, unit, title) in enumerate(PANELS):
         axes = page.add_subplot(grid[number])
         axes.set_xscale("log")
@@ -59,7 +59,7 @@ def figure(found: Mapping[str, Any]) -> Any:
              ("what auto takes", "D", AUTO, 4))  # fmt: skip
     handles = [Line2D([], [], color=colour, marker=marker, markersize=size, linestyle="", label=words)
                for words, marker, colour, size in looks]  # fmt: skip
-    page.legend(handles=handles, loc="upper left", bbox_to_anchor=(0.212, 0.905), ncols=3, handletextpad=0.2)
+    page.legend(handles=handles, loc="upper left", bbox_to_anchor=(0.237, 0.905), ncols=3, handletextpad=0.2)
     page.text(0.985, 0.02, f"symrot {__version__}", fontsize=7.5, color=GREY, ha="right")
     return page
 
