@@ -15,6 +15,7 @@ Proof: ``derivations/driven_rotation.md``.
 
 from collections.abc import Sequence
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -39,9 +40,9 @@ def _two_product(a: Floats, b: float | Floats) -> tuple[Floats, Floats]:
     return product, ((high_a * high_b - product) + high_a * low_b + low_a * high_b) + low_a * low_b
 
 
-def _turns(rate: Fraction, t: Floats, t_error: Floats | None = None) -> Floats:
-    """Return rate*(t + t_error) less whole turns, for a rate in turns."""
-    high, low = pair(rate)
+def _turns(rate: tuple[float, float], t: Floats, t_error: Floats | None = None) -> Floats:
+    """Return rate*(t + t_error) less whole turns, for a rate in turns as a double-double."""
+    high, low = rate
     product, error = _two_product(t, high)
     error = error + t * low + (0.0 if t_error is None else t_error * high)
     return (product - np.rint(product)) + (error - np.rint(error))
@@ -54,6 +55,9 @@ def _first(x: Floats) -> Floats:
 
 def _second(x: Floats) -> Floats:
     """Return (exp(x) - 1 - x)/x^2."""
+    if (np.abs(x) > 1.0).all():
+        found: Floats = (np.expm1(x) - x) / (x * x)
+        return found
     small = np.clip(x, -1.0, 1.0)
     series = np.zeros_like(x)
     for n in range(_TERMS, 1, -1):
@@ -77,6 +81,9 @@ class AxialMotion:
         self._across = rates[(axis + 1) % 3], rates[(axis + 2) % 3]
         self._lag, self._decay_across = across
         self._attitude = attitude
+        vector, unit = attitude[1:], np.eye(3)[axis]
+        self._turned = np.concatenate([[-vector @ unit], attitude[0] * unit + np.cross(vector, unit)])
+        self._known: dict[Fraction, tuple[Any, ...]] = {}
 
     @property
     def has_attitude(self) -> bool:
@@ -102,18 +109,29 @@ class AxialMotion:
 
     def _angle(self, t: Floats, share: Fraction) -> tuple[Floats, Floats]:
         """Return sine and cosine of so many times the angle turned about the axis."""
-        turn = share / (2 * number.PI)
+        known = self._known.get(share)
+        if known is None:
+            known = self._known[share] = self._constants(share / (2 * number.PI))
         if not self._decay:
             square, error = _two_product(t, t)
-            part = _turns(self._rate * turn, t) + _turns(self._push * turn / 2, square, error)
+            part = _turns(known[0], t) + _turns(known[1], square, error)
         else:
-            x = -float(self._decay) * t
-            final = self._push / self._decay
-            near = float(self._rate * turn) * t * _first(x) + float(self._push * turn) * t * t * _second(x)
-            far = _turns(final * turn, t) + float((self._rate - final) * turn) * t * _first(x)
+            rate, push, final, rest, decay = known
+            x = -decay * t
+            first = _first(x)
+            near = rate * t * first + push * t * t * _second(x)
+            far = _turns(final, t) + rest * t * first
             part = np.where(np.abs(x) <= 1.0, near, far)
         part = 2.0 * np.pi * (part - np.rint(part))
         return np.sin(part), np.cos(part)
+
+    def _constants(self, turn: Fraction) -> tuple[Any, ...]:
+        """Return what the angle is made of, for angles of ``1/turn``, rounded once from exact numbers."""
+        if not self._decay:
+            return pair(self._rate * turn), pair(self._push * turn / 2)
+        final = self._push / self._decay
+        rest, parts = (self._rate - final) * turn, (self._rate * turn, self._push * turn)
+        return *map(float, parts), pair(final * turn), float(rest), float(self._decay)
 
     def _rates(self, t: Floats) -> Floats:
         rates = np.empty((len(t), 3))
@@ -128,10 +146,7 @@ class AxialMotion:
 
     def _quaternions(self, t: Floats) -> Floats:
         sine, cosine = self._angle(t, Fraction(1, 2))
-        q0, vector = self._attitude[0], self._attitude[1:]
-        unit = np.eye(3)[self._axis]
-        turned = np.concatenate([[-vector @ unit], q0 * unit + np.cross(vector, unit)])
-        return np.outer(cosine, self._attitude) + np.outer(sine, turned)
+        return np.outer(cosine, self._attitude) + np.outer(sine, self._turned)
 
 
 def motion(
