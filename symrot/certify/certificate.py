@@ -44,7 +44,7 @@ Data = dict[str, Any]
 Said = tuple[Data, list[list[Any]]]
 
 TRUSTED = {
-    "formulas and laws": "recheck.py alone, or the reader and the prover of symrot; both in exact arithmetic",
+    "formulas and laws": "recheck.py alone, or the reader and the prover of symrot",
     "C text": "that the compiler gives C its meaning: real numbers are rounded as IEEE 754 says, to nearest",
     "functions": "sin, cos, sqrt and others of <math.h> are, but for rounding, the functions of that name",
 }
@@ -161,7 +161,7 @@ def _proven(subject: Subject) -> Data:
 def _law(found: LawProof) -> Data:
     return {
         "law": found.text, "vanishing": list(found.vanishing), "given": list(found.given),
-        "cases": [_case(case) for case in found.cases],
+        "witness": dict(found.witness), "cases": [_case(case) for case in found.cases],
     }  # fmt: skip
 
 

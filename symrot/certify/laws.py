@@ -14,7 +14,7 @@ from fractions import Fraction
 from math import gcd, isqrt
 from typing import Any
 
-from sympy import Abs, Expr, atan2, cos, pi, sin
+from sympy import Abs, Expr, Rational, atan2, cos, pi, sin
 from sympy.polys.domains import QQ
 from sympy.polys.matrices import DomainMatrix
 from sympy.polys.orderings import lex
@@ -23,6 +23,8 @@ from sympy.polys.rings import PolyElement, PolyRing
 from symrot.errors import CertificateError
 from symrot.kernels.definition import Definition, Law
 from symrot.kernels.removable import explicit, select_ge
+from symrot.kinematics.quaternion import dcm_of
+from symrot.symbols import quaternion, rotation_entries
 
 __all__ = ["CaseProof", "Entry", "LawProof", "prove_law", "prove_laws"]
 
@@ -68,6 +70,7 @@ class LawProof:
     vanishing: tuple[str, ...]
     given: tuple[str, ...]
     cases: tuple[CaseProof, ...]
+    witness: tuple[tuple[str, str], ...]  # input -> number: a point where all that is given holds
 
 
 def prove_laws(found: Definition) -> tuple[LawProof, ...]:
@@ -108,7 +111,23 @@ def prove_law(name: str, law: Law, formulas: Mapping[str, Expr]) -> LawProof:
         except _Full:
             fewest *= 2
             waiting.append(decided)
-    return LawProof(law.text, tuple(map(str, law.vanishing)), tuple(map(str, law.relations)), tuple(cases))
+    given = tuple(map(str, law.relations))
+    return LawProof(law.text, tuple(map(str, law.vanishing)), given, tuple(cases), _witness(name, law, names[1:]))
+
+
+ATTITUDE = tuple(Rational(n, 11) for n in (10, 4, 2, 1))  # a unit quaternion
+
+
+def _witness(name: str, law: Law, names: Sequence[str]) -> tuple[tuple[str, str], ...]:
+    """Return a point where what is given holds exactly: quaternions are of norm 1, matrices those of an attitude."""
+    point: dict[str, Expr] = {each: Rational(2 * k + 3, 7) for k, each in enumerate(names)}
+    point |= {str(symbol): value for symbol, value in zip(quaternion, ATTITUDE, strict=True)}
+    point |= {str(symbol): value for symbol, value in zip(rotation_entries, dcm_of(ATTITUDE), strict=True)}
+    if any(
+        relation.subs({symbol: point[str(symbol)] for symbol in relation.free_symbols}) for relation in law.relations
+    ):
+        raise CertificateError(f"{name}: expected the hypotheses of {law.text!r} to hold for an attitude, they do not")
+    return tuple((each, str(point[each])) for each in names)
 
 
 def _inputs(law: Law, formulas: Mapping[str, Expr]) -> list[str]:
@@ -170,7 +189,10 @@ class _Proof:
     def run(self, decided: Sequence[Choice]) -> CaseProof:
         """Return the proof; ``CertificateError`` for an entry that is no combination of the relations."""
         self.decided = {(left, right): relation for left, relation, right in decided}
-        self.hypotheses = [self.value(relation)[0] for relation in self.law.relations]
+        given = [self.value(relation) for relation in self.law.relations]
+        if any(below != 1 for _, below in given):
+            raise CertificateError(f"{self.name}: expected polynomials as hypotheses of {self.law.text!r}")
+        self.hypotheses = [above for above, _ in given]
         fractions = [self.value(entry) for entry in self.law.vanishing]
         entries = []
         for above, below in fractions:

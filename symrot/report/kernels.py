@@ -22,7 +22,7 @@ from symrot.scene_file import shipped_names
 __all__ = ["certificate_files", "kernel_files", "kernel_lines", "stale", "write_all", "write_files"]
 
 SUFFIXES = {"c": (".c", ".h", ".json", ".txt", ".in"), "numpy": (".py",)}
-RECHECK = ("recheck.py", "recheck_formulas.py")  # what re-checks certificates without symrot
+RECHECK = ("recheck.py",)  # what re-checks certificates without symrot
 WORKERS = min(os.cpu_count() or 1, 4)
 SCENES = "scenes"  # under the folder of each target: the kernels of shipped scenes; those of the library beside it
 
