@@ -210,7 +210,9 @@ def page(found: Mapping[str, Any]) -> str:
     text = ["# Time against error", "", "", ""]
     quick, took = " --quick" if one["quick"] else "", sum(each["took"] for each in found["studies"].values())
     text[2] = f"Printed by `symrot bench --suite{quick}` in {took / 60.0:.0f} minutes; seconds are of one machine."
-    text += [LEGEND, "", f"{one_line(machine['processor'])}; {versions}.", ""]
+    loads = [each["machine"]["load"][0] for each in found["studies"].values() if each["machine"]["load"]]
+    busy = f"; {machine['cores']} cores under a load of {min(loads):.1f} to {max(loads):.1f}" if loads else ""
+    text += [LEGEND, "", f"{one_line(machine['processor'])}{busy}; {versions}.", ""]
     text += [f"| {' | '.join(head)} |", f"| --- |{' ---: |' * (len(head) - 1)}"]
     text += [f"| {' | '.join(row)} |" for row in rows]
     text += ["", "![ratios of all motions](suite.png)", ""]

@@ -50,11 +50,12 @@ def figure(found: Mapping[str, Any]) -> Any:
     axes.tick_params(axis="y", length=0)
     axes.grid(True, axis="x")
     axes.set_xlabel("times the time of symrot's steppers at equal error; dots: decades of it, bars: medians")
-    legend = axes.legend(loc="lower left", bbox_to_anchor=(-0.01, 1.0), ncols=len(peers), handlelength=0.8,
-                         columnspacing=1.4, markerscale=1.6)  # fmt: skip
-    handles: Any = legend.legend_handles
-    for handle in handles:
-        handle.set_alpha(1.0)
+    if peers:
+        legend = axes.legend(loc="lower left", bbox_to_anchor=(-0.01, 1.0), ncols=len(peers), handlelength=0.8,
+                             columnspacing=1.4, markerscale=1.6)  # fmt: skip
+        handles: Any = legend.legend_handles
+        for handle in handles:
+            handle.set_alpha(1.0)
     page.text(0.02, 0.975, "Others over symrot, at equal error", fontsize=13, fontweight="bold", va="top")
     machine = studies[0]["machine"]
     versions = ", ".join(f"{name} {machine[name]}" for name in ("scipy", "heyoka") if machine[name])
