@@ -13,12 +13,14 @@ import pytest
 from symrot.certify import rounding_functions as functions
 from symrot.certify import rounding_intervals as intervals
 from symrot.certify.readback import read_kernel
-from symrot.certify.rounding import bound_outputs, check_section, rounding_section
+from symrot.certify.rounding import STORE, bound_outputs, bound_task, check_section, rounding_section, tasks
 from symrot.certify.rounding_adjoint import Region, evaluate
 from symrot.certify.rounding_campaign import compare, loosest
 from symrot.certify.rounding_cone import cone_of
 from symrot.certify.rounding_library import largest_box, operations_of, prepare, problem, resized
 from symrot.certify.rounding_measured import measure
+from symrot.certify.rounding_store import TABLE, method, printed_table, table
+from symrot.certify.rounding_words import in_words, library_section, rounded_up
 from symrot.cli import main
 from symrot.errors import CertificateError, InputError
 from symrot.kernels.library import definition, kernel_names
@@ -309,6 +311,45 @@ def test_processes_find_what_one_finds(monkeypatch, tmp_path):
     kernels = [("inertia_rod", text_of("inertia_rod")), ("inertia_disk", text_of("inertia_disk"))]
     assert prepare(kernels, workers=2, budget=999) > 0
     assert prepare(kernels, workers=2, budget=999) == 0
+
+
+# --- the table that comes with symrot, and what is printed of it ------------------------------------------------------
+
+
+def test_the_table_is_of_this_method_and_holds_the_library():
+    """`python -m symrot.report.bound_table` prints it anew."""
+    assert table()["method"] == method()
+    for name in SLICE:
+        for operations in operations_of(name, text_of(name)):
+            given = problem(definition(name), operations)
+            for task in tasks(operations, given.box, given.region).values():
+                assert task.key in table()["bounds"]
+    found = {key: STORE.get(key) for key in table()["bounds"]}
+    assert printed_table(found.items()) == TABLE.read_text(encoding="utf-8")
+    assert all(each.pointwise <= each.bound < float("inf") for each in found.values())
+
+
+@pytest.mark.parametrize("name", ["quaternion_dcm", "inertia_cone"])
+def test_bounds_of_the_table_are_found_again(name):
+    for operations in operations_of(name, text_of(name)):
+        given = problem(definition(name), operations)
+        for task in tasks(operations, given.box, given.region).values():
+            assert bound_task(task, fresh=True) == STORE.get(task.key)
+
+
+def test_certificates_and_heads_say_the_bounds_of_the_text_under_them():
+    for name in ("quaternion_dcm", "euler_zxz_of_quaternion"):
+        text = text_of(name)
+        section = library_section(name, text)
+        assert json.loads((GENERATED / f"{name}.cert.json").read_text(encoding="utf-8"))["rounding"] == section
+        head = " ".join(line.strip(" *") for line in text[: text.index("*/")].splitlines())
+        assert f"Errors: {in_words(name, text)}." in head
+
+
+@pytest.mark.parametrize("value", ["0", "1/3", "1", "999", "9991/10", "1/1000", "123456789", "1/99999"])
+def test_what_is_said_is_never_below_what_is_bounded(value):
+    exact = Fraction(value)
+    assert exact <= Fraction(rounded_up(exact)) <= exact * Fraction(101, 100)
 
 
 # --- the inverse problem, and what is refused -------------------------------------------------------------------------
