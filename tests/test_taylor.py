@@ -417,7 +417,8 @@ def test_the_carry_is_alive():
     task = Task(taylor._stepper, body(), parameters("asymmetric"), MOTIONS["asymmetric"][2], 0.0, 1e-12)
     run = next(task.runs(500.0))
     task.advance(run, None, 0, None, None, 0)
-    assert all(0 < abs(carry) <= 2.0**-52 for carry in run.carry)
+    sizes = [abs(carry) for carry in run.carry]
+    assert max(sizes) <= 2.0**-52 and sum(map(bool, sizes)) > len(sizes) / 2  # by chance a sum is exact
 
 
 def test_a_library_of_another_stepper_is_refused(tmp_path):
