@@ -298,6 +298,7 @@ def _audit(options: Namespace) -> int:
     from symrot.report import certificates
 
     try:
+        under = [] if options.flags is None else certificates.flag_lines(options.flags)
         found = certificates.audit_files(
             options.certificates, options.object, options.rerun_bounds, options.coq, _progress
         )
@@ -309,9 +310,9 @@ def _audit(options: Namespace) -> int:
         return FAILED
     _progress("")
     if options.json:
-        _say_json({"holds": True, "certificates": found})
+        _say_json({"holds": True, "certificates": found} | ({"flags": under} if under else {}))
     else:
-        _say(line for each in found.values() for line in each)
+        _say([*(line for each in found.values() for line in each), *under])
     return GOOD
 
 
@@ -451,6 +452,7 @@ def _certify_arguments(parser: ArgumentParser) -> None:
 def _audit_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("certificates", type=Path, nargs="+", metavar="FILE.cert.json", help="the files beside it")
     parser.add_argument("--object", type=Path, metavar="FILE.o", help="what your compiler made of the C file")
+    parser.add_argument("--flags", metavar="'CC FLAGS'", help="what holds under your compiler's flags: 'gcc -O3 -mfma'")
     parser.add_argument("--rerun-bounds", action="store_true", help="find the bounds of rounding errors again")
     parser.add_argument("--coq", action="store_true", help="have Coq check the theorem about the kernel")
     _json_option(parser)

@@ -20,6 +20,7 @@ from symrot.certify.object_code_build import FLAGS, STRICT, compile_object, obje
 from symrot.certify.object_code_mutants import same_bits
 from symrot.certify.object_code_state import Array, Context
 from symrot.certify.object_code_terms import RELATION, Terms, value_of
+from symrot.cli import main
 from symrot.errors import CertificateError, CompilerError, InputError
 
 KERNELS = Path(__file__).parents[1] / "generated" / "c"
@@ -494,3 +495,19 @@ def test_the_section_of_flags_gives_a_reason_for_each():
         assert judge([flag, "-ffp-contract=off"]).holds == NOTHING
     for flag in section["allowed"]:
         assert judge([flag, "-ffp-contract=off"]).holds == BITS
+
+
+@pytest.mark.parametrize(
+    ("flags", "code", "said"),
+    [
+        ("gcc -O3 -mavx2 -ffp-contract=off", 0, "the bits of the C text and its error bounds hold"),
+        ("gcc -O2 -march=native", 0, "the error bounds hold, not the bits"),
+        ("gcc -O2 -ffast-math", 1, "the certificate is void"),
+        ("gcc -fmagic", 2, "got '-fmagic'"),
+    ],
+)
+def test_the_audit_says_what_holds_under_flags(capsys, flags, code, said):
+    assert main(["audit", str(KERNELS / "torque_spring.cert.json"), "--flags", flags]) == code
+    found = capsys.readouterr()
+    assert said in (found.err if code else found.out)
+    assert found.err.count("\n") == (1 if code else 0)

@@ -20,7 +20,7 @@ from symrot.report.kernels import WORKERS, certificate_files, kernel_files, writ
 from symrot.scene_file import shipped_names
 from symrot.scene_reader import nearest
 
-__all__ = ["audit_file", "audit_files", "certify", "lines"]
+__all__ = ["audit_file", "audit_files", "certify", "flag_lines", "lines"]
 
 MANY = 12  # certificates: fewer are audited in this process
 
@@ -137,6 +137,24 @@ def _objects(text: str, path: Path, where: str) -> list[str]:
              CONTRACTED: "up to fused multiply-adds: bounds hold, bits do not"}  # fmt: skip
     said = [f"{path}: {verdict.function} is the C text, {holds[verdict.verdict]}" for verdict in verdicts]
     return [*said, f"{path}: loops over samples are not compared; what their flags do, the certificate says"]
+
+
+def flag_lines(flags: str) -> list[str]:
+    """Return what holds of any certificate under the flags of a compiler, as a line.
+
+    Raises
+    ------
+    InputError
+        For a flag whose effect on rounding is not known.
+    CertificateError
+        For flags under which nothing holds.
+    """
+    from symrot.certify.flags import judge
+
+    found = judge(flags)
+    if not found.accepted:
+        raise CertificateError(f"{flags}: {found.sentence()}")
+    return [f"{flags}: {found.sentence()}"]
 
 
 def _coq(data: Data, progress: Callable[[str], object]) -> list[str]:
