@@ -102,6 +102,7 @@ STUDIES: dict[str, str] = {
     "taylor": "Taylor series against heyoka in all settings and against loops by hand in C, at equal error",
     "ensemble": "many motions in SIMD lanes against heyoka's batch and ensemble modes",
     "dense": "20 000 samples of one motion against heyoka's dense output",
+    "kernels": "emitted kernels against those of other tools, in operations and nanoseconds",
     "overhead": "a call from Python against the bare call in C",
     "stepper": "DOP853 in C against one by hand and SciPy's, at equal tolerance",
     "closed_form": "nanoseconds per sample of the closed forms, and their set-up",

@@ -83,7 +83,7 @@ def _of_plates(long: bool, say: Callable[[str], object]) -> dict[str, Any]:
     revolutions = 10.0 ** np.linspace(1, power, 6 * (power - 1) + 1)
     tracks = []
     for omega in STARTS:
-        say("truth in 40 digits ..")
+        say("truth in 30 digits ..")
         scene = _scene("free plate", {"principal": list(PLATE)}, omega)
         size = math.sqrt(sum(float(w) ** 2 for w in scene.initial.omega_b))
         tracks.append(Track(scene, revolutions * (2.0 * math.pi / size), periodic=True))
@@ -107,7 +107,7 @@ def _of_scene(scene: Scene, long: bool, say: Callable[[str], object]) -> dict[st
     if not scene.span.stop > scene.span.start:
         raise InputError(f"{scene.name}: span: expected an end after the start")
     times = np.linspace(float(scene.span.start), float(scene.span.stop), SAMPLES)
-    say(f"{scene.name}: truth in 40 digits ..")
+    say(f"{scene.name}: truth in 30 digits ..")
     track = Track(scene, times, periodic=False)
     curves = []
     for curve in growth(track, long, say):
