@@ -133,7 +133,7 @@ BLOCKS = (GENERATED / "euler_zxz_body_rates.c").read_text(encoding="utf-8")
         ("n - start < SYMROT_BLOCK ? n", "n - start < SYMROT_BLOCK ? start", "'n'"),
         ("k = start; k < end", "k = start; k < n", "'end'"),
         ("k = start; k < again", "k = 0; k < again", "'start'"),
-        ("again; ++k) {\n            const double theta = angles[1*n", "again; ++k) {\n            const double theta = angles[0*n", "the same"),
+        ("again; ++k) {\n            const double psi = angles[2*n", "again; ++k) {\n            const double psi = angles[0*n", "the same"),
     ],
 )  # fmt: skip
 def test_a_batch_in_blocks_is_read_whole_or_refused(old, new, said):

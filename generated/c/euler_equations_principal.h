@@ -21,7 +21,7 @@
  * Convention: body axes; quaternion scalar first, Hamilton, body to space (symrot conventions).
  * Domain: positive definite inertia.
  * Box: A, B, C in [1, 4]; omega_1, omega_2, omega_3, tau_1, tau_2, tau_3 in [-10, 10].
- * Errors: on the box at most 1.29e-13 [6.92e-05] rad/s^2 in domega (float functions in brackets).
+ * Errors: on the box at most 1.26e-13 [6.73e-05] rad/s^2 in domega (float functions in brackets).
  * Certificate: euler_equations_principal.cert.json; re-check it by `python recheck.py
  *     euler_equations_principal.cert.json` or `symrot audit`.
  * Assumes: IEEE 754 arithmetic, rounding to nearest; outputs do not overlap inputs; for bounds of rounding

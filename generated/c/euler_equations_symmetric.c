@@ -44,7 +44,7 @@ void euler_equations_symmetric(
     const double tau_1 = torque[0];
     const double tau_2 = torque[1];
     const double tau_3 = torque[2];
-    const double x0 = omega_3*(A - C);
+    const double x0 = (A - C)*omega_3;
     const double x1 = 1.0/A;
 
     domega[0] = (tau_1 + omega_2*x0)*x1;
@@ -66,7 +66,7 @@ void euler_equations_symmetric_batch(
         const double tau_1 = torque[0*n + k];
         const double tau_2 = torque[1*n + k];
         const double tau_3 = torque[2*n + k];
-        const double x0 = omega_3*(A - C);
+        const double x0 = (A - C)*omega_3;
         const double x1 = 1.0/A;
 
         domega[0*n + k] = (tau_1 + omega_2*x0)*x1;
@@ -86,7 +86,7 @@ void euler_equations_symmetricf(
     const float tau_1 = torque[0];
     const float tau_2 = torque[1];
     const float tau_3 = torque[2];
-    const float x0 = omega_3*(A - C);
+    const float x0 = (A - C)*omega_3;
     const float x1 = 1.0f/A;
 
     domega[0] = (tau_1 + omega_2*x0)*x1;
@@ -108,7 +108,7 @@ void euler_equations_symmetricf_batch(
         const float tau_1 = torque[0*n + k];
         const float tau_2 = torque[1*n + k];
         const float tau_3 = torque[2*n + k];
-        const float x0 = omega_3*(A - C);
+        const float x0 = (A - C)*omega_3;
         const float x1 = 1.0f/A;
 
         domega[0*n + k] = (tau_1 + omega_2*x0)*x1;

@@ -49,9 +49,9 @@ void euler_extrinsic_xyx_quaternion(const double angles[3], double q[4])
     const double x12 = sin(x8);
 
     q[0] = (outer_1 - outer_2)*x9;
-    q[1] = x9*(outer_3 + outer_4);
+    q[1] = (outer_3 + outer_4)*x9;
     q[2] = (outer_1 + outer_2)*x12;
-    q[3] = x12*(outer_3 - outer_4);
+    q[3] = (outer_3 - outer_4)*x12;
 }
 
 void euler_extrinsic_xyx_quaternion_batch(
@@ -80,9 +80,9 @@ void euler_extrinsic_xyx_quaternion_batch(
             const double x12 = symrot_sin(x8);
 
             q[0*n + k] = (outer_1 - outer_2)*x9;
-            q[1*n + k] = x9*(outer_3 + outer_4);
+            q[1*n + k] = (outer_3 + outer_4)*x9;
             q[2*n + k] = (outer_1 + outer_2)*x12;
-            q[3*n + k] = x12*(outer_3 - outer_4);
+            q[3*n + k] = (outer_3 - outer_4)*x12;
             beyond += symrot_far(x0) + symrot_far(x2) + symrot_far(x8);
         }
         const size_t again = beyond == 0 ? start : end;
@@ -105,9 +105,9 @@ void euler_extrinsic_xyx_quaternion_batch(
             const double x12 = sin(x8);
 
             q[0*n + k] = (outer_1 - outer_2)*x9;
-            q[1*n + k] = x9*(outer_3 + outer_4);
+            q[1*n + k] = (outer_3 + outer_4)*x9;
             q[2*n + k] = (outer_1 + outer_2)*x12;
-            q[3*n + k] = x12*(outer_3 - outer_4);
+            q[3*n + k] = (outer_3 - outer_4)*x12;
         }
     }
 }
@@ -132,9 +132,9 @@ void euler_extrinsic_xyx_quaternionf(const float angles[3], float q[4])
     const float x12 = sinf(x8);
 
     q[0] = (outer_1 - outer_2)*x9;
-    q[1] = x9*(outer_3 + outer_4);
+    q[1] = (outer_3 + outer_4)*x9;
     q[2] = (outer_1 + outer_2)*x12;
-    q[3] = x12*(outer_3 - outer_4);
+    q[3] = (outer_3 - outer_4)*x12;
 }
 
 void euler_extrinsic_xyx_quaternionf_batch(
@@ -163,9 +163,9 @@ void euler_extrinsic_xyx_quaternionf_batch(
             const float x12 = symrot_sinf(x8);
 
             q[0*n + k] = (outer_1 - outer_2)*x9;
-            q[1*n + k] = x9*(outer_3 + outer_4);
+            q[1*n + k] = (outer_3 + outer_4)*x9;
             q[2*n + k] = (outer_1 + outer_2)*x12;
-            q[3*n + k] = x12*(outer_3 - outer_4);
+            q[3*n + k] = (outer_3 - outer_4)*x12;
             beyond += symrot_farf(x0) + symrot_farf(x2) + symrot_farf(x8);
         }
         const size_t again = beyond == 0 ? start : end;
@@ -188,9 +188,9 @@ void euler_extrinsic_xyx_quaternionf_batch(
             const float x12 = sinf(x8);
 
             q[0*n + k] = (outer_1 - outer_2)*x9;
-            q[1*n + k] = x9*(outer_3 + outer_4);
+            q[1*n + k] = (outer_3 + outer_4)*x9;
             q[2*n + k] = (outer_1 + outer_2)*x12;
-            q[3*n + k] = x12*(outer_3 - outer_4);
+            q[3*n + k] = (outer_3 - outer_4)*x12;
         }
     }
 }

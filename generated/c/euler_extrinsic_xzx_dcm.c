@@ -37,8 +37,8 @@
 
 void euler_extrinsic_xzx_dcm(const double angles[3], double dcm[9])
 {
-    const double phi = angles[0];
     const double theta = angles[1];
+    const double phi = angles[0];
     const double psi = angles[2];
     const double cos_theta = cos(theta);
     const double cos_phi = cos(phi);
@@ -70,8 +70,8 @@ void euler_extrinsic_xzx_dcm_batch(
         uint64_t beyond = 0;
         SYMROT_INDEPENDENT
         for (size_t k = start; k < end; ++k) {
-            const double phi = angles[0*n + k];
             const double theta = angles[1*n + k];
+            const double phi = angles[0*n + k];
             const double psi = angles[2*n + k];
             const double cos_theta = symrot_cos(theta);
             const double cos_phi = symrot_cos(phi);
@@ -97,8 +97,8 @@ void euler_extrinsic_xzx_dcm_batch(
         }
         const size_t again = beyond == 0 ? start : end;
         for (size_t k = start; k < again; ++k) {
-            const double phi = angles[0*n + k];
             const double theta = angles[1*n + k];
+            const double phi = angles[0*n + k];
             const double psi = angles[2*n + k];
             const double cos_theta = cos(theta);
             const double cos_phi = cos(phi);
@@ -126,8 +126,8 @@ void euler_extrinsic_xzx_dcm_batch(
 
 void euler_extrinsic_xzx_dcmf(const float angles[3], float dcm[9])
 {
-    const float phi = angles[0];
     const float theta = angles[1];
+    const float phi = angles[0];
     const float psi = angles[2];
     const float cos_theta = cosf(theta);
     const float cos_phi = cosf(phi);
@@ -158,8 +158,8 @@ void euler_extrinsic_xzx_dcmf_batch(size_t n, const float *SYMROT_RESTRICT angle
         uint32_t beyond = 0;
         SYMROT_INDEPENDENT
         for (size_t k = start; k < end; ++k) {
-            const float phi = angles[0*n + k];
             const float theta = angles[1*n + k];
+            const float phi = angles[0*n + k];
             const float psi = angles[2*n + k];
             const float cos_theta = symrot_cosf(theta);
             const float cos_phi = symrot_cosf(phi);
@@ -185,8 +185,8 @@ void euler_extrinsic_xzx_dcmf_batch(size_t n, const float *SYMROT_RESTRICT angle
         }
         const size_t again = beyond == 0 ? start : end;
         for (size_t k = start; k < again; ++k) {
-            const float phi = angles[0*n + k];
             const float theta = angles[1*n + k];
+            const float phi = angles[0*n + k];
             const float psi = angles[2*n + k];
             const float cos_theta = cosf(theta);
             const float cos_phi = cosf(phi);

@@ -37,8 +37,8 @@
 
 void euler_extrinsic_xzy_body_jacobian(const double angles[3], double jacobian[9])
 {
-    const double phi = angles[0];
     const double theta = angles[1];
+    const double phi = angles[0];
     const double sin_theta = sin(theta);
     const double sin_phi = sin(phi);
     const double cos_phi = cos(phi);
@@ -63,8 +63,8 @@ void euler_extrinsic_xzy_body_jacobian_batch(
         uint64_t beyond = 0;
         SYMROT_INDEPENDENT
         for (size_t k = start; k < end; ++k) {
-            const double phi = angles[0*n + k];
             const double theta = angles[1*n + k];
+            const double phi = angles[0*n + k];
             const double sin_theta = symrot_sin(theta);
             const double sin_phi = symrot_sin(phi);
             const double cos_phi = symrot_cos(phi);
@@ -83,8 +83,8 @@ void euler_extrinsic_xzy_body_jacobian_batch(
         }
         const size_t again = beyond == 0 ? start : end;
         for (size_t k = start; k < again; ++k) {
-            const double phi = angles[0*n + k];
             const double theta = angles[1*n + k];
+            const double phi = angles[0*n + k];
             const double sin_theta = sin(theta);
             const double sin_phi = sin(phi);
             const double cos_phi = cos(phi);
@@ -105,8 +105,8 @@ void euler_extrinsic_xzy_body_jacobian_batch(
 
 void euler_extrinsic_xzy_body_jacobianf(const float angles[3], float jacobian[9])
 {
-    const float phi = angles[0];
     const float theta = angles[1];
+    const float phi = angles[0];
     const float sin_theta = sinf(theta);
     const float sin_phi = sinf(phi);
     const float cos_phi = cosf(phi);
@@ -131,8 +131,8 @@ void euler_extrinsic_xzy_body_jacobianf_batch(
         uint32_t beyond = 0;
         SYMROT_INDEPENDENT
         for (size_t k = start; k < end; ++k) {
-            const float phi = angles[0*n + k];
             const float theta = angles[1*n + k];
+            const float phi = angles[0*n + k];
             const float sin_theta = symrot_sinf(theta);
             const float sin_phi = symrot_sinf(phi);
             const float cos_phi = symrot_cosf(phi);
@@ -151,8 +151,8 @@ void euler_extrinsic_xzy_body_jacobianf_batch(
         }
         const size_t again = beyond == 0 ? start : end;
         for (size_t k = start; k < again; ++k) {
-            const float phi = angles[0*n + k];
             const float theta = angles[1*n + k];
+            const float phi = angles[0*n + k];
             const float sin_theta = sinf(theta);
             const float sin_phi = sinf(phi);
             const float cos_phi = cosf(phi);

@@ -35,8 +35,8 @@
 
 void euler_extrinsic_yxy_space_rates(const double angles[3], const double omega[3], double dangles[3])
 {
-    const double theta = angles[1];
     const double psi = angles[2];
+    const double theta = angles[1];
     const double omega_x = omega[0];
     const double omega_y = omega[1];
     const double omega_z = omega[2];
@@ -60,8 +60,8 @@ void euler_extrinsic_yxy_space_rates_batch(
         uint64_t beyond = 0;
         SYMROT_INDEPENDENT
         for (size_t k = start; k < end; ++k) {
-            const double theta = angles[1*n + k];
             const double psi = angles[2*n + k];
+            const double theta = angles[1*n + k];
             const double omega_x = omega[0*n + k];
             const double omega_y = omega[1*n + k];
             const double omega_z = omega[2*n + k];
@@ -78,8 +78,8 @@ void euler_extrinsic_yxy_space_rates_batch(
         }
         const size_t again = beyond == 0 ? start : end;
         for (size_t k = start; k < again; ++k) {
-            const double theta = angles[1*n + k];
             const double psi = angles[2*n + k];
+            const double theta = angles[1*n + k];
             const double omega_x = omega[0*n + k];
             const double omega_y = omega[1*n + k];
             const double omega_z = omega[2*n + k];
@@ -98,8 +98,8 @@ void euler_extrinsic_yxy_space_rates_batch(
 
 void euler_extrinsic_yxy_space_ratesf(const float angles[3], const float omega[3], float dangles[3])
 {
-    const float theta = angles[1];
     const float psi = angles[2];
+    const float theta = angles[1];
     const float omega_x = omega[0];
     const float omega_y = omega[1];
     const float omega_z = omega[2];
@@ -123,8 +123,8 @@ void euler_extrinsic_yxy_space_ratesf_batch(
         uint32_t beyond = 0;
         SYMROT_INDEPENDENT
         for (size_t k = start; k < end; ++k) {
-            const float theta = angles[1*n + k];
             const float psi = angles[2*n + k];
+            const float theta = angles[1*n + k];
             const float omega_x = omega[0*n + k];
             const float omega_y = omega[1*n + k];
             const float omega_z = omega[2*n + k];
@@ -141,8 +141,8 @@ void euler_extrinsic_yxy_space_ratesf_batch(
         }
         const size_t again = beyond == 0 ? start : end;
         for (size_t k = start; k < again; ++k) {
-            const float theta = angles[1*n + k];
             const float psi = angles[2*n + k];
+            const float theta = angles[1*n + k];
             const float omega_x = omega[0*n + k];
             const float omega_y = omega[1*n + k];
             const float omega_z = omega[2*n + k];

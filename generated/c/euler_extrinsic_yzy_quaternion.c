@@ -50,8 +50,8 @@ void euler_extrinsic_yzy_quaternion(const double angles[3], double q[4])
 
     q[0] = (outer_1 - outer_2)*x9;
     q[1] = (outer_3 - outer_4)*x12;
-    q[2] = x9*(outer_3 + outer_4);
-    q[3] = x12*(outer_1 + outer_2);
+    q[2] = (outer_3 + outer_4)*x9;
+    q[3] = (outer_1 + outer_2)*x12;
 }
 
 void euler_extrinsic_yzy_quaternion_batch(
@@ -81,8 +81,8 @@ void euler_extrinsic_yzy_quaternion_batch(
 
             q[0*n + k] = (outer_1 - outer_2)*x9;
             q[1*n + k] = (outer_3 - outer_4)*x12;
-            q[2*n + k] = x9*(outer_3 + outer_4);
-            q[3*n + k] = x12*(outer_1 + outer_2);
+            q[2*n + k] = (outer_3 + outer_4)*x9;
+            q[3*n + k] = (outer_1 + outer_2)*x12;
             beyond += symrot_far(x0) + symrot_far(x2) + symrot_far(x8);
         }
         const size_t again = beyond == 0 ? start : end;
@@ -106,8 +106,8 @@ void euler_extrinsic_yzy_quaternion_batch(
 
             q[0*n + k] = (outer_1 - outer_2)*x9;
             q[1*n + k] = (outer_3 - outer_4)*x12;
-            q[2*n + k] = x9*(outer_3 + outer_4);
-            q[3*n + k] = x12*(outer_1 + outer_2);
+            q[2*n + k] = (outer_3 + outer_4)*x9;
+            q[3*n + k] = (outer_1 + outer_2)*x12;
         }
     }
 }
@@ -133,8 +133,8 @@ void euler_extrinsic_yzy_quaternionf(const float angles[3], float q[4])
 
     q[0] = (outer_1 - outer_2)*x9;
     q[1] = (outer_3 - outer_4)*x12;
-    q[2] = x9*(outer_3 + outer_4);
-    q[3] = x12*(outer_1 + outer_2);
+    q[2] = (outer_3 + outer_4)*x9;
+    q[3] = (outer_1 + outer_2)*x12;
 }
 
 void euler_extrinsic_yzy_quaternionf_batch(
@@ -164,8 +164,8 @@ void euler_extrinsic_yzy_quaternionf_batch(
 
             q[0*n + k] = (outer_1 - outer_2)*x9;
             q[1*n + k] = (outer_3 - outer_4)*x12;
-            q[2*n + k] = x9*(outer_3 + outer_4);
-            q[3*n + k] = x12*(outer_1 + outer_2);
+            q[2*n + k] = (outer_3 + outer_4)*x9;
+            q[3*n + k] = (outer_1 + outer_2)*x12;
             beyond += symrot_farf(x0) + symrot_farf(x2) + symrot_farf(x8);
         }
         const size_t again = beyond == 0 ? start : end;
@@ -189,8 +189,8 @@ void euler_extrinsic_yzy_quaternionf_batch(
 
             q[0*n + k] = (outer_1 - outer_2)*x9;
             q[1*n + k] = (outer_3 - outer_4)*x12;
-            q[2*n + k] = x9*(outer_3 + outer_4);
-            q[3*n + k] = x12*(outer_1 + outer_2);
+            q[2*n + k] = (outer_3 + outer_4)*x9;
+            q[3*n + k] = (outer_1 + outer_2)*x12;
         }
     }
 }

@@ -37,8 +37,8 @@
 
 void euler_extrinsic_zxz_space_jacobian(const double angles[3], double jacobian[9])
 {
-    const double theta = angles[1];
     const double psi = angles[2];
+    const double theta = angles[1];
     const double sin_psi = sin(psi);
     const double sin_theta = sin(theta);
     const double cos_psi = cos(psi);
@@ -63,8 +63,8 @@ void euler_extrinsic_zxz_space_jacobian_batch(
         uint64_t beyond = 0;
         SYMROT_INDEPENDENT
         for (size_t k = start; k < end; ++k) {
-            const double theta = angles[1*n + k];
             const double psi = angles[2*n + k];
+            const double theta = angles[1*n + k];
             const double sin_psi = symrot_sin(psi);
             const double sin_theta = symrot_sin(theta);
             const double cos_psi = symrot_cos(psi);
@@ -83,8 +83,8 @@ void euler_extrinsic_zxz_space_jacobian_batch(
         }
         const size_t again = beyond == 0 ? start : end;
         for (size_t k = start; k < again; ++k) {
-            const double theta = angles[1*n + k];
             const double psi = angles[2*n + k];
+            const double theta = angles[1*n + k];
             const double sin_psi = sin(psi);
             const double sin_theta = sin(theta);
             const double cos_psi = cos(psi);
@@ -105,8 +105,8 @@ void euler_extrinsic_zxz_space_jacobian_batch(
 
 void euler_extrinsic_zxz_space_jacobianf(const float angles[3], float jacobian[9])
 {
-    const float theta = angles[1];
     const float psi = angles[2];
+    const float theta = angles[1];
     const float sin_psi = sinf(psi);
     const float sin_theta = sinf(theta);
     const float cos_psi = cosf(psi);
@@ -131,8 +131,8 @@ void euler_extrinsic_zxz_space_jacobianf_batch(
         uint32_t beyond = 0;
         SYMROT_INDEPENDENT
         for (size_t k = start; k < end; ++k) {
-            const float theta = angles[1*n + k];
             const float psi = angles[2*n + k];
+            const float theta = angles[1*n + k];
             const float sin_psi = symrot_sinf(psi);
             const float sin_theta = symrot_sinf(theta);
             const float cos_psi = symrot_cosf(psi);
@@ -151,8 +151,8 @@ void euler_extrinsic_zxz_space_jacobianf_batch(
         }
         const size_t again = beyond == 0 ? start : end;
         for (size_t k = start; k < again; ++k) {
-            const float theta = angles[1*n + k];
             const float psi = angles[2*n + k];
+            const float theta = angles[1*n + k];
             const float sin_psi = sinf(psi);
             const float sin_theta = sinf(theta);
             const float cos_psi = cosf(psi);

@@ -38,8 +38,8 @@
 void euler_extrinsic_zyz_dcm(const double angles[3], double dcm[9])
 {
     const double phi = angles[0];
-    const double theta = angles[1];
     const double psi = angles[2];
+    const double theta = angles[1];
     const double sin_phi = sin(phi);
     const double sin_psi = sin(psi);
     const double outer_1 = sin_phi*sin_psi;
@@ -71,8 +71,8 @@ void euler_extrinsic_zyz_dcm_batch(
         SYMROT_INDEPENDENT
         for (size_t k = start; k < end; ++k) {
             const double phi = angles[0*n + k];
-            const double theta = angles[1*n + k];
             const double psi = angles[2*n + k];
+            const double theta = angles[1*n + k];
             const double sin_phi = symrot_sin(phi);
             const double sin_psi = symrot_sin(psi);
             const double outer_1 = sin_phi*sin_psi;
@@ -98,8 +98,8 @@ void euler_extrinsic_zyz_dcm_batch(
         const size_t again = beyond == 0 ? start : end;
         for (size_t k = start; k < again; ++k) {
             const double phi = angles[0*n + k];
-            const double theta = angles[1*n + k];
             const double psi = angles[2*n + k];
+            const double theta = angles[1*n + k];
             const double sin_phi = sin(phi);
             const double sin_psi = sin(psi);
             const double outer_1 = sin_phi*sin_psi;
@@ -127,8 +127,8 @@ void euler_extrinsic_zyz_dcm_batch(
 void euler_extrinsic_zyz_dcmf(const float angles[3], float dcm[9])
 {
     const float phi = angles[0];
-    const float theta = angles[1];
     const float psi = angles[2];
+    const float theta = angles[1];
     const float sin_phi = sinf(phi);
     const float sin_psi = sinf(psi);
     const float outer_1 = sin_phi*sin_psi;
@@ -159,8 +159,8 @@ void euler_extrinsic_zyz_dcmf_batch(size_t n, const float *SYMROT_RESTRICT angle
         SYMROT_INDEPENDENT
         for (size_t k = start; k < end; ++k) {
             const float phi = angles[0*n + k];
-            const float theta = angles[1*n + k];
             const float psi = angles[2*n + k];
+            const float theta = angles[1*n + k];
             const float sin_phi = symrot_sinf(phi);
             const float sin_psi = symrot_sinf(psi);
             const float outer_1 = sin_phi*sin_psi;
@@ -186,8 +186,8 @@ void euler_extrinsic_zyz_dcmf_batch(size_t n, const float *SYMROT_RESTRICT angle
         const size_t again = beyond == 0 ? start : end;
         for (size_t k = start; k < again; ++k) {
             const float phi = angles[0*n + k];
-            const float theta = angles[1*n + k];
             const float psi = angles[2*n + k];
+            const float theta = angles[1*n + k];
             const float sin_phi = sinf(phi);
             const float sin_psi = sinf(psi);
             const float outer_1 = sin_phi*sin_psi;

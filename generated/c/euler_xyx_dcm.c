@@ -37,9 +37,9 @@
 
 void euler_xyx_dcm(const double angles[3], double dcm[9])
 {
-    const double phi = angles[0];
     const double theta = angles[1];
     const double psi = angles[2];
+    const double phi = angles[0];
     const double cos_theta = cos(theta);
     const double sin_psi = sin(psi);
     const double sin_theta = sin(theta);
@@ -69,9 +69,9 @@ void euler_xyx_dcm_batch(size_t n, const double *SYMROT_RESTRICT angles, double 
         uint64_t beyond = 0;
         SYMROT_INDEPENDENT
         for (size_t k = start; k < end; ++k) {
-            const double phi = angles[0*n + k];
             const double theta = angles[1*n + k];
             const double psi = angles[2*n + k];
+            const double phi = angles[0*n + k];
             const double cos_theta = symrot_cos(theta);
             const double sin_psi = symrot_sin(psi);
             const double sin_theta = symrot_sin(theta);
@@ -96,9 +96,9 @@ void euler_xyx_dcm_batch(size_t n, const double *SYMROT_RESTRICT angles, double 
         }
         const size_t again = beyond == 0 ? start : end;
         for (size_t k = start; k < again; ++k) {
-            const double phi = angles[0*n + k];
             const double theta = angles[1*n + k];
             const double psi = angles[2*n + k];
+            const double phi = angles[0*n + k];
             const double cos_theta = cos(theta);
             const double sin_psi = sin(psi);
             const double sin_theta = sin(theta);
@@ -125,9 +125,9 @@ void euler_xyx_dcm_batch(size_t n, const double *SYMROT_RESTRICT angles, double 
 
 void euler_xyx_dcmf(const float angles[3], float dcm[9])
 {
-    const float phi = angles[0];
     const float theta = angles[1];
     const float psi = angles[2];
+    const float phi = angles[0];
     const float cos_theta = cosf(theta);
     const float sin_psi = sinf(psi);
     const float sin_theta = sinf(theta);
@@ -157,9 +157,9 @@ void euler_xyx_dcmf_batch(size_t n, const float *SYMROT_RESTRICT angles, float *
         uint32_t beyond = 0;
         SYMROT_INDEPENDENT
         for (size_t k = start; k < end; ++k) {
-            const float phi = angles[0*n + k];
             const float theta = angles[1*n + k];
             const float psi = angles[2*n + k];
+            const float phi = angles[0*n + k];
             const float cos_theta = symrot_cosf(theta);
             const float sin_psi = symrot_sinf(psi);
             const float sin_theta = symrot_sinf(theta);
@@ -184,9 +184,9 @@ void euler_xyx_dcmf_batch(size_t n, const float *SYMROT_RESTRICT angles, float *
         }
         const size_t again = beyond == 0 ? start : end;
         for (size_t k = start; k < again; ++k) {
-            const float phi = angles[0*n + k];
             const float theta = angles[1*n + k];
             const float psi = angles[2*n + k];
+            const float phi = angles[0*n + k];
             const float cos_theta = cosf(theta);
             const float sin_psi = sinf(psi);
             const float sin_theta = sinf(theta);

@@ -49,9 +49,9 @@ void euler_xzx_quaternion(const double angles[3], double q[4])
     const double x12 = sin(x8);
 
     q[0] = (outer_1 - outer_2)*x9;
-    q[1] = x9*(outer_3 + outer_4);
+    q[1] = (outer_3 + outer_4)*x9;
     q[2] = (outer_3 - outer_4)*x12;
-    q[3] = x12*(outer_1 + outer_2);
+    q[3] = (outer_1 + outer_2)*x12;
 }
 
 void euler_xzx_quaternion_batch(size_t n, const double *SYMROT_RESTRICT angles, double *SYMROT_RESTRICT q)
@@ -79,9 +79,9 @@ void euler_xzx_quaternion_batch(size_t n, const double *SYMROT_RESTRICT angles, 
             const double x12 = symrot_sin(x8);
 
             q[0*n + k] = (outer_1 - outer_2)*x9;
-            q[1*n + k] = x9*(outer_3 + outer_4);
+            q[1*n + k] = (outer_3 + outer_4)*x9;
             q[2*n + k] = (outer_3 - outer_4)*x12;
-            q[3*n + k] = x12*(outer_1 + outer_2);
+            q[3*n + k] = (outer_1 + outer_2)*x12;
             beyond += symrot_far(x0) + symrot_far(x2) + symrot_far(x8);
         }
         const size_t again = beyond == 0 ? start : end;
@@ -104,9 +104,9 @@ void euler_xzx_quaternion_batch(size_t n, const double *SYMROT_RESTRICT angles, 
             const double x12 = sin(x8);
 
             q[0*n + k] = (outer_1 - outer_2)*x9;
-            q[1*n + k] = x9*(outer_3 + outer_4);
+            q[1*n + k] = (outer_3 + outer_4)*x9;
             q[2*n + k] = (outer_3 - outer_4)*x12;
-            q[3*n + k] = x12*(outer_1 + outer_2);
+            q[3*n + k] = (outer_1 + outer_2)*x12;
         }
     }
 }
@@ -131,9 +131,9 @@ void euler_xzx_quaternionf(const float angles[3], float q[4])
     const float x12 = sinf(x8);
 
     q[0] = (outer_1 - outer_2)*x9;
-    q[1] = x9*(outer_3 + outer_4);
+    q[1] = (outer_3 + outer_4)*x9;
     q[2] = (outer_3 - outer_4)*x12;
-    q[3] = x12*(outer_1 + outer_2);
+    q[3] = (outer_1 + outer_2)*x12;
 }
 
 void euler_xzx_quaternionf_batch(size_t n, const float *SYMROT_RESTRICT angles, float *SYMROT_RESTRICT q)
@@ -161,9 +161,9 @@ void euler_xzx_quaternionf_batch(size_t n, const float *SYMROT_RESTRICT angles, 
             const float x12 = symrot_sinf(x8);
 
             q[0*n + k] = (outer_1 - outer_2)*x9;
-            q[1*n + k] = x9*(outer_3 + outer_4);
+            q[1*n + k] = (outer_3 + outer_4)*x9;
             q[2*n + k] = (outer_3 - outer_4)*x12;
-            q[3*n + k] = x12*(outer_1 + outer_2);
+            q[3*n + k] = (outer_1 + outer_2)*x12;
             beyond += symrot_farf(x0) + symrot_farf(x2) + symrot_farf(x8);
         }
         const size_t again = beyond == 0 ? start : end;
@@ -186,9 +186,9 @@ void euler_xzx_quaternionf_batch(size_t n, const float *SYMROT_RESTRICT angles, 
             const float x12 = sinf(x8);
 
             q[0*n + k] = (outer_1 - outer_2)*x9;
-            q[1*n + k] = x9*(outer_3 + outer_4);
+            q[1*n + k] = (outer_3 + outer_4)*x9;
             q[2*n + k] = (outer_3 - outer_4)*x12;
-            q[3*n + k] = x12*(outer_1 + outer_2);
+            q[3*n + k] = (outer_1 + outer_2)*x12;
         }
     }
 }

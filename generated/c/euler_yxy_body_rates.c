@@ -34,8 +34,8 @@
 
 void euler_yxy_body_rates(const double angles[3], const double omega[3], double dangles[3])
 {
-    const double theta = angles[1];
     const double psi = angles[2];
+    const double theta = angles[1];
     const double omega_1 = omega[0];
     const double omega_2 = omega[1];
     const double omega_3 = omega[2];
@@ -59,8 +59,8 @@ void euler_yxy_body_rates_batch(
         uint64_t beyond = 0;
         SYMROT_INDEPENDENT
         for (size_t k = start; k < end; ++k) {
-            const double theta = angles[1*n + k];
             const double psi = angles[2*n + k];
+            const double theta = angles[1*n + k];
             const double omega_1 = omega[0*n + k];
             const double omega_2 = omega[1*n + k];
             const double omega_3 = omega[2*n + k];
@@ -77,8 +77,8 @@ void euler_yxy_body_rates_batch(
         }
         const size_t again = beyond == 0 ? start : end;
         for (size_t k = start; k < again; ++k) {
-            const double theta = angles[1*n + k];
             const double psi = angles[2*n + k];
+            const double theta = angles[1*n + k];
             const double omega_1 = omega[0*n + k];
             const double omega_2 = omega[1*n + k];
             const double omega_3 = omega[2*n + k];
@@ -97,8 +97,8 @@ void euler_yxy_body_rates_batch(
 
 void euler_yxy_body_ratesf(const float angles[3], const float omega[3], float dangles[3])
 {
-    const float theta = angles[1];
     const float psi = angles[2];
+    const float theta = angles[1];
     const float omega_1 = omega[0];
     const float omega_2 = omega[1];
     const float omega_3 = omega[2];
@@ -122,8 +122,8 @@ void euler_yxy_body_ratesf_batch(
         uint32_t beyond = 0;
         SYMROT_INDEPENDENT
         for (size_t k = start; k < end; ++k) {
-            const float theta = angles[1*n + k];
             const float psi = angles[2*n + k];
+            const float theta = angles[1*n + k];
             const float omega_1 = omega[0*n + k];
             const float omega_2 = omega[1*n + k];
             const float omega_3 = omega[2*n + k];
@@ -140,8 +140,8 @@ void euler_yxy_body_ratesf_batch(
         }
         const size_t again = beyond == 0 ? start : end;
         for (size_t k = start; k < again; ++k) {
-            const float theta = angles[1*n + k];
             const float psi = angles[2*n + k];
+            const float theta = angles[1*n + k];
             const float omega_1 = omega[0*n + k];
             const float omega_2 = omega[1*n + k];
             const float omega_3 = omega[2*n + k];

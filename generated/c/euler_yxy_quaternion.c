@@ -50,8 +50,8 @@ void euler_yxy_quaternion(const double angles[3], double q[4])
 
     q[0] = (outer_1 - outer_2)*x9;
     q[1] = (outer_1 + outer_2)*x10;
-    q[2] = x9*(outer_3 + outer_4);
-    q[3] = x10*(outer_3 - outer_4);
+    q[2] = (outer_3 + outer_4)*x9;
+    q[3] = (outer_3 - outer_4)*x10;
 }
 
 void euler_yxy_quaternion_batch(size_t n, const double *SYMROT_RESTRICT angles, double *SYMROT_RESTRICT q)
@@ -80,8 +80,8 @@ void euler_yxy_quaternion_batch(size_t n, const double *SYMROT_RESTRICT angles, 
 
             q[0*n + k] = (outer_1 - outer_2)*x9;
             q[1*n + k] = (outer_1 + outer_2)*x10;
-            q[2*n + k] = x9*(outer_3 + outer_4);
-            q[3*n + k] = x10*(outer_3 - outer_4);
+            q[2*n + k] = (outer_3 + outer_4)*x9;
+            q[3*n + k] = (outer_3 - outer_4)*x10;
             beyond += symrot_far(x0) + symrot_far(x2) + symrot_far(x8);
         }
         const size_t again = beyond == 0 ? start : end;
@@ -105,8 +105,8 @@ void euler_yxy_quaternion_batch(size_t n, const double *SYMROT_RESTRICT angles, 
 
             q[0*n + k] = (outer_1 - outer_2)*x9;
             q[1*n + k] = (outer_1 + outer_2)*x10;
-            q[2*n + k] = x9*(outer_3 + outer_4);
-            q[3*n + k] = x10*(outer_3 - outer_4);
+            q[2*n + k] = (outer_3 + outer_4)*x9;
+            q[3*n + k] = (outer_3 - outer_4)*x10;
         }
     }
 }
@@ -132,8 +132,8 @@ void euler_yxy_quaternionf(const float angles[3], float q[4])
 
     q[0] = (outer_1 - outer_2)*x9;
     q[1] = (outer_1 + outer_2)*x10;
-    q[2] = x9*(outer_3 + outer_4);
-    q[3] = x10*(outer_3 - outer_4);
+    q[2] = (outer_3 + outer_4)*x9;
+    q[3] = (outer_3 - outer_4)*x10;
 }
 
 void euler_yxy_quaternionf_batch(size_t n, const float *SYMROT_RESTRICT angles, float *SYMROT_RESTRICT q)
@@ -162,8 +162,8 @@ void euler_yxy_quaternionf_batch(size_t n, const float *SYMROT_RESTRICT angles, 
 
             q[0*n + k] = (outer_1 - outer_2)*x9;
             q[1*n + k] = (outer_1 + outer_2)*x10;
-            q[2*n + k] = x9*(outer_3 + outer_4);
-            q[3*n + k] = x10*(outer_3 - outer_4);
+            q[2*n + k] = (outer_3 + outer_4)*x9;
+            q[3*n + k] = (outer_3 - outer_4)*x10;
             beyond += symrot_farf(x0) + symrot_farf(x2) + symrot_farf(x8);
         }
         const size_t again = beyond == 0 ? start : end;
@@ -187,8 +187,8 @@ void euler_yxy_quaternionf_batch(size_t n, const float *SYMROT_RESTRICT angles, 
 
             q[0*n + k] = (outer_1 - outer_2)*x9;
             q[1*n + k] = (outer_1 + outer_2)*x10;
-            q[2*n + k] = x9*(outer_3 + outer_4);
-            q[3*n + k] = x10*(outer_3 - outer_4);
+            q[2*n + k] = (outer_3 + outer_4)*x9;
+            q[3*n + k] = (outer_3 - outer_4)*x10;
         }
     }
 }

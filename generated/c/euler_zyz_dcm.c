@@ -38,8 +38,8 @@
 void euler_zyz_dcm(const double angles[3], double dcm[9])
 {
     const double phi = angles[0];
-    const double theta = angles[1];
     const double psi = angles[2];
+    const double theta = angles[1];
     const double sin_phi = sin(phi);
     const double sin_psi = sin(psi);
     const double outer_1 = sin_phi*sin_psi;
@@ -70,8 +70,8 @@ void euler_zyz_dcm_batch(size_t n, const double *SYMROT_RESTRICT angles, double 
         SYMROT_INDEPENDENT
         for (size_t k = start; k < end; ++k) {
             const double phi = angles[0*n + k];
-            const double theta = angles[1*n + k];
             const double psi = angles[2*n + k];
+            const double theta = angles[1*n + k];
             const double sin_phi = symrot_sin(phi);
             const double sin_psi = symrot_sin(psi);
             const double outer_1 = sin_phi*sin_psi;
@@ -97,8 +97,8 @@ void euler_zyz_dcm_batch(size_t n, const double *SYMROT_RESTRICT angles, double 
         const size_t again = beyond == 0 ? start : end;
         for (size_t k = start; k < again; ++k) {
             const double phi = angles[0*n + k];
-            const double theta = angles[1*n + k];
             const double psi = angles[2*n + k];
+            const double theta = angles[1*n + k];
             const double sin_phi = sin(phi);
             const double sin_psi = sin(psi);
             const double outer_1 = sin_phi*sin_psi;
@@ -126,8 +126,8 @@ void euler_zyz_dcm_batch(size_t n, const double *SYMROT_RESTRICT angles, double 
 void euler_zyz_dcmf(const float angles[3], float dcm[9])
 {
     const float phi = angles[0];
-    const float theta = angles[1];
     const float psi = angles[2];
+    const float theta = angles[1];
     const float sin_phi = sinf(phi);
     const float sin_psi = sinf(psi);
     const float outer_1 = sin_phi*sin_psi;
@@ -158,8 +158,8 @@ void euler_zyz_dcmf_batch(size_t n, const float *SYMROT_RESTRICT angles, float *
         SYMROT_INDEPENDENT
         for (size_t k = start; k < end; ++k) {
             const float phi = angles[0*n + k];
-            const float theta = angles[1*n + k];
             const float psi = angles[2*n + k];
+            const float theta = angles[1*n + k];
             const float sin_phi = symrot_sinf(phi);
             const float sin_psi = symrot_sinf(psi);
             const float outer_1 = sin_phi*sin_psi;
@@ -185,8 +185,8 @@ void euler_zyz_dcmf_batch(size_t n, const float *SYMROT_RESTRICT angles, float *
         const size_t again = beyond == 0 ? start : end;
         for (size_t k = start; k < again; ++k) {
             const float phi = angles[0*n + k];
-            const float theta = angles[1*n + k];
             const float psi = angles[2*n + k];
+            const float theta = angles[1*n + k];
             const float sin_phi = sinf(phi);
             const float sin_psi = sinf(psi);
             const float outer_1 = sin_phi*sin_psi;

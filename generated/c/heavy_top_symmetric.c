@@ -59,7 +59,7 @@ void heavy_top_symmetric(
     const double q3 = q[3];
     const double moment_of_weight_3 = 2.0*W*h;
     const double half_vertical_2 = q0*q1 + q2*q3;
-    const double x2 = omega_3*(A - C);
+    const double x2 = (A - C)*omega_3;
     const double x3 = 1.0/A;
     const double half_vertical_1 = q1*q3 - q0*q2;
 
@@ -97,7 +97,7 @@ void heavy_top_symmetric_batch(
         const double q3 = q[3*n + k];
         const double moment_of_weight_3 = 2.0*W_k*h_k;
         const double half_vertical_2 = q0*q1 + q2*q3;
-        const double x2 = omega_3*(A - C);
+        const double x2 = (A - C)*omega_3;
         const double x3 = 1.0/A;
         const double half_vertical_1 = q1*q3 - q0*q2;
 
@@ -131,7 +131,7 @@ void heavy_top_symmetricf(
     const float q3 = q[3];
     const float moment_of_weight_3 = 2.0f*W*h;
     const float half_vertical_2 = q0*q1 + q2*q3;
-    const float x2 = omega_3*(A - C);
+    const float x2 = (A - C)*omega_3;
     const float x3 = 1.0f/A;
     const float half_vertical_1 = q1*q3 - q0*q2;
 
@@ -169,7 +169,7 @@ void heavy_top_symmetricf_batch(
         const float q3 = q[3*n + k];
         const float moment_of_weight_3 = 2.0f*W_k*h_k;
         const float half_vertical_2 = q0*q1 + q2*q3;
-        const float x2 = omega_3*(A - C);
+        const float x2 = (A - C)*omega_3;
         const float x3 = 1.0f/A;
         const float half_vertical_1 = q1*q3 - q0*q2;
 

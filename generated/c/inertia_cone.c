@@ -46,7 +46,7 @@ void inertia_cone(double m, const double dimensions[2], double inertia[6], doubl
     const double R = dimensions[0];
     const double h = dimensions[1];
     const double x0 = R*R;
-    const double x1 = 0.0375*m*(4.0*x0 + h*h);
+    const double x1 = 0.0375*(4.0*x0 + h*h)*m;
 
     inertia[0] = x1;
     inertia[1] = x1;
@@ -69,7 +69,7 @@ void inertia_cone_batch(
         const double R = dimensions[0*n + k];
         const double h = dimensions[1*n + k];
         const double x0 = R*R;
-        const double x1 = 0.0375*m_k*(4.0*x0 + h*h);
+        const double x1 = 0.0375*(4.0*x0 + h*h)*m_k;
 
         inertia[0*n + k] = x1;
         inertia[1*n + k] = x1;
@@ -88,7 +88,7 @@ void inertia_conef(float m, const float dimensions[2], float inertia[6], float c
     const float R = dimensions[0];
     const float h = dimensions[1];
     const float x0 = R*R;
-    const float x1 = 0.0375f*m*(4.0f*x0 + h*h);
+    const float x1 = 0.0375f*(4.0f*x0 + h*h)*m;
 
     inertia[0] = x1;
     inertia[1] = x1;
@@ -111,7 +111,7 @@ void inertia_conef_batch(
         const float R = dimensions[0*n + k];
         const float h = dimensions[1*n + k];
         const float x0 = R*R;
-        const float x1 = 0.0375f*m_k*(4.0f*x0 + h*h);
+        const float x1 = 0.0375f*(4.0f*x0 + h*h)*m_k;
 
         inertia[0*n + k] = x1;
         inertia[1*n + k] = x1;

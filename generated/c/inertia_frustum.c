@@ -69,7 +69,7 @@ void inertia_frustum(double m, const double dimensions[3], double inertia[6], do
     inertia[5] = 0.0;
     center_of_mass[0] = 0.0;
     center_of_mass[1] = 0.0;
-    center_of_mass[2] = 0.25*h*(x0 + 3.0*x2 + 2.0*x4)*x9;
+    center_of_mass[2] = 0.25*(x0 + 3.0*x2 + 2.0*x4)*h*x9;
 }
 
 void inertia_frustum_batch(
@@ -104,7 +104,7 @@ void inertia_frustum_batch(
         inertia[5*n + k] = 0.0;
         center_of_mass[0*n + k] = 0.0;
         center_of_mass[1*n + k] = 0.0;
-        center_of_mass[2*n + k] = 0.25*h*(x0 + 3.0*x2 + 2.0*x4)*x9;
+        center_of_mass[2*n + k] = 0.25*(x0 + 3.0*x2 + 2.0*x4)*h*x9;
     }
 }
 
@@ -135,7 +135,7 @@ void inertia_frustumf(float m, const float dimensions[3], float inertia[6], floa
     inertia[5] = 0.0f;
     center_of_mass[0] = 0.0f;
     center_of_mass[1] = 0.0f;
-    center_of_mass[2] = 0.25f*h*(x0 + 3.0f*x2 + 2.0f*x4)*x9;
+    center_of_mass[2] = 0.25f*(x0 + 3.0f*x2 + 2.0f*x4)*h*x9;
 }
 
 void inertia_frustumf_batch(
@@ -170,6 +170,6 @@ void inertia_frustumf_batch(
         inertia[5*n + k] = 0.0f;
         center_of_mass[0*n + k] = 0.0f;
         center_of_mass[1*n + k] = 0.0f;
-        center_of_mass[2*n + k] = 0.25f*h*(x0 + 3.0f*x2 + 2.0f*x4)*x9;
+        center_of_mass[2*n + k] = 0.25f*(x0 + 3.0f*x2 + 2.0f*x4)*h*x9;
     }
 }

@@ -47,11 +47,11 @@ void inertia_torus(double m, const double dimensions[2], double inertia[6], doub
     const double r = dimensions[1];
     const double x0 = 4.0*R*R;
     const double x1 = r*r;
-    const double x2 = 0.125*m*(x0 + 5.0*x1);
+    const double x2 = 0.125*(x0 + 5.0*x1)*m;
 
     inertia[0] = x2;
     inertia[1] = x2;
-    inertia[2] = 0.25*m*(x0 + 3.0*x1);
+    inertia[2] = 0.25*(x0 + 3.0*x1)*m;
     inertia[3] = 0.0;
     inertia[4] = 0.0;
     inertia[5] = 0.0;
@@ -71,11 +71,11 @@ void inertia_torus_batch(
         const double r = dimensions[1*n + k];
         const double x0 = 4.0*R*R;
         const double x1 = r*r;
-        const double x2 = 0.125*m_k*(x0 + 5.0*x1);
+        const double x2 = 0.125*(x0 + 5.0*x1)*m_k;
 
         inertia[0*n + k] = x2;
         inertia[1*n + k] = x2;
-        inertia[2*n + k] = 0.25*m_k*(x0 + 3.0*x1);
+        inertia[2*n + k] = 0.25*(x0 + 3.0*x1)*m_k;
         inertia[3*n + k] = 0.0;
         inertia[4*n + k] = 0.0;
         inertia[5*n + k] = 0.0;
@@ -91,11 +91,11 @@ void inertia_torusf(float m, const float dimensions[2], float inertia[6], float 
     const float r = dimensions[1];
     const float x0 = 4.0f*R*R;
     const float x1 = r*r;
-    const float x2 = 0.125f*m*(x0 + 5.0f*x1);
+    const float x2 = 0.125f*(x0 + 5.0f*x1)*m;
 
     inertia[0] = x2;
     inertia[1] = x2;
-    inertia[2] = 0.25f*m*(x0 + 3.0f*x1);
+    inertia[2] = 0.25f*(x0 + 3.0f*x1)*m;
     inertia[3] = 0.0f;
     inertia[4] = 0.0f;
     inertia[5] = 0.0f;
@@ -115,11 +115,11 @@ void inertia_torusf_batch(
         const float r = dimensions[1*n + k];
         const float x0 = 4.0f*R*R;
         const float x1 = r*r;
-        const float x2 = 0.125f*m_k*(x0 + 5.0f*x1);
+        const float x2 = 0.125f*(x0 + 5.0f*x1)*m_k;
 
         inertia[0*n + k] = x2;
         inertia[1*n + k] = x2;
-        inertia[2*n + k] = 0.25f*m_k*(x0 + 3.0f*x1);
+        inertia[2*n + k] = 0.25f*(x0 + 3.0f*x1)*m_k;
         inertia[3*n + k] = 0.0f;
         inertia[4*n + k] = 0.0f;
         inertia[5*n + k] = 0.0f;

@@ -55,7 +55,7 @@ void inertia_triangular_plate(
     inertia[0] = x0*x1;
     inertia[1] = (-x2)*x1;
     inertia[2] = (x0 - x2)*x1;
-    inertia[3] = 0.027777777777777776*h*m*(b - 2.0*e);
+    inertia[3] = 0.027777777777777776*(b - 2.0*e)*h*m;
     inertia[4] = 0.0;
     inertia[5] = 0.0;
     center_of_mass[0] = 0.3333333333333333*(b + e);
@@ -80,7 +80,7 @@ void inertia_triangular_plate_batch(
         inertia[0*n + k] = x0*x1;
         inertia[1*n + k] = (-x2)*x1;
         inertia[2*n + k] = (x0 - x2)*x1;
-        inertia[3*n + k] = 0.027777777777777776*h*m_k*(b - 2.0*e);
+        inertia[3*n + k] = 0.027777777777777776*(b - 2.0*e)*h*m_k;
         inertia[4*n + k] = 0.0;
         inertia[5*n + k] = 0.0;
         center_of_mass[0*n + k] = 0.3333333333333333*(b + e);
@@ -101,7 +101,7 @@ void inertia_triangular_platef(float m, const float dimensions[3], float inertia
     inertia[0] = x0*x1;
     inertia[1] = (-x2)*x1;
     inertia[2] = (x0 - x2)*x1;
-    inertia[3] = 0.027777778f*h*m*(b - 2.0f*e);
+    inertia[3] = 0.027777778f*(b - 2.0f*e)*h*m;
     inertia[4] = 0.0f;
     inertia[5] = 0.0f;
     center_of_mass[0] = 0.33333333f*(b + e);
@@ -126,7 +126,7 @@ void inertia_triangular_platef_batch(
         inertia[0*n + k] = x0*x1;
         inertia[1*n + k] = (-x2)*x1;
         inertia[2*n + k] = (x0 - x2)*x1;
-        inertia[3*n + k] = 0.027777778f*h*m_k*(b - 2.0f*e);
+        inertia[3*n + k] = 0.027777778f*(b - 2.0f*e)*h*m_k;
         inertia[4*n + k] = 0.0f;
         inertia[5*n + k] = 0.0f;
         center_of_mass[0*n + k] = 0.33333333f*(b + e);

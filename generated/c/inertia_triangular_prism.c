@@ -57,8 +57,8 @@ void inertia_triangular_prism(
 
     inertia[0] = (x0 + 2.0*x1)*x2;
     inertia[1] = (x0 + 2.0*(-x3))*x2;
-    inertia[2] = 0.05555555555555555*m*(x1 - x3);
-    inertia[3] = h*(b - 2.0*e)*x2;
+    inertia[2] = 0.05555555555555555*(x1 - x3)*m;
+    inertia[3] = (b - 2.0*e)*h*x2;
     inertia[4] = 0.0;
     inertia[5] = 0.0;
     center_of_mass[0] = 0.3333333333333333*(b + e);
@@ -84,8 +84,8 @@ void inertia_triangular_prism_batch(
 
         inertia[0*n + k] = (x0 + 2.0*x1)*x2;
         inertia[1*n + k] = (x0 + 2.0*(-x3))*x2;
-        inertia[2*n + k] = 0.05555555555555555*m_k*(x1 - x3);
-        inertia[3*n + k] = h*(b - 2.0*e)*x2;
+        inertia[2*n + k] = 0.05555555555555555*(x1 - x3)*m_k;
+        inertia[3*n + k] = (b - 2.0*e)*h*x2;
         inertia[4*n + k] = 0.0;
         inertia[5*n + k] = 0.0;
         center_of_mass[0*n + k] = 0.3333333333333333*(b + e);
@@ -107,8 +107,8 @@ void inertia_triangular_prismf(float m, const float dimensions[4], float inertia
 
     inertia[0] = (x0 + 2.0f*x1)*x2;
     inertia[1] = (x0 + 2.0f*(-x3))*x2;
-    inertia[2] = 0.055555556f*m*(x1 - x3);
-    inertia[3] = h*(b - 2.0f*e)*x2;
+    inertia[2] = 0.055555556f*(x1 - x3)*m;
+    inertia[3] = (b - 2.0f*e)*h*x2;
     inertia[4] = 0.0f;
     inertia[5] = 0.0f;
     center_of_mass[0] = 0.33333333f*(b + e);
@@ -134,8 +134,8 @@ void inertia_triangular_prismf_batch(
 
         inertia[0*n + k] = (x0 + 2.0f*x1)*x2;
         inertia[1*n + k] = (x0 + 2.0f*(-x3))*x2;
-        inertia[2*n + k] = 0.055555556f*m_k*(x1 - x3);
-        inertia[3*n + k] = h*(b - 2.0f*e)*x2;
+        inertia[2*n + k] = 0.055555556f*(x1 - x3)*m_k;
+        inertia[3*n + k] = (b - 2.0f*e)*h*x2;
         inertia[4*n + k] = 0.0f;
         inertia[5*n + k] = 0.0f;
         center_of_mass[0*n + k] = 0.33333333f*(b + e);

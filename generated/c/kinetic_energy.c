@@ -49,8 +49,8 @@ void kinetic_energy(const double inertia[6], const double omega[3], double energ
     const double omega_2 = omega[1];
     const double omega_3 = omega[2];
 
-    energy[0] = 0.5*(omega_1*(omega_1*I_xx + I_xy*omega_2 + I_xz*omega_3) + omega_2*(omega_1*I_xy + omega_2*I_yy +
-        omega_3*I_yz) + omega_3*(omega_1*I_xz + omega_2*I_yz + omega_3*I_zz));
+    energy[0] = 0.5*((omega_1*I_xx + I_xy*omega_2 + I_xz*omega_3)*omega_1 + (omega_1*I_xy + omega_2*I_yy +
+        omega_3*I_yz)*omega_2 + (omega_1*I_xz + omega_2*I_yz + omega_3*I_zz)*omega_3);
 }
 
 void kinetic_energy_batch(
@@ -69,8 +69,8 @@ void kinetic_energy_batch(
         const double omega_2 = omega[1*n + k];
         const double omega_3 = omega[2*n + k];
 
-        energy[0*n + k] = 0.5*(omega_1*(omega_1*I_xx + I_xy*omega_2 + I_xz*omega_3) + omega_2*(omega_1*I_xy +
-            omega_2*I_yy + omega_3*I_yz) + omega_3*(omega_1*I_xz + omega_2*I_yz + omega_3*I_zz));
+        energy[0*n + k] = 0.5*((omega_1*I_xx + I_xy*omega_2 + I_xz*omega_3)*omega_1 + (omega_1*I_xy + omega_2*I_yy +
+            omega_3*I_yz)*omega_2 + (omega_1*I_xz + omega_2*I_yz + omega_3*I_zz)*omega_3);
     }
 }
 
@@ -86,8 +86,8 @@ void kinetic_energyf(const float inertia[6], const float omega[3], float energy[
     const float omega_2 = omega[1];
     const float omega_3 = omega[2];
 
-    energy[0] = 0.5f*(omega_1*(omega_1*I_xx + I_xy*omega_2 + I_xz*omega_3) + omega_2*(omega_1*I_xy + omega_2*I_yy +
-        omega_3*I_yz) + omega_3*(omega_1*I_xz + omega_2*I_yz + omega_3*I_zz));
+    energy[0] = 0.5f*((omega_1*I_xx + I_xy*omega_2 + I_xz*omega_3)*omega_1 + (omega_1*I_xy + omega_2*I_yy +
+        omega_3*I_yz)*omega_2 + (omega_1*I_xz + omega_2*I_yz + omega_3*I_zz)*omega_3);
 }
 
 void kinetic_energyf_batch(
@@ -106,7 +106,7 @@ void kinetic_energyf_batch(
         const float omega_2 = omega[1*n + k];
         const float omega_3 = omega[2*n + k];
 
-        energy[0*n + k] = 0.5f*(omega_1*(omega_1*I_xx + I_xy*omega_2 + I_xz*omega_3) + omega_2*(omega_1*I_xy +
-            omega_2*I_yy + omega_3*I_yz) + omega_3*(omega_1*I_xz + omega_2*I_yz + omega_3*I_zz));
+        energy[0*n + k] = 0.5f*((omega_1*I_xx + I_xy*omega_2 + I_xz*omega_3)*omega_1 + (omega_1*I_xy + omega_2*I_yy +
+            omega_3*I_yz)*omega_2 + (omega_1*I_xz + omega_2*I_yz + omega_3*I_zz)*omega_3);
     }
 }

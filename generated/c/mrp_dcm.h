@@ -19,7 +19,7 @@
  * Convention: body axes; quaternion scalar first, Hamilton, body to space (symrot conventions).
  * Domain: all finite parameters.
  * Box: s1, s2, s3 in [-1, 1].
- * Errors: on the box at most 2.28e-15 [1.23e-06] in dcm (float functions in brackets).
+ * Errors: on the box at most 2.34e-15 [1.26e-06] in dcm (float functions in brackets).
  * Certificate: mrp_dcm.cert.json; re-check it by `python recheck.py mrp_dcm.cert.json` or `symrot audit`.
  * Assumes: IEEE 754 arithmetic, rounding to nearest; outputs do not overlap inputs; for bounds of rounding
  *     errors, functions of <math.h> within 1 unit in the last place.

@@ -49,17 +49,18 @@ void quaternion_dcm(const double q[4], double dcm[9])
     const double x7 = q1*twice_3;
     const double twice_1 = 2.0*q1;
     const double x9 = q1*twice_1;
-    const double x10 = twice_1*q0;
-    const double x11 = q2*twice_3;
+    const double lost_2 = x9 + x1;
+    const double x11 = twice_1*q0;
+    const double x12 = q2*twice_3;
 
     dcm[0] = x3 - x1;
     dcm[1] = x5 - x4;
     dcm[2] = x6 + x7;
     dcm[3] = x4 + x5;
-    dcm[4] = 1.0 - x1 - x9;
-    dcm[5] = x11 - x10;
+    dcm[4] = 1.0 - lost_2;
+    dcm[5] = x12 - x11;
     dcm[6] = x7 - x6;
-    dcm[7] = x10 + x11;
+    dcm[7] = x11 + x12;
     dcm[8] = x3 - x9;
 }
 
@@ -81,17 +82,18 @@ void quaternion_dcm_batch(size_t n, const double *SYMROT_RESTRICT q, double *SYM
         const double x7 = q1*twice_3;
         const double twice_1 = 2.0*q1;
         const double x9 = q1*twice_1;
-        const double x10 = twice_1*q0;
-        const double x11 = q2*twice_3;
+        const double lost_2 = x9 + x1;
+        const double x11 = twice_1*q0;
+        const double x12 = q2*twice_3;
 
         dcm[0*n + k] = x3 - x1;
         dcm[1*n + k] = x5 - x4;
         dcm[2*n + k] = x6 + x7;
         dcm[3*n + k] = x4 + x5;
-        dcm[4*n + k] = 1.0 - x1 - x9;
-        dcm[5*n + k] = x11 - x10;
+        dcm[4*n + k] = 1.0 - lost_2;
+        dcm[5*n + k] = x12 - x11;
         dcm[6*n + k] = x7 - x6;
-        dcm[7*n + k] = x10 + x11;
+        dcm[7*n + k] = x11 + x12;
         dcm[8*n + k] = x3 - x9;
     }
 }
@@ -112,17 +114,18 @@ void quaternion_dcmf(const float q[4], float dcm[9])
     const float x7 = q1*twice_3;
     const float twice_1 = 2.0f*q1;
     const float x9 = q1*twice_1;
-    const float x10 = twice_1*q0;
-    const float x11 = q2*twice_3;
+    const float lost_2 = x9 + x1;
+    const float x11 = twice_1*q0;
+    const float x12 = q2*twice_3;
 
     dcm[0] = x3 - x1;
     dcm[1] = x5 - x4;
     dcm[2] = x6 + x7;
     dcm[3] = x4 + x5;
-    dcm[4] = 1.0f - x1 - x9;
-    dcm[5] = x11 - x10;
+    dcm[4] = 1.0f - lost_2;
+    dcm[5] = x12 - x11;
     dcm[6] = x7 - x6;
-    dcm[7] = x10 + x11;
+    dcm[7] = x11 + x12;
     dcm[8] = x3 - x9;
 }
 
@@ -144,17 +147,18 @@ void quaternion_dcmf_batch(size_t n, const float *SYMROT_RESTRICT q, float *SYMR
         const float x7 = q1*twice_3;
         const float twice_1 = 2.0f*q1;
         const float x9 = q1*twice_1;
-        const float x10 = twice_1*q0;
-        const float x11 = q2*twice_3;
+        const float lost_2 = x9 + x1;
+        const float x11 = twice_1*q0;
+        const float x12 = q2*twice_3;
 
         dcm[0*n + k] = x3 - x1;
         dcm[1*n + k] = x5 - x4;
         dcm[2*n + k] = x6 + x7;
         dcm[3*n + k] = x4 + x5;
-        dcm[4*n + k] = 1.0f - x1 - x9;
-        dcm[5*n + k] = x11 - x10;
+        dcm[4*n + k] = 1.0f - lost_2;
+        dcm[5*n + k] = x12 - x11;
         dcm[6*n + k] = x7 - x6;
-        dcm[7*n + k] = x10 + x11;
+        dcm[7*n + k] = x11 + x12;
         dcm[8*n + k] = x3 - x9;
     }
 }

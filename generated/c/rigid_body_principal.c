@@ -33,7 +33,7 @@
  * Domain: positive definite inertia.
  * Box: A, B, C in [1, 4]; omega_1, omega_2, omega_3, tau_1, tau_2, tau_3 in [-10, 10]; q0, q1, q2, q3 in [-1,
  *     1].
- * Errors: on the box at most 1.29e-13 [6.92e-05] rad/s^2 in domega; 3.11e-15 [1.67e-06] 1/s in dq (float
+ * Errors: on the box at most 1.26e-13 [6.73e-05] rad/s^2 in domega; 3.11e-15 [1.67e-06] 1/s in dq (float
  *     functions in brackets).
  * Certificate: rigid_body_principal.cert.json; re-check it by `python recheck.py rigid_body_principal.cert.json`
  *     or `symrot audit`.
@@ -61,9 +61,9 @@ void rigid_body_principal(
     const double tau_2 = torque[1];
     const double tau_3 = torque[2];
 
-    domega[0] = (tau_1 + omega_2*omega_3*(B - C))/A;
-    domega[1] = (tau_2 - omega_1*omega_3*(A - C))/B;
-    domega[2] = (tau_3 + omega_1*omega_2*(A - B))/C;
+    domega[0] = (tau_1 + (B - C)*omega_2*omega_3)/A;
+    domega[1] = (tau_2 + (C - A)*omega_1*omega_3)/B;
+    domega[2] = (tau_3 + (A - B)*omega_1*omega_2)/C;
 
     const double q0 = q[0];
     const double q1 = q[1];
@@ -96,9 +96,9 @@ void rigid_body_principal_batch(
         const double tau_2 = torque[1*n + k];
         const double tau_3 = torque[2*n + k];
 
-        domega[0*n + k] = (tau_1 + omega_2*omega_3*(B - C))/A;
-        domega[1*n + k] = (tau_2 - omega_1*omega_3*(A - C))/B;
-        domega[2*n + k] = (tau_3 + omega_1*omega_2*(A - B))/C;
+        domega[0*n + k] = (tau_1 + (B - C)*omega_2*omega_3)/A;
+        domega[1*n + k] = (tau_2 + (C - A)*omega_1*omega_3)/B;
+        domega[2*n + k] = (tau_3 + (A - B)*omega_1*omega_2)/C;
 
         const double q0 = q[0*n + k];
         const double q1 = q[1*n + k];
@@ -129,9 +129,9 @@ void rigid_body_principalf(
     const float tau_2 = torque[1];
     const float tau_3 = torque[2];
 
-    domega[0] = (tau_1 + omega_2*omega_3*(B - C))/A;
-    domega[1] = (tau_2 - omega_1*omega_3*(A - C))/B;
-    domega[2] = (tau_3 + omega_1*omega_2*(A - B))/C;
+    domega[0] = (tau_1 + (B - C)*omega_2*omega_3)/A;
+    domega[1] = (tau_2 + (C - A)*omega_1*omega_3)/B;
+    domega[2] = (tau_3 + (A - B)*omega_1*omega_2)/C;
 
     const float q0 = q[0];
     const float q1 = q[1];
@@ -164,9 +164,9 @@ void rigid_body_principalf_batch(
         const float tau_2 = torque[1*n + k];
         const float tau_3 = torque[2*n + k];
 
-        domega[0*n + k] = (tau_1 + omega_2*omega_3*(B - C))/A;
-        domega[1*n + k] = (tau_2 - omega_1*omega_3*(A - C))/B;
-        domega[2*n + k] = (tau_3 + omega_1*omega_2*(A - B))/C;
+        domega[0*n + k] = (tau_1 + (B - C)*omega_2*omega_3)/A;
+        domega[1*n + k] = (tau_2 + (C - A)*omega_1*omega_3)/B;
+        domega[2*n + k] = (tau_3 + (A - B)*omega_1*omega_2)/C;
 
         const float q0 = q[0*n + k];
         const float q1 = q[1*n + k];

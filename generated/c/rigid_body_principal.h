@@ -33,7 +33,7 @@
  * Domain: positive definite inertia.
  * Box: A, B, C in [1, 4]; omega_1, omega_2, omega_3, tau_1, tau_2, tau_3 in [-10, 10]; q0, q1, q2, q3 in [-1,
  *     1].
- * Errors: on the box at most 1.29e-13 [6.92e-05] rad/s^2 in domega; 3.11e-15 [1.67e-06] 1/s in dq (float
+ * Errors: on the box at most 1.26e-13 [6.73e-05] rad/s^2 in domega; 3.11e-15 [1.67e-06] 1/s in dq (float
  *     functions in brackets).
  * Certificate: rigid_body_principal.cert.json; re-check it by `python recheck.py rigid_body_principal.cert.json`
  *     or `symrot audit`.

@@ -115,7 +115,7 @@ void rotation_vector_body_jacobian(const double v[3], double jacobian[9])
     jacobian[1] = x8 + x10;
     jacobian[2] = x12 - x11;
     jacobian[3] = x10 - x8;
-    jacobian[4] = 1.0 - x5*(x2 + x1);
+    jacobian[4] = 1.0 - (x2 + x1)*x5;
     jacobian[5] = x13 + x14;
     jacobian[6] = x11 + x12;
     jacobian[7] = x14 - x13;
@@ -153,7 +153,7 @@ void rotation_vector_body_jacobian_batch(
             jacobian[1*n + k] = x8 + x10;
             jacobian[2*n + k] = x12 - x11;
             jacobian[3*n + k] = x10 - x8;
-            jacobian[4*n + k] = 1.0 - x5*(x2 + x1);
+            jacobian[4*n + k] = 1.0 - (x2 + x1)*x5;
             jacobian[5*n + k] = x13 + x14;
             jacobian[6*n + k] = x11 + x12;
             jacobian[7*n + k] = x14 - x13;
@@ -185,7 +185,7 @@ void rotation_vector_body_jacobian_batch(
             jacobian[1*n + k] = x8 + x10;
             jacobian[2*n + k] = x12 - x11;
             jacobian[3*n + k] = x10 - x8;
-            jacobian[4*n + k] = 1.0 - x5*(x2 + x1);
+            jacobian[4*n + k] = 1.0 - (x2 + x1)*x5;
             jacobian[5*n + k] = x13 + x14;
             jacobian[6*n + k] = x11 + x12;
             jacobian[7*n + k] = x14 - x13;
@@ -219,7 +219,7 @@ void rotation_vector_body_jacobianf(const float v[3], float jacobian[9])
     jacobian[1] = x8 + x10;
     jacobian[2] = x12 - x11;
     jacobian[3] = x10 - x8;
-    jacobian[4] = 1.0f - x5*(x2 + x1);
+    jacobian[4] = 1.0f - (x2 + x1)*x5;
     jacobian[5] = x13 + x14;
     jacobian[6] = x11 + x12;
     jacobian[7] = x14 - x13;
@@ -257,7 +257,7 @@ void rotation_vector_body_jacobianf_batch(
             jacobian[1*n + k] = x8 + x10;
             jacobian[2*n + k] = x12 - x11;
             jacobian[3*n + k] = x10 - x8;
-            jacobian[4*n + k] = 1.0f - x5*(x2 + x1);
+            jacobian[4*n + k] = 1.0f - (x2 + x1)*x5;
             jacobian[5*n + k] = x13 + x14;
             jacobian[6*n + k] = x11 + x12;
             jacobian[7*n + k] = x14 - x13;
@@ -289,7 +289,7 @@ void rotation_vector_body_jacobianf_batch(
             jacobian[1*n + k] = x8 + x10;
             jacobian[2*n + k] = x12 - x11;
             jacobian[3*n + k] = x10 - x8;
-            jacobian[4*n + k] = 1.0f - x5*(x2 + x1);
+            jacobian[4*n + k] = 1.0f - (x2 + x1)*x5;
             jacobian[5*n + k] = x13 + x14;
             jacobian[6*n + k] = x11 + x12;
             jacobian[7*n + k] = x14 - x13;

@@ -103,9 +103,9 @@ void rotation_vector_space_rates(const double v[3], const double omega[3], doubl
     const double x6 = symrot_sinc(x4);
     const double x7 = 0.25*(x5/x6);
 
-    dv[0] = omega_x - 0.5*cross_1 - (v3*cross_2 - v2*cross_3)*x7;
+    dv[0] = omega_x + (v2*cross_3 - v3*cross_2)*x7 - 0.5*cross_1;
     dv[1] = omega_y + (v3*cross_1 - v1*cross_3)*x7 - 0.5*cross_2;
-    dv[2] = omega_z - 0.5*cross_3 - (v2*cross_1 - v1*cross_2)*x7;
+    dv[2] = omega_z + (v1*cross_2 - v2*cross_1)*x7 - 0.5*cross_3;
 }
 
 void rotation_vector_space_rates_batch(
@@ -131,9 +131,9 @@ void rotation_vector_space_rates_batch(
             const double x6 = symrot_near_sinc(x4);
             const double x7 = 0.25*(x5/x6);
 
-            dv[0*n + k] = omega_x - 0.5*cross_1 - (v3*cross_2 - v2*cross_3)*x7;
+            dv[0*n + k] = omega_x + (v2*cross_3 - v3*cross_2)*x7 - 0.5*cross_1;
             dv[1*n + k] = omega_y + (v3*cross_1 - v1*cross_3)*x7 - 0.5*cross_2;
-            dv[2*n + k] = omega_z - 0.5*cross_3 - (v2*cross_1 - v1*cross_2)*x7;
+            dv[2*n + k] = omega_z + (v1*cross_2 - v2*cross_1)*x7 - 0.5*cross_3;
             beyond += symrot_far(x4);
         }
         const size_t again = beyond == 0 ? start : end;
@@ -153,9 +153,9 @@ void rotation_vector_space_rates_batch(
             const double x6 = symrot_sinc(x4);
             const double x7 = 0.25*(x5/x6);
 
-            dv[0*n + k] = omega_x - 0.5*cross_1 - (v3*cross_2 - v2*cross_3)*x7;
+            dv[0*n + k] = omega_x + (v2*cross_3 - v3*cross_2)*x7 - 0.5*cross_1;
             dv[1*n + k] = omega_y + (v3*cross_1 - v1*cross_3)*x7 - 0.5*cross_2;
-            dv[2*n + k] = omega_z - 0.5*cross_3 - (v2*cross_1 - v1*cross_2)*x7;
+            dv[2*n + k] = omega_z + (v1*cross_2 - v2*cross_1)*x7 - 0.5*cross_3;
         }
     }
 }
@@ -177,9 +177,9 @@ void rotation_vector_space_ratesf(const float v[3], const float omega[3], float 
     const float x6 = symrot_sincf(x4);
     const float x7 = 0.25f*(x5/x6);
 
-    dv[0] = omega_x - 0.5f*cross_1 - (v3*cross_2 - v2*cross_3)*x7;
+    dv[0] = omega_x + (v2*cross_3 - v3*cross_2)*x7 - 0.5f*cross_1;
     dv[1] = omega_y + (v3*cross_1 - v1*cross_3)*x7 - 0.5f*cross_2;
-    dv[2] = omega_z - 0.5f*cross_3 - (v2*cross_1 - v1*cross_2)*x7;
+    dv[2] = omega_z + (v1*cross_2 - v2*cross_1)*x7 - 0.5f*cross_3;
 }
 
 void rotation_vector_space_ratesf_batch(
@@ -205,9 +205,9 @@ void rotation_vector_space_ratesf_batch(
             const float x6 = symrot_near_sincf(x4);
             const float x7 = 0.25f*(x5/x6);
 
-            dv[0*n + k] = omega_x - 0.5f*cross_1 - (v3*cross_2 - v2*cross_3)*x7;
+            dv[0*n + k] = omega_x + (v2*cross_3 - v3*cross_2)*x7 - 0.5f*cross_1;
             dv[1*n + k] = omega_y + (v3*cross_1 - v1*cross_3)*x7 - 0.5f*cross_2;
-            dv[2*n + k] = omega_z - 0.5f*cross_3 - (v2*cross_1 - v1*cross_2)*x7;
+            dv[2*n + k] = omega_z + (v1*cross_2 - v2*cross_1)*x7 - 0.5f*cross_3;
             beyond += symrot_farf(x4);
         }
         const size_t again = beyond == 0 ? start : end;
@@ -227,9 +227,9 @@ void rotation_vector_space_ratesf_batch(
             const float x6 = symrot_sincf(x4);
             const float x7 = 0.25f*(x5/x6);
 
-            dv[0*n + k] = omega_x - 0.5f*cross_1 - (v3*cross_2 - v2*cross_3)*x7;
+            dv[0*n + k] = omega_x + (v2*cross_3 - v3*cross_2)*x7 - 0.5f*cross_1;
             dv[1*n + k] = omega_y + (v3*cross_1 - v1*cross_3)*x7 - 0.5f*cross_2;
-            dv[2*n + k] = omega_z - 0.5f*cross_3 - (v2*cross_1 - v1*cross_2)*x7;
+            dv[2*n + k] = omega_z + (v1*cross_2 - v2*cross_1)*x7 - 0.5f*cross_3;
         }
     }
 }

@@ -56,12 +56,12 @@ void torque_gravity(
     const double x1 = direction_1*q3 - direction_3*q1;
     const double x2 = direction_2*q3 - direction_3*q2;
     const double x3 = direction_3 + 2.0*(q0*x0 + q1*x1 + q2*x2);
-    const double x4 = direction_2 - 2.0*(q0*x1 + q3*x2 - q1*x0);
-    const double x5 = direction_1 - 2.0*(q2*x0 + q3*x1 - q0*x2);
+    const double x4 = direction_2 + 2.0*(q1*x0 - q0*x1 - q3*x2);
+    const double x5 = direction_1 + 2.0*(q0*x2 - q2*x0 - q3*x1);
 
-    torque_b[0] = weight*(center_of_mass_2*x3 - center_of_mass_3*x4);
-    torque_b[1] = weight*(center_of_mass_3*x5 - x3*center_of_mass_1);
-    torque_b[2] = weight*(x4*center_of_mass_1 - center_of_mass_2*x5);
+    torque_b[0] = (center_of_mass_2*x3 - center_of_mass_3*x4)*weight;
+    torque_b[1] = (center_of_mass_3*x5 - x3*center_of_mass_1)*weight;
+    torque_b[2] = (x4*center_of_mass_1 - center_of_mass_2*x5)*weight;
 }
 
 void torque_gravity_batch(
@@ -86,12 +86,12 @@ void torque_gravity_batch(
         const double x1 = direction_1*q3 - direction_3*q1;
         const double x2 = direction_2*q3 - direction_3*q2;
         const double x3 = direction_3 + 2.0*(q0*x0 + q1*x1 + q2*x2);
-        const double x4 = direction_2 - 2.0*(q0*x1 + q3*x2 - q1*x0);
-        const double x5 = direction_1 - 2.0*(q2*x0 + q3*x1 - q0*x2);
+        const double x4 = direction_2 + 2.0*(q1*x0 - q0*x1 - q3*x2);
+        const double x5 = direction_1 + 2.0*(q0*x2 - q2*x0 - q3*x1);
 
-        torque_b[0*n + k] = weight_k*(center_of_mass_2*x3 - center_of_mass_3*x4);
-        torque_b[1*n + k] = weight_k*(center_of_mass_3*x5 - x3*center_of_mass_1);
-        torque_b[2*n + k] = weight_k*(x4*center_of_mass_1 - center_of_mass_2*x5);
+        torque_b[0*n + k] = (center_of_mass_2*x3 - center_of_mass_3*x4)*weight_k;
+        torque_b[1*n + k] = (center_of_mass_3*x5 - x3*center_of_mass_1)*weight_k;
+        torque_b[2*n + k] = (x4*center_of_mass_1 - center_of_mass_2*x5)*weight_k;
     }
 }
 
@@ -112,12 +112,12 @@ void torque_gravityf(
     const float x1 = direction_1*q3 - direction_3*q1;
     const float x2 = direction_2*q3 - direction_3*q2;
     const float x3 = direction_3 + 2.0f*(q0*x0 + q1*x1 + q2*x2);
-    const float x4 = direction_2 - 2.0f*(q0*x1 + q3*x2 - q1*x0);
-    const float x5 = direction_1 - 2.0f*(q2*x0 + q3*x1 - q0*x2);
+    const float x4 = direction_2 + 2.0f*(q1*x0 - q0*x1 - q3*x2);
+    const float x5 = direction_1 + 2.0f*(q0*x2 - q2*x0 - q3*x1);
 
-    torque_b[0] = weight*(center_of_mass_2*x3 - center_of_mass_3*x4);
-    torque_b[1] = weight*(center_of_mass_3*x5 - x3*center_of_mass_1);
-    torque_b[2] = weight*(x4*center_of_mass_1 - center_of_mass_2*x5);
+    torque_b[0] = (center_of_mass_2*x3 - center_of_mass_3*x4)*weight;
+    torque_b[1] = (center_of_mass_3*x5 - x3*center_of_mass_1)*weight;
+    torque_b[2] = (x4*center_of_mass_1 - center_of_mass_2*x5)*weight;
 }
 
 void torque_gravityf_batch(
@@ -142,11 +142,11 @@ void torque_gravityf_batch(
         const float x1 = direction_1*q3 - direction_3*q1;
         const float x2 = direction_2*q3 - direction_3*q2;
         const float x3 = direction_3 + 2.0f*(q0*x0 + q1*x1 + q2*x2);
-        const float x4 = direction_2 - 2.0f*(q0*x1 + q3*x2 - q1*x0);
-        const float x5 = direction_1 - 2.0f*(q2*x0 + q3*x1 - q0*x2);
+        const float x4 = direction_2 + 2.0f*(q1*x0 - q0*x1 - q3*x2);
+        const float x5 = direction_1 + 2.0f*(q0*x2 - q2*x0 - q3*x1);
 
-        torque_b[0*n + k] = weight_k*(center_of_mass_2*x3 - center_of_mass_3*x4);
-        torque_b[1*n + k] = weight_k*(center_of_mass_3*x5 - x3*center_of_mass_1);
-        torque_b[2*n + k] = weight_k*(x4*center_of_mass_1 - center_of_mass_2*x5);
+        torque_b[0*n + k] = (center_of_mass_2*x3 - center_of_mass_3*x4)*weight_k;
+        torque_b[1*n + k] = (center_of_mass_3*x5 - x3*center_of_mass_1)*weight_k;
+        torque_b[2*n + k] = (x4*center_of_mass_1 - center_of_mass_2*x5)*weight_k;
     }
 }

@@ -44,7 +44,7 @@ void torque_spring(const double q[4], double stiffness, const double attitude[4]
     const double attitude_1 = attitude[1];
     const double attitude_2 = attitude[2];
     const double attitude_3 = attitude[3];
-    const double x0 = 2.0*(stiffness*(attitude_0*q0 + attitude_1*q1 + attitude_2*q2 + attitude_3*q3));
+    const double x0 = 2.0*((attitude_0*q0 + attitude_1*q1 + attitude_2*q2 + attitude_3*q3)*stiffness);
 
     torque_b[0] = (q0*attitude_1 + attitude_2*q3 - attitude_0*q1 - q2*attitude_3)*x0;
     torque_b[1] = (q0*attitude_2 + q1*attitude_3 - attitude_0*q2 - attitude_1*q3)*x0;
@@ -66,7 +66,7 @@ void torque_spring_batch(
         const double attitude_1 = attitude[1*n + k];
         const double attitude_2 = attitude[2*n + k];
         const double attitude_3 = attitude[3*n + k];
-        const double x0 = 2.0*(stiffness_k*(attitude_0*q0 + attitude_1*q1 + attitude_2*q2 + attitude_3*q3));
+        const double x0 = 2.0*((attitude_0*q0 + attitude_1*q1 + attitude_2*q2 + attitude_3*q3)*stiffness_k);
 
         torque_b[0*n + k] = (q0*attitude_1 + attitude_2*q3 - attitude_0*q1 - q2*attitude_3)*x0;
         torque_b[1*n + k] = (q0*attitude_2 + q1*attitude_3 - attitude_0*q2 - attitude_1*q3)*x0;
@@ -84,7 +84,7 @@ void torque_springf(const float q[4], float stiffness, const float attitude[4], 
     const float attitude_1 = attitude[1];
     const float attitude_2 = attitude[2];
     const float attitude_3 = attitude[3];
-    const float x0 = 2.0f*(stiffness*(attitude_0*q0 + attitude_1*q1 + attitude_2*q2 + attitude_3*q3));
+    const float x0 = 2.0f*((attitude_0*q0 + attitude_1*q1 + attitude_2*q2 + attitude_3*q3)*stiffness);
 
     torque_b[0] = (q0*attitude_1 + attitude_2*q3 - attitude_0*q1 - q2*attitude_3)*x0;
     torque_b[1] = (q0*attitude_2 + q1*attitude_3 - attitude_0*q2 - attitude_1*q3)*x0;
@@ -106,7 +106,7 @@ void torque_springf_batch(
         const float attitude_1 = attitude[1*n + k];
         const float attitude_2 = attitude[2*n + k];
         const float attitude_3 = attitude[3*n + k];
-        const float x0 = 2.0f*(stiffness_k*(attitude_0*q0 + attitude_1*q1 + attitude_2*q2 + attitude_3*q3));
+        const float x0 = 2.0f*((attitude_0*q0 + attitude_1*q1 + attitude_2*q2 + attitude_3*q3)*stiffness_k);
 
         torque_b[0*n + k] = (q0*attitude_1 + attitude_2*q3 - attitude_0*q1 - q2*attitude_3)*x0;
         torque_b[1*n + k] = (q0*attitude_2 + q1*attitude_3 - attitude_0*q2 - attitude_1*q3)*x0;

@@ -38,7 +38,7 @@ def euler_equations_principal(inertia, omega, torque):
     tau_2 = torque[1]
     tau_3 = torque[2]
     domega = np.empty((3, *np.shape(inertia)[1:]))
-    domega[0] = (tau_1 + omega_2*omega_3*(B - C))/A
-    domega[1] = (tau_2 - omega_3*omega_1*(A - C))/B
-    domega[2] = (tau_3 + omega_2*omega_1*(A - B))/C
+    domega[0] = (tau_1 + (B - C)*omega_2*omega_3)/A
+    domega[1] = (tau_2 + (C - A)*omega_3*omega_1)/B
+    domega[2] = (tau_3 + (A - B)*omega_2*omega_1)/C
     return domega

@@ -35,7 +35,7 @@ def euler_equations_symmetric(inertia, omega, torque):
     tau_1 = torque[0]
     tau_2 = torque[1]
     tau_3 = torque[2]
-    x0 = omega_3*(A - C)
+    x0 = (A - C)*omega_3
     x1 = 1.0/A
     domega = np.empty((3, *np.shape(inertia)[1:]))
     domega[0] = (tau_1 + omega_2*x0)*x1

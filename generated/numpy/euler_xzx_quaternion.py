@@ -39,7 +39,7 @@ def euler_xzx_quaternion(angles):
     x12 = np.sin(x8)
     q = np.empty((4, *np.shape(angles)[1:]))
     q[0] = (outer_1 - outer_2)*x9
-    q[1] = x9*(outer_3 + outer_4)
+    q[1] = (outer_3 + outer_4)*x9
     q[2] = (outer_3 - outer_4)*x12
-    q[3] = x12*(outer_1 + outer_2)
+    q[3] = (outer_1 + outer_2)*x12
     return q

@@ -40,6 +40,6 @@ def euler_zxz_quaternion(angles):
     q = np.empty((4, *np.shape(angles)[1:]))
     q[0] = (outer_1 - outer_2)*x9
     q[1] = (outer_1 + outer_2)*x10
-    q[2] = x10*(outer_3 - outer_4)
-    q[3] = x9*(outer_3 + outer_4)
+    q[2] = (outer_3 - outer_4)*x10
+    q[3] = (outer_3 + outer_4)*x9
     return q

@@ -63,9 +63,9 @@ def heavy_top(inertia, W, center_of_mass, omega, q):
     half_2 = 0.5*omega_2
     half_3 = 0.5*omega_3
     domega = np.empty((3, *np.shape(inertia)[1:]))
-    domega[0] = (moment_of_weight_3*half_vertical_2 + omega_2*omega_3*(B - C) - moment_of_weight_2*half_vertical_3)/A
-    domega[1] = (moment_of_weight_1*half_vertical_3 - moment_of_weight_3*half_vertical_1 - omega_1*omega_3*(A - C))/B
-    domega[2] = (moment_of_weight_2*half_vertical_1 + omega_1*omega_2*(A - B) - moment_of_weight_1*half_vertical_2)/C
+    domega[0] = (moment_of_weight_3*half_vertical_2 + (B - C)*omega_2*omega_3 - moment_of_weight_2*half_vertical_3)/A
+    domega[1] = (moment_of_weight_1*half_vertical_3 + (C - A)*omega_1*omega_3 - moment_of_weight_3*half_vertical_1)/B
+    domega[2] = (moment_of_weight_2*half_vertical_1 + (A - B)*omega_1*omega_2 - moment_of_weight_1*half_vertical_2)/C
     dq = np.empty((4, *np.shape(inertia)[1:]))
     dq[0] = -(q1*half_1 + q2*half_2 + q3*half_3)
     dq[1] = q0*half_1 + q2*half_3 - q3*half_2

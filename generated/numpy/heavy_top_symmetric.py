@@ -47,7 +47,7 @@ def heavy_top_symmetric(inertia, W, h, omega, q):
     q3 = q[3]
     moment_of_weight_3 = 2.0*W*h
     half_vertical_2 = q0*q1 + q2*q3
-    x2 = omega_3*(A - C)
+    x2 = (A - C)*omega_3
     x3 = 1.0/A
     half_vertical_1 = q1*q3 - q0*q2
     half_1 = 0.5*omega_1

@@ -37,7 +37,7 @@ def inertia_cone(m, dimensions):
     R = dimensions[0]
     h = dimensions[1]
     x0 = R*R
-    x1 = 0.0375*m*(4.0*x0 + h*h)
+    x1 = 0.0375*(4.0*x0 + h*h)*m
     inertia = np.empty((6, *np.shape(dimensions)[1:]))
     inertia[0] = x1
     inertia[1] = x1

@@ -36,7 +36,7 @@ def inertia_cylinder(m, dimensions):
     R = dimensions[0]
     L = dimensions[1]
     x0 = R*R
-    x1 = 0.08333333333333333*m*(L*L + 3.0*x0)
+    x1 = 0.08333333333333333*(L*L + 3.0*x0)*m
     inertia = np.empty((6, *np.shape(dimensions)[1:]))
     inertia[0] = x1
     inertia[1] = x1

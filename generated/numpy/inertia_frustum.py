@@ -60,5 +60,5 @@ def inertia_frustum(m, dimensions):
     center_of_mass = np.empty((3, *np.shape(dimensions)[1:]))
     center_of_mass[0] = 0.0
     center_of_mass[1] = 0.0
-    center_of_mass[2] = 0.25*h*(x0 + 3.0*x2 + 2.0*x4)*x9
+    center_of_mass[2] = 0.25*(x0 + 3.0*x2 + 2.0*x4)*h*x9
     return inertia, center_of_mass

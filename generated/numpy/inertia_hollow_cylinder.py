@@ -39,7 +39,7 @@ def inertia_hollow_cylinder(m, dimensions):
     R_2 = dimensions[1]
     L = dimensions[2]
     x0 = R_1*R_1 + R_2*R_2
-    x1 = 0.08333333333333333*m*(L*L + 3.0*x0)
+    x1 = 0.08333333333333333*(L*L + 3.0*x0)*m
     inertia = np.empty((6, *np.shape(dimensions)[1:]))
     inertia[0] = x1
     inertia[1] = x1

@@ -38,7 +38,7 @@ def inertia_hollow_sphere(m, dimensions):
     x0 = R_1*R_1
     x1 = R_2*R_2
     x2 = R_1*R_2
-    x3 = 0.4*m*(x0*x0 + x1*x1 + x1*x2 + x0*x1 + x0*x2)/(x0 + x1 + x2)
+    x3 = 0.4*(x0*x0 + x1*x1 + x1*x2 + x0*x1 + x0*x2)*m/(x0 + x1 + x2)
     inertia = np.empty((6, *np.shape(dimensions)[1:]))
     inertia[0] = x3
     inertia[1] = x3

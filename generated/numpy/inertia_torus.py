@@ -38,11 +38,11 @@ def inertia_torus(m, dimensions):
     r = dimensions[1]
     x0 = 4.0*R*R
     x1 = r*r
-    x2 = 0.125*m*(x0 + 5.0*x1)
+    x2 = 0.125*(x0 + 5.0*x1)*m
     inertia = np.empty((6, *np.shape(dimensions)[1:]))
     inertia[0] = x2
     inertia[1] = x2
-    inertia[2] = 0.25*m*(x0 + 3.0*x1)
+    inertia[2] = 0.25*(x0 + 3.0*x1)*m
     inertia[3] = 0.0
     inertia[4] = 0.0
     inertia[5] = 0.0

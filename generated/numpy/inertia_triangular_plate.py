@@ -45,7 +45,7 @@ def inertia_triangular_plate(m, dimensions):
     inertia[0] = x0*x1
     inertia[1] = (-x2)*x1
     inertia[2] = (x0 - x2)*x1
-    inertia[3] = 0.027777777777777776*h*m*(b - 2.0*e)
+    inertia[3] = 0.027777777777777776*(b - 2.0*e)*h*m
     inertia[4] = 0.0
     inertia[5] = 0.0
     center_of_mass = np.empty((3, *np.shape(dimensions)[1:]))

@@ -47,8 +47,8 @@ def inertia_triangular_prism(m, dimensions):
     inertia = np.empty((6, *np.shape(dimensions)[1:]))
     inertia[0] = (x0 + 2.0*x1)*x2
     inertia[1] = (x0 + 2.0*(-x3))*x2
-    inertia[2] = 0.05555555555555555*m*(x1 - x3)
-    inertia[3] = h*(b - 2.0*e)*x2
+    inertia[2] = 0.05555555555555555*(x1 - x3)*m
+    inertia[3] = (b - 2.0*e)*h*x2
     inertia[4] = 0.0
     inertia[5] = 0.0
     center_of_mass = np.empty((3, *np.shape(dimensions)[1:]))

@@ -41,5 +41,5 @@ def kinetic_energy(inertia, omega):
     omega_2 = omega[1]
     omega_3 = omega[2]
     energy = np.empty((1, *np.shape(inertia)[1:]))
-    energy[0] = 0.5*(omega_1*(omega_1*I_xx + I_xy*omega_2 + I_xz*omega_3) + omega_2*(omega_1*I_xy + omega_2*I_yy + omega_3*I_yz) + omega_3*(omega_1*I_xz + omega_2*I_yz + omega_3*I_zz))
+    energy[0] = 0.5*((omega_1*I_xx + I_xy*omega_2 + I_xz*omega_3)*omega_1 + (omega_1*I_xy + omega_2*I_yy + omega_3*I_yz)*omega_2 + (omega_1*I_xz + omega_2*I_yz + omega_3*I_zz)*omega_3)
     return energy

@@ -44,16 +44,17 @@ def mrp_dcm(parameters):
     x12 = twice_2*x9
     twice_1 = s1*x3
     x14 = s1*twice_1
-    x15 = s2*twice_3
-    x16 = twice_1*x9
+    lost_2 = x14 + x5
+    x16 = s2*twice_3
+    x17 = twice_1*x9
     dcm = np.empty((9, *np.shape(parameters)[1:]))
     dcm[0] = x7 - x5
     dcm[1] = x8 - x10
     dcm[2] = x11 + x12
     dcm[3] = x8 + x10
-    dcm[4] = 1.0 - x5 - x14
-    dcm[5] = x15 - x16
+    dcm[4] = 1.0 - lost_2
+    dcm[5] = x16 - x17
     dcm[6] = x11 - x12
-    dcm[7] = x15 + x16
+    dcm[7] = x16 + x17
     dcm[8] = x7 - x14
     return dcm

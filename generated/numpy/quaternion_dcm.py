@@ -41,16 +41,17 @@ def quaternion_dcm(q):
     x7 = q1*twice_3
     twice_1 = 2.0*q1
     x9 = q1*twice_1
-    x10 = twice_1*q0
-    x11 = q2*twice_3
+    lost_2 = x9 + x1
+    x11 = twice_1*q0
+    x12 = q2*twice_3
     dcm = np.empty((9, *np.shape(q)[1:]))
     dcm[0] = x3 - x1
     dcm[1] = x5 - x4
     dcm[2] = x6 + x7
     dcm[3] = x4 + x5
-    dcm[4] = 1.0 - x1 - x9
-    dcm[5] = x11 - x10
+    dcm[4] = 1.0 - lost_2
+    dcm[5] = x12 - x11
     dcm[6] = x7 - x6
-    dcm[7] = x10 + x11
+    dcm[7] = x11 + x12
     dcm[8] = x3 - x9
     return dcm

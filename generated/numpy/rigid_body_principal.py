@@ -56,9 +56,9 @@ def rigid_body_principal(inertia, omega, q, torque):
     half_2 = 0.5*omega_2
     half_3 = 0.5*omega_3
     domega = np.empty((3, *np.shape(inertia)[1:]))
-    domega[0] = (tau_1 + omega_2*omega_3*(B - C))/A
-    domega[1] = (tau_2 - omega_1*omega_3*(A - C))/B
-    domega[2] = (tau_3 + omega_1*omega_2*(A - B))/C
+    domega[0] = (tau_1 + (B - C)*omega_2*omega_3)/A
+    domega[1] = (tau_2 + (C - A)*omega_1*omega_3)/B
+    domega[2] = (tau_3 + (A - B)*omega_1*omega_2)/C
     dq = np.empty((4, *np.shape(inertia)[1:]))
     dq[0] = -(half_1*q1 + half_2*q2 + half_3*q3)
     dq[1] = half_1*q0 + half_3*q2 - half_2*q3

@@ -39,15 +39,16 @@ def rodrigues_dcm(parameters):
     x7 = g1*twice_3
     twice_1 = g1*x1
     x9 = g1*twice_1
-    x10 = g2*twice_3
+    lost_2 = x9 + x3
+    x11 = g2*twice_3
     dcm = np.empty((9, *np.shape(parameters)[1:]))
     dcm[0] = x5 - x3
     dcm[1] = x6 - twice_3
     dcm[2] = twice_2 + x7
     dcm[3] = twice_3 + x6
-    dcm[4] = 1.0 - x3 - x9
-    dcm[5] = x10 - twice_1
+    dcm[4] = 1.0 - lost_2
+    dcm[5] = x11 - twice_1
     dcm[6] = x7 - twice_2
-    dcm[7] = twice_1 + x10
+    dcm[7] = twice_1 + x11
     dcm[8] = x5 - x9
     return dcm

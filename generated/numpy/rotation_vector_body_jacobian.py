@@ -61,7 +61,7 @@ def rotation_vector_body_jacobian(v):
     jacobian[1] = x8 + x10
     jacobian[2] = x12 - x11
     jacobian[3] = x10 - x8
-    jacobian[4] = 1.0 - x5*(x2 + x1)
+    jacobian[4] = 1.0 - (x2 + x1)*x5
     jacobian[5] = x13 + x14
     jacobian[6] = x11 + x12
     jacobian[7] = x14 - x13

@@ -61,7 +61,7 @@ def rotation_vector_space_jacobian(v):
     jacobian[1] = x10 - x8
     jacobian[2] = x11 + x12
     jacobian[3] = x8 + x10
-    jacobian[4] = 1.0 - x5*(x2 + x1)
+    jacobian[4] = 1.0 - (x2 + x1)*x5
     jacobian[5] = x14 - x13
     jacobian[6] = x12 - x11
     jacobian[7] = x13 + x14

@@ -51,7 +51,7 @@ def rotation_vector_space_rates(v, omega):
     x6 = _sinc(x4)
     x7 = 0.25*(x5/x6)
     dv = np.empty((3, *np.shape(v)[1:]))
-    dv[0] = omega_x - 0.5*cross_1 - (v3*cross_2 - v2*cross_3)*x7
+    dv[0] = omega_x + (v2*cross_3 - v3*cross_2)*x7 - 0.5*cross_1
     dv[1] = omega_y + (v3*cross_1 - v1*cross_3)*x7 - 0.5*cross_2
-    dv[2] = omega_z - 0.5*cross_3 - (v2*cross_1 - v1*cross_2)*x7
+    dv[2] = omega_z + (v1*cross_2 - v2*cross_1)*x7 - 0.5*cross_3
     return dv

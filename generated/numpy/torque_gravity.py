@@ -45,10 +45,10 @@ def torque_gravity(q, weight, center_of_mass, direction):
     x1 = direction_1*q3 - direction_3*q1
     x2 = direction_2*q3 - direction_3*q2
     x3 = direction_3 + 2.0*(q0*x0 + q1*x1 + q2*x2)
-    x4 = direction_2 - 2.0*(q0*x1 + q3*x2 - q1*x0)
-    x5 = direction_1 - 2.0*(q2*x0 + q3*x1 - q0*x2)
+    x4 = direction_2 + 2.0*(q1*x0 - q0*x1 - q3*x2)
+    x5 = direction_1 + 2.0*(q0*x2 - q2*x0 - q3*x1)
     torque_b = np.empty((3, *np.shape(q)[1:]))
-    torque_b[0] = weight*(center_of_mass_2*x3 - center_of_mass_3*x4)
-    torque_b[1] = weight*(center_of_mass_3*x5 - x3*center_of_mass_1)
-    torque_b[2] = weight*(x4*center_of_mass_1 - center_of_mass_2*x5)
+    torque_b[0] = (center_of_mass_2*x3 - center_of_mass_3*x4)*weight
+    torque_b[1] = (center_of_mass_3*x5 - x3*center_of_mass_1)*weight
+    torque_b[2] = (x4*center_of_mass_1 - center_of_mass_2*x5)*weight
     return torque_b

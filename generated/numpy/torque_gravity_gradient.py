@@ -64,7 +64,7 @@ def torque_gravity_gradient(t, inertia, q, mean_motion):
     x14 = 3.0*(mean_motion*mean_motion)
     x15 = radius_1*radius_1
     torque_b = np.empty((3, *np.shape(inertia)[1:]))
-    torque_b[0] = (I_yz*x12 + I_xz*x13 - I_yz*x7 - I_xy*x9 - (I_yy - I_zz)*x11)*x14
+    torque_b[0] = (I_yz*x12 + (I_zz - I_yy)*x11 + I_xz*x13 - I_yz*x7 - I_xy*x9)*x14
     torque_b[1] = (I_xz*x7 + I_xy*x11 + (I_xx - I_zz)*x9 - I_xz*x15 - I_yz*x13)*x14
-    torque_b[2] = (I_xy*x15 + I_yz*x9 - I_xy*x12 - I_xz*x11 - (I_xx - I_yy)*x13)*x14
+    torque_b[2] = (I_xy*x15 + (I_yy - I_xx)*x13 + I_yz*x9 - I_xy*x12 - I_xz*x11)*x14
     return torque_b

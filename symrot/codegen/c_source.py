@@ -120,6 +120,8 @@ def _body(program: Program, element: str, indent: str, real: Real, near: bool = 
             for index, (name, *_) in enumerate(argument.components):
                 statement = f"{indent}const {real.type} {name} = {argument.name}[{place.format(i=index)}];"
                 waiting[name] = (set(), [statement])
+    angles = [node[1] for node in turning_arguments(program) if node[1] in waiting]
+    waiting = {name: waiting[name] for name in (*angles, *waiting)}  # gcc calls sincos where the angle is loaded
     for name, node in program.temporaries:
         statements = _statement(f"const {real.type} {name}", c_expression(node, real, near), indent)
         waiting[name] = (names(node), statements)

@@ -14,6 +14,7 @@ from typing import Any
 
 from sympy import Abs, Expr, Function, Integer, Mul, Number, S, Symbol, default_sort_key
 
+from symrot.codegen.sums import negative, summed
 from symrot.errors import InputError
 from symrot.expression import FUNCTIONS, Node, children, rename, text
 from symrot.kernel import Argument, Program, Signature
@@ -399,52 +400,22 @@ class _Writer:
         kind, first, *_ = self.nodes[index]
         return bool(kind == "num" or (kind == "sym" and first.startswith(_HOISTED)))
 
+    def _is_sum(self, index: int) -> bool:
+        """Whether a node is written as a sum in brackets: such a factor comes first, as in (A - B) x y."""
+        return bool(self.nodes[index][0] == "add" and self.uses[index] < 2 and index not in self.named)
+
     def _formula(self, index: int) -> Node:
         node = self.nodes[index]
         if node[0] == "call":
             return ("call", node[1], tuple(self.node(argument) for argument in node[2]))
         if node[0] == "mul":
-            factors = sorted(node[1], key=lambda i: not self._is_constant(i))
+            factors = sorted(node[1], key=lambda i: (not self._is_constant(i), not self._is_sum(i)))
             top = _chain("*", [self.node(i) for i in factors] or [("number", Fraction(1))])
             return top if not node[2] else ("/", top, _chain("*", [self.node(i) for i in node[2]]))
         terms = sorted(node[1], key=lambda item: item[1] < 0)
         first, sign = terms[0]
-        start = self.node(first) if sign > 0 else _negative(self.node(first))
-        return _summed(start, [(sign, self.node(term)) for term, sign in terms[1:]])
-
-
-def _negative(node: Node) -> Node:
-    """Return minus a formula, the sign inside a number, a sum with a difference or a product where one is at hand."""
-    if node[0] == "number":
-        return ("number", -node[1])
-    if node[0] == "neg":
-        return tuple(node[1])
-    if node[0] in "+-":
-        terms = _terms(node)
-        first = next((i for i, (sign, _) in enumerate(terms) if sign < 0), None)
-        if first is not None:
-            rest = [*terms[:first], *terms[first + 1 :]]
-            return _summed(terms[first][1], [(-sign, term) for sign, term in rest])
-    if node[0] in "*/":
-        for place in (1, 2) if node[0] == "*" else (1,):
-            turned = _negative(node[place]) if node[place][0] in ("number", "*", "/", "+", "-") else ("neg",)
-            if turned[0] != "neg":
-                return (node[0], turned, node[2]) if place == 1 else (node[0], node[1], turned)
-    return ("neg", node)
-
-
-def _terms(node: Node) -> list[tuple[int, Node]]:
-    """Return the terms of a chain of sums and differences, each with its sign."""
-    if node[0] not in "+-":
-        return [(1, node)]
-    return [*_terms(node[1]), (1 if node[0] == "+" else -1, node[2])]
-
-
-def _summed(first: Node, terms: Sequence[tuple[int, Node]]) -> Node:
-    """Return first plus terms, those with a plus before the others."""
-    for sign, term in sorted(terms, key=lambda item: item[0] < 0):
-        first = ("+" if sign > 0 else "-", first, term)
-    return first
+        start = self.node(first) if sign > 0 else negative(self.node(first))
+        return summed(start, [(sign, self.node(term)) for term, sign in terms[1:]])
 
 
 def lower(
@@ -493,7 +464,7 @@ def lower(
     share.extract()
     writer = _Writer(share, roots, inputs, named)
     formulas = [writer.node(root) for root in roots]
-    formulas = [node if sign > 0 else _negative(node) for (sign, _), node in zip(signed, formulas, strict=True)]
+    formulas = [node if sign > 0 else negative(node) for (sign, _), node in zip(signed, formulas, strict=True)]
     targets = [name for name, _ in outputs]
     return _numbered(signature, gather.hoisted, writer.temporaries, targets, formulas, parameter_argument)
 

@@ -47,8 +47,10 @@ def dcm_by_halves(scalar: Expr, axis: Sequence[Expr], doubled: Sequence[Expr]) -
     twice = tuple(Symbol(f"twice_{i}", real=True) for i in "123")
     square = skew(twice) * skew(axis)
     symmetric = ImmutableMatrix(3, 3, lambda i, j: square[min(i, j), max(i, j)])
-    matrix = eye(3) + scalar * skew(twice) + symmetric
-    return tuple(zip(twice, doubled, strict=True)), ImmutableMatrix(matrix)
+    matrix = (eye(3) + scalar * skew(twice) + symmetric).as_mutable()
+    lost = Symbol("lost_2", real=True)  # 1 - (a + b) waits less than 1 - a - b, which shares no difference here
+    matrix[1, 1] = 1 - lost
+    return (*zip(twice, doubled, strict=True), (lost, -square[1, 1])), ImmutableMatrix(matrix)
 
 
 def halved(omega: Sequence[Expr]) -> tuple[Named, tuple[Symbol, ...]]:

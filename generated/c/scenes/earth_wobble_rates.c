@@ -52,7 +52,7 @@ void earth_wobble_rates(double t, const double y[6], const double p[2], double d
     dy[2] = -(0.5*(omega_1*q1 + omega_2*q2) + p1*q3);
     dy[3] = 0.5*(omega_1*q0 - omega_2*q3) + p1*q2;
     dy[4] = 0.5*(omega_1*q3 + omega_2*q0) - p1*q1;
-    dy[5] = p1*q0 - 0.5*(omega_1*q2 - omega_2*q1);
+    dy[5] = p1*q0 + 0.5*(omega_2*q1 - omega_1*q2);
 }
 
 void earth_wobble_rates_batch(
@@ -76,6 +76,6 @@ void earth_wobble_rates_batch(
         dy[2*n + k] = -(0.5*(omega_1*q1 + omega_2*q2) + p1*q3);
         dy[3*n + k] = 0.5*(omega_1*q0 - omega_2*q3) + p1*q2;
         dy[4*n + k] = 0.5*(omega_1*q3 + omega_2*q0) - p1*q1;
-        dy[5*n + k] = p1*q0 - 0.5*(omega_1*q2 - omega_2*q1);
+        dy[5*n + k] = p1*q0 + 0.5*(omega_2*q1 - omega_1*q2);
     }
 }

@@ -53,7 +53,7 @@ void heavy_top_waves_rates(double t, const double y[6], const double p[3], doubl
     dy[2] = -(0.5*(q1*omega_1 + q2*omega_2) + p2*q3);
     dy[3] = 0.5*(q0*omega_1 - q3*omega_2) + p2*q2;
     dy[4] = 0.5*(q3*omega_1 + q0*omega_2) - p2*q1;
-    dy[5] = p2*q0 - 0.5*(q2*omega_1 - q1*omega_2);
+    dy[5] = p2*q0 + 0.5*(q1*omega_2 - q2*omega_1);
 }
 
 void heavy_top_waves_rates_batch(
@@ -78,6 +78,6 @@ void heavy_top_waves_rates_batch(
         dy[2*n + k] = -(0.5*(q1*omega_1 + q2*omega_2) + p2*q3);
         dy[3*n + k] = 0.5*(q0*omega_1 - q3*omega_2) + p2*q2;
         dy[4*n + k] = 0.5*(q3*omega_1 + q0*omega_2) - p2*q1;
-        dy[5*n + k] = p2*q0 - 0.5*(q2*omega_1 - q1*omega_2);
+        dy[5*n + k] = p2*q0 + 0.5*(q1*omega_2 - q2*omega_1);
     }
 }

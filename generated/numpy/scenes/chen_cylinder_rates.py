@@ -45,5 +45,5 @@ def chen_cylinder_rates(t, y, p):
     dy[2] = -(0.5*(omega_1*q1 + omega_2*q2) + p1*q3)
     dy[3] = 0.5*(omega_1*q0 - omega_2*q3) + p1*q2
     dy[4] = 0.5*(omega_1*q3 + omega_2*q0) - p1*q1
-    dy[5] = p1*q0 - 0.5*(omega_1*q2 - omega_2*q1)
+    dy[5] = p1*q0 + 0.5*(omega_2*q1 - omega_1*q2)
     return dy

@@ -47,5 +47,5 @@ def precessing_wheel_rates(t, y, p):
     dy[2] = -(0.5*(q1*omega_1 + q2*omega_2) + p2*q3)
     dy[3] = 0.5*(q0*omega_1 - q3*omega_2) + p2*q2
     dy[4] = 0.5*(q3*omega_1 + q0*omega_2) - p2*q1
-    dy[5] = p2*q0 - 0.5*(q2*omega_1 - q1*omega_2)
+    dy[5] = p2*q0 + 0.5*(q1*omega_2 - q2*omega_1)
     return dy
