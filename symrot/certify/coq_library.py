@@ -10,6 +10,7 @@ from symrot.certify.coq_dynamics import dynamics_file
 from symrot.certify.coq_euler import euler_file, euler_files
 from symrot.certify.coq_file import CoqFile, Theorem
 from symrot.certify.coq_quaternion import quaternion_file
+from symrot.certify.coq_rodrigues import rodrigues_file
 from symrot.errors import InputError
 
 __all__ = ["STANDARD_AXIOMS", "assumptions_text", "coq_file", "coq_file_names", "coq_section", "coq_texts", "needed"]
@@ -30,6 +31,7 @@ STANDARD_AXIOMS = (
 
 _FILES: dict[str, tuple[tuple[str, ...], Callable[[], CoqFile]]] = {
     "quaternions": (("quaternion_",), quaternion_file),
+    **{name: ((f"{name}_",), partial(rodrigues_file, name)) for name in ("rodrigues", "mrp")},
     "dynamics": (("euler_equations_", "kinetic_", "angular_", "inertia_rotated"), dynamics_file),
     **{name: ((f"{name}_",), partial(euler_file, sequence)) for name, sequence in euler_files().items()},
 }

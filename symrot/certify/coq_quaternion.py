@@ -1,4 +1,4 @@
-"""Theorems of Coq about unit quaternions and Rodrigues parameters: what they represent, and their rates."""
+"""Theorems of Coq about unit quaternions: what they represent, and their rates."""
 
 from collections.abc import Sequence
 

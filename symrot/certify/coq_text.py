@@ -11,7 +11,7 @@ from sympy import Add, Expr, Integer, Mul, Pow, Rational, Symbol, cos, fraction,
 from symrot.errors import CertificateError
 from symrot.kernels.definition import Definition
 
-__all__ = ["comment", "coq_expression", "definition_text", "folded", "variables"]
+__all__ = ["comment", "coq_expression", "definition_text", "folded", "matrix_text", "variables"]
 
 WIDTH = 118
 _SHAPES = {1: "R", 3: "vector", 4: "quaternion", 6: "matrix", 9: "matrix"}  # number of components -> type in rotation.v
@@ -119,6 +119,11 @@ def _record(formulas: Sequence[Expr]) -> str:
 
 def _defined(name: str, given: Iterable[str], size: int, body: str) -> str:
     return folded(f"Definition {name} ({' '.join(given)} : R) : {_SHAPES[size]} :=", 4) + f"\n{body}."
+
+
+def matrix_text(name: str, given: Iterable[str], formulas: Sequence[Expr]) -> str:
+    """Return the definition of a function of real variables whose value is a record of formulas."""
+    return _defined(name, given, len(formulas), _record(formulas))
 
 
 def definition_text(kernel: Definition, name: str, output: str | None = None) -> str:
