@@ -208,7 +208,7 @@ class _Placer:
             rates.append(self._sum_row((*(None for _ in range(LANES)),), [*sums, *[None] * (LANES - len(sums))]))
         count = len(self.system.states)
         seeds = tuple(tuple(self.system.seeds[number - count] for number in numbers) for numbers in self.companion_rows)
-        states = tuple(self.state_rows[: len(self.state_rows) - len(seeds)])
+        own = tuple(self.state_rows[: len(self.state_rows) - len(seeds)])
         return Layout(
             self.series, tuple(self.rows), tuple(rates), tuple(self.columns), states, self.system.states, seeds
         )
