@@ -210,7 +210,7 @@ class _Placer:
         seeds = tuple(tuple(self.system.seeds[number - count] for number in numbers) for numbers in self.companion_rows)
         own = tuple(self.state_rows[: len(self.state_rows) - len(seeds)])
         return Layout(
-            self.series, tuple(self.rows), tuple(rates), tuple(self.columns), states, self.system.states, seeds
+            self.series, tuple(self.rows), tuple(rates), tuple(self.columns), own, self.system.states, seeds
         )
 
     def _shape(self, i: int) -> tuple[int, ...]:
