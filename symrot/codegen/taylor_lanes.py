@@ -209,9 +209,7 @@ class _Placer:
         count = len(self.system.states)
         seeds = tuple(tuple(self.system.seeds[number - count] for number in numbers) for numbers in self.companion_rows)
         own = tuple(self.state_rows[: len(self.state_rows) - len(seeds)])
-        return Layout(
-            self.series, tuple(self.rows), tuple(rates), tuple(self.columns), own, self.system.states, seeds
-        )
+        return Layout(self.series, tuple(self.rows), tuple(rates), tuple(self.columns), own, self.system.states, seeds)
 
     def _shape(self, i: int) -> tuple[int, ...]:
         """Return what series are sorted by within a level: pairs first, then sums with many products."""
