@@ -357,7 +357,9 @@ def says_the_same(data: Data, other: Data, all_of_it: bool) -> bool:
 
 def _said_in_full(data: Data) -> Data:
     copy: Data = {key: value for key, value in json.loads(json.dumps(data)).items() if key != "seal"}
-    copy["laws"] = [{**law, "witness": None, "cases": [dict.fromkeys(case) for case in law["cases"][:1]]} for law in copy["laws"]]
+    copy["laws"] = [
+        {**law, "witness": None, "cases": [dict.fromkeys(case) for case in law["cases"][:1]]} for law in copy["laws"]
+    ]
     return copy
 
 
