@@ -161,16 +161,25 @@ def claim_of_text(source: str, given: Sequence[str] = (), units: Mapping[str, st
 
 
 def named_formula(claim: Claim) -> tuple[str, Node] | None:
-    """Return (name, formula) of a claim one side of which is a name that occurs nowhere else; None for others."""
+    """Return (name, formula) of a claim one side of which only gets a name; None for another claim.
+
+    The name is a symbol, a function of time or its derivative; nothing else in the claim says what it stands for.
+    """
     assert claim.relation is not None
     _, left, right = claim.relation
-    trees = [side for relation in claim.given for side in relation[1:]] + [tree for _, tree in claim.define]
-    for name, formula in ((left, right), (right, left)):
-        held = [node.value for tree in (formula, *trees) for _, node in walk(tree) if node.kind in ("name", "call")]
-        defined = {defined for defined, _ in claim.define}
-        if name.kind == "name" and formula.kind != "name" and name.value not in {*held, *defined, "pi", "t"}:
-            return str(name.value), formula
+    others = [side for relation in claim.given for side in relation[1:]] + [tree for _, tree in claim.define]
+    known = {"pi", "t", *(name for name, _ in claim.define)}
+    for side, formula in ((left, right), (right, left)):
+        inner = side.args[0] if side.kind == "call" and side.value == "diff" else side
+        if _is_name(inner) and inner.value not in known and not _is_name(formula):
+            elsewhere = [node for tree in (formula, *others) for _, node in walk(tree)]
+            if side not in elsewhere and not (inner is side and inner.value in [n.value for n in elsewhere]):
+                return str(inner.value), formula
     return None
+
+
+def _is_name(tree: Node) -> bool:
+    return tree.kind == "name" or (tree.kind == "call" and [a.value for a in tree.args] == ["t"])
 
 
 # -- TOML -------------------------------------------------------------------------------------------------------------

@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from sympy import Derivative, Expr, Mul, Pow, pi, zeros
+from sympy import Derivative, Expr, Mul, Pow, Symbol, pi, zeros
 from sympy.polys.rings import PolyElement
 from sympy.printing.str import StrPrinter
 
@@ -154,7 +154,9 @@ def _sides(problem: Problem) -> tuple[list[Expr], list[Expr], tuple[int, int] | 
         lefts, shape = list(zeros(*other)), other
     if shape != other:
         names = ["a scalar" if s is None else f"a {s[0]} x {s[1]} matrix" for s in (shape, other)]
-        raise InputError(f"expected two sides of one shape, got {names[0]} == {names[1]}")
+        loose = isinstance(problem.left, Symbol) or isinstance(problem.right, Symbol)
+        hint = " (a name that nothing defines is a scalar; `symrot identify` says what a matrix is)" if loose else ""
+        raise InputError(f"expected two sides of one shape, got {names[0]} == {names[1]}{hint}")
     return lefts, rights, shape
 
 

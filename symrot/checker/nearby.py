@@ -29,6 +29,8 @@ MOST_NAMES = 2
 
 PLACES = {"first": "x1", "second": "y2", "third": "z3", "scalar": "0"}
 """How a component is called -> the last letters of a name that says the same."""
+AXES = ("x1A", "y2B", "z3C")
+"""Last letters of names that belong to one axis."""
 
 Found = tuple[str, Node, list[Identification]]
 """Code of an edit, the formula after it, what that is."""
@@ -36,31 +38,33 @@ Found = tuple[str, Node, list[Identification]]
 
 def nearby(claim: Claim) -> tuple[str, ...]:
     """Return sentences on a claim that only names a formula: what it is, or what the nearest formula is."""
-    found = named_formula(claim)
-    if found is None:
+    named = named_formula(claim)
+    if named is None:
         return ()
-    name, formula = found
+    name, formula = named
     said = f"nothing here says what {name} is, so the claim can only name a formula"
     edits = chain([("", formula)], _edits(claim, formula))
-    looked_up = ((code, tree, known) for code, tree in edits for known in [_known(claim, name, tree)] if known)
-    best = _best(looked_up)
-    if best is None:
+    found: list[Found] = []
+    for code, tree in edits:
+        if known := _known(claim, name, tree):
+            found.append((code, tree, known))
+            if not known[0].mapping:
+                break
+    if not found:
         return (said,)
-    code, tree, known = best
-    names = ", or ".join(f"the {k.name}{k.renamed and f' ({k.renamed})'}" for k in known[:MOST_NAMES])
+    code, tree, known = min(found, key=lambda one: _strangeness(one[2][0]))
+    alike = [one for one in known if _strangeness(one) == _strangeness(known[0])]
+    names = ", or ".join(f"the {k.name}{k.renamed and f' ({k.renamed})'}" for k in alike[:MOST_NAMES])
     if not code:
         return (f"{said}: {names}",)
     return (f"{said}; the nearest that symrot derives is {text(tree)}, {names}: {TEXTS[code]}",)
 
 
-def _best(found: Iterator[Found]) -> Found | None:
-    """Return the first that has its usual symbols, or else the first of all."""
-    others: list[Found] = []
-    for one in found:
-        if not one[2][0].mapping:
-            return one
-        others.append(one)
-    return others[0] if others else None
+def _strangeness(known: Identification) -> tuple[int, int]:
+    """Return how many names stand for those of another axis, and how many differ at all."""
+    axes = [[next((n for n, axis in enumerate(AXES) if name[-1] in axis), None) for name in pair]
+            for pair in known.mapping.items()]  # fmt: skip
+    return sum(None not in pair and pair[0] != pair[1] for pair in axes), len(known.mapping)
 
 
 def _edits(claim: Claim, formula: Node) -> Iterator[tuple[str, Node]]:
@@ -82,7 +86,7 @@ def _known(claim: Claim, name: str, tree: Node) -> list[Identification]:
     if not is_matrix(value) and len(value.atoms(Function, Symbol) - {time}) < LEAST_SYMBOLS:
         return []
 
-    def order(known: Identification) -> tuple[int, bool]:
-        return len(known.mapping), name[-1] not in PLACES.get(known.name.split()[0], name[-1])
+    def order(known: Identification) -> tuple[int, int, bool]:
+        return *_strangeness(known), name[-1] not in PLACES.get(known.name.split()[0], name[-1])
 
     return sorted((known for known in identified(value, steps=False) if not known.how), key=order)
