@@ -204,6 +204,26 @@ def _check(options: Namespace) -> int:
     return BAD if refused else GOOD if all(found) else FAILED
 
 
+def _check_textbook(options: Namespace) -> int:
+    from symrot.report import errata, files
+    from symrot.textbook import DOCUMENTS
+
+    names = DOCUMENTS if options.textbook == "all" else (options.textbook,)
+    target = Path(options.output) / "errata.md"
+    if options.all:
+        files.check_target(target, (".md",), "--output")
+    found = errata.survey(names, not options.no_repair, _progress)
+    _progress("")
+    if options.all:
+        files.write(target, lambda stream: stream.write(errata.page(found).encode("utf-8")))
+        _say([f"{target}: written"])
+    elif options.json:
+        _say_json(errata.facts(found))
+    else:
+        _say(errata.lines(found))
+    return GOOD if options.all or all(item.outcome == "holds" for _, items in found for item in items) else FAILED
+
+
 def _identify(options: Namespace) -> int:
     found = symrot.identify(options.formula)
     if options.json:
@@ -396,26 +416,6 @@ def _bench_arguments(parser: ArgumentParser) -> None:
     from symrot.bench import command
 
     command.arguments(parser)
-
-
-def _check_textbook(options: Namespace) -> int:
-    from symrot.report import errata, files
-    from symrot.textbook import DOCUMENTS
-
-    names = DOCUMENTS if options.textbook == "all" else (options.textbook,)
-    target = Path(options.output) / "errata.md"
-    if options.all:
-        files.check_target(target, (".md",), "--output")
-    found = errata.survey(names, not options.no_repair, _progress)
-    _progress("")
-    if options.all:
-        files.write(target, lambda stream: stream.write(errata.page(found).encode("utf-8")))
-        _say([f"{target}: written"])
-    elif options.json:
-        _say_json(errata.facts(found))
-    else:
-        _say(errata.lines(found))
-    return GOOD if options.all or all(item.outcome == "holds" for _, items in found for item in items) else FAILED
 
 
 def _doctor_arguments(parser: ArgumentParser) -> None:
