@@ -1,10 +1,12 @@
 """Gyrostats and driven rotations against higher precision and their own limits."""
 
+import random
+
 import numpy as np
 import pytest
-from mpmath import mp, mpf, odefun
+from mpmath import matrix, mp, mpf, odefun
 
-from symrot.closed_form import axial, free_body, gyrostat, library
+from symrot.closed_form import axial, axial_angle, double_double, free_body, gyrostat, library
 from symrot.codegen.library import build
 from symrot.errors import CompilerError, InputError
 
@@ -104,6 +106,95 @@ def test_phases_over_many_turns(damping, times):
             else:
                 angle = rate * t + mpf(push) / own * t * t / 2
             assert abs(q[0] - mp.cos(angle / 2)) < BAR and abs(q[3] - mp.sin(angle / 2)) < BAR
+
+
+def half_angle(rate, push, damping, t):
+    """Return cosine and sine of half the angle of C dw/dt = N - c w, C = 2, to 60 digits: exp(A t) (0, w, 1)."""
+    with mp.workdps(120):
+        system = matrix([[0, 1, 0], [0, -mpf(damping) / 2, mpf(push) / 2], [0, 0, 0]])
+        angle = (mp.expm(system * mpf(t), method="taylor") * matrix([0, mpf(rate), 1]))[0]
+        return np.array([float(mp.cos(angle / 2)), float(mp.sin(angle / 2))])
+
+
+def random_motions(count, seed=4):
+    """Return rates 1e-3 to 1e3, damping 1e-9 to 10, torque of either sign or none; times to 1e6 periods, both ways."""
+    draw = random.Random(seed)
+    for _ in range(count):
+        rate, push = (draw.choice((-1, 1)) * 10 ** draw.uniform(-3, 3) for _ in range(2))
+        damping = 10 ** draw.uniform(-9, 1)
+        period = 2 * np.pi / abs(rate)
+        ahead = [period * 10 ** draw.uniform(-3, 6) for _ in range(4)]
+        back = [-min(time, 40 / damping) for time in ahead]
+        yield rate, draw.choice((0.0, push)), damping, [*ahead, *back, draw.uniform(0, 6) / damping]
+
+
+def errors_of(motions):
+    """Return the errors of the attitude, of a few times at once and of many."""
+    found = []
+    for rate, push, damping, times in motions:
+        motion = axial.motion((2, 2, 2), 2, push, (0, 0, rate), damping=damping)
+        few = motion.evaluate(times)[1]
+        many = motion.evaluate(np.tile(times, 1 + axial_angle.FEW))[1][: len(times)]
+        exact = np.array([half_angle(rate, push, damping, t) for t in times])
+        found.append([np.abs(q[:, [0, 3]] - exact).max() for q in (few, many)])
+    return np.array(found).max(axis=0)
+
+
+def test_damped_angles_of_random_motions():
+    """1e-15, whichever way: integers for a few times, pairs of doubles for many."""
+    assert (errors_of(random_motions(40)) <= BAR).all()
+
+
+def test_doubles_alone_would_not_do(monkeypatch):
+    motion = 75.0, 0.25, 1e-3, [400.0]
+    assert (errors_of([motion]) <= BAR).all()
+    monkeypatch.setattr(axial_angle, "SMALL", np.inf)
+    assert (errors_of([motion]) > 100 * BAR).all()
+
+
+@pytest.mark.parametrize("rate, push", [(75.0, 0.25), (1.0, 1e10)])
+def test_a_sample_does_not_depend_on_its_neighbours(rate, push):
+    motion = axial.motion((2, 2, 2), 2, push, (0, 0, rate), damping=0.125)
+    times = np.concatenate([np.geomspace(1e-12, 1e3, 100), -np.geomspace(1e-12, 100, 100)])
+    together = motion.evaluate(times)[1]
+    assert all(np.array_equal(motion.evaluate(t)[1][0], q) for t, q in zip(times, together, strict=True))
+
+
+def test_small_angles_take_no_pairs(monkeypatch):
+    taken = []
+    for way in ("_near", "_far", "_by_integers"):
+        plain = getattr(axial_angle.Turning, way)
+        monkeypatch.setattr(
+            axial_angle.Turning, way, lambda self, t, plain=plain: (taken.append(len(t)), plain(self, t))[1]
+        )
+    motion = axial.motion((2, 2, 2), 2, 0.001, (0, 0, 0.5), damping=0.01)
+    motion.evaluate(np.linspace(-1, 1, 1000))
+    assert not taken
+    motion.evaluate(np.linspace(0, 3, 1000))
+    assert 0 < sum(taken) < 1000
+
+
+def test_exponentials_in_pairs():
+    x = np.array([-700.0, -80.0, -1.0, -0.07, 0.0, 1e-20, 0.07, 1.0, 40.0, 700.0])
+    high, low = double_double.exponential((x, x * 2.0**-60))
+    with mp.workdps(60):
+        for a, b, c in zip(x.tolist(), high.tolist(), low.tolist(), strict=True):
+            exact = mp.exp(mpf(a) * (1 + mpf(2) ** -60))
+            assert abs((mpf(b) + mpf(c)) / exact - 1) < mpf(2) ** -96 or a < -600  # where the low part is subnormal
+
+
+def test_rates_before_the_start_that_all_but_cancel():
+    rate, push, damping, t = 474.0, 482.0, 1.0, -21.5
+    w = axial.motion((2, 2, 2), 2, push, (0, 0, rate), damping=damping).evaluate([t])[0][0, 2]
+    with mp.workdps(40):
+        assert abs(w / (push + (mpf(rate) - push) * mp.exp(-mpf(t) / 2)) - 1) <= BAR
+
+
+def test_times_before_the_doubles_are_refused():
+    motion = axial.motion((2, 2, 2), 2, 1, (0, 0, 1), damping=2)
+    assert np.isfinite(motion.evaluate(-600.0)[0]).all()
+    with pytest.raises(InputError, match=r"after -700 s, before which .* got -800 s"):
+        motion.evaluate([0.0, -800.0])
 
 
 def test_bad_input_is_refused():

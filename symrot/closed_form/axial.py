@@ -7,63 +7,28 @@ two-level system swept linearly: Zener, Proc. R. Soc. A 137 (1932) 696). No one 
 precision for all orders and times: mpmath takes 0.4 ms to 3 s for a value, while Taylor steps follow 20 s of such a
 motion to 6e-16 in 70 us. The attitude is left to them.
 
-With no damping, angles are carried in turns as double-doubles: errors of the attitude stay at a few 1e-16 however many
-turns have passed. With damping, so is the steady part ``N t/c`` once the transient is over.
+Angles are carried in turns, as pairs of doubles: errors of the attitude stay at a few 1e-16 however many turns have
+passed, with damping or without.
 
 Proof: ``derivations/driven_rotation.md``.
 """
 
 from collections.abc import Sequence
 from fractions import Fraction
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from symrot import number
+from symrot.closed_form.axial_angle import Turning, fallen
+from symrot.closed_form.double_double import two_product
 from symrot.closed_form.library import Floats, times_of
 from symrot.closed_form.pairs import Number, numbers, pair
 from symrot.errors import InputError
 
 __all__ = ["AxialMotion", "motion"]
 
-_SPLITTER = 134217729.0  # 2^27 + 1
-_TERMS = 24  # of the series of (exp(x) - 1 - x)/x^2 for |x| <= 1
-
-
-def _two_product(a: Floats, b: float | Floats) -> tuple[Floats, Floats]:
-    """Return a*b and its rounding error (Dekker 1971)."""
-    product = a * b
-    wide_a, wide_b = _SPLITTER * a, _SPLITTER * np.asarray(b)
-    high_a, high_b = wide_a - (wide_a - a), wide_b - (wide_b - b)
-    low_a, low_b = a - high_a, b - high_b
-    return product, ((high_a * high_b - product) + high_a * low_b + low_a * high_b) + low_a * low_b
-
-
-def _turns(rate: tuple[float, float], t: Floats, t_error: Floats | None = None) -> Floats:
-    """Return rate*(t + t_error) less whole turns, for a rate in turns as a double-double."""
-    high, low = rate
-    product, error = _two_product(t, high)
-    error = error + t * low + (0.0 if t_error is None else t_error * high)
-    return (product - np.rint(product)) + (error - np.rint(error))
-
-
-def _first(x: Floats) -> Floats:
-    """Return (exp(x) - 1)/x."""
-    return np.divide(np.expm1(x), x, out=np.ones_like(x), where=x != 0.0)
-
-
-def _second(x: Floats) -> Floats:
-    """Return (exp(x) - 1 - x)/x^2."""
-    if (np.abs(x) > 1.0).all():
-        found: Floats = (np.expm1(x) - x) / (x * x)
-        return found
-    small = np.clip(x, -1.0, 1.0)
-    series = np.zeros_like(x)
-    for n in range(_TERMS, 1, -1):
-        series = (1.0 + series * small) / n
-    large = np.where(np.abs(x) > 1.0, x, 1.0)
-    return np.where(np.abs(x) > 1.0, (np.expm1(large) - large) / (large * large), series)
+_LARGEST = 700.0  # the exponential of more leaves the doubles
 
 
 class AxialMotion:
@@ -83,7 +48,10 @@ class AxialMotion:
         self._attitude = attitude
         vector, unit = attitude[1:], np.eye(3)[axis]
         self._turned = np.concatenate([[-vector @ unit], attitude[0] * unit + np.cross(vector, unit)])
-        self._known: dict[Fraction, tuple[Any, ...]] = {}
+        self._fastest = float(max(self._decay, self._decay_across))
+        self._slowing = pair(-self._decay)
+        self._doubles = float(self._rate), float(self._push), float(self._decay_across)
+        self._known: dict[Fraction, Turning] = {}
 
     @property
     def has_attitude(self) -> bool:
@@ -98,9 +66,16 @@ class AxialMotion:
         Raises
         ------
         InputError
-            If a time is not finite, or the attitude is asked for and :attr:`has_attitude` is false.
+            If a time is not finite, or so far before the start that the damped angular velocity was no double, or the
+            attitude is asked for and :attr:`has_attitude` is false.
         """
         times = times_of(t)
+        first = float(times.min(initial=0.0))
+        if self._fastest * -first > _LARGEST:
+            raise InputError(
+                f"expected times after {-_LARGEST / self._fastest:.6g} s, before which the damped angular velocity was "
+                f"beyond all doubles, got {first:.6g} s"
+            )
         if quaternion and not self.has_attitude:
             raise InputError(
                 "the attitude of a body driven about its axis has no closed form here while it turns across it too"
@@ -109,44 +84,43 @@ class AxialMotion:
 
     def _angle(self, t: Floats, share: Fraction) -> tuple[Floats, Floats]:
         """Return sine and cosine of so many times the angle turned about the axis."""
-        known = self._known.get(share)
-        if known is None:
-            known = self._known[share] = self._constants(share / (2 * number.PI))
-        if not self._decay:
-            square, error = _two_product(t, t)
-            part = _turns(known[0], t) + _turns(known[1], square, error)
-        else:
-            rate, push, final, rest, decay = known
-            x = -decay * t
-            first = _first(x)
-            near = rate * t * first + push * t * t * _second(x)
-            far = _turns(final, t) + rest * t * first
-            part = np.where(np.abs(x) <= 1.0, near, far)
-        part = 2.0 * np.pi * (part - np.rint(part))
+        turning = self._known.get(share)
+        if turning is None:
+            turn = share / (2 * number.PI)
+            turning = self._known[share] = Turning(self._rate * turn, self._push * turn, self._decay)
+        part = 2.0 * np.pi * turning(t)
         return np.sin(part), np.cos(part)
 
-    def _constants(self, turn: Fraction) -> tuple[Any, ...]:
-        """Return what the angle is made of, for angles of ``1/turn``, rounded once from exact numbers."""
-        if not self._decay:
-            return pair(self._rate * turn), pair(self._push * turn / 2)
-        final = self._push / self._decay
-        rest, parts = (self._rate - final) * turn, (self._rate * turn, self._push * turn)
-        return *map(float, parts), pair(final * turn), float(rest), float(self._decay)
-
     def _rates(self, t: Floats) -> Floats:
-        rates = np.empty((len(t), 3))
-        x = -float(self._decay) * t
-        rates[:, self._axis] = float(self._rate) * np.exp(x) + float(self._push) * t * _first(x)
-        left = np.exp(-float(self._decay_across) * t)
+        rates = np.zeros((len(t), 3))
+        rates[:, self._axis] = self._axial(t)
+        if not any(self._across):
+            return rates
+        left = np.exp(-self._doubles[2] * t)
         first, second = (float(w) * left for w in self._across)
-        sine, cosine = self._angle(t, self._lag) if any(self._across) else (0.0, 1.0)
+        sine, cosine = self._angle(t, self._lag)
         rates[:, (self._axis + 1) % 3] = first * cosine - second * sine
         rates[:, (self._axis + 2) % 3] = first * sine + second * cosine
         return rates
 
+    def _axial(self, t: Floats) -> Floats:
+        """Return the angular velocity about the axis."""
+        (rate, push, _), (high, low) = self._doubles, self._slowing
+        found: Floats = rate + push * t
+        if not high:
+            return found
+        x, error = two_product(t, high)
+        left, lost = fallen(x, error + t * low)
+        found = rate * left + push * (lost / high)
+        early = x > 1.0
+        if early.any():  # where rate and push would all but cancel
+            final = self._push / self._decay
+            found[early] = float(final) + float(self._rate - final) * left[early]
+        return found
+
     def _quaternions(self, t: Floats) -> Floats:
         sine, cosine = self._angle(t, Fraction(1, 2))
-        return np.outer(cosine, self._attitude) + np.outer(sine, self._turned)
+        return cosine[:, None] * self._attitude + sine[:, None] * self._turned
 
 
 def motion(

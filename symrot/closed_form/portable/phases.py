@@ -5,14 +5,14 @@ from typing import Any, NamedTuple
 import numpy as np
 from mpmath import mp, mpf
 
+from symrot.closed_form.double_double import two_product, two_sum
 from symrot.closed_form.library import Floats
 
-__all__ = ["DIGITS", "TERMS", "Phase", "multiples", "number", "power_of_two", "turned_by", "two_product", "vector"]
+__all__ = ["DIGITS", "TERMS", "Phase", "multiples", "number", "power_of_two", "turned_by", "vector"]
 
 DIGITS = 120  # of the constants: what cancels leaves more than enough
 TERMS = 8  # of a series
 LARGEST = 80.0  # argument of a hyperbolic function: beyond it nothing changes any more
-_SPLITTER = 134217729.0  # 2^27 + 1
 
 
 def number(high: float, low: float) -> Any:
@@ -28,21 +28,6 @@ def vector(pairs: list[float]) -> list[Any]:
 def power_of_two(value: Any) -> Any:
     """Return a power of two near a positive number, 1 for zero."""
     return mpf(2) ** int(mp.frexp(value)[1]) if value else mpf(1)
-
-
-def two_product(a: Floats, b: float | Floats) -> tuple[Floats, Floats]:
-    """Return a*b and its rounding error (Dekker 1971)."""
-    product = a * b
-    wide_a, wide_b = _SPLITTER * a, _SPLITTER * np.asarray(b)
-    high_a, high_b = wide_a - (wide_a - a), wide_b - (wide_b - b)
-    low_a, low_b = a - high_a, b - high_b
-    return product, ((high_a * high_b - product) + high_a * low_b + low_a * high_b) + low_a * low_b
-
-
-def _two_sum(a: Floats, b: float) -> tuple[Floats, Floats]:
-    total = a + b
-    part = total - a
-    return total, (a - (total - part)) + (b - part)
 
 
 class Phase(NamedTuple):
@@ -63,15 +48,16 @@ class Phase(NamedTuple):
         product, error = two_product(t, self.rate[0])
         small = error + t * self.rate[1]
         small = (small - np.rint(small)) + self.start[1] + more
-        high, low = _two_sum(product - np.rint(product), self.start[0])
+        high, low = two_sum(product - np.rint(product), self.start[0])
         taken = np.rint(parts * (high + small))
         return (high - taken / parts) + (low + small), taken
 
     def whole(self, t: Floats) -> Floats:
         """Return the phase itself, of what is not periodic."""
         product, error = two_product(t, self.rate[0])
-        high, low = _two_sum(product, self.start[0])
-        return high + (low + (error + t * self.rate[1] + self.start[1]))
+        high, low = two_sum(product, self.start[0])
+        found: Floats = high + (low + (error + t * self.rate[1] + self.start[1]))
+        return found
 
     def circle(self, t: Floats, more: Floats | float = 0.0) -> tuple[Floats, Floats]:
         """Return sine and cosine of the phase."""

@@ -1,0 +1,150 @@
+"""The angle turned about one axis under constant torque and linear damping, in turns, whole turns left out.
+
+Between ``t`` and the start lie ``rate t (exp(x) - 1)/x + push t^2 (exp(x) - 1 - x)/x^2`` turns, ``x = -decay t``; away
+from ``x = 0`` the same is ``(push/decay) t + (rate - push/decay) (1 - exp(x))/decay``. Doubles hold it to 1e-16 of the
+angle, which is enough for a small one alone. Others take pairs of doubles, to 1e-20 of a turn. A few at once, and
+angles of more than 1e10 turns, take integers of as many bits as the motion needs: a few of them are done before NumPy
+has begun. Pairs and integers end in the same double.
+
+Proof: ``derivations/driven_rotation.md``.
+"""
+
+from fractions import Fraction
+
+import numpy as np
+
+from symrot.closed_form import double_double as dd
+from symrot.closed_form.library import Floats
+from symrot.closed_form.pairs import pair
+
+__all__ = ["FEW", "LARGE", "SMALL", "Turning", "fallen"]
+
+FEW = 64
+"""So many times at once are a matter of integers."""
+
+SMALL = 1 / 16
+"""Turns: up to here doubles suffice, to 2e-16 rad."""
+
+LARGE = 1e10
+"""Turns: from here on pairs of doubles would not do."""
+
+_BITS = 192  # behind the point of a turn, with 64 for the size of the time
+_HALVINGS = 8  # of the argument of the exponential in integers
+_GUARD = 16  # bits for what they lose
+_TERMS = 20  # of the series of (exp(x) - 1 - x)/x^2 for |x| <= 1, whose next is 2^-70
+
+
+def fallen(high: Floats, low: Floats) -> tuple[Floats, Floats]:
+    """Return exp(x) and exp(x) - 1 of pairs, rounded to doubles."""
+    grown = np.exp(high)
+    return grown * (1.0 + low), np.expm1(high) + grown * low
+
+
+def _second(x: Floats) -> Floats:
+    """Return (exp(x) - 1 - x)/x^2 for \\|x\\| <= 1."""
+    series = np.full_like(x, 1.0 / (_TERMS + 2))
+    for n in range(_TERMS + 1, 1, -1):
+        series = (1.0 + series * x) / n
+    return series
+
+
+def _less_whole_turns(turns: dd.Pair) -> Floats:
+    high, low = turns
+    rest: Floats = (high - np.rint(high)) + (low - np.rint(low))
+    return rest
+
+
+class Turning:
+    """An angle with its constants, each rounded once from exact numbers.
+
+    Parameters
+    ----------
+    rate : Fraction
+        Turns/s, at the start.
+    push : Fraction
+        Turns/s^2, of the constant torque.
+    decay : Fraction
+        1/s, of the damping.
+    """
+
+    def __init__(self, rate: Fraction, push: Fraction, decay: Fraction) -> None:
+        self._rate, self._push, self._decay = pair(rate), pair(push), pair(-decay)
+        final = push / decay if decay else rate
+        rest = (rate - final) / decay if decay else push / 2
+        self._final, self._rest = pair(final), pair(rest)
+        self._bits = _BITS + max(int(abs(final)), int(abs(rest)), int(abs(decay))).bit_length()
+        self._scaled = tuple((number.numerator << self._bits) // number.denominator for number in (final, rest, decay))
+        self._octave = int(dd.ln2(self._bits + _GUARD) * (1 << self._bits + _GUARD))
+
+    def __call__(self, t: Floats) -> Floats:
+        """Return the turns at each time, from -1/2 to 1/2."""
+        x = self._decay[0] * t
+        size, near = np.abs(t) * (abs(self._rate[0]) + abs(self._push[0] * t)), np.abs(x) <= dd.NEAR
+        small = (size <= SMALL) & (np.abs(x) <= 1.0)
+        if small.all():
+            return self._in_doubles(t)
+        large = ~small
+        if np.count_nonzero(large) > FEW:
+            far = np.abs(self._final[0] * t) + abs(self._rest[0]) * np.exp(np.maximum(x, 0.0))
+            pairs = large & (np.where(near, size, far) <= LARGE)
+            ways = [(small, self._in_doubles), (pairs & near, self._near), (pairs & ~near, self._far)]
+            ways.append((large & ~pairs, self._by_integers))
+        else:
+            ways = [(small, self._in_doubles), (large, self._by_integers)]
+        turns = np.empty_like(t)
+        for chosen, way in ways:
+            if chosen.any():
+                turns[chosen] = way(t[chosen])
+        return turns - np.rint(turns)
+
+    def _in_doubles(self, t: Floats) -> Floats:
+        x = self._decay[0] * t
+        series = _second(x)
+        return self._rate[0] * t * (1.0 + x * series) + self._push[0] * t * t * series
+
+    def _near(self, t: Floats) -> Floats:
+        """Return the turns in pairs, by the series about x = 0."""
+        time = t, np.zeros_like(t)
+        x = dd.multiply(time, self._decay)
+        series = dd.second(x) if self._decay[0] else (0.5, 0.0)
+        first = dd.add((1.0, 0.0), dd.multiply(x, series)) if self._decay[0] else (1.0, 0.0)
+        pushed = dd.multiply(dd.multiply(dd.multiply(time, self._push), time), series)
+        return _less_whole_turns(dd.add(dd.multiply(dd.multiply(time, self._rate), first), pushed))
+
+    def _far(self, t: Floats) -> Floats:
+        """Return the turns in pairs, by the steady part and what the transient leaves."""
+        time = t, np.zeros_like(t)
+        high, low = dd.exponential(dd.multiply(time, self._decay))
+        left = dd.multiply(dd.add((1.0, 0.0), (-high, -low)), self._rest)
+        return _less_whole_turns(dd.add(dd.multiply(time, self._final), left))
+
+    def _by_integers(self, t: Floats) -> Floats:
+        return np.array([self._exactly(time) for time in t.tolist()])
+
+    def _exactly(self, t: float) -> float:
+        """Return the turns at one time, in integers."""
+        top, bottom = t.as_integer_ratio()
+        shift, (final, rest, decay), one = bottom.bit_length() - 1, self._scaled, 1 << self._bits
+        if decay:
+            turns = (final * top >> shift) + (rest * (one - self._exponential(-(decay * top >> shift))) >> self._bits)
+        else:
+            turns = (final * top >> shift) + (rest * top * top >> 2 * shift)
+        turns &= one - 1
+        return (turns - one if 2 * turns > one else turns) / one
+
+    def _exponential(self, x: int) -> int:
+        """Return exp(x), both of so many bits behind the point."""
+        if x < -self._bits << self._bits:
+            return 0
+        octaves, rest = divmod(x << _GUARD, self._octave)
+        bits = self._bits + _GUARD
+        rest >>= _HALVINGS
+        total = term = 1 << bits
+        n = 1
+        while term:
+            term = (term * rest >> bits) // n
+            total += term
+            n += 1
+        for _ in range(_HALVINGS):
+            total = total * total >> bits
+        return (total << octaves if octaves > 0 else total >> -octaves) >> _GUARD
