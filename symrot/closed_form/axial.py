@@ -120,7 +120,8 @@ class AxialMotion:
 
     def _quaternions(self, t: Floats) -> Floats:
         sine, cosine = self._angle(t, Fraction(1, 2))
-        return cosine[:, None] * self._attitude + sine[:, None] * self._turned
+        attitudes: Floats = cosine[:, None] * self._attitude + sine[:, None] * self._turned
+        return attitudes
 
 
 def motion(
