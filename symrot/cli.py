@@ -125,12 +125,13 @@ def _emit(options: Namespace) -> int:
     if options.all:
         written = kernels.write_all(options.directory or Path("generated"), targets, _progress)
     else:
-        found = kernels.kernel_files(options.kernel, options.target or "c")
+        bounds = kernels.kept_bounds(options.kernel, options.directory) if options.target != "numpy" else None
+        found = kernels.kernel_files(options.kernel, options.target or "c", bounds)
         if options.directory is None:
             sys.stdout.write("\n".join(found.values()))
             return GOOD
         if options.target != "numpy":
-            found |= kernels.certificate_files(options.kernel, options.directory)
+            found |= kernels.certificate_files(options.kernel, options.directory, bounds)
         written = kernels.write_files(options.directory, found)
     _progress("")
     _say(str(path) for path in written)
@@ -429,7 +430,7 @@ def _selftest_arguments(parser: ArgumentParser) -> None:
 
 
 def _bound_arguments(parser: ArgumentParser) -> None:
-    parser.add_argument("kernel", metavar="KERNEL", help="a kernel of the library (see `symrot emit --list`)")
+    parser.add_argument("kernel", metavar="KERNEL", help="a kernel of the library (see `symrot emit --list`), a scene")
     parser.add_argument("--box", metavar="NAME=LOW:HIGH", action="append", default=[],
                         help="range of an input, theta=-1.4:1.4 (default: the kernel's); may be repeated")  # fmt: skip
     parser.add_argument("--target", type=float, metavar="X", help="find the largest box on which no error is above X")

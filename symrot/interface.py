@@ -1,6 +1,7 @@
 """The functions that people call and that live in no single room: a plan of a scene, the text of a kernel."""
 
 import re
+from collections.abc import Mapping
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -11,8 +12,9 @@ from symrot.scene import Scene, load_scene
 
 if TYPE_CHECKING:
     from symrot.certify.certificate import Subject
+    from symrot.certify.rounding_scenes import SceneInputs
 
-__all__ = ["TARGETS", "Emitted", "emit", "kernel_names", "plan", "scene_kernel_name", "subject"]
+__all__ = ["TARGETS", "Emitted", "emit", "kernel_names", "plan", "scene_inputs", "scene_kernel_name", "subject"]
 
 TARGETS = ("c", "numpy")
 
@@ -27,18 +29,19 @@ class Emitted(_Texts):
     """An emitted kernel: the name of its function, the text, and in C the header (empty otherwise).
 
     ``certificate`` is the text of its certificate, proven when it is asked for; for a kernel of the library with the
-    bounds of its rounding errors on its own box.
+    bounds of its rounding errors on its own box, for a scene's with those it was emitted with.
     """
 
     kernel: Any = None
+    bounds: Mapping[str, Any] | None = None
 
     @cached_property
     def certificate(self) -> str:
         from symrot.certify.certificate import certificate_text, with_slots
         from symrot.certify.rounding_words import library_section
 
-        text = certificate_text(subject(self.kernel))
-        section = library_section(self.name, self.source) if _is_kernel(self.kernel) else None
+        text = certificate_text(subject(self.kernel, self.bounds))
+        section = library_section(self.name, self.source) if _is_kernel(self.kernel) else self.bounds
         return with_slots(text, {"rounding": section}) if isinstance(section, dict) else text
 
 
@@ -57,7 +60,7 @@ def plan(scene: Scene | str | Path) -> Plan:
     return make_plan(_scene(scene))
 
 
-def emit(kernel: Scene | str | Path, target: str = "c") -> Emitted:
+def emit(kernel: Scene | str | Path, target: str = "c", bounds: Mapping[str, Any] | None = None) -> Emitted:
     """Return the text of a kernel of the library, or of a scene's own kernel; the same bytes on every machine.
 
     Parameters
@@ -67,6 +70,9 @@ def emit(kernel: Scene | str | Path, target: str = "c") -> Emitted:
         The kernel of a scene is its equations of motion ``dy/dt``.
     target : str
         ``"c"`` (C99, valid C++) or ``"numpy"``.
+    bounds : mapping, optional
+        Bounds of the rounding errors of a scene's kernel on a box of yours, for the head of its C and its certificate
+        (:func:`symrot.report.bounds.section`); a kernel of the library has its own.
 
     Raises
     ------
@@ -80,7 +86,7 @@ def emit(kernel: Scene | str | Path, target: str = "c") -> Emitted:
     if target not in TARGETS:
         raise InputError(f"target: expected one of {', '.join(TARGETS)}, got {target!r}")
     is_kernel = _is_kernel(kernel)
-    program, description = (_library_kernel if is_kernel else _scene_kernel)(kernel, target)
+    program, description = _library_kernel(kernel, target) if is_kernel else _scene_kernel(kernel, target, bounds)
     name = program.signature.name
     if target == "numpy":
         found = Emitted(name, numpy_source(program, description), "")
@@ -91,7 +97,7 @@ def emit(kernel: Scene | str | Path, target: str = "c") -> Emitted:
             description = _library_kernel(kernel, target, source)[1]
             source = c_source(program, description, reals, is_kernel)
         found = Emitted(name, source, c_header(program, description, reals))
-    found.kernel = kernel
+    found.kernel, found.bounds = kernel, bounds
     return found
 
 
@@ -99,15 +105,18 @@ def _is_kernel(kernel: Any) -> bool:
     return isinstance(kernel, str) and kernel in kernel_names()
 
 
-def subject(kernel: Scene | str | Path) -> "Subject":
-    """Return a kernel of the library or a scene's own kernel as something to certify, with the texts emitted of it."""
+def subject(kernel: Scene | str | Path, bounds: Mapping[str, Any] | None = None) -> "Subject":
+    """Return a kernel of the library or a scene's own kernel as something to certify, with the texts emitted of it.
+
+    ``bounds`` are those that a scene's kernel is emitted with (:func:`emit`).
+    """
     from symrot.certify.subjects import library_subject, scene_subject
     from symrot.codegen.c_source import MATH_HEADER
     from symrot.codegen.math_header import math_header
     from symrot.dynamics.equations import equations_of_motion
     from symrot.kernels.library import definition
 
-    c, numpy = emit(kernel, "c"), emit(kernel, "numpy")
+    c, numpy = emit(kernel, "c", bounds), emit(kernel, "numpy")
     is_kernel = _is_kernel(kernel)
     files = {f"{c.name}.c": c.source, f"{c.name}.h": c.header}
     files |= {MATH_HEADER: math_header()} if f'"{MATH_HEADER}"' in c.source else {}
@@ -136,13 +145,29 @@ def _library_kernel(name: Any, target: str, source: str = "") -> tuple[Any, Any]
     return kernel_program(name), kernel_description(definition(name), target, in_words(name, source) if source else "")
 
 
-def _scene_kernel(scene: Scene | str | Path, target: str) -> tuple[Any, Any]:
+def _scene_kernel(
+    scene: Scene | str | Path, target: str, bounds: Mapping[str, Any] | None = None
+) -> tuple[Any, Any]:  # fmt: skip
+    from symrot.certify.rounding_scenes import contract
     from symrot.codegen.scene_kernels import with_values
     from symrot.dynamics.equations import equations_of_motion
 
     found = plan(scene)
-    lowered, description = _scene_rates(found, equations_of_motion(found.structure), target)
+    said = contract(scene_inputs(scene), bounds) if bounds and target == "c" else ()
+    lowered, description = _scene_rates(found, equations_of_motion(found.structure), target, said)
     return with_values(lowered.program, lowered.parameters, found.constants), description
+
+
+def scene_inputs(scene: Scene | str | Path) -> "SceneInputs":
+    """Return what a scene's own kernel takes and gives, the values of its parameters, its first and last time."""
+    from symrot.certify.rounding_scenes import SceneInputs
+    from symrot.dynamics.equations import equations_of_motion
+    from symrot.scene_kernel import bind
+
+    found = plan(scene)
+    lowered, _ = _scene_rates(found, equations_of_motion(found.structure), "c")
+    values = tuple(bind(lowered.parameters, found.constants))
+    return SceneInputs(lowered.program.signature.arguments, values, found.scene.span[:2])
 
 
 def scene_kernel_name(scene: str) -> str:
@@ -151,7 +176,7 @@ def scene_kernel_name(scene: str) -> str:
     return name if name[0].isalpha() else f"scene_{name}"
 
 
-def _scene_rates(found: Plan, equations: Any, target: str) -> tuple[Any, Any]:
+def _scene_rates(found: Plan, equations: Any, target: str, said: tuple[Any, ...] = ()) -> tuple[Any, Any]:
     """Return the right-hand side of a plan, and what the emitted file says of it."""
     from symrot.codegen.scene_kernels import rates_program, scene_description
 
@@ -160,5 +185,5 @@ def _scene_rates(found: Plan, equations: Any, target: str) -> tuple[Any, Any]:
             f"{found.scene.name}: expected a scene with states to integrate; every state of it is constant"
         )
     return rates_program(equations, scene_kernel_name(found.scene.name)), scene_description(
-        found.scene.title, found.scene.name, target
+        found.scene.title, found.scene.name, target, said
     )

@@ -135,7 +135,8 @@ def bound_task(task: Task, fresh: bool = False) -> Search:
     """Return the bound of one computation, from the store if it is known and ``fresh`` does not forbid it."""
     known = None if fresh else STORE.get(task.key)
     if known is None:
-        known = search(task.cone, task.box, task.region, task.budget, task.libm_ulp)
+        with np.errstate(all="ignore"):  # ranges may be points
+            known = search(task.cone, task.box, task.region, task.budget, task.libm_ulp)
         STORE.put(task.key, known)
     return known
 

@@ -111,12 +111,12 @@ def with_values(program: Program, parameters: Parameters, constants: Mapping[str
     return replace(program, signature=replace(program.signature, arguments=arguments))
 
 
-def scene_description(title: str, name: str, target: str) -> Description:
-    """Return what an emitted file says of a scene's own kernel."""
+def scene_description(title: str, name: str, target: str, bounds: tuple[tuple[str, str], ...] = ()) -> Description:
+    """Return what an emitted file says of a scene's own kernel; in C also its ``bounds``, if known: heading, text."""
     return Description(
         title=f"equations of motion of the scene {name!r} ({title})",
         domain="all states of finite size; a quaternion is of unit norm, and its rate keeps the norm",
         derivation="derivations/euler_equations.md, derivations/quaternion_rates.md",
         command=f"symrot emit {name} --target {target}",
-        contract=CONTRACT if target == "c" else (),
+        contract=(*bounds, *CONTRACT) if target == "c" else (),
     )

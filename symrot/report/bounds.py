@@ -1,7 +1,8 @@
-"""The bounds of the rounding errors of a kernel, as `symrot bound` prints them."""
+"""The bounds of the rounding errors of a kernel of the library or of a scene, as `symrot bound` prints them."""
 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
+from pathlib import Path
 from typing import Any
 
 from symrot import number
@@ -11,25 +12,38 @@ from symrot.certify.rounding import bound_outputs, rounding_section
 from symrot.certify.rounding_adjoint import UNIT_NORM, Region
 from symrot.certify.rounding_intervals import DIGITS
 from symrot.certify.rounding_library import Problem, largest_box, problem
+from symrot.certify.rounding_scenes import ANY, scene_problem
+from symrot.certify.rounding_words import region_in_words
 from symrot.errors import InputError
-from symrot.interface import emit
+from symrot.interface import emit, scene_inputs
 from symrot.kernels.library import definition, kernel_names
 from symrot.report.layout import columns
+from symrot.scene_file import shipped_names
 from symrot.scene_reader import nearest
 
-__all__ = ["facts", "given", "lines", "target_facts", "target_lines"]
+__all__ = ["facts", "given", "lines", "section", "target_facts", "target_lines"]
 
 PRECISIONS = {"double": "", "float": "f"}
 
 
 def given(kernel: str, ranges: Sequence[str], precision: str) -> tuple[Operations, Problem, dict[str, Any]]:
-    """Return the operations of a kernel of the library, its problem, and its box with some ranges replaced."""
-    if kernel not in kernel_names():
-        hint = nearest(kernel, kernel_names())
-        said = f"expected the name of a kernel (see `symrot emit --list`), got {kernel[:60]!r}"
-        raise InputError(f"{said} ({hint})" if hint else said)
-    operations = read_kernel(emit(kernel).source, f"{kernel}{PRECISIONS[precision]}", f"{kernel}.c")
-    found = problem(definition(kernel), operations)
+    """Return the operations of a kernel of the library or of a scene, its problem, and its box with ranges replaced.
+
+    Parameters
+    ----------
+    kernel : str
+        A kernel of the library, the name of a shipped scene or the path of a scene file.
+    ranges : sequence of str
+        ``NAME=LOW:HIGH``, by component ("theta") or place ("angles[1]"); the others are the kernel's own.
+    precision : str
+        ``"double"`` or ``"float"``; a scene has the first alone.
+
+    Raises
+    ------
+    InputError
+        For a kernel or a range that is none, or a range that is lacking.
+    """
+    operations, found = (_of_library if kernel in kernel_names() else _of_scene)(kernel, precision)
     box = dict(found.box)
     for text in ranges:
         name, sign, ends = text.partition("=")
@@ -37,7 +51,46 @@ def given(kernel: str, ranges: Sequence[str], precision: str) -> tuple[Operation
         if not sign or not colon:
             raise InputError(f"--box: expected NAME=LOW:HIGH, such as theta=-1.4:1.4, got {text[:60]!r}")
         box[found.place(name.strip())] = _end(low, text), _end(high, text)
-    return operations, found, box
+    lacking = [f"--box {symbol}=LOW:HIGH" for place, symbol in found.symbols.items() if place not in box]
+    if lacking:
+        said = f"{operations.name}: expected {' '.join(lacking)} beside the ranges that the scene knows"
+        raise InputError(f"{said}, got {' '.join(ranges)[:60] or 'none'}")
+    for group in found.region.unit:
+        _check_unit(group, found, box)
+    return operations, found, {place: box[place] for place in operations.inputs}
+
+
+def _check_unit(group: Sequence[str], found: Problem, box: Mapping[str, tuple[Fraction, Fraction]]) -> None:
+    """Refuse a box without a point whose components at some places are a unit quaternion: nothing is true there."""
+    ends = [sorted(box[place], key=abs) for place in group]
+    least = sum(near * near for (near, far) in ends if near * far > 0)
+    if not least - UNIT_NORM <= 1 <= sum(far * far for _, far in ends) + UNIT_NORM:
+        said = ", ".join(f"{found.symbols[place]} {_said_range(*map(float, box[place]))}" for place in group)
+        raise InputError(f"--box: expected a box that holds a unit quaternion, got {said}")
+
+
+def _of_library(kernel: str, precision: str) -> tuple[Operations, Problem]:
+    operations = read_kernel(emit(kernel).source, f"{kernel}{PRECISIONS[precision]}", f"{kernel}.c")
+    return operations, problem(definition(kernel), operations)
+
+
+def _of_scene(scene: str, precision: str) -> tuple[Operations, Problem]:
+    if scene not in shipped_names() and not Path(scene).exists():
+        hint = nearest(scene, [*kernel_names(), *shipped_names()])
+        said = f"expected the name of a kernel (see `symrot emit --list`) or a scene, got {scene[:60]!r}"
+        raise InputError(f"{said} ({hint})" if hint else said)
+    if precision != "double":
+        raise InputError(f"--precision: expected double for a scene, whose kernel has no other, got {precision}")
+    found = emit(scene)
+    operations = read_kernel(found.source, found.name, f"{found.name}.c")
+    return operations, scene_problem(scene_inputs(scene), operations)
+
+
+def section(kernel: str, ranges: Sequence[str]) -> dict[str, Any]:
+    """Return link 4 of a kernel for its certificate, in all its precisions; parameters as for :func:`facts`."""
+    operations, found, box = given(kernel, ranges, "double")
+    single = given(kernel, ranges, "float")[0] if kernel in kernel_names() else None
+    return rounding_section(operations, single, box, found.region)
 
 
 def _end(text: str, whole: str) -> Fraction:
@@ -49,44 +102,54 @@ def facts(kernel: str, ranges: Sequence[str], precision: str) -> dict[str, Any]:
 
     Parameters
     ----------
-    kernel : str
-        A kernel of the library.
-    ranges : sequence of str
-        ``NAME=LOW:HIGH``, by component ("theta") or place ("angles[1]"); the others are the kernel's own.
-    precision : str
-        ``"double"`` or ``"float"``.
+    kernel, ranges, precision
+        As for :func:`given`.
 
     Raises
     ------
     InputError
-        For a kernel or a range that is none, or a box on which an output has no bound.
+        As :func:`given`, and for a box on which an output has no bound.
     """
     operations, found, box = given(kernel, ranges, precision)
-    return {"kernel": operations.name} | rounding_section(operations, None, box, found.region)
+    own = {"kernel": operations.name, "names": _names(kernel)}
+    return own | rounding_section(operations, None, box, found.region)
 
 
-def _said_box(box: Mapping[str, Any]) -> str:
-    return ", ".join(f"{place} {_short(low)} .. {_short(high)}" for place, (low, high) in box.items())
+def _names(kernel: str) -> dict[str, str]:
+    """Return what a scene calls what its kernel takes and gives: the place of a state tells nobody which it is."""
+    if kernel in kernel_names():
+        return {}
+    return {place: symbol for place, (symbol, _) in scene_inputs(kernel).components.items()}
 
 
-def _short(value: Any) -> str:
-    return f"{float.fromhex(value) if isinstance(value, str) else float(value):.6g}"
+def _said_box(box: Mapping[str, Any], names: Mapping[str, str]) -> str:
+    return ", ".join(f"{names.get(place, place)} {_said_range(*map(_value, ends))}" for place, ends in box.items())
 
 
-def _region_lines(region: Region) -> list[str]:
-    found = [f"      {', '.join(group)}: squares add up to 1, but for {UNIT_NORM:.1g}" for group in region.unit]
-    if region.clearance:
-        found.append(f"      every atan2 with arguments of length at least {region.clearance:g}")
-    return found
+def _said_range(low: float, high: float) -> str:
+    if (Fraction(low), Fraction(high)) == ANY:
+        return "any"
+    return f"{low:.6g}" if low == high else f"{low:.6g} .. {high:.6g}"
+
+
+def _value(end: Any) -> float:
+    return float.fromhex(end) if isinstance(end, str) else float(end)
+
+
+def _region_lines(section: Mapping[str, Any]) -> list[str]:
+    groups = (tuple(section["names"].get(place, place) for place in group) for group in section["unit_groups"])
+    region = Region(tuple(groups), float.fromhex(section["clearance"]))
+    return [f"      {each}" for each in region_in_words(region)]
 
 
 def lines(section: Mapping[str, Any]) -> list[str]:
     """Return the bounds as lines for people."""
     part = section["precisions"][0]
-    region = Region(tuple(map(tuple, section["unit_groups"])), float.fromhex(section["clearance"]))
+    names = section["names"]
     unit = f"2^-{DIGITS[part['precision']]}"
     rows = [
-        (each["output"], f"{float.fromhex(each['absolute']):.3e}", f"{each['units']} * {unit}",
+        (names.get(each["output"], each["output"]),
+         f"{float.fromhex(each['absolute']):.3e}", f"{each['units']} * {unit}",
          ("" if each["converged"] else f"not below {float.fromhex(each['pointwise']):.3e} by this method")
          + (" (modulo whole turns)" if each["modulo_turns"] else ""))
         for each in part["outputs"]
@@ -94,7 +157,7 @@ def lines(section: Mapping[str, Any]) -> list[str]:
     choices = sorted({choice for each in part["outputs"] for choice in each["choices"]})
     return [
         f"{section['kernel']}: no error is larger than", *columns(rows),
-        f"for {_said_box(section['box'])}", *_region_lines(region),
+        f"for {_said_box(section['box'], names)}", *_region_lines(section),
         f"assuming {'; '.join(section['assumptions'])}",
         *(f"choice as computed: {choice}" for choice in choices),
     ]  # fmt: skip
@@ -112,25 +175,34 @@ def target_facts(
     target : float
         The largest error that is allowed.
     variables : sequence of str
-        Inputs whose ranges are resized; all if there are none.
+        Inputs whose ranges are resized; if there are none, all of a kernel of the library, of a scene those with a
+        range that are not components of its quaternion.
     """
     operations, found, box = given(kernel, ranges, precision)
-    places = [found.place(name) for name in variables] or None
+    places = [found.place(name) for name in variables] or (None if kernel in kernel_names() else _free(found, box))
+    for place in places or ():
+        if box[place] == ANY:
+            name = found.symbols[place]
+            raise InputError(f"--variable {name}: expected an input that {operations.name} uses, which {name} is not")
     size, largest = largest_box(operations, box, target, places, found.region)
     bounds = bound_outputs(operations, largest, found.region)
     return {
-        "kernel": operations.name, "target": target, "size": size,
+        "kernel": operations.name, "names": _names(kernel), "target": target, "size": size,
         "box": {place: [float(low).hex(), float(high).hex()] for place, (low, high) in largest.items()},
         "largest_error": max(each.bound for each in bounds).hex(),
         "unit_groups": [list(group) for group in found.region.unit], "clearance": float(found.region.clearance).hex(),
     }  # fmt: skip
 
 
+def _free(found: Problem, box: Mapping[str, tuple[Fraction, Fraction]]) -> list[str]:
+    units = {place for group in found.region.unit for place in group}
+    return [place for place, (low, high) in box.items() if low < high and (low, high) != ANY and place not in units]
+
+
 def target_lines(found: Mapping[str, Any]) -> list[str]:
     """Return the largest box as lines for people."""
-    region = Region(tuple(map(tuple, found["unit_groups"])), float.fromhex(found["clearance"]))
     return [
         f"{found['kernel']}: no error is larger than {found['target']:g}",
-        f"for {_said_box(found['box'])}", *_region_lines(region),
+        f"for {_said_box(found['box'], found['names'])}", *_region_lines(found),
         f"the box given, {found['size']:.6g} times as wide about its middle",
     ]  # fmt: skip

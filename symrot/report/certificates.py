@@ -16,7 +16,7 @@ from symrot.certify.certificate import Data, Said, said_of, with_slots
 from symrot.codegen import library
 from symrot.errors import CertificateError, InputError
 from symrot.interface import emit, kernel_names, scene_kernel_name, subject
-from symrot.report.kernels import WORKERS, certificate_files, kernel_files, write_files
+from symrot.report.kernels import WORKERS, certificate_files, kept_bounds, kernel_files, write_files
 from symrot.scene_file import shipped_names
 from symrot.scene_reader import nearest
 
@@ -36,10 +36,11 @@ def _said(data: Data) -> Said | None:
         if scene not in shipped_names() or scene_kernel_name(scene) != name:
             return None
         name = scene
-    key = f"said of {name} by {_programs()}"
+    bounds = data.get("rounding") if name != data["kernel"] else None  # a scene has no box of its own
+    key = f"said of {name} with {json.dumps(bounds)} by {_programs()}"
     kept = library.fetch(key)
     if kept is None:
-        kept = json.dumps(said_of(subject(name)))
+        kept = json.dumps(said_of(subject(name, bounds)))
         library.store(key, kept)
     stated, laws = json.loads(kept)
     return stated, laws
@@ -182,29 +183,35 @@ def certify(
     kernel : str
         A kernel of the library, a scene, or NAME.c: a file that has to be what symrot emits.
     ranges : sequence of str
-        ``NAME=LOW:HIGH`` for the box on which rounding errors are bounded; other ranges are the kernel's own.
+        ``NAME=LOW:HIGH`` for the box on which rounding errors are bounded; other ranges are the kernel's own. A
+        scene has those of its parameters, its time and its quaternion, and is bounded if any range is given.
     directory : Path, optional
         Where the kernel and its certificate are written; nowhere if left out.
     objects : bool
         Whether the kernel is compiled, and the object code compared with it, for the compilers that are there.
     bounds : bool
-        Whether rounding errors are bounded; kernels of the library only.
+        Whether rounding errors are bounded.
 
     Raises
     ------
     InputError, CertificateError
         For a kernel that is none, an edited file, a box that cannot be, a proof that fails.
     """
+    from symrot.report.bounds import section
+
     name = _emitted(kernel) if kernel.endswith(".c") else kernel
-    progress("proving ..")
-    texts = kernel_files(name, "c")
-    (file, text), = certificate_files(name, directory or Path()).items()  # fmt: skip
-    slots: Data = {key: value for key, value in json.loads(text).items() if key in ("rounding", "objects")}
-    if name in kernel_names() and bounds:
+    if ranges and not bounds:
+        raise InputError(f"--box: expected no --no-bounds beside it, which leaves bounds out, got {ranges[0]!r} and it")
+    found = None
+    if bounds and (ranges or name in kernel_names()):
         progress("bounding ..")
-        slots["rounding"] = _rounding(name, ranges)
-    elif ranges:
-        raise InputError(f"--box: expected a kernel of the library, got {name!r}")
+        found = section(name, ranges)
+    of_scene = None if name in kernel_names() else found or kept_bounds(name, directory)
+    progress("proving ..")
+    texts = kernel_files(name, "c", of_scene)
+    (file, text), = certificate_files(name, directory or Path(), of_scene).items()  # fmt: skip
+    slots: Data = {key: value for key, value in json.loads(text).items() if key in ("rounding", "objects")}
+    slots |= {"rounding": found} if found else {}
     if objects:
         progress("comparing object code ..")
         slots["objects"] = _objects_of(texts, f"{json.loads(text)['kernel']}.c")
@@ -225,15 +232,6 @@ def _emitted(path: str) -> str:
     if text != emit(name).source:
         raise CertificateError(f"{path}: expected the text that symrot emits for {name}, and it was edited")
     return name
-
-
-def _rounding(name: str, ranges: Sequence[str]) -> Data:
-    from symrot.certify.rounding import rounding_section
-    from symrot.certify.rounding_library import operations_of as both
-    from symrot.report.bounds import given
-
-    _, found, box = given(name, ranges, "double")
-    return rounding_section(*both(name, emit(name).source), box, found.region)
 
 
 def _objects_of(texts: dict[str, str], source: str) -> Data:

@@ -11,15 +11,17 @@ from typing import Any
 
 from symrot.certify import recheck
 from symrot.certify.certificate import with_slots
+from symrot.certify.readback import read_kernel
+from symrot.certify.rounding import check_section
 from symrot.certify.selftest import selftest_files
 from symrot.codegen.build_files import build_files
-from symrot.errors import InputError
+from symrot.errors import CertificateError, InputError
 from symrot.interface import emit
 from symrot.kernels.library import definition, kernel_names
 from symrot.report.files import write
 from symrot.scene_file import shipped_names
 
-__all__ = ["certificate_files", "kernel_files", "kernel_lines", "stale", "write_all", "write_files"]
+__all__ = ["certificate_files", "kept_bounds", "kernel_files", "kernel_lines", "stale", "write_all", "write_files"]
 
 SUFFIXES = {"c": (".c", ".h", ".json", ".txt", ".in"), "numpy": (".py",)}
 RECHECK = ("recheck.py",)  # what re-checks certificates without symrot
@@ -33,9 +35,12 @@ def kernel_lines() -> list[str]:
     return [f"{name:<{width}}  {definition(name).title}" for name in kernel_names()]
 
 
-def kernel_files(kernel: str | Path, target: str) -> dict[str, str]:
-    """Return file name -> text of a kernel of the library or of a scene; in C the header comes first."""
-    found = emit(kernel, target)
+def kernel_files(kernel: str | Path, target: str, bounds: Mapping[str, Any] | None = None) -> dict[str, str]:
+    """Return file name -> text of a kernel of the library or of a scene; in C the header comes first.
+
+    ``bounds`` are those that the head of a scene's C says (:func:`symrot.emit`).
+    """
+    found = emit(kernel, target, bounds)
     if target == "numpy":
         return {f"{found.name}.py": found.source}
     from symrot.codegen.c_source import MATH_HEADER
@@ -45,16 +50,35 @@ def kernel_files(kernel: str | Path, target: str) -> dict[str, str]:
     return {f"{found.name}.h": found.header, f"{found.name}.c": found.source} | shared
 
 
-def certificate_files(kernel: str | Path, directory: Path) -> dict[str, str]:
+def certificate_files(
+    kernel: str | Path, directory: Path, bounds: Mapping[str, Any] | None = None
+) -> dict[str, str]:  # fmt: skip
     """Return file name -> text of the certificate of a kernel; verdicts on object code that still hold are kept.
 
-    Bounds of rounding errors are those of the kernel's own box; a scene has none, and those that hold are kept.
+    Bounds of rounding errors are those of the kernel's own box; of a scene, those that it is emitted with.
     """
-    found = emit(kernel, "c")
+    found = emit(kernel, "c", bounds)
     name = f"{found.name}.cert.json"
-    known = _slots(directory / name)
     own = json.loads(found.certificate).get("rounding")
-    return {name: with_slots(found.certificate, known | ({"rounding": own} if own else {}))}
+    return {name: with_slots(found.certificate, _slots(directory / name) | {"rounding": own})}
+
+
+def kept_bounds(kernel: str | Path, directory: Path | None) -> Mapping[str, Any] | None:
+    """Return the bounds of rounding errors that a folder's certificate holds of a scene's kernel, as it is emitted now.
+
+    None for a kernel of the library, which has its own, and where there are none or they are of other operations.
+    """
+    if directory is None or kernel in kernel_names():
+        return None
+    name, source, _ = emit(kernel)
+    section = _slots(directory / f"{name}.cert.json").get("rounding")
+    if not isinstance(section, dict):
+        return None
+    try:
+        check_section(section, read_kernel(source, name, f"{name}.c"), None)
+    except CertificateError:
+        return None
+    return section
 
 
 def _slots(path: Path) -> dict[str, Any]:
@@ -70,9 +94,10 @@ def _files_of(name: str, room: str, targets: Sequence[str], directory: Path) -> 
     """Return path -> text of one kernel, its certificate included."""
     files: dict[str, str] = {}
     for target in targets:
-        found = kernel_files(name, target)
+        bounds = kept_bounds(name, directory / target / room) if target == "c" else None
+        found = kernel_files(name, target, bounds)
         if target == "c":
-            found |= certificate_files(name, directory / target / room)
+            found |= certificate_files(name, directory / target / room, bounds)
         files |= {f"{target}/{room}{file}": text for file, text in found.items()}
     return files
 

@@ -1,0 +1,150 @@
+"""Link 4 of a scene's own kernel: bounded on a box given for its states, audited, said in the head of its C."""
+
+import json
+from fractions import Fraction
+from pathlib import Path
+from random import Random
+
+import pytest
+
+from symrot.certify.readback import read_kernel
+from symrot.cli import main
+from symrot.interface import emit
+from symrot.report.bounds import facts, given, section
+
+CUBE = ("omega_1=-1:1", "omega_2=-1:1", "omega_3=-1:1")
+PART = ("q0=1/2:1", "q1=0:1/2", "q2=0:1/2", "q3=0:1/2")
+BOXES = {  # scenes of different structure
+    "t_handle": ("omega_1=0:1", "omega_2=0:1", "omega_3=0:2", *PART),
+    "heavy_top_loops": ("omega_1=1:10", "omega_2=1:10", *PART),
+    "damped_disk": ("omega_1=0:3", "omega_2=0:3", "omega_3=0:3", *PART),
+}
+
+
+def _options(ranges):
+    return [part for text in ranges for part in ("--box", text)]
+
+
+@pytest.mark.parametrize("scene", BOXES)
+def test_no_error_is_above_its_bound(scene):
+    """In exact arithmetic, at the same floating-point inputs: polynomials, so that Fractions decide."""
+    operations, _, box = given(scene, BOXES[scene], "double")
+    (part,) = section(scene, BOXES[scene])["precisions"]
+    bounds = {each["output"]: Fraction(float.fromhex(each["absolute"])) for each in part["outputs"]}
+    draw, worst = Random(5), dict.fromkeys(bounds, 0.0)
+    for _ in range(150):
+        point = {place: draw.uniform(*map(float, ends)) for place, ends in box.items() if place[0] != "t"}
+        quaternion = [place for place in point if place[0] == "y"][-4:]
+        norm = sum(point[place] ** 2 for place in quaternion) ** 0.5
+        point |= {place: point[place] / norm for place in quaternion} | {"t": 0.0}
+        if not all(box[place][0] <= Fraction(x) <= box[place][1] for place, x in point.items()):
+            continue
+        exact = _exactly(operations, point)
+        for place, value in _computed(operations, point).items():
+            error = abs(Fraction(value) - exact[place])
+            assert error <= bounds[place]
+            worst[place] = max(worst[place], float(error / bounds[place]) if bounds[place] else 0.0)
+    assert min(worst.values()) > 0.2  # and no bound is idle
+
+
+def _walk(operations, point, number):
+    rules = {"add": lambda a, b: a + b, "sub": lambda a, b: a - b, "mul": lambda a, b: a * b, "neg": lambda a: -a}
+    values = []
+    for kind, *rest in operations.nodes:
+        if kind in ("in", "const"):
+            values.append(number(point[rest[0]] if kind == "in" else rest[0]))
+        else:
+            values.append(rules[kind](*(values[i] for i in rest)))
+    return {place: values[index] for place, index in operations.outputs}
+
+
+def _exactly(operations, point):
+    return _walk(operations, point, Fraction)
+
+
+def _computed(operations, point):
+    return _walk(operations, point, float)
+
+
+def test_certify_audit_and_emit_keep_the_bounds(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(["certify", "t_handle", *_options(BOXES["t_handle"]), "-o", "k"]) == 0
+    assert "link 4" in capsys.readouterr().out
+    path = Path("k/t_handle_rates.cert.json")
+    kept, source = path.read_text(encoding="utf-8"), Path("k/t_handle_rates.c").read_text(encoding="utf-8")
+    head = " ".join(line.strip(" *") for line in source.splitlines())
+    assert (
+        "Box: omega_1, omega_2 in [0, 1]; omega_3 in [0, 2]; q0 in [0.5, 1]; q1, q2, q3 in [0, 0.5]; other par" in head
+    )
+    assert "rad/s^2 in domega_1, domega_2, domega_3" in head
+    assert main(["audit", str(path), "--rerun-bounds"]) == 0
+    assert "found again" in capsys.readouterr().out
+    assert main(["emit", "t_handle", "-o", "k"]) == 0  # writes nothing: all is as it was
+    assert (capsys.readouterr().out, path.read_text(encoding="utf-8")) == ("", kept)
+    assert main(["certify", "t_handle", "-o", "k"]) == 0
+    assert path.read_text(encoding="utf-8") == kept
+    Path("k/t_handle_rates.c").write_text(source.replace("1/s in dq0", "5/s in dq0"), encoding="utf-8")
+    assert main(["audit", str(path)]) == 1
+    Path("k/t_handle_rates.c").write_text(source, encoding="utf-8")
+    data = json.loads(kept)
+    data["rounding"]["box"]["y[0]"] = [(-9.0).hex(), (9.0).hex()]
+    path.write_text(json.dumps(data), encoding="utf-8")
+    assert main(["audit", str(path)]) == 1
+
+
+def test_bounds_of_a_scene_file_and_without_any(tmp_path, capsys, monkeypatch):
+    """A scene file of one's own is certified the same; with no range given there are no bounds, and no head says any."""
+    monkeypatch.chdir(tmp_path)
+    shipped = Path(__file__).parents[1] / "symrot" / "scenes" / "gyrostat.toml"
+    Path("mine.toml").write_bytes(shipped.read_bytes())
+    ranges = _options(("omega_1=-1:1", "omega_2=-1:1", "omega_3=-1:1", "p0=0:1"))
+    assert main(["certify", "mine.toml", *ranges, "-o", "k"]) == 0
+    assert main(["audit", "k/mine_rates.cert.json"]) == 0
+    assert "p0 in [0, 1]" in Path("k/mine_rates.c").read_text(encoding="utf-8").replace("\n *    ", "")
+    assert main(["certify", "gyrostat", "-o", "k"]) == 0
+    assert json.loads(Path("k/gyrostat_rates.cert.json").read_text(encoding="utf-8")).get("rounding") is None
+    assert "Errors:" not in Path("k/gyrostat_rates.c").read_text(encoding="utf-8")
+
+
+def test_time_is_the_span_of_the_scene_and_parameters_are_points():
+    _, found, box = given("gravity_gradient_satellite", [f"omega_{i}=-0.01:0.01" for i in (1, 2, 3)], "double")
+    assert box["t"] == (0, 28400) and found.region.unit == (("y[3]", "y[4]", "y[5]", "y[6]"),)
+    assert all(low == high for place, (low, high) in box.items() if place[0] == "p")
+    _, _, free = given("t_handle", CUBE, "double")
+    emitted = emit("t_handle")
+    operations = read_kernel(emitted.source, emitted.name, "t_handle_rates.c")
+    assert list(free) == list(operations.inputs) and free["t"][1] > 10**308  # not used: any
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["bound", "t_handle"], "--box omega_1=LOW:HIGH --box omega_2=LOW:HIGH --box omega_3=LOW:HIGH"),
+        (["certify", "t_handle", "--box", "omega_1=-1:1"], "--box omega_2=LOW:HIGH --box omega_3=LOW:HIGH"),
+        (["certify", "t_handle", "--box", "omega_1=nan:1"], "expected a number"),
+        (["certify", "t_handle", "--box", "omega_9=0:1"], "expected an input, one of t, omega_1"),
+        (["bound", "t_handle", *_options(("omega_1=2:1", "omega_2=0:1", "omega_3=0:1"))], "got 2 to 1"),
+        (["bound", "t_handle", *_options((*CUBE, "q0=2:3"))], "a box that holds a unit quaternion"),
+        (["bound", "t_handle", *_options([f"omega_{i}=-1e200:1e200" for i in (1, 2, 3)])], "has no bound"),
+        (["bound", "t_handle", *_options(CUBE), "--target", "1e-13", "--variable", "t"], "which t is not"),
+        (["bound", "t_handle", "--precision", "float"], "expected double for a scene"),
+        (["bound", "t_handl"], "did you mean 't_handle'?"),
+        (["certify", "t_handle", "--no-bounds", "--box", "omega_1=0:1"], "expected no --no-bounds"),
+    ],
+    ids=lambda value: value if isinstance(value, str) else "",
+)
+def test_a_bad_box_is_one_sentence(arguments, said, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(arguments) == 2
+    found = capsys.readouterr()
+    assert said in found.err and found.err.count("\n") == 1 and found.out == "" and not list(tmp_path.iterdir())
+
+
+def test_the_largest_box_of_a_scene_has_the_target():
+    from symrot.report.bounds import target_facts
+
+    found = target_facts("t_handle", BOXES["t_handle"], "double", 1e-13, ("omega_1",))
+    assert found["size"] > 1 and float.fromhex(found["largest_error"]) <= 1e-13
+    assert found["box"]["y[3]"] == [(0.5).hex(), (1.0).hex()]
+    (part,) = facts("t_handle", BOXES["t_handle"], "double")["precisions"]
+    assert max(float.fromhex(each["absolute"]) for each in part["outputs"]) < 1e-13
