@@ -1,6 +1,7 @@
 """Certificates: what they say is proven, re-checked without symrot, audited; and whatever is altered is refused."""
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -8,13 +9,13 @@ from random import Random
 
 import pytest
 
-import symrot
 from symrot.certify import recheck
 from symrot.certify.audit import audit
 from symrot.certify.certificate import certificate_text, printed, with_slots
+from symrot.certify.claims import claims_no_more, same_but_for_bounds
 from symrot.certify.header import check_header
 from symrot.certify.laws import prove_law, prove_laws
-from symrot.certify.mutations import Files, corrupted_c, says_the_same, tampered_certificates
+from symrot.certify.mutations import Files, corrupted_c, tampered_certificates
 from symrot.cli import main
 from symrot.errors import CertificateError
 from symrot.interface import emit, subject
@@ -69,7 +70,11 @@ def test_a_certificate_holds_and_is_rechecked_without_symrot(kernels, name):
 def test_recheck_imports_nothing_of_symrot(kernels, tmp_path):
     """It runs where there is neither symrot nor any package, from a copy."""
     (tmp_path / RECHECK.name).write_bytes(RECHECK.read_bytes())
-    modules = {line.split()[1] for line in RECHECK.read_text(encoding="utf-8").splitlines() if line.startswith(("import ", "from "))}
+    modules = {
+        line.split()[1]
+        for line in RECHECK.read_text(encoding="utf-8").splitlines()
+        if line.startswith(("import ", "from "))
+    }
     assert modules and modules <= sys.stdlib_module_names
     paths = [str(files.path) for files in kernels.values()]
     command = [sys.executable, "-I", "-S", str(tmp_path / "recheck.py")]
@@ -214,23 +219,75 @@ def test_wrong_schemas_missing_parts_and_huge_numbers_are_refused(dcm):
 
 def test_corrupted_c_files_are_refused(kernels):
     """With their hash put right and the certificate sealed anew: the meaning of the text alone refuses them."""
-    campaign = corrupted_c(list(kernels.values()), 90, Random(11))
+    campaign = corrupted_c(list(kernels.values()), 60, Random(11))
     assert campaign.survivors == []
-    assert campaign.same.total() < 9 and len(campaign.tried) > 9
+    assert campaign.same.total() < 6 and len(campaign.tried) > 9
 
 
 def test_tampered_certificates_are_refused(kernels):
-    assert tampered_certificates(list(kernels.values()), 150, Random(12), sealed=False).survivors == []
+    assert tampered_certificates(list(kernels.values()), 60, Random(12), sealed=False).survivors == []
     campaign = tampered_certificates(list(kernels.values()), 30, Random(13), sealed=True)
     assert campaign.survivors == []
     assert campaign.words
 
 
-def test_what_is_the_same_certificate():
-    data = json.loads(emit("quaternion_dcm").certificate)
-    assert says_the_same(data, data, True) and says_the_same(data, data, False)
-    other = json.loads(emit("mrp_dcm").certificate)
-    assert not says_the_same(data, other, False) and not says_the_same(data, data | {"domain": "all"}, True)
+def test_what_claims_the_same(kernels):
+    """The judge of campaigns proves what it lets pass: a law times -1 or weakened; no other law, formula or input."""
+    files = kernels["torque_gravity"]
+    data, spec, (law, *laws) = files.data, files.data["spec"], files.data["laws"]
+    text = law["vanishing"][0]
+
+    def with_law(**changes):
+        return data | {"laws": [law | changes, *laws]}
+
+    assert claims_no_more(data, data | {"title": "of any torque", "laws": data["laws"][:1]})
+    for true in (f"-({text})", f"7*({text})", f"weight*({text})"):
+        assert claims_no_more(data, with_law(vanishing=[true])), true
+    place, symbol, formula = spec["formulas"][0]
+    for other in (
+        with_law(vanishing=[f"{text} + weight"]), with_law(vanishing=["weight"]), with_law(vanishing=[7]),
+        data | {"inputs": [["more", "more", ""], *data["inputs"]]}, data | {"files": {}, "laws": [{}]},
+        data | {"spec": spec | {"formulas": [[place, symbol, f"2*({formula})"], *spec["formulas"][1:]]}},
+    ):  # fmt: skip
+        assert not claims_no_more(data, other)
+    assert same_but_for_bounds(data, data, *files.operations)
+    assert not same_but_for_bounds(data, data | {"domain": "all"}, *files.operations)
+    assert not same_but_for_bounds(data, data | {"rounding": None}, *files.operations)
+
+
+def test_arguments_that_a_kernel_does_not_take_are_refused(kernels):
+    """What no formula needs is read all the same: places are those of arguments, parameters those of inputs."""
+    files = kernels["euler_zyx_body_rates"]
+    (first, *described), *inputs = files.data["inputs"]
+    assert first == "angles[0]"
+    for place in ("angles[0]0", "angles[7]", "angles[00]", "angles", "angles[1]"):
+        resealed(files, inputs=[[place, *described], *inputs])
+        refused(files, "argument|two inputs|of")
+    resealed(files, spec=files.data["spec"] | {"parameters": {"other": 1}})
+    refused(files, "a parameter is no input")
+    files.restore()
+
+
+def test_bounds_are_those_of_their_box(kernels):
+    """On a box that is widened by a hair, or another region, the bounds of the kernel's own are no proof."""
+    files = kernels["quaternion_dcm"]
+    bounds = files.data["rounding"]
+    low, high = bounds["box"]["q[2]"]
+    point = bounds["precisions"][1]
+    for changes in (
+        {"box": bounds["box"] | {"q[2]": [(float.fromhex(low) * 1.001).hex(), high]}},
+        {"box": bounds["box"] | {"q[2]": [low.replace("0x", "0X"), high]}}, {"budget": bounds["budget"] - 1},
+        {"unit_groups": [["q[0]", "q[1]", "q[2]", "q[4]"]]}, {"clearance": (0.5).hex()}, {"other": 1},
+        {"precisions": [bounds["precisions"][0], point | {"other": 1}]},
+        {"precisions": [bounds["precisions"][0], point | {"unit": point["unit"].replace("p", "P")}]},
+        {"precisions": [bounds["precisions"][0], point | {"outputs": [
+            each | {"converged": int(each["converged"])} for each in point["outputs"]]}]},
+    ):  # fmt: skip
+        resealed(files, rounding=bounds | changes)
+        with pytest.raises(CertificateError, match="expected"):
+            audit(files.path, lambda data: files.said)
+        recheck.check(files.path)  # bounds are not what it looks at
+    files.restore()
 
 
 # --- commands ---------------------------------------------------------------------------------------------------------
@@ -273,16 +330,10 @@ def test_bounds_of_other_operations_are_not_kept():
 
 
 def test_certificates_are_the_same_bytes_whatever_the_seed_of_hashes():
-    code = (
-        "import symrot; print(''.join(symrot.emit(n).certificate for n in ('euler_zyx_body_rates', 'heavy_top_loops')))"
-    )
-    texts = {
-        subprocess.run(
-            [sys.executable, "-c", code],
-            capture_output=True,
-            check=True,
-            env={"PYTHONHASHSEED": seed, "SYMROT_CACHE": "/nowhere"},
-        ).stdout
-        for seed in ("1", "2")
-    }
-    assert len(texts) == 1 and symrot.emit("heavy_top_loops").certificate.encode() in texts.pop()
+    """A process with a seed of its own and no cache prints what this one does."""
+    code = "import sys, symrot; print(*(symrot.emit(name).certificate for name in sys.argv[1:]), sep='')"
+    names = ("euler_zyx_body_rates", "heavy_top_loops")
+    seed = "2" if os.environ.get("PYTHONHASHSEED") == "1" else "1"
+    environment = {"PYTHONHASHSEED": seed, "SYMROT_CACHE": "/nowhere"}
+    done = subprocess.run([sys.executable, "-c", code, *names], capture_output=True, check=True, env=environment)
+    assert done.stdout.decode() == "".join(emit(name).certificate for name in names) + "\n"

@@ -41,7 +41,6 @@ __all__ = [
 
 SCHEMA = "symrot.certificate/1"
 Data = dict[str, Any]
-Said = tuple[Data, list[list[Any]]]
 
 TRUSTED = {
     "formulas and laws": "recheck.py alone, or the reader and the prover of symrot",
@@ -141,10 +140,9 @@ def statement(subject: Subject) -> Data:
     }
 
 
-def said_of(subject: Subject) -> Said:
-    """Return what a certificate says without proof, and its laws as (text, what vanishes, what is given)."""
-    laws = [[law.text, list(map(str, law.vanishing)), list(map(str, law.relations))] for law in subject.laws]
-    return statement(subject), laws
+def said_of(subject: Subject) -> Data:
+    """Return the certificate of a kernel as symrot proves it, without what is filled in on request, and the seal."""
+    return {key: value for key, value in json.loads(certificate_text(subject)).items() if key != "seal"}
 
 
 def _proven(subject: Subject) -> Data:

@@ -10,6 +10,7 @@ finite on the box, so that nothing overflows.
 """
 
 import hashlib
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
@@ -27,8 +28,8 @@ from symrot.certify.rounding_subdivision import Search, search
 from symrot.errors import CertificateError, InputError
 from symrot.number import show
 
-__all__ = ["BUDGET", "STORE", "Box", "OutputBound", "Task", "bound_outputs", "bound_task", "check_section",
-           "rounding_section", "tasks"]  # fmt: skip
+__all__ = ["BUDGET", "STORE", "Box", "OutputBound", "Task", "bound_outputs", "bound_task", "check_bounds",
+           "check_section", "rounding_section", "tasks"]  # fmt: skip
 
 Box = Mapping[str, tuple[Fraction, Fraction]]  # place of an input, such as "q[1]" -> least and largest value
 
@@ -91,9 +92,13 @@ def tasks(
     Raises
     ------
     InputError
-        For a box with a range that is missing, unknown, reversed or not finite.
+        For a box with a range that is missing, unknown, reversed or not finite; for a region of other inputs.
     """
     _check_box(operations, box)
+    strangers = sorted({place for group in region.unit for place in group} - set(operations.inputs))
+    if strangers:
+        known = ", ".join(operations.inputs)
+        raise InputError(f"{operations.name}: expected unit groups of {known}, got {strangers[0]}")
     found = {}
     for place, index in operations.outputs:
         cone = cone_of(operations, index)
@@ -240,11 +245,17 @@ def rounding_section(
         As :func:`bound_outputs`.
     """
     kernels = [operations_double] if operations_float is None else [operations_double, operations_float]
+    return _question(box, region, budget, libm_ulp) | {
+        "precisions": [_precision(kernel, box, region, budget, libm_ulp, fresh) for kernel in kernels]
+    }
+
+
+def _question(box: Box, region: Region, budget: int, libm_ulp: float) -> dict[str, Any]:
+    """Return what bounds are asked for, in the one way in which it is written."""
     return {
         "meaning": MEANING, "assumptions": _assumptions(libm_ulp), "libm_ulp": float(libm_ulp).hex(), "budget": budget,
         "box": {place: [_outward(low, -inf).hex(), _outward(high, inf).hex()] for place, (low, high) in box.items()},
         "unit_groups": [list(group) for group in region.unit], "clearance": float(region.clearance).hex(),
-        "precisions": [_precision(kernel, box, region, budget, libm_ulp, fresh) for kernel in kernels],
     }  # fmt: skip
 
 
@@ -252,19 +263,30 @@ def _precision(
     operations: Operations, box: Box, region: Region, budget: int, libm_ulp: float, fresh: bool
 ) -> dict[str, Any]:
     unit = 2.0 ** -DIGITS[operations.precision]
-    outputs = [
-        {
-            "output": found.output, "absolute": found.bound.hex(), "units": _units(found.bound / unit),
-            "pointwise": found.pointwise.hex(), "at": {name: x.hex() for name, x in found.at},
-            "scale": found.scale.hex(), "evaluations": found.evaluations, "converged": found.converged,
-            "modulo_turns": found.turns, "choices": list(found.choices),
-            "contraction_safe": found.contraction_safe,
-        }
-        for found in bound_outputs(operations, box, region, budget, libm_ulp, fresh)
-    ]  # fmt: skip
+    bounds = bound_outputs(operations, box, region, budget, libm_ulp, fresh)
+    return _part(operations, [_output(found, unit) for found in bounds])
+
+
+def _part(operations: Operations, outputs: list[dict[str, Any]]) -> dict[str, Any]:
+    unit = 2.0 ** -DIGITS[operations.precision]
     return {
         "precision": operations.precision, "operations_sha256": operations.digest(), "unit": unit.hex(),
         "outputs": outputs,
+    }  # fmt: skip
+
+
+def _alike(a: object, b: object) -> bool:
+    """Tell whether two values are the same text: true is not 1."""
+    return json.dumps(a, sort_keys=True) == json.dumps(b, sort_keys=True)
+
+
+def _output(found: OutputBound, unit: float) -> dict[str, Any]:
+    return {
+        "output": found.output, "absolute": found.bound.hex(), "units": _units(found.bound / unit),
+        "pointwise": found.pointwise.hex(), "at": {name: x.hex() for name, x in found.at},
+        "scale": found.scale.hex(), "evaluations": found.evaluations, "converged": found.converged,
+        "modulo_turns": found.turns, "choices": list(found.choices),
+        "contraction_safe": found.contraction_safe,
     }  # fmt: skip
 
 
@@ -281,10 +303,11 @@ def _units(value: float) -> str:
 def check_section(
     section: Mapping[str, Any], operations_double: Operations, operations_float: Operations | None, rerun: bool = False
 ) -> None:
-    """Verify link 4 of a certificate.
+    """Verify what a point evaluation can tell of link 4 of a certificate; with ``rerun``: everything, from nothing.
 
-    At once: that it is about these operations and all their outputs, that its numbers are finite and in order, and
-    that no bound is below what the method finds at the stored point. With ``rerun``: everything, by bounding again.
+    At once: that it is about these operations and all their outputs, that its numbers are finite, in order and written
+    as they are printed, and that no bound is below what the method finds at the stored point. That bounds hold on the
+    whole box, :func:`check_bounds` proves.
 
     Raises
     ------
@@ -310,10 +333,49 @@ def check_section(
         ) from None
     if said != list(kernels):
         raise CertificateError(f"expected bounds for {' and '.join(kernels)}, got {' and '.join(said) or 'none'}")
-    if section.get("meaning") != MEANING or section.get("assumptions") != _assumptions(libm_ulp):
-        raise CertificateError("expected bounds under the assumptions of this method, got others")
-    if rerun and rounding_section(operations_double, operations_float, box, region, budget, libm_ulp, True) != section:
-        raise CertificateError(f"{operations_double.name}: expected the bounds that bounding again gives, got others")
+    question = _question(box, region, budget, libm_ulp)
+    if not _alike({name: value for name, value in section.items() if name != "precisions"}, question):
+        raise CertificateError("expected a box and assumptions as this method prints them, got others")
+    if rerun:
+        check_bounds(section, operations_double, operations_float, fresh=True)
+
+
+def check_bounds(
+    section: Mapping[str, Any], operations_double: Operations, operations_float: Operations | None, fresh: bool = False
+) -> None:
+    """Verify every bound of a section that :func:`check_section` verified, by bounding again, up to the first other.
+
+    ``fresh``: from nothing; otherwise what the store knows is not found again. No more evaluations than BUDGET.
+
+    Raises
+    ------
+    CertificateError
+        Saying which bound does not hold.
+    """
+    region = Region(tuple(map(tuple, section["unit_groups"])), float.fromhex(section["clearance"]))
+    box = {
+        place: (Fraction(float.fromhex(low)), Fraction(float.fromhex(high)))
+        for place, (low, high) in section["box"].items()
+    }
+    if not 0 <= section["budget"] <= BUDGET:
+        raise CertificateError(f"expected a budget of at most {BUDGET} evaluations of boxes, got {section['budget']}")
+    for operations, part in zip((operations_double, operations_float), section["precisions"], strict=False):
+        if operations is None:
+            continue
+        unit, libm_ulp = 2.0 ** -DIGITS[operations.precision], float.fromhex(section["libm_ulp"])
+        if not _alike({**part, "outputs": []}, _part(operations, [])):
+            raise CertificateError(f"{operations.name}: expected a part of bounds as it is printed, got another")
+        wanted = tasks(operations, box, region, section["budget"], libm_ulp)
+        for item, (place, task) in zip(part["outputs"], wanted.items(), strict=True):
+            try:
+                found = _output(_found(operations, place, task, bound_task(task, fresh)), unit)
+            except InputError as reason:
+                raise CertificateError(str(reason)) from None
+            if not _alike(item, found):
+                raise CertificateError(
+                    f"{operations.name}: expected what bounding again finds of {place} on the box of the certificate, "
+                    f"{found['units']} units, got something else ({item['units']} units)"
+                )
 
 
 def _check_precision(

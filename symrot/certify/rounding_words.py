@@ -10,13 +10,13 @@ from functools import lru_cache
 from typing import Any
 
 from symrot.certify.operations import Operations
-from symrot.certify.rounding import rounding_section
-from symrot.certify.rounding_adjoint import UNIT_NORM, Region
+from symrot.certify.rounding import BUDGET, rounding_section
+from symrot.certify.rounding_adjoint import LIBM_ULP, UNIT_NORM, Region
 from symrot.certify.rounding_library import operations_of, problem
 from symrot.errors import InputError
 from symrot.kernels.library import definition
 
-__all__ = ["in_words", "library_section", "region_in_words", "region_of", "rounded_up"]
+__all__ = ["in_words", "library_region", "library_section", "region_in_words", "region_of", "rounded_up"]
 
 DIGITS = 3
 Section = dict[str, Any]
@@ -42,6 +42,15 @@ def library_section(name: str, source: str) -> Section | str:
         Its C text, with or without its head.
     """
     return _sections(name, *operations_of(name, source))
+
+
+def library_region(name: str, source: str) -> Section:
+    """Return what a section of a kernel says, whatever its box: region, error of libm, budget."""
+    region = problem(definition(name), operations_of(name, source)[0]).region
+    return {
+        "unit_groups": [list(group) for group in region.unit], "clearance": float(region.clearance).hex(),
+        "libm_ulp": float(LIBM_ULP).hex(), "budget": BUDGET,
+    }  # fmt: skip
 
 
 def in_words(name: str, source: str) -> str:

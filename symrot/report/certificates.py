@@ -12,7 +12,7 @@ from tempfile import TemporaryDirectory
 
 import symrot
 from symrot.certify.audit import audit, operations_of
-from symrot.certify.certificate import Data, Said, said_of, with_slots
+from symrot.certify.certificate import Data, said_of, with_slots
 from symrot.codegen import library
 from symrot.errors import CertificateError, InputError
 from symrot.interface import emit, kernel_names, scene_kernel_name, subject
@@ -25,10 +25,10 @@ __all__ = ["audit_file", "audit_files", "certify", "flag_lines", "lines"]
 MANY = 12  # certificates: fewer are audited in this process
 
 
-def _said(data: Data) -> Said | None:
-    """Return what symrot says of the kernel that a certificate should be about; None if it knows none.
+def _said(data: Data) -> Data | None:
+    """Return what symrot says of the kernel that a certificate should be about, and proves; None if it knows none.
 
-    It is derived once, and kept in the cache by the programs that derive it.
+    It is derived and proven once, and kept in the cache by the programs that do so.
     """
     name = data["kernel"]
     scene = str(data["regenerate"]).removeprefix("symrot emit ").removesuffix(" --target c")
@@ -42,8 +42,8 @@ def _said(data: Data) -> Said | None:
     if kept is None:
         kept = json.dumps(said_of(subject(name, bounds)))
         library.store(key, kept)
-    stated, laws = json.loads(kept)
-    return stated, laws
+    found: Data = json.loads(kept)
+    return found
 
 
 @cache
