@@ -307,6 +307,16 @@ def _bound(options: Namespace) -> int:
 def _certify(options: Namespace) -> int:
     from symrot.report import certificates
 
+    if options.all:
+        if options.kernel or options.box or options.no_bounds:
+            raise InputError("certify: expected --all without a KERNEL, --box or --no-bounds "
+                             "(see `symrot certify --help`)")  # fmt: skip
+        every, written = certificates.certify_all(options.directory, options.objects, _progress)
+        _progress("")
+        _say_json(every) if options.json else _say([*certificates.all_lines(every), *map(str, written)])
+        return GOOD
+    if not options.kernel:
+        raise InputError("certify: expected a KERNEL or --all (see `symrot certify --help`)")
     found, written = certificates.certify(
         options.kernel, options.box, options.directory, options.objects, not options.no_bounds, _progress
     )
@@ -441,7 +451,8 @@ def _bound_arguments(parser: ArgumentParser) -> None:
 
 
 def _certify_arguments(parser: ArgumentParser) -> None:
-    parser.add_argument("kernel", metavar="KERNEL", help="a kernel of the library, its C file, or a scene")
+    parser.add_argument("kernel", metavar="KERNEL", nargs="?", help="a kernel of the library, its C file, or a scene")
+    parser.add_argument("--all", action="store_true", help="certify the library and the kernels of all shipped scenes")
     parser.add_argument("--box", metavar="NAME=LOW:HIGH", action="append", default=[],
                         help="range of an input for the bounds of rounding errors; may be repeated")  # fmt: skip
     parser.add_argument("--objects", action="store_true", help="compile it, and compare the object code with it")

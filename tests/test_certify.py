@@ -21,6 +21,7 @@ from symrot.errors import CertificateError
 from symrot.interface import emit, subject
 from symrot.kernels.definition import Law
 from symrot.kernels.library import definition, kernel_names
+from symrot.report import certificates
 from symrot.scene_file import shipped_names
 from symrot.symbols import constant
 
@@ -318,6 +319,22 @@ def test_certify_and_audit(tmp_path, capsys, monkeypatch):
     assert said.out == "" and said.err.count("\n") == 4 and "Traceback" not in said.err
     assert sorted(path.name for path in Path("k").iterdir()) == [
         "quaternion_product.c", "quaternion_product.cert.json", "quaternion_product.h"]  # fmt: skip
+
+
+def test_certify_all(tmp_path, capsys, monkeypatch):
+    """All there is, here a kernel and a scene: which links each has; written as `symrot certify KERNEL -o` does."""
+    monkeypatch.setattr(certificates, "kernel_names", lambda: ("quaternion_dcm",))
+    monkeypatch.setattr(certificates, "shipped_names", lambda: ("heavy_top_loops",))
+    for options in ([], ["-o", str(tmp_path)]):
+        assert main(["certify", "--all", *options]) == 0
+        lines = capsys.readouterr().out.splitlines()
+        links = [line.split() for line in lines[:2]]
+        assert links == [["quaternion_dcm", "1", "2", "3", "4", "-"], ["heavy_top_loops", "1", "-", "3", "-", "-"]]
+        assert lines[2].endswith("2 of 2") and lines[6].endswith("0 of 2") and len(lines) == (13 if options else 7)
+    assert recheck.check(tmp_path / "scenes" / "heavy_top_loops_rates.cert.json")
+    for wrong in (["certify"], ["certify", "--all", "quaternion_dcm"], ["certify", "--all", "--box", "q0=0:1"]):
+        assert main(wrong) == 2
+    assert capsys.readouterr().err.count("\n") == 3
 
 
 def test_bounds_of_other_operations_are_not_kept():

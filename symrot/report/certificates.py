@@ -1,7 +1,7 @@
 """Certify kernels and audit certificates, as `symrot certify` and `symrot audit` do."""
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from functools import cache
 from hashlib import sha256
@@ -16,12 +16,16 @@ from symrot.certify.certificate import Data, said_of, with_slots
 from symrot.codegen import library
 from symrot.errors import CertificateError, InputError
 from symrot.interface import emit, kernel_names, scene_kernel_name, subject
-from symrot.report.kernels import WORKERS, certificate_files, kept_bounds, kernel_files, write_files
+from symrot.report.kernels import SCENES, WORKERS, certificate_files, kept_bounds, kernel_files, write_files
 from symrot.scene_file import shipped_names
 from symrot.scene_reader import nearest
 
-__all__ = ["audit_file", "audit_files", "certify", "flag_lines", "lines"]
+__all__ = ["all_lines", "audit_file", "audit_files", "certify", "certify_all", "flag_lines", "lines"]
 
+LINKS = {  # of the chain from a derivation to object code
+    1: "laws of the formulas proven", 2: "a theorem of Coq about the formulas (`symrot prove`)",
+    3: "C text = formulas, proven", 4: "rounding errors bounded on a box", 5: "object code = C text (--objects)",
+}  # fmt: skip
 MANY = 12  # certificates: fewer are audited in this process
 
 
@@ -217,6 +221,60 @@ def certify(
         slots["objects"] = _objects_of(texts, f"{json.loads(text)['kernel']}.c")
     text = with_slots(text, slots)
     return json.loads(text), write_files(directory, texts | {file: text}) if directory else []
+
+
+def certify_all(
+    directory: Path | None = None, objects: bool = False, progress: Callable[[str], object] = lambda text: None,
+) -> tuple[dict[str, Data], list[Path]]:  # fmt: skip
+    """Return the certificates of the library and of the kernels of shipped scenes, and the files written.
+
+    Several processes find them. What was certified by the same programs is fetched from the cache, unless it is to be
+    written or compiled.
+
+    Parameters
+    ----------
+    directory : Path, optional
+        Where kernels and certificates are written, those of scenes in ``scenes`` below it; nowhere if left out.
+    objects : bool
+        Whether the kernels are compiled, and the object code compared with them, for the compilers that are there.
+    """
+    names = (*kernel_names(), *shipped_names())
+    found: dict[str, Data] = {}
+    written: list[Path] = []
+    with ProcessPoolExecutor(WORKERS) as pool:
+        work = pool.map(_certified, names, repeat(directory), repeat(objects), chunksize=4)
+        for name, (data, paths) in zip(names, work, strict=True):
+            progress(f"certified {name} ..")
+            found[name] = data
+            written += paths
+    return found, written
+
+
+def _certified(name: str, directory: Path | None, objects: bool) -> tuple[Data, list[Path]]:
+    if directory is not None or objects:
+        room = directory and (directory if name in kernel_names() else directory / SCENES)
+        return certify(name, (), room, objects)
+    key = f"certified {name} by {_programs()}"
+    kept = library.fetch(key)
+    if kept is None:
+        kept = json.dumps(certify(name)[0])
+        library.store(key, kept)
+    return json.loads(kept), []
+
+
+def all_lines(found: Mapping[str, Data]) -> list[str]:
+    """Return which links the certificates of kernels hold, a line each, and how many hold which."""
+    links = {name: _links(data) for name, data in found.items()}
+    width = max(map(len, links))
+    said = [f"{name:<{width}}  {' '.join(str(k) if k in held else '-' for k in LINKS)}" for name, held in links.items()]
+    count = {k: sum(k in held for held in links.values()) for k in LINKS}
+    return [*said, *(f"link {k}, {what}: {count[k]} of {len(links)}" for k, what in LINKS.items())]
+
+
+def _links(data: Data) -> set[int]:
+    compared = (data.get("objects") or {"objects": []})["objects"]
+    held = {1: data["laws"], 2: data["coq"], 3: data["readback"], 4: data.get("rounding"), 5: compared}
+    return {k for k, what in held.items() if what and (k != 5 or all(item["accepted"] for item in compared))}
 
 
 def _emitted(path: str) -> str:
