@@ -27,7 +27,11 @@ def rodrigues_file(name: str) -> CoqFile:
             *(definition_text(definition(f"{name}_{frame}_rates"), f"{frame}_rates") for frame in OMEGA),
             *(matrix_text(f"{frame}_jacobian", parameters, tuple(which.rate_matrix(frame))) for frame in OMEGA),
         ),
-        (_quaternion(name, parameters), *(_rates(name, parameters, frame) for frame in OMEGA)),
+        (
+            _quaternion(name, parameters),
+            _turning(name, parameters),
+            *(_rates(name, parameters, frame) for frame in OMEGA),
+        ),
     )
 
 
@@ -58,10 +62,45 @@ def _quaternion(name: str, parameters: tuple[str, ...]) -> Theorem:
     )
 
 
+def _path(parameters: tuple[str, ...]) -> str:
+    return "fun u => dcm " + " ".join(f"({each} u)" for each in parameters)
+
+
+def _at(parameters: tuple[str, ...]) -> str:
+    return " ".join(f"({each} t)" for each in parameters)
+
+
+def _turning(name: str, parameters: tuple[str, ...]) -> Theorem:
+    rates, at = _RATES[name], _at(parameters)
+    return Theorem(
+        f"{name}_turning",
+        "The dcm turns with the angular velocity that the Jacobian makes of the rates of the parameters.",
+        statement(
+            f"({' '.join(parameters)} : R -> R) (t {' '.join(rates)} : R)",
+            derivatives(parameters, rates),
+            conclusion=f"derivative ({_path(parameters)}) t\n"
+            f"  (dcm {at} *m skew (body_jacobian {at} *v vec {' '.join(rates)}))",
+        ),
+        f"  intros {' '.join(parameters)} t {' '.join(rates)} D1 D2 D3. assert (P : {_norm(parameters, ' t')} <> 0)\n"
+        f"    by {_positive(parameters, ' t')}.\n"
+        "  pose proof (pow_nonzero _ 2 P) as P2. unfold body_jacobian, dcm, derivative. spread.\n"
+        "  repeat match goal with |- _ /\\ _ => split end;\n"
+        "    (eapply derivative_is; [differentiate | cbv beta; unfold Rsqr; field; exact P]).",
+    )
+
+
 def _rates(name: str, parameters: tuple[str, ...], frame: str) -> Theorem:
-    rates = _RATES[name]
-    path = "fun u => dcm " + " ".join(f"({each} u)" for each in parameters)
-    at = " ".join(f"({each} t)" for each in parameters)
+    rates, path, at = _RATES[name], _path(parameters), _at(parameters)
+    turning = f"{name}_turning {' '.join(parameters)} t {' '.join(rates)} D1 D2 D3"
+    rotation = f"represents_rotation _ _ ({name}_quaternion {at})"
+    given = f"  - exact ({turning}).\n"
+    if frame == "space":
+        given = (
+            f"  - replace (space_jacobian {at} *v vec {' '.join(rates)})\n"
+            f"      with (dcm {at} *v (body_jacobian {at} *v vec {' '.join(rates)}))\n"
+            "      by (unfold space_jacobian, body_jacobian, dcm; spread; f_equal; field; exact P).\n"
+            f"    rewrite <- (skew_of_turned _ _ ({rotation})).\n    exact ({turning}).\n"
+        )
     omega = f"vec {' '.join(OMEGA[frame])}"
     opened = f"{' '.join(parameters)} t {' '.join(rates)} {' '.join(OMEGA[frame])} D1 D2 D3"
     determinant = coq_expression(projection(name).rate_matrix(frame).determinant)
@@ -82,11 +121,7 @@ def _rates(name: str, parameters: tuple[str, ...], frame: str) -> Theorem:
         f"    by {_positive(parameters, ' t')}.\n"
         "  pose proof (pow_nonzero _ 2 P) as P2. pose proof (pow_nonzero _ 3 P) as P3.\n"
         f"  apply (only_{frame}_rates ({path}) t ({frame}_jacobian {at})).\n"
-        f"  - exact (represents_rotation _ _ ({name}_quaternion {at})).\n"
-        f"  - unfold {frame}_jacobian, dcm. unfold derivative. spread.\n"
-        "    repeat match goal with |- _ /\\ _ => split end;\n"
-        "      (eapply derivative_is; [differentiate | cbv beta; unfold Rsqr; field; exact P]).\n"
-        f"  - replace (det ({frame}_jacobian {at})) with ({determinant})\n"
+        f"  - exact ({rotation}).\n" + given + f"  - replace (det ({frame}_jacobian {at})) with ({determinant})\n"
         f"      by (unfold {frame}_jacobian; spread; field; exact P).\n"
         "    unfold Rdiv. apply Rmult_integral_contrapositive_currified; [lra | apply Rinv_neq_0_compat; assumption].\n"
         f"  - unfold {frame}_jacobian, {frame}_rates. spread. f_equal; field; exact P.",
