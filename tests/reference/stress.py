@@ -12,6 +12,7 @@ from time import perf_counter
 
 from tests.reference import stress_conversions as conversions
 from tests.reference import stress_exact as exact
+from tests.reference import stress_speed as speed
 from tests.reference import stress_stepping as stepping
 from tests.reference.figures import Figure, Stress
 
@@ -55,8 +56,8 @@ STRESSES = (
     Stress("S37", "log, exp near pi", "pi - 1e-1 .. pi", conversions.s37),
     Stress("S38", "conventions", "signs, frames, orders", conversions.s38),
     Stress("S39", "dense output", "random, sorted, repeated, both sides", stepping.s39),
-    Stress("S40", "speed guards", "against heyoka, interleaved", stepping.s40, quick=False),
-    Stress("S41", "instruction sets", "those of this processor", stepping.s41),
+    Stress("S40", "speed guards", "against heyoka, interleaved", speed.s40, quick=False),
+    Stress("S41", "instruction sets", "those of this processor", speed.s41),
     Stress("S42", "non-smooth torque", "restarted at the switches", stepping.s42),
 )
 
