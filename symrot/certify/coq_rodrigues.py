@@ -86,6 +86,7 @@ def _turning(name: str, parameters: tuple[str, ...]) -> Theorem:
         "  pose proof (pow_nonzero _ 2 P) as P2. unfold body_jacobian, dcm, derivative. spread.\n"
         "  repeat match goal with |- _ /\\ _ => split end;\n"
         "    (eapply derivative_is; [differentiate | cbv beta; unfold Rsqr; field; exact P]).",
+        kernel=False,
     )
 
 
