@@ -59,8 +59,8 @@ def same_but_for_bounds(data: Data, other: Data, double: Operations, single: Ope
 def claims_no_more(data: Data, other: Data) -> bool:
     """Tell whether what ``recheck.py`` looks at in a certificate is claimed by another one too, or proven here.
 
-    That is: files, places of inputs, formulas of outputs, laws. Inputs are known by their places, so that the name of
-    one that no formula needs is none of it.
+    That is: files, places of inputs, formulas of outputs, laws. Inputs and outputs are known by their places, so that
+    the name of one that no formula or law needs is none of it.
     """
     try:
         known, claimed = _Claims(data), _Claims(other)
@@ -75,9 +75,10 @@ class _Claims:
     def __init__(self, data: Data) -> None:
         spec = data["spec"]
         self.name = data["kernel"]
-        self.symbols = {symbol: Symbol(place, real=True) for place, symbol, *_ in data["inputs"]}
+        placed = (*data["inputs"], *spec["formulas"])
+        self.symbols = {symbol: Symbol(f"at {place}", real=True) for place, symbol, *_ in placed}
         self.named = [(symbol, self.read(text)) for symbol, text in spec["named"]]
-        self.formulas = [(place, symbol, self.read(text)) for place, symbol, text in spec["formulas"]]
+        self.formulas = [(place, self.read(text)) for place, _, text in spec["formulas"]]
         self.plain: set[Any] = {("file", *item) for item in data["files"].items()}
         self.plain |= {("input", place) for place, *_ in data["inputs"]}
         self.plain |= {
