@@ -32,7 +32,7 @@ def _sinc(x):
 def _tangent_gap(x):
     t = x*x
     taylor = 0.3333333333333333 + t*(-0.03333333333333333 + t*(0.0011904761904761906 + t*(-2.2045855379188714e-05 + t*(2.505210838544172e-07 + t*(-1.9270852604185937e-09 + t*(1.0706029224547743e-11 + t*(-4.498331606952833e-14 + t*(1.4797143443923793e-16 + t*(-3.9145882126782523e-19)))))))))
-    return np.where(t < 2.25, taylor, (np.sin(x) - x*np.cos(x))/(t*x))
+    return np.where(t < 2.25, taylor, (np.sin(x)/x - np.cos(x))/x/x)
 
 
 def rotation_vector_space_rates(v, omega):

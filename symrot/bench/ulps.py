@@ -7,8 +7,9 @@ sample calls it (``one``, with the C library) and as a batch does (``batch``, wi
 of ``symrot_math.h``); the reference is mpmath at 60 digits. Points: every scale from the least normal number to the
 reach below, both sides of the place where a series takes over, neighbours of multiples of pi/2.
 
-Reach: for one sample |x| up to 1e100 in double, 1e12 in float, beyond which x^3 overflows; for a batch the range of
-``symrot_math.h``, beyond which it calls what one sample calls; tangent_gap up to pi, before its first zero.
+Reach: for one sample every finite number; for a batch the range of ``symrot_math.h``, beyond which it calls what one
+sample calls; tangent_gap in ulp up to pi, before its first zero, and beyond it in units of 2^-53/x^2 (float: 2^-24):
+it falls as cos(x)/x^2 with zeros that no floating-point number hits, where a relative error has no bound.
 """
 
 import argparse
@@ -34,7 +35,7 @@ CONTRACTION = {"unfused": ("-ffp-contract=off",), "fused": ("-ffp-contract=fast"
 FLAGS = ("-std=c99", "-O2", "-fPIC", "-shared")
 DIGITS = {"binary64": (53, -1074), "binary32": (24, -149)}  # of the fraction; exponent of the least number
 LEAST = {"binary64": 2.0**-1021, "binary32": 2.0**-125}
-REACH = {"binary64": 1e100, "binary32": 1e12}  # for one sample
+REACH = {"binary64": float(np.finfo(np.float64).max), "binary32": float(np.finfo(np.float32).max)}  # for one sample
 
 Floats = NDArray[np.float64]
 
@@ -48,6 +49,7 @@ class Function:
     kernel: str  # whose text has it
     forms: tuple[tuple[str, str], ...] = (("one", "symrot_"), ("batch", "symrot_near_"))
     reach: float = inf  # largest |x|
+    beyond: float = 0.0  # if not 0: the least |x|, and the unit of errors is the roundoff over x^2
 
 
 @dataclass(frozen=True)
@@ -101,6 +103,7 @@ FUNCTIONS = (
     Function("sinc", _sinc, "rotation_vector_quaternion"),
     Function("sine_gap", lambda x: _series("sine_gap", x), "rotation_vector_body_jacobian"),
     Function("tangent_gap", lambda x: _series("tangent_gap", x), "rotation_vector_body_rates", reach=pi),
+    Function("tangent_gap", lambda x: _series("tangent_gap", x), "rotation_vector_body_rates", beyond=pi),
     Function("arc_ratio", _arc_ratio, "rotation_vector_of_quaternion", (("one", "symrot_"),)),
     Function("sin", _sin, "rotation_vector_quaternion", _BATCH),
     Function("cos", _cos, "rotation_vector_quaternion", _BATCH),
@@ -123,7 +126,7 @@ def _points(function: Function, real: Real, form: str, count: int) -> Floats:
     wide = draw.uniform(-min(reach, far), min(reach, far), count // 4)
     close = draw.uniform(0, min(reach, 8.0), count // 4)
     found = np.concatenate([[0.0], sizes, -sizes[:99], turns, *around, wide, close]).astype(kind).astype(float)
-    kept: Floats = found[np.abs(found) <= reach][None, :]
+    kept: Floats = found[(np.abs(found) <= reach) & (np.abs(found) >= function.beyond)][None, :]
     return kept
 
 
@@ -143,9 +146,11 @@ def _text(function: Function) -> str:
     return text
 
 
-def _ulps(found: float, exact: Any, real: Real) -> float:
-    """Return the distance to an exact value in units in the last place of that value."""
+def _ulps(found: float, exact: Any, real: Real, x: float = 0.0) -> float:
+    """Return the distance to an exact value in units in the last place of that value; of 1/(2 x^2), if x is given."""
     digits, least = DIGITS[real.precision]
+    if x:
+        return abs(float((found - exact) / max(ldexp(1.0, -digits) / x / x, ldexp(1.0, least))))
     if not exact:
         return 0.0 if found == 0 else float("inf")
     unit = ldexp(1.0, max(frexp(float(exact))[1] - digits, least))
@@ -173,10 +178,12 @@ def measured(points: int = 20_000, contraction: Sequence[str] = tuple(CONTRACTIO
                 exact = [function.exact(*map(mpmath.mpf, each)) for each in arguments.T.tolist()]
                 for each, path in built.items():
                     values = _called(ctypes.CDLL(str(path)), f"{form}{real.suffix}", arguments, real)
-                    errors = [_ulps(value, right, real) for value, right in zip(values, exact, strict=True)]
+                    far = arguments[0].tolist() if function.beyond else [0.0] * len(values)
+                    errors = [_ulps(*each, real, x) for *each, x in zip(values, exact, far, strict=True)]
                     worst = int(np.argmax(errors))
                     where = tuple(arguments[:, worst].tolist())
-                    yield Measured(function.name, real.type, form, each, errors[worst], where)
+                    name = f"{function.name} >pi" if function.beyond else function.name
+                    yield Measured(name, real.type, form, each, errors[worst], where)
 
 
 def _called(loaded: ctypes.CDLL, name: str, arguments: Floats, real: Real) -> list[float]:

@@ -67,5 +67,6 @@ def own_function(name: str, precision: str) -> tuple[tuple[str, ...], list[State
 def _removable(which: Removable, precision: str) -> tuple[tuple[str, ...], list[Statement], Choice]:
     square = ("t", ("*", ("symbol", "x"), ("symbol", "x")))
     taylor = ("taylor", series(which.coefficients(precision), "t"))
-    choice = ("<", ("symbol", "t"), ("number", which.split), ("symbol", "taylor"), to_node(which.direct))
+    direct = ("/", ("/", to_node(which.scaled), _X), _X)
+    choice = ("<", ("symbol", "t"), ("number", which.split), ("symbol", "taylor"), direct)
     return ("x",), [square, taylor], choice

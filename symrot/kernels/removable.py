@@ -3,6 +3,17 @@
 ``sin(x)/x`` loses nothing but at zero, where a choice gives its limit. A difference of nearly equal terms,
 ``(x - sin x)/x^3``, is summed as its Taylor series near zero, to a truncation that is proven below half the last bit,
 and computed as it stands where the terms differ: which of the two is a property of the function, not a setting.
+
+What holds, measured by ``python -m symrot.bench.ulps`` in double and float, fused or not:
+
+- ``sinc``, ``sine_gap``: within 4 ulp at every finite number (measured 1.4 and 2.1).
+- ``tangent_gap``: within 4 ulp for |x| <= pi (measured 2.3). Beyond, it falls as cos(x)/x^2 and has zeros, the
+  solutions of x = tan x, which are no floating-point numbers: a relative error has no bound there. Its absolute error
+  is at most 4 * 2^-53/x^2, in float 4 * 2^-24/x^2, or half the least subnormal number (measured
+  2.5 on the whole line).
+- ``arc_ratio``: within 4 ulp on the half circle that quaternions have (measured 1.6), one sample at a time. Batches
+  call the arc tangent of the C library: branch-free code for it (a quotient reduced to [0, 1], a polynomial) is not
+  among what is printed, so that loops over it are not vectorised.
 """
 
 from collections.abc import Callable
@@ -29,7 +40,7 @@ FUNCTIONS: dict[str, int] = {  # what kernels of the library call beyond the fun
 }  # fmt: skip
 DIGITS = {"binary64": 53, "binary32": 24}
 
-_x, _t = Symbol("x", real=True), Symbol("t", real=True)
+_x = Symbol("x", real=True)
 
 
 @dataclass(frozen=True)
@@ -37,14 +48,14 @@ class Removable:
     """A function of x that is even and analytic, ``numerator / x^power``, which is undefined at zero as it stands.
 
     ``split`` is the square of the |x| below which the series is summed; the terms alternate and fall there. Beyond it
-    ``direct`` is computed, the same quotient over ``t = x^2`` in a form without cancellation.
+    ``scaled/x/x`` is computed, the same quotient in a form without a power of x that overflows before it does.
     """
 
     name: str
     numerator: Expr  # in x
     power: int
     split: Fraction
-    direct: Expr  # in x and t
+    scaled: Expr  # numerator / x^(power - 2), term by term
     about: str
 
     def formula(self, x: Expr) -> Expr:
@@ -93,8 +104,8 @@ def _derivative(which: Removable, order: int) -> Expr:
 REMOVABLE: dict[str, Removable] = {
     each.name: each
     for each in (
-        Removable("sine_gap", _x - sin(_x), 3, Fraction(4), (1 - sin(_x) / _x) / _t, "(x - sin(x))/x^3"),
-        Removable("tangent_gap", sin(_x) - _x * cos(_x), 3, Fraction(9, 4), (sin(_x) / _x - cos(_x)) / _t,
+        Removable("sine_gap", _x - sin(_x), 3, Fraction(4), 1 - sin(_x) / _x, "(x - sin(x))/x^3"),
+        Removable("tangent_gap", sin(_x) - _x * cos(_x), 3, Fraction(9, 4), sin(_x) / _x - cos(_x),
                   "(sin(x) - x cos(x))/x^3; 4 ulp for |x| <= pi, before its first zero"),
     )
 }  # fmt: skip
