@@ -297,9 +297,12 @@ class Campaign:
         self.survivors: list[str] = []
 
     def lines(self, title: str, seconds: float) -> list[str]:
-        kinds = ", ".join(f"{kind} {count}" for kind, count in sorted(self.tried.items()))
-        tried, same = self.tried.total(), self.same.total()
-        said = f"{title}: {tried} tried, {same} the same, {len(self.survivors)} accepted, {seconds:.0f} s"
+        kinds, alike = (
+            ", ".join(f"{kind} {count}" for kind, count in sorted(counted.items()))
+            for counted in (self.tried, self.same)
+        )
+        same = f"{self.same.total()} the same" + (f" ({alike})" if alike else "")
+        said = f"{title}: {self.tried.total()} tried, {same}, {len(self.survivors)} accepted, {seconds:.0f} s"
         said += f"; {self.words.total()} not for recheck.py to see, refused by the audit alone" if self.words else ""
         return [said, f"  {kinds}", *(f"  ACCEPTED {each}" for each in self.survivors)]
 
