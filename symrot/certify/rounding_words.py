@@ -7,6 +7,7 @@ under the head.
 from collections.abc import Mapping
 from fractions import Fraction
 from functools import lru_cache
+from math import frexp
 from typing import Any
 
 from symrot.certify.operations import Operations
@@ -101,7 +102,8 @@ def region_of(section: Mapping[str, Any]) -> Region:
 
 def region_in_words(region: Region) -> list[str]:
     """Return what holds on a box beside its sides."""
-    found = [f"{', '.join(group)}: squares add up to 1, but for {UNIT_NORM:.1g}" for group in region.unit]
+    spare = f"2^{frexp(UNIT_NORM)[1] - 1}"  # said exactly: rounded up it would be more than what is proven
+    found = [f"{', '.join(group)}: squares add up to 1, but for {spare}" for group in region.unit]
     if region.clearance:
         found.append(f"every atan2 with arguments of length at least {region.clearance:g}")
     return found
