@@ -158,6 +158,7 @@ def test_a_sample_does_not_depend_on_its_neighbours(rate, push):
     times = np.concatenate([np.geomspace(1e-12, 1e3, 100), -np.geomspace(1e-12, 100, 100)])
     together = motion.evaluate(times)[1]
     assert all(np.array_equal(motion.evaluate(t)[1][0], q) for t, q in zip(times, together, strict=True))
+    assert np.array_equal(motion.evaluate(np.tile(times, 40))[1], np.tile(together, (40, 1)))
 
 
 def test_small_angles_take_no_pairs(monkeypatch):

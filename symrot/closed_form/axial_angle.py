@@ -28,6 +28,7 @@ SMALL = 1 / 16
 LARGE = 1e10
 """Turns: from here on pairs of doubles would not do."""
 
+_BLOCK = 4096  # times at once: what they need stays in the caches
 _BITS = 192  # behind the point of a turn, with 64 for the size of the time
 _HALVINGS = 8  # of the argument of the exponential in integers
 _GUARD = 16  # bits for what they lose
@@ -78,6 +79,8 @@ class Turning:
 
     def __call__(self, t: Floats) -> Floats:
         """Return the turns at each time, from -1/2 to 1/2."""
+        if len(t) > _BLOCK:
+            return np.concatenate([self(t[k : k + _BLOCK]) for k in range(0, len(t), _BLOCK)])
         x = self._decay[0] * t
         size, near = np.abs(t) * (abs(self._rate[0]) + abs(self._push[0] * t)), np.abs(x) <= dd.NEAR
         small = (size <= SMALL) & (np.abs(x) <= 1.0)
