@@ -179,7 +179,7 @@ def measured(points: int = 20_000, contraction: Sequence[str] = tuple(CONTRACTIO
                 for each, path in built.items():
                     values = _called(ctypes.CDLL(str(path)), f"{form}{real.suffix}", arguments, real)
                     far = arguments[0].tolist() if function.beyond else [0.0] * len(values)
-                    errors = [_ulps(*each, real, x) for *each, x in zip(values, exact, far, strict=True)]
+                    errors = [_ulps(value, right, real, x) for value, right, x in zip(values, exact, far, strict=True)]
                     worst = int(np.argmax(errors))
                     where = tuple(arguments[:, worst].tolist())
                     name = f"{function.name} >pi" if function.beyond else function.name
