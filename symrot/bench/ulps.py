@@ -201,12 +201,12 @@ def main(arguments: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(prog="python -m symrot.bench.ulps", description=(__doc__ or "").split("\n")[0])
     parser.add_argument("--points", type=int, default=20_000)
     points = parser.parse_args(arguments).points
-    print(f"largest error in ulp over about {points} points\n{'':14}{'':8}{'':8}{'':10}{'ulp':>7}  at")
+    print(f"largest error in ulp over about {points} points\n{'':16}{'':8}{'':8}{'':10}{'ulp':>7}  at")
     rows = []
     for row in measured(points):
         rows.append(row)
         where = ", ".join(map(repr, row.where))
-        print(f"{row.name:14}{row.real:8}{row.form:8}{row.contraction:10}{row.ulp:7.3f}  {where}", flush=True)
+        print(f"{row.name:16}{row.real:8}{row.form:8}{row.contraction:10}{row.ulp:7.3f}  {where}", flush=True)
     worst = max(rows, key=lambda row: row.ulp)
     print(f"largest of all: {worst.ulp:.3f} ulp, {worst.name} in {worst.real}, {worst.form}, {worst.contraction}")
 
