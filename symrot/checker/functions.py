@@ -10,6 +10,7 @@ import sympy
 from sympy import Expr, ImmutableMatrix
 from sympy.core.function import AppliedUndef
 
+from symrot import symbols
 from symrot.checker.integration import definite_integral
 from symrot.checker.scope import Divisor, Scope, is_matrix
 from symrot.checker.size import (
@@ -205,7 +206,8 @@ def _qmul(scope: Scope, node: Node) -> ImmutableMatrix:
 
 
 def _dcm_of(scope: Scope, node: Node) -> ImmutableMatrix:
-    return dcm_of(_components(scope, node, 4), form="homogeneous")
+    components = dict(zip(symbols.quaternion, _components(scope, node, 4), strict=True))
+    return dcm_of(form="homogeneous").xreplace(components)  # nothing is multiplied out: components may be long
 
 
 def _diff(scope: Scope, node: Node) -> Any:
