@@ -176,3 +176,11 @@ def test_random_hypotheses_never_give_a_wrong_verdict():
         left, right = (eval(side, {}, point) for side in claim.split("=="))
         verdict = symrot.check(claim, assume=given, repair=False).verdict
         assert verdict != "true" or left == right, (claim, given, point)
+
+
+def test_a_square_over_a_root_is_known_not_to_be_negative():
+    """Found by the campaign: the sign of the root is that of a square, which is no condition."""
+    claim = "cos(a)**2/abs(cos(a))*x == sqrt((1 - 2*sin(a/2)**2)**2)*x"
+    assert symrot.check(claim).verdict == "true"
+    wrong = symrot.check("cos(a)*x == sqrt((1 - 2*sin(a/2)**2)**2)*x", repair=False)
+    assert wrong.verdict == "conditional" and wrong.counterexample

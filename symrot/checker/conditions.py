@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import reduce
 
+import sympy
 from sympy import Abs, Add, Expr, Mul, Pow
 from sympy.core.function import AppliedUndef
 from sympy.polys.rings import PolyElement
@@ -26,6 +27,9 @@ PRODUCT_OF_INERTIA = re.compile(r"[IJP]_?(xy|yx|xz|zx|yz|zy|12|21|13|31|23|32)",
 
 MOST_TERMS, LARGEST_DEGREE = 400, 24
 """Terms, and the degree, of a residual that is still factored."""
+
+MOST_TERMS_OF_SQUARE = 40
+"""Of a sum that is still factored to see whether it is a square."""
 
 
 @dataclass(frozen=True)
@@ -191,4 +195,9 @@ def surely_nonnegative(value: Expr) -> bool:
     if isinstance(value, Pow) and value.exp.is_Rational:
         even = value.exp.q == 1 and value.exp.p % 2 == 0
         return bool(even or value.exp.q % 2 == 0 or surely_nonnegative(value.base))
-    return isinstance(value, Add | Mul) and all(map(surely_nonnegative, value.args))
+    if isinstance(value, Add | Mul) and all(map(surely_nonnegative, value.args)):
+        return True
+    if not isinstance(value, Add) or len(value.args) > MOST_TERMS_OF_SQUARE:
+        return False
+    factored = sympy.factor(value)
+    return not isinstance(factored, Add) and surely_nonnegative(factored)

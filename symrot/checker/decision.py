@@ -131,7 +131,13 @@ def _decided(
         rest = [_within(ring, grounds.witness), *([closed_form] if ring.hypotheses else [])]
         witness = _witness(rest, ring, lefts, rights, wrong[:4], shape)
     needed = requirements(ring, numerators, [(lefts[n], rights[n]) for n in wrong], len(lefts))
-    needed = [requirement for requirement in needed if grounds.allow(requirement.zeros)] or branches or []
+    needed = [requirement for requirement in needed if grounds.allow(requirement.zeros)]
+    if branches and not needed:
+        if not witness:  # it may hold everywhere
+            signs = " and ".join(requirement.text for requirement in branches)
+            reason = f"it is true where {signs}, and no point is known where that fails"
+            return Decision("undecided", conditions, (), None, reason)
+        needed = branches
     counterexample = _as_text(witness) if witness else None
     if needed:
         texts = tuple(requirement.text for requirement in needed)
