@@ -341,8 +341,9 @@ SYMROT_EXPORT int symrot_taylor(symrot_run *run, const double *p, const double *
         t1 = at_stop ? stop : sum;
 
         if (room > 0) symrot_record(record + recorded++*SYMROT_ROW, t, h, t_low, unit, x);
+        const double per_unit = 1.0/unit;  /* exact: units are powers of two */
         for (; next < count && (times[next] - t1)*side < 0.0; ++next) {
-            const double at = ((times[next] - t) - t_low)/unit;
+            const double at = ((times[next] - t) - t_low)*per_unit;
             EACH_ROW(r) y1[r] = V_ADD(x[r][0], V_FMA(symrot_sum(x[r], at), V_ALL(at), carry[r]));
             symrot_write(y1, states + next*SYMROT_STATES);
         }
