@@ -1,5 +1,6 @@
 """The tokens of a LaTeX formula being read, with what every part of its grammar needs of the others."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Collection
 from dataclasses import dataclass, field
 
@@ -33,7 +34,7 @@ class Names:
 
 
 @dataclass
-class Cursor:
+class Cursor(ABC):
     """Where reading stands in the tokens of a formula, and what is open there."""
 
     source: str
@@ -75,30 +76,30 @@ class Cursor:
 
     open_bars: tuple[str, ...] = ()
 
+    @abstractmethod
     def expression(self) -> Node:
         """Read a sum."""
-        raise NotImplementedError
 
+    @abstractmethod
     def factor(self) -> Node:
         """Read a piece with its powers."""
-        raise NotImplementedError
 
+    @abstractmethod
     def base(self, script: bool = True) -> Node:
         """Read a piece without its powers."""
-        raise NotImplementedError
 
+    @abstractmethod
     def argument(self) -> Node:
         """Read a group in braces, or one token."""
-        raise NotImplementedError
 
+    @abstractmethod
     def bracket(self, token: Token) -> Node:
         """Read what stands in brackets that have been opened."""
-        raise NotImplementedError
 
+    @abstractmethod
     def starts_factor(self) -> bool:
         """Return whether a factor may start here."""
-        raise NotImplementedError
 
+    @abstractmethod
     def derivative(self, node: Node, times: int, token: Token) -> Node:
         """Return a derivative in time."""
-        raise NotImplementedError
