@@ -11,6 +11,7 @@ from symrot.certify.readback import read_kernel
 from symrot.cli import main
 from symrot.interface import emit
 from symrot.report.bounds import facts, given, section
+from symrot.report.kernels import kept_bounds
 
 CUBE = ("omega_1=-1:1", "omega_2=-1:1", "omega_3=-1:1")
 PART = ("q0=1/2:1", "q1=0:1/2", "q2=0:1/2", "q3=0:1/2")
@@ -90,6 +91,26 @@ def test_certify_audit_and_emit_keep_the_bounds(tmp_path, capsys, monkeypatch):
     data["rounding"]["box"]["y[0]"] = [(-9.0).hex(), (9.0).hex()]
     path.write_text(json.dumps(data), encoding="utf-8")
     assert main(["audit", str(path)]) == 1
+
+
+@pytest.mark.parametrize("part", ["absolute", "budget"])
+def test_a_forged_bound_is_not_printed_again(tmp_path, capsys, monkeypatch, part):
+    """A little smaller and consistent in itself, or found with another budget: emitted anew without any bound."""
+    monkeypatch.chdir(tmp_path)
+    assert main(["certify", "t_handle", *_options(BOXES["t_handle"]), "-o", "k"]) == 0
+    path = Path("k/t_handle_rates.cert.json")
+    data = json.loads(path.read_text(encoding="utf-8"))
+    worst = data["rounding"]["precisions"][0]["outputs"][0]
+    if part == "absolute":
+        worst["absolute"] = worst["pointwise"] = (float.fromhex(worst["absolute"]) * (1 - 2**-40)).hex()
+    else:
+        data["rounding"]["budget"] = 10**9
+    path.write_text(json.dumps(data), encoding="utf-8")
+    assert kept_bounds("t_handle", Path("k")) is None
+    assert main(["emit", "t_handle", "-o", "k"]) == 0
+    assert "Errors:" not in Path("k/t_handle_rates.c").read_text(encoding="utf-8")
+    assert json.loads(path.read_text(encoding="utf-8")).get("rounding") is None
+    assert main(["audit", str(path)]) == 0
 
 
 def test_bounds_of_a_scene_file_and_without_any(tmp_path, capsys, monkeypatch):

@@ -12,7 +12,7 @@ from typing import Any
 from symrot.certify import recheck
 from symrot.certify.certificate import with_slots
 from symrot.certify.readback import read_kernel
-from symrot.certify.rounding import check_section
+from symrot.certify.rounding import check_bounds, check_section
 from symrot.certify.selftest import selftest_files
 from symrot.codegen.build_files import build_files
 from symrot.errors import CertificateError, InputError
@@ -66,7 +66,8 @@ def certificate_files(
 def kept_bounds(kernel: str | Path, directory: Path | None) -> Mapping[str, Any] | None:
     """Return the bounds of rounding errors that a folder's certificate holds of a scene's kernel, as it is emitted now.
 
-    None for a kernel of the library, which has its own, and where there are none or they are of other operations.
+    They are those that bounding again finds, as in an audit. None for a kernel of the library, which has its own, and
+    where there are none, or they are of other operations or not what is found.
     """
     if directory is None or kernel in kernel_names():
         return None
@@ -74,8 +75,10 @@ def kept_bounds(kernel: str | Path, directory: Path | None) -> Mapping[str, Any]
     section = _slots(directory / f"{name}.cert.json").get("rounding")
     if not isinstance(section, dict):
         return None
+    operations = read_kernel(source, name, f"{name}.c")
     try:
-        check_section(section, read_kernel(source, name, f"{name}.c"), None)
+        check_section(section, operations, None)
+        check_bounds(section, operations, None)
     except CertificateError:
         return None
     return section
