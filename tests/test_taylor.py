@@ -80,7 +80,9 @@ def small(rates, scale=1.0, flags=(), order=None):
 # ------------------------------------------------------------------------------------------------ coefficients
 
 
-@pytest.mark.parametrize("flags", [(), ("-DSYMROT_PLAIN",)], ids=["vectors", "plain C"])
+@pytest.mark.parametrize(
+    "flags", [(), ("-DSYMROT_PAIRS",), ("-DSYMROT_PLAIN",)], ids=["vectors", "vectors of two", "plain C"]
+)
 def test_compiled_coefficients_are_those_of_the_recurrences(flags):
     """All systems and functions at once: eight states to a library, so that lanes and groups of all kinds are met."""
     formulas = [f for rates in FUNCTION_SYSTEMS.values() for f in rates]
@@ -427,7 +429,7 @@ def test_a_library_of_another_stepper_is_refused(tmp_path):
 
 
 @pytest.mark.skipif(shutil.which("g++") is None, reason="needs g++")
-@pytest.mark.parametrize("plain", [[], ["-DSYMROT_PLAIN"]])
+@pytest.mark.parametrize("plain", [[], ["-DSYMROT_PAIRS"], ["-DSYMROT_PLAIN"]])
 def test_the_text_is_cplusplus_too_and_draws_no_warning(plain, tmp_path):
     source = taylor.translation_unit(rigid_body_program())
     for compiler, language, standard in (("gcc", "c", "-std=c99"), ("g++", "c++", "-std=c++14")):

@@ -1,7 +1,11 @@
 /*
  * Four numbers at once: GNU vectors where the compiler has them, else plain C of the same meaning.
  *
- * Included before an emitted jet and taylor.c. Define SYMROT_PLAIN to take the plain form in any case.
+ * Vectors are no wider than those of the processor they are compiled for: wider ones would live on the stack, written
+ * in halves and read whole, for which the processor waits.
+ *
+ * Included before an emitted jet and taylor.c. Define SYMROT_PAIRS to take two vectors of two in any case, SYMROT_PLAIN to
+ * take plain C.
  */
 #include <float.h>
 #include <math.h>
@@ -25,13 +29,18 @@
 #define SYMROT_ALIGNED
 #endif
 
-#if defined(__has_builtin) && !defined(SYMROT_PLAIN)
+#if defined(__GNUC__) && !defined(SYMROT_PLAIN)
+#if defined(__AVX__) && defined(__has_builtin) && !defined(SYMROT_PAIRS)
 #if __has_builtin(__builtin_shufflevector)
-#define SYMROT_VECTORS
+#define SYMROT_WHOLE
+#endif
+#endif
+#if !defined(SYMROT_WHOLE) && !defined(SYMROT_PAIRS)
+#define SYMROT_PAIRS
 #endif
 #endif
 
-#if defined(SYMROT_VECTORS)
+#if defined(SYMROT_WHOLE)
 typedef double symrot_v4 __attribute__((vector_size(32)));
 typedef long long symrot_signs __attribute__((vector_size(32)));
 #define V_SET(a, b, c, d) ((symrot_v4){a, b, c, d})
@@ -48,6 +57,54 @@ typedef long long symrot_signs __attribute__((vector_size(32)));
 #define V_KEEP(v, i, j, k, l) ((symrot_v4)((symrot_signs)(v) & (symrot_signs){-(i), -(j), -(k), -(l)}))
 #define V_ALL(s) symrot_all(s)
 static inline symrot_v4 symrot_all(double s) { return V_SET(s, s, s, s); }
+#elif defined(SYMROT_PAIRS)
+typedef double symrot_v2 __attribute__((vector_size(16)));
+typedef long long symrot_signs __attribute__((vector_size(16)));
+typedef struct { symrot_v2 low, high; } symrot_v4;
+#define V_LANE(v, i) ((i) < 2 ? (v).low[(i) & 1] : (v).high[(i) & 1])
+#define V_SET(a, b, c, d) symrot_join((symrot_v2){a, b}, (symrot_v2){c, d})
+#define V_ADD(a, b) symrot_add(a, b)
+#define V_SUB(a, b) symrot_subtract(a, b)
+#define V_MUL(a, b) symrot_multiply(a, b)
+#define V_DIV(a, b) symrot_divide(a, b)
+#define V_FMA(a, b, c) symrot_fma(a, b, c)
+#define V_LANE_OF(v, u, i) ((i) < 4 ? V_LANE(v, (i) & 3) : V_LANE(u, (i) & 3))
+#define V_PICK(v, u, i, j, k, l) \
+    V_SET(V_LANE_OF(v, u, i), V_LANE_OF(v, u, j), V_LANE_OF(v, u, k), V_LANE_OF(v, u, l))
+#define V_MASK(s) ((s) < 0 ? (long long)(-9223372036854775807LL - 1) : 0LL)
+#define V_FLIP(v, i, j, k, l) \
+    symrot_flip(v, (symrot_signs){V_MASK(i), V_MASK(j)}, (symrot_signs){V_MASK(k), V_MASK(l)})
+#define V_KEEP(v, i, j, k, l) symrot_keep_bits(v, (symrot_signs){-(i), -(j)}, (symrot_signs){-(k), -(l)})
+#define V_ALL(s) symrot_all(s)
+static inline symrot_v4 symrot_join(symrot_v2 low, symrot_v2 high)
+{
+    symrot_v4 v;
+    v.low = low;
+    v.high = high;
+    return v;
+}
+static inline symrot_v4 symrot_all(double s) { return V_SET(s, s, s, s); }
+#define SYMROT_HALVES(name, operator) \
+    static inline symrot_v4 name(symrot_v4 a, symrot_v4 b) \
+    { \
+        return symrot_join(a.low operator b.low, a.high operator b.high); \
+    }
+SYMROT_HALVES(symrot_add, +)
+SYMROT_HALVES(symrot_subtract, -)
+SYMROT_HALVES(symrot_multiply, *)
+SYMROT_HALVES(symrot_divide, /)
+static inline symrot_v4 symrot_fma(symrot_v4 a, symrot_v4 b, symrot_v4 c)
+{
+    return symrot_join(a.low*b.low + c.low, a.high*b.high + c.high);
+}
+static inline symrot_v4 symrot_flip(symrot_v4 v, symrot_signs low, symrot_signs high)
+{
+    return symrot_join((symrot_v2)((symrot_signs)v.low ^ low), (symrot_v2)((symrot_signs)v.high ^ high));
+}
+static inline symrot_v4 symrot_keep_bits(symrot_v4 v, symrot_signs low, symrot_signs high)
+{
+    return symrot_join((symrot_v2)((symrot_signs)v.low & low), (symrot_v2)((symrot_signs)v.high & high));
+}
 #else
 typedef struct { double lane[4]; } symrot_v4;
 #define V_LANE(v, i) ((v).lane[i])
