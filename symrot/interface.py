@@ -159,7 +159,7 @@ def _scene_kernel(
 
 
 def scene_inputs(scene: Scene | str | Path) -> "SceneInputs":
-    """Return what a scene's own kernel takes and gives, the values of its parameters, its first and last time."""
+    """Return what a scene's own kernel takes and gives, its parameters and what they are, its first and last time."""
     from symrot.certify.rounding_scenes import SceneInputs
     from symrot.dynamics.equations import equations_of_motion
     from symrot.scene_kernel import bind
@@ -167,7 +167,9 @@ def scene_inputs(scene: Scene | str | Path) -> "SceneInputs":
     found = plan(scene)
     lowered, _ = _scene_rates(found, equations_of_motion(found.structure), "c")
     values = tuple(bind(lowered.parameters, found.constants))
-    return SceneInputs(lowered.program.signature.arguments, values, found.scene.span[:2])
+    formulas = {f"p[{place}]": parameter for place, parameter in enumerate(lowered.parameters)}
+    arguments, constants = lowered.program.signature.arguments, found.constants
+    return SceneInputs(arguments, values, found.scene.span[:2], formulas, constants)
 
 
 def scene_kernel_name(scene: str) -> str:

@@ -8,10 +8,14 @@ from random import Random
 import pytest
 
 from symrot.certify.readback import read_kernel
+from symrot.certify.rounding_constants import enclosed
 from symrot.cli import main
-from symrot.interface import emit
+from symrot.errors import InputError
+from symrot.expression import parse
+from symrot.interface import emit, scene_inputs
 from symrot.report.bounds import facts, given, section
 from symrot.report.kernels import kept_bounds
+from symrot.scene_kernel import bind
 
 CUBE = ("omega_1=-1:1", "omega_2=-1:1", "omega_3=-1:1")
 PART = ("q0=1/2:1", "q1=0:1/2", "q2=0:1/2", "q3=0:1/2")
@@ -137,16 +141,93 @@ def test_time_is_the_span_of_the_scene_and_parameters_are_points():
     assert list(free) == list(operations.inputs) and free["t"][1] > 10**308  # not used: any
 
 
+# --- ranges of physical constants ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("scene", "ranges"),
+    [("t_handle", ("A=1:2", "B=2:5/2", "C=1:3/2")), ("heavy_top_loops", ("weight=4:5", "A=1/500:1/400")),
+     ("gravity_gradient_satellite", ("mean_motion=1e-3:2e-3",)), ("damped_disk", ("linear_3=-1:1",))],
+)  # fmt: skip
+def test_parameters_of_constants_in_their_ranges_are_in_the_box(scene, ranges):
+    """Drawn constants give parameters inside, and the ends are not far outside of what is met."""
+    free = [f"{symbol}=-1/2:1/2" for symbol in ("omega_1", "omega_2", "omega_3") if symbol in _states(scene)]
+    _, _, box = given(scene, [*free, *ranges], "double")
+    inputs, draw = scene_inputs(scene), Random(3)
+    wide = {name: list(map(Fraction, ends.split(":"))) for name, ends in (text.split("=") for text in ranges)}
+    for place, parameter in inputs.formulas.items():
+        met = []
+        for number in range(200):
+            corner = [draw.randrange(2) if number < 60 else Fraction(draw.random()) for _ in wide]
+            drawn = {
+                name: low + at * (high - low) for at, (name, (low, high)) in zip(corner, wide.items(), strict=True)
+            }
+            met.append(Fraction(bind((parameter,), inputs.constants | drawn)[0]))
+        low, high = box[place]
+        spare = max(abs(low), abs(high)) / 2**53
+        assert low - spare <= min(met) and max(met) <= high + spare
+        assert high - low <= Fraction(5, 4) * (max(met) - min(met)) + 2 * spare
+
+
+def _states(scene):
+    return [symbol for symbol, _ in scene_inputs(scene).components.values()]
+
+
+def test_a_range_of_a_constant_is_as_wide_as_the_parameters_it_makes():
+    """A constant that is given as the point it has changes nothing; powers, roots and quotients are enclosed."""
+    a, ends = parse("a"), (Fraction(-1), Fraction(2))
+    assert enclosed("p", a, {}, {"a": ends}) == ends
+    assert enclosed("p", parse("a**2"), {}, {"a": ends}) == (0, 4)
+    assert enclosed("p", parse("abs(a)**3"), {}, {"a": ends}) == (0, 8)
+    low, high = enclosed("p", parse("sqrt(a)/(1 + a)"), {}, {"a": (Fraction(1), Fraction(4))})
+    assert Fraction(39, 100) < low < Fraction(2, 5) and Fraction(1, 2) < high < Fraction(51, 100)
+    low, high = enclosed("p", parse("b*sin(a)*pi"), {"b": Fraction(2)}, {"a": ends})
+    assert (low, high) == (-high, high) and 6 < high < 7
+    for formula in ("1/a", "sqrt(a)", "a**-2"):
+        with pytest.raises(InputError, match=r"is a finite number, got a -1 \.\. 2"):
+            enclosed("p", parse(formula), {}, {"a": ends})
+    _, _, points = given("t_handle", CUBE, "double")
+    exact = scene_inputs("t_handle").constants["A"]
+    _, _, same = given(
+        "t_handle", (*CUBE, f"A={exact.limit_denominator(10**9)}:{exact.limit_denominator(10**9)}"), "double"
+    )
+    assert all(abs(same[place][0] / points[place][0] - 1) < 1e-8 for place in ("p[0]", "p[1]", "p[2]"))
+
+
+def test_what_does_not_overflow_is_bounded_to_the_largest_numbers(capsys):
+    """Errors that are no double in units of 2^-53 are written all the same, rounded up."""
+    assert main(["bound", "t_handle", *_options((*CUBE, "p0=-1e308:1e308")), "--json"]) == 0
+    (part,) = json.loads(capsys.readouterr().out)["precisions"]
+    error, units = (part["outputs"][0][name] for name in ("absolute", "units"))
+    assert 1 <= Fraction(units) / (Fraction(float.fromhex(error)) * 2**53) < 1 + Fraction(1, 500)
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
+        (["bound", "t_handle", *_options((*CUBE, "mass=1:2"))], "or a constant in its parameters, one of t, omega_1"),
+        (
+            ["bound", "t_handle", *_options((*CUBE, "A=0:1"))],
+            "on which p0 = (B - C)/A is a finite number, got A 0 .. 1",
+        ),
+        (["bound", "t_handle", *_options((*CUBE, "A=1:2", "p0=0:1"))], "a range of p0 or of what it is made of"),
+        (["bound", "t_handle", *_options((*CUBE, "y[0]=0:1"))], "expected one range of y[0], got 'omega_1=-1:1' too"),
+        (["bound", "t_handle", *_options((*CUBE, "q0=0:1.7976931348623158e308"))], "inside that of a double"),
+        (["bound", "t_handle", *_options((*CUBE, "A=1e-300:1e-290", "B=1e20:1e30"))], "inside that of a double"),
+        (["bound", "t_handle", *_options((*CUBE, "=0:1"))], "expected NAME=LOW:HIGH"),
+        (["bound", "t_handle", "--box", "omega_1=0:1 rad/s"], "expected a number"),
+        (["bound", "t_handle", "--box", "omega_1=0:60deg"], "write it without a unit"),
+        (["bound", "t_handle", "--box", "omga_1=0:1"], "did you mean 'omega_1'?"),
         (["bound", "t_handle"], "--box omega_1=LOW:HIGH --box omega_2=LOW:HIGH --box omega_3=LOW:HIGH"),
         (["certify", "t_handle", "--box", "omega_1=-1:1"], "--box omega_2=LOW:HIGH --box omega_3=LOW:HIGH"),
         (["certify", "t_handle", "--box", "omega_1=nan:1"], "expected a number"),
-        (["certify", "t_handle", "--box", "omega_9=0:1"], "expected an input, one of t, omega_1"),
-        (["bound", "t_handle", *_options(("omega_1=2:1", "omega_2=0:1", "omega_3=0:1"))], "got 2 to 1"),
+        (["certify", "t_handle", "--box", "omega_9=0:1"], "in its parameters, one of t, omega_1"),
+        (
+            ["bound", "t_handle", *_options(("omega_1=2:1", "omega_2=0:1", "omega_3=0:1"))],
+            "the least value first, got 2 to 1",
+        ),
         (["bound", "t_handle", *_options((*CUBE, "q0=2:3"))], "a box that holds a unit quaternion"),
-        (["bound", "t_handle", *_options([f"omega_{i}=-1e200:1e200" for i in (1, 2, 3)])], "has no bound"),
+        (["bound", "t_handle", *_options([f"omega_{i}=-1e200:1e200" for i in (1, 2, 3)])], "domega_1 has no bound"),
         (["bound", "t_handle", *_options(CUBE), "--target", "1e-13", "--variable", "t"], "which t is not"),
         (["bound", "t_handle", "--precision", "float"], "expected double for a scene"),
         (["bound", "t_handl"], "did you mean 't_handle'?"),

@@ -15,6 +15,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from math import frexp, inf, isfinite, ldexp, nextafter
+from sys import float_info
 from typing import Any
 
 import numpy as np
@@ -34,6 +35,7 @@ __all__ = ["BUDGET", "STORE", "Box", "OutputBound", "Task", "bound_outputs", "bo
 Box = Mapping[str, tuple[Fraction, Fraction]]  # place of an input, such as "q[1]" -> least and largest value
 
 BUDGET = 100_000  # evaluations of boxes per output
+LARGEST, LARGEST_EXPONENT = Fraction(float_info.max), 1023  # of a double, and of a power of two that is one
 STORE = Store()
 
 
@@ -41,9 +43,9 @@ STORE = Store()
 class OutputBound:
     """The bound of one output: no error is larger than ``bound``; by the same method a point reaches ``pointwise``.
 
-    ``at`` is that point; ``scale`` a power of two not below the values met; ``turns``: the error is that modulo whole
-    turns; ``choices`` are the comparisons of rounded numbers, whose branch is taken as computed; ``contraction_safe``:
-    the bound holds for fused multiply-adds too.
+    ``at`` is that point; ``scale`` a power of two not below the values met (or 2^1023); ``turns``: the error is that
+    modulo whole turns; ``choices`` are the comparisons of rounded numbers, whose branch is taken as computed;
+    ``contraction_safe``: the bound holds for fused multiply-adds too.
     """
 
     output: str
@@ -127,7 +129,7 @@ def _check_box(operations: Operations, box: Box) -> None:
         if place not in box:
             raise InputError(f"{operations.name}: expected a range of {place} in the box, got none")
         low, high = box[place]
-        if not all(isfinite(x) and abs(Fraction(x)) < Fraction(2) ** 1024 for x in (low, high)):
+        if not all((isinstance(x, Fraction) or isfinite(x)) and abs(Fraction(x)) <= LARGEST for x in (low, high)):
             raise InputError(f"{operations.name}: expected a finite range of {place}, got {show(low)} to {show(high)}")
         if low > high:
             raise InputError(
@@ -189,7 +191,8 @@ def _found(operations: Operations, place: str, task: Task, found: Search) -> Out
             f"{what} is not known to stay away from its singular values near {where}"
         )
     mantissa, exponent = frexp(found.largest_value)
-    scale = ldexp(1.0, exponent - (mantissa == 0.5)) if found.largest_value > 0 else 1.0
+    power = min(exponent - (mantissa == 0.5), LARGEST_EXPONENT)
+    scale = ldexp(1.0, power) if found.largest_value > 0 else 1.0
     choices = tuple(_said_choices(task))
     return OutputBound(
         place, found.bound, found.pointwise, at, float(scale), found.evaluations, found.converged, found.turns, choices,
@@ -282,7 +285,7 @@ def _alike(a: object, b: object) -> bool:
 
 def _output(found: OutputBound, unit: float) -> dict[str, Any]:
     return {
-        "output": found.output, "absolute": found.bound.hex(), "units": _units(found.bound / unit),
+        "output": found.output, "absolute": found.bound.hex(), "units": _units(Fraction(found.bound) / Fraction(unit)),
         "pointwise": found.pointwise.hex(), "at": {name: x.hex() for name, x in found.at},
         "scale": found.scale.hex(), "evaluations": found.evaluations, "converged": found.converged,
         "modulo_turns": found.turns, "choices": list(found.choices),
@@ -290,14 +293,18 @@ def _output(found: OutputBound, unit: float) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _units(value: float) -> str:
+def _units(value: Fraction) -> str:
     """Return a number in decimal, four digits, rounded up."""
     if value == 0:
         return "0"
     exponent = len(str(int(value))) - 1 if value >= 1 else -1
     step = Fraction(10) ** (exponent - 3)
-    up = -(-Fraction(value) // step) * step
-    return f"{float(up):.{max(3 - exponent, 0)}f}" if exponent < 9 else f"{float(up):.4e}"
+    digits = -(-value // step)
+    if exponent < 9:
+        return f"{float(digits * step):.{max(3 - exponent, 0)}f}"
+    if digits == 10**4:
+        digits, exponent = 10**3, exponent + 1
+    return f"{digits // 1000}.{digits % 1000:03}0e+{exponent:02}"
 
 
 def check_section(
@@ -391,7 +398,7 @@ def _check_precision(
     for item in part["outputs"]:
         task, said = wanted[item["output"]], float.fromhex(item["absolute"])
         at = np.array([float.fromhex(item["at"][place]) for place in task.cone.places])
-        if not isfinite(said) or said < 0 or item["units"] != _units(said / unit):
+        if not isfinite(said) or said < 0 or item["units"] != _units(Fraction(said) / Fraction(unit)):
             raise CertificateError(f"{name}: expected a finite bound of {item['output']}, got {item['units']}")
         choices, safe = _said_choices(task), task.cone.contraction_safe
         if item["choices"] != choices or item["contraction_safe"] is not safe:

@@ -13,6 +13,7 @@ from symrot.certify.rounding_adjoint import EVERYWHERE, Region
 from symrot.certify.rounding_cone import cone_of
 from symrot.certify.rounding_library import Problem
 from symrot.certify.rounding_words import region_in_words, region_of, rounded_up
+from symrot.expression import Node
 from symrot.kernel import Argument
 
 __all__ = ["ANY", "SceneInputs", "contract", "scene_problem"]
@@ -24,11 +25,16 @@ ANY, UNIT = (-LARGEST, LARGEST), (Fraction(-1), Fraction(1))
 
 @dataclass(frozen=True)
 class SceneInputs:
-    """What the kernel of a scene takes and gives, the values of its parameters, its first and last time (s)."""
+    """What the kernel of a scene takes and gives, the values of its parameters, its first and last time (s).
+
+    ``formulas``: what the parameters are, by place (``"p[0]"``), name and formula; ``constants``: what they are made of.
+    """
 
     arguments: tuple[Argument, ...]
     parameters: tuple[float, ...]
     times: tuple[Fraction, Fraction]
+    formulas: Mapping[str, tuple[str, Node]]
+    constants: Mapping[str, Fraction]
 
     @property
     def components(self) -> dict[str, tuple[str, str]]:

@@ -1,22 +1,24 @@
 """The bounds of the rounding errors of a kernel of the library or of a scene, as `symrot bound` prints them."""
 
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from symrot import number
 from symrot.certify.operations import Operations
 from symrot.certify.readback import read_kernel
 from symrot.certify.rounding import bound_outputs, rounding_section
 from symrot.certify.rounding_adjoint import UNIT_NORM, Region
 from symrot.certify.rounding_intervals import DIGITS
 from symrot.certify.rounding_library import Problem, largest_box, problem
-from symrot.certify.rounding_scenes import ANY, scene_problem
+from symrot.certify.rounding_scenes import ANY, SceneInputs, scene_problem
 from symrot.certify.rounding_words import region_in_words
 from symrot.errors import InputError
 from symrot.interface import emit, scene_inputs
 from symrot.kernels.library import definition, kernel_names
+from symrot.report.box import boxed
 from symrot.report.layout import columns
 from symrot.scene_file import shipped_names
 from symrot.scene_reader import nearest
@@ -34,7 +36,8 @@ def given(kernel: str, ranges: Sequence[str], precision: str) -> tuple[Operation
     kernel : str
         A kernel of the library, the name of a shipped scene or the path of a scene file.
     ranges : sequence of str
-        ``NAME=LOW:HIGH``, by component ("theta") or place ("angles[1]"); the others are the kernel's own.
+        ``NAME=LOW:HIGH``, by component ("theta"), place ("angles[1]") or physical constant of a scene ("A"), by which
+        its parameters are enclosed; the others are the kernel's own.
     precision : str
         ``"double"`` or ``"float"``; a scene has the first alone.
 
@@ -43,14 +46,8 @@ def given(kernel: str, ranges: Sequence[str], precision: str) -> tuple[Operation
     InputError
         For a kernel or a range that is none, or a range that is lacking.
     """
-    operations, found = (_of_library if kernel in kernel_names() else _of_scene)(kernel, precision)
-    box = dict(found.box)
-    for text in ranges:
-        name, sign, ends = text.partition("=")
-        low, colon, high = ends.partition(":")
-        if not sign or not colon:
-            raise InputError(f"--box: expected NAME=LOW:HIGH, such as theta=-1.4:1.4, got {text[:60]!r}")
-        box[found.place(name.strip())] = _end(low, text), _end(high, text)
+    operations, found, inputs = (_of_library if kernel in kernel_names() else _of_scene)(kernel, precision)
+    box = boxed(found, inputs, ranges)
     lacking = [f"--box {symbol}=LOW:HIGH" for place, symbol in found.symbols.items() if place not in box]
     if lacking:
         said = f"{operations.name}: expected {' '.join(lacking)} beside the ranges that the scene knows"
@@ -64,17 +61,18 @@ def _check_unit(group: Sequence[str], found: Problem, box: Mapping[str, tuple[Fr
     """Refuse a box without a point whose components at some places are a unit quaternion: nothing is true there."""
     ends = [sorted(box[place], key=abs) for place in group]
     least = sum(near * near for (near, far) in ends if near * far > 0)
-    if not least - UNIT_NORM <= 1 <= sum(far * far for _, far in ends) + UNIT_NORM:
+    spare = Fraction(UNIT_NORM)
+    if not least - spare <= 1 <= sum(far * far for _, far in ends) + spare:
         said = ", ".join(f"{found.symbols[place]} {_said_range(*map(float, box[place]))}" for place in group)
         raise InputError(f"--box: expected a box that holds a unit quaternion, got {said}")
 
 
-def _of_library(kernel: str, precision: str) -> tuple[Operations, Problem]:
+def _of_library(kernel: str, precision: str) -> tuple[Operations, Problem, None]:
     operations = read_kernel(emit(kernel).source, f"{kernel}{PRECISIONS[precision]}", f"{kernel}.c")
-    return operations, problem(definition(kernel), operations)
+    return operations, problem(definition(kernel), operations), None
 
 
-def _of_scene(scene: str, precision: str) -> tuple[Operations, Problem]:
+def _of_scene(scene: str, precision: str) -> tuple[Operations, Problem, SceneInputs]:
     if scene not in shipped_names() and not Path(scene).exists():
         hint = nearest(scene, [*kernel_names(), *shipped_names()])
         said = f"expected the name of a kernel (see `symrot emit --list`) or a scene, got {scene[:60]!r}"
@@ -83,18 +81,26 @@ def _of_scene(scene: str, precision: str) -> tuple[Operations, Problem]:
         raise InputError(f"--precision: expected double for a scene, whose kernel has no other, got {precision}")
     found = emit(scene)
     operations = read_kernel(found.source, found.name, f"{found.name}.c")
-    return operations, scene_problem(scene_inputs(scene), operations)
+    inputs = scene_inputs(scene)
+    return operations, scene_problem(inputs, operations), inputs
 
 
 def section(kernel: str, ranges: Sequence[str]) -> dict[str, Any]:
     """Return link 4 of a kernel for its certificate, in all its precisions; parameters as for :func:`facts`."""
     operations, found, box = given(kernel, ranges, "double")
     single = given(kernel, ranges, "float")[0] if kernel in kernel_names() else None
-    return rounding_section(operations, single, box, found.region)
+    with _spoken(kernel):
+        return rounding_section(operations, single, box, found.region)
 
 
-def _end(text: str, whole: str) -> Fraction:
-    return number.read(text.strip(), f"--box {whole[:60]}")
+@contextmanager
+def _spoken(kernel: str) -> Iterator[None]:
+    """Let what is refused be said in the names of a scene."""
+    try:
+        yield
+    except InputError as reason:
+        names = _names(kernel)
+        raise InputError(re.sub(r"\w+\[\d+\]", lambda found: names.get(found[0], found[0]), str(reason))) from None
 
 
 def facts(kernel: str, ranges: Sequence[str], precision: str) -> dict[str, Any]:
@@ -112,7 +118,8 @@ def facts(kernel: str, ranges: Sequence[str], precision: str) -> dict[str, Any]:
     """
     operations, found, box = given(kernel, ranges, precision)
     own = {"kernel": operations.name, "names": _names(kernel)}
-    return own | rounding_section(operations, None, box, found.region)
+    with _spoken(kernel):
+        return own | rounding_section(operations, None, box, found.region)
 
 
 def _names(kernel: str) -> dict[str, str]:
@@ -184,8 +191,9 @@ def target_facts(
         if box[place] == ANY:
             name = found.symbols[place]
             raise InputError(f"--variable {name}: expected an input that {operations.name} uses, which {name} is not")
-    size, largest = largest_box(operations, box, target, places, found.region)
-    bounds = bound_outputs(operations, largest, found.region)
+    with _spoken(kernel):
+        size, largest = largest_box(operations, box, target, places, found.region)
+        bounds = bound_outputs(operations, largest, found.region)
     return {
         "kernel": operations.name, "names": _names(kernel), "target": target, "size": size,
         "box": {place: [float(low).hex(), float(high).hex()] for place, (low, high) in largest.items()},
