@@ -314,15 +314,15 @@ def _certify(options: Namespace) -> int:
         every, written = certificates.certify_all(options.directory, options.objects, _progress)
         _progress("")
         _say_json(every) if options.json else _say([*certificates.all_lines(every), *map(str, written)])
-        return GOOD
+        return FAILED if options.objects and certificates.refuted(every.values()) else GOOD
     if not options.kernel:
         raise InputError("certify: expected a KERNEL or --all (see `symrot certify --help`)")
     found, written = certificates.certify(
         options.kernel, options.box, options.directory, options.objects, not options.no_bounds, _progress
     )
     _progress("")
-    _say_json(found) if options.json else _say([*certificates.lines(found), *map(str, written)])
-    return GOOD
+    _say_json(found) if options.json else _say([*certificates.lines(found, options.objects), *map(str, written)])
+    return FAILED if options.objects and certificates.refuted([found]) else GOOD
 
 
 def _audit(options: Namespace) -> int:
@@ -442,7 +442,8 @@ def _selftest_arguments(parser: ArgumentParser) -> None:
 def _bound_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("kernel", metavar="KERNEL", help="a kernel of the library (see `symrot emit --list`), a scene")
     parser.add_argument("--box", metavar="NAME=LOW:HIGH", action="append", default=[],
-                        help="range of an input, theta=-1.4:1.4 (default: the kernel's); may be repeated")  # fmt: skip
+                        help="range of an input, theta=-1.4:1.4 (default: the kernel's), or of a physical constant of "
+                        "a scene, A=1:2; may be repeated")  # fmt: skip
     parser.add_argument("--target", type=float, metavar="X", help="find the largest box on which no error is above X")
     parser.add_argument("--variable", metavar="NAME", action="append", default=[],
                         help="with --target: resize the range of this input alone; may be repeated")  # fmt: skip
@@ -451,10 +452,12 @@ def _bound_arguments(parser: ArgumentParser) -> None:
 
 
 def _certify_arguments(parser: ArgumentParser) -> None:
-    parser.add_argument("kernel", metavar="KERNEL", nargs="?", help="a kernel of the library, its C file, or a scene")
+    parser.add_argument("kernel", metavar="KERNEL", nargs="?",
+                        help="a kernel of the library, its C file or certificate, or a scene")  # fmt: skip
     parser.add_argument("--all", action="store_true", help="certify the library and the kernels of all shipped scenes")
     parser.add_argument("--box", metavar="NAME=LOW:HIGH", action="append", default=[],
-                        help="range of an input for the bounds of rounding errors; may be repeated")  # fmt: skip
+                        help="range of an input for the bounds of rounding errors, or of a physical constant of a "
+                        "scene; may be repeated")  # fmt: skip
     parser.add_argument("--objects", action="store_true", help="compile it, and compare the object code with it")
     parser.add_argument("--no-bounds", action="store_true", help="leave the bounds of rounding errors out")
     parser.add_argument("-o", type=Path, metavar="DIR", dest="directory", help="write kernel and certificate there")

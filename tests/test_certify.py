@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -335,6 +336,44 @@ def test_certify_all(tmp_path, capsys, monkeypatch):
     for wrong in (["certify"], ["certify", "--all", "quaternion_dcm"], ["certify", "--all", "--box", "q0=0:1"]):
         assert main(wrong) == 2
     assert capsys.readouterr().err.count("\n") == 3
+
+
+KERNELS = Path(__file__).parents[1] / "generated" / "c"
+
+
+@pytest.mark.parametrize(
+    "path",
+    ["quaternion_dcm.c", "quaternion_dcm.cert.json", "scenes/t_handle_rates.c", "scenes/t_handle_rates.cert.json"],
+)
+def test_a_kernel_may_be_named_by_what_was_emitted_of_it(path, tmp_path, capsys):
+    """An unchanged file of it stands for a kernel or a shipped scene, one that was edited for nothing."""
+    assert main(["certify", str(KERNELS / path)]) == 0
+    assert f"{Path(path).name.partition('.')[0]}: " in capsys.readouterr().out
+    for file in (KERNELS / path).parent.glob(f"{Path(path).name.partition('.')[0]}.*"):
+        shutil.copy(file, tmp_path)
+    edited = tmp_path / Path(path).name
+    text = edited.read_text(encoding="utf-8")
+    edited.write_text(text.replace("0.5", "0.25") if "0.5" in text else text.replace("2", "3", 1), encoding="utf-8")
+    assert main(["certify", str(edited)]) == 2
+    said = capsys.readouterr()
+    assert said.out == "" and said.err.count("\n") == 1 and str(edited) in said.err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["certify", "quaternion_to_dcm"], "did you mean 'quaternion_of_dcm'?"),
+        (["certify", "mine.c"], "`symrot audit` takes the certificate of any kernel"),
+        (["certify", "quaternion_dc.cert.json"], "did you mean 'quaternion_dcm'?"),
+        (["certify", "nowhere/quaternion_dcm.c"], "can be read (No such file or directory)"),
+        (["audit", "quaternion_dcm.c"], "its own is quaternion_dcm.cert.json"),
+    ],
+    ids=lambda value: value[1] if isinstance(value, list) else "",
+)
+def test_what_is_no_kernel_is_refused_in_one_sentence(arguments, said, capsys):
+    assert main(arguments) in (1, 2)
+    found = capsys.readouterr()
+    assert found.out == "" and said in found.err and found.err.count("\n") == 1
 
 
 def test_bounds_of_other_operations_are_not_kept():

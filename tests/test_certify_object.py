@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from symrot.certify import object_code_build
 from symrot.certify import object_code_machine as machine
 from symrot.certify.disassembly import listing, missing
 from symrot.certify.flags import BITS, BOUNDS, NOTHING, flags_section, judge
@@ -22,6 +23,8 @@ from symrot.certify.object_code_state import Array, Context
 from symrot.certify.object_code_terms import RELATION, Terms, value_of
 from symrot.cli import main
 from symrot.errors import CertificateError, CompilerError, InputError
+from symrot.report import compiled
+from symrot.report.certificates import refuted
 
 KERNELS = Path(__file__).parents[1] / "generated" / "c"
 SOME = ("euler_zyx_body_rates", "quaternion_of_dcm", "rotation_vector_of_quaternion", "mrp_shadow", "inertia_rotated")
@@ -511,3 +514,52 @@ def test_the_audit_says_what_holds_under_flags(capsys, flags, code, said):
     found = capsys.readouterr()
     assert said in (found.err if code else found.out)
     assert found.err.count("\n") == (1 if code else 0)
+
+
+# --- link 5 of certificates -------------------------------------------------------------------------------------------
+
+
+@needs_objdump
+def test_certify_compares_object_code_and_keeps_what_it_found(tmp_path, capsys, monkeypatch):
+    """Compiled and compared once; a refusal names the function and what differs, and is an exit code of 1."""
+    monkeypatch.setenv("SYMROT_CACHE", str(tmp_path / "cache"))
+    monkeypatch.setattr(object_code_build, "FLAGS", FLAGS[1:2])
+    monkeypatch.setattr(object_code_build.objects_section, "__defaults__", ((), tuple(HERE), FLAGS[1:2]))
+    folder = tmp_path / "k"
+    assert main(["certify", "quaternion_product", "--objects", "-o", str(folder)]) == 0
+    said = capsys.readouterr().out
+    assert said.count("the C text, rounding for rounding: bits and bounds hold") == len(HERE)
+    monkeypatch.setattr(compiled, "objects_section", None)  # not called again
+    assert main(["certify", "quaternion_product", "--objects"]) == 0
+    assert capsys.readouterr().out in said
+    assert main(["certify", "quaternion_product", "-o", str(folder)]) == 0
+    assert "compared before, which is kept and not looked at" in capsys.readouterr().out
+    path = folder / "quaternion_product.cert.json"
+    assert main(["audit", str(path)]) == 0
+    assert "what it says of object code was not looked at" in capsys.readouterr().out
+
+
+def test_a_difference_under_flags_that_keep_bits_fails():
+    """Under flags that contract, a product that is fused in places is said and is no failure."""
+    function = {"name": "f", "verdict": DIFFERS, "output": "y", "reason": "the C text has a + b", "cases": 1}
+    objects = [{"compiler": "gcc", "flags": f"for {holds}", "flags_hold": holds, "accepted": False, "functions": [function]}
+               for holds in (BITS, BOUNDS)]  # fmt: skip
+    strict, contracted = ({"objects": [each], "missing": []} for each in objects)
+    assert not compiled.holds(strict) and not compiled.holds(contracted) and not compiled.holds(None)
+    same = {**objects[0], "accepted": True, "functions": [function | {"verdict": IDENTICAL}]}
+    both = {"objects": [same, objects[1]], "missing": ["clang"]}
+    assert compiled.holds(both) and not refuted([{"objects": both}, {}]) and refuted([{"objects": strict}])
+    said = compiled.lines(both)
+    assert "not the C text (f: differs, output y: the C text has a + b)" in said[1] and "clang is not on" in said[2]
+    counts = compiled.table({"one": both, "two": both, "three": None})
+    assert counts[:2] == ["  gcc for bits: 2 of 2", "  gcc for bounds: 0 of 2"] and counts[2].startswith("    one: not")
+
+
+@pytest.mark.parametrize("arguments", [["quaternion_dcm"], ["--all"]])
+@pytest.mark.parametrize(("there", "said"), [((), "gcc or clang on the path"), (("gcc",), "objdump")])
+def test_without_compiler_or_objdump_nothing_is_written(arguments, there, said, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(compiled, "compiler_version", lambda name: "1" if name in there else "")
+    monkeypatch.setattr(shutil, "which", lambda name, *_: None)
+    assert main(["certify", *arguments, "--objects", "-o", str(tmp_path / "k")]) == 2
+    found = capsys.readouterr()
+    assert said in found.err and found.err.count("\n") == 1 and not found.out and not list(tmp_path.iterdir())

@@ -39,6 +39,8 @@ OPTIONAL = ("rounding", "objects")
 
 def load(path: Path) -> Data:
     """Return a certificate; ``CertificateError`` for a file that is none, in one sentence."""
+    if path.suffix in (".c", ".h", ".o"):
+        raise CertificateError(f"{path}: expected a certificate, got another file: its own is {path.stem}.cert.json")
     try:
         with path.open("rb") as stream:
             content = stream.read(LARGEST + 1)
@@ -92,7 +94,7 @@ def audit(path: Path, said_by: Callable[[Data], Data | None]) -> tuple[Data, lis
     """
     data = load(path)
     try:
-        said = [recheck.check(path), *_audited(path, data, said_by)]
+        said = [recheck.check(path), *_audited(path, data, said_by), *_compared(data)]
         return data, [*said, _bounds(path, data, (path.parent / f"{data['kernel']}.c").read_text(encoding="utf-8"))]
     except CertificateError:
         raise
@@ -112,6 +114,15 @@ def _audited(path: Path, data: Data, said_by: Callable[[Data], Data | None]) -> 
         return [f"{name} is no kernel that symrot knows: its formulas and laws are those of the certificate"]
     _compare(path, data, said)
     return ["formulas, laws, domain, units, flags and assumptions are those that symrot derives, and proves exactly"]
+
+
+def _compared(data: Data) -> list[str]:
+    """Return what is to be said of verdicts on object code: they are of the machine that wrote the certificate."""
+    return (
+        ["what it says of object code was not looked at: --object compares a file of yours"]
+        if data.get("objects")
+        else []
+    )
 
 
 def _compare(path: Path, data: Mapping[str, Any], wanted: Mapping[str, Any]) -> None:

@@ -27,7 +27,7 @@ ANY, UNIT = (-LARGEST, LARGEST), (Fraction(-1), Fraction(1))
 class SceneInputs:
     """What the kernel of a scene takes and gives, the values of its parameters, its first and last time (s).
 
-    ``formulas``: what the parameters are, by place (``"p[0]"``), name and formula; ``constants``: what they are made of.
+    ``formulas``: what the parameters are, by place (``"p[0]"``), name and formula; ``constants``: what is in them.
     """
 
     arguments: tuple[Argument, ...]

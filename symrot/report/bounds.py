@@ -23,7 +23,7 @@ from symrot.report.layout import columns
 from symrot.scene_file import shipped_names
 from symrot.scene_reader import nearest
 
-__all__ = ["facts", "given", "lines", "section", "target_facts", "target_lines"]
+__all__ = ["facts", "given", "lines", "require_known", "section", "target_facts", "target_lines"]
 
 PRECISIONS = {"double": "", "float": "f"}
 
@@ -72,11 +72,17 @@ def _of_library(kernel: str, precision: str) -> tuple[Operations, Problem, None]
     return operations, problem(definition(kernel), operations), None
 
 
+def require_known(kernel: str) -> None:
+    """Refuse what is neither a kernel of the library, nor a scene, nor a file; with the nearest name that is one."""
+    if kernel in kernel_names() or kernel in shipped_names() or Path(kernel).exists():
+        return
+    hint = nearest(kernel, [*kernel_names(), *shipped_names()])
+    said = f"expected the name of a kernel (see `symrot emit --list`) or a scene, got {kernel[:60]!r}"
+    raise InputError(f"{said} ({hint})" if hint else said)
+
+
 def _of_scene(scene: str, precision: str) -> tuple[Operations, Problem, SceneInputs]:
-    if scene not in shipped_names() and not Path(scene).exists():
-        hint = nearest(scene, [*kernel_names(), *shipped_names()])
-        said = f"expected the name of a kernel (see `symrot emit --list`) or a scene, got {scene[:60]!r}"
-        raise InputError(f"{said} ({hint})" if hint else said)
+    require_known(scene)
     if precision != "double":
         raise InputError(f"--precision: expected double for a scene, whose kernel has no other, got {precision}")
     found = emit(scene)

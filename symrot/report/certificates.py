@@ -1,14 +1,13 @@
 """Certify kernels and audit certificates, as `symrot certify` and `symrot audit` do."""
 
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from functools import cache
 from hashlib import sha256
 from importlib.metadata import version
 from itertools import repeat
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import symrot
 from symrot.certify.audit import audit, operations_of
@@ -16,11 +15,12 @@ from symrot.certify.certificate import Data, said_of, with_slots
 from symrot.codegen import library
 from symrot.errors import CertificateError, InputError
 from symrot.interface import emit, kernel_names, scene_kernel_name, subject
+from symrot.report import compiled
 from symrot.report.kernels import SCENES, WORKERS, certificate_files, kept_bounds, kernel_files, write_files
 from symrot.scene_file import shipped_names
 from symrot.scene_reader import nearest
 
-__all__ = ["all_lines", "audit_file", "audit_files", "certify", "certify_all", "flag_lines", "lines"]
+__all__ = ["all_lines", "audit_file", "audit_files", "certify", "certify_all", "flag_lines", "lines", "refuted"]
 
 LINKS = {  # of the chain from a derivation to object code
     1: "laws of the formulas proven", 2: "a theorem of Coq about the formulas (`symrot prove`)",
@@ -88,7 +88,7 @@ def audit_file(
     text = source.read_text(encoding="utf-8")
     found += _bounds_again(data, text, progress) if rerun else []
     if object_file is not None:
-        found += _objects(text, object_file, source.name)
+        found += compiled.object_lines(text, object_file, source.name)
     if coq:
         found += _coq(data, progress)
     return found
@@ -129,19 +129,6 @@ def _bounds_again(data: Data, text: str, progress: Callable[[str], object]) -> l
     kernels = list(operations_of(data, text).values())
     check_section(data["rounding"], kernels[0], kernels[1] if len(kernels) > 1 else None, rerun=True)
     return ["bounds of rounding errors were found again, from nothing"]
-
-
-def _objects(text: str, path: Path, where: str) -> list[str]:
-    from symrot.certify.object_code import CONTRACTED, IDENTICAL, compare_object
-
-    verdicts = compare_object(text, path, where=where)
-    refused = [verdict for verdict in verdicts if not verdict.accepted]
-    if refused:
-        raise CertificateError(f"{path}: {refused[0].sentence()}")
-    holds = {IDENTICAL: "rounding for rounding: bits and bounds hold",
-             CONTRACTED: "up to fused multiply-adds: bounds hold, bits do not"}  # fmt: skip
-    said = [f"{path}: {verdict.function} is the C text, {holds[verdict.verdict]}" for verdict in verdicts]
-    return [*said, f"{path}: loops over samples are not compared; what their flags do, the certificate says"]
 
 
 def flag_lines(flags: str) -> list[str]:
@@ -185,7 +172,7 @@ def certify(
     Parameters
     ----------
     kernel : str
-        A kernel of the library, a scene, or NAME.c: a file that has to be what symrot emits.
+        A kernel of the library, a scene, or NAME.c or NAME.cert.json: a file that has to be what symrot emits.
     ranges : sequence of str
         ``NAME=LOW:HIGH`` for the box on which rounding errors are bounded; other ranges are the kernel's own. A
         scene has those of its parameters, its time and its quaternion, and is bounded if any range is given.
@@ -201,9 +188,12 @@ def certify(
     InputError, CertificateError
         For a kernel that is none, an edited file, a box that cannot be, a proof that fails.
     """
-    from symrot.report.bounds import section
+    from symrot.report.bounds import require_known, section
 
-    name = _emitted(kernel) if kernel.endswith(".c") else kernel
+    name = _emitted(kernel) if kernel.endswith((".c", ".cert.json")) else kernel
+    require_known(name)
+    if objects:
+        compiled.require_compiler()
     if ranges and not bounds:
         raise InputError(f"--box: expected no --no-bounds beside it, which leaves bounds out, got {ranges[0]!r} and it")
     found = None
@@ -218,7 +208,7 @@ def certify(
     slots |= {"rounding": found} if found else {}
     if objects:
         progress("comparing object code ..")
-        slots["objects"] = _objects_of(texts, f"{json.loads(text)['kernel']}.c")
+        slots["objects"] = compiled.objects_of(texts, f"{json.loads(text)['kernel']}.c", _programs())
     text = with_slots(text, slots)
     return json.loads(text), write_files(directory, texts | {file: text}) if directory else []
 
@@ -238,6 +228,8 @@ def certify_all(
     objects : bool
         Whether the kernels are compiled, and the object code compared with them, for the compilers that are there.
     """
+    if objects:
+        compiled.require_compiler()
     names = (*kernel_names(), *shipped_names())
     found: dict[str, Data] = {}
     written: list[Path] = []
@@ -268,40 +260,46 @@ def all_lines(found: Mapping[str, Data]) -> list[str]:
     width = max(map(len, links))
     said = [f"{name:<{width}}  {' '.join(str(k) if k in held else '-' for k in LINKS)}" for name, held in links.items()]
     count = {k: sum(k in held for held in links.values()) for k in LINKS}
-    return [*said, *(f"link {k}, {what}: {count[k]} of {len(links)}" for k, what in LINKS.items())]
+    said += [f"link {k}, {what}: {count[k]} of {len(links)}" for k, what in LINKS.items()]
+    return [*said, *compiled.table({name: data.get("objects") for name, data in found.items()})]
+
+
+def refuted(found: Iterable[Data]) -> bool:
+    """Return whether object code was compared and is not the C text under flags by which its bits are to hold."""
+    return any(data.get("objects") and not compiled.holds(data["objects"]) for data in found)
 
 
 def _links(data: Data) -> set[int]:
-    compared = (data.get("objects") or {"objects": []})["objects"]
+    compared = compiled.holds(data.get("objects"))
     held = {1: data["laws"], 2: data["coq"], 3: data["readback"], 4: data.get("rounding"), 5: compared}
-    return {k for k, what in held.items() if what and (k != 5 or all(item["accepted"] for item in compared))}
+    return {k for k, what in held.items() if what}
 
 
 def _emitted(path: str) -> str:
-    """Return the name of the kernel that a C file holds, if the file is as symrot emits it."""
-    name = Path(path).stem
-    if name not in kernel_names():
-        hint = nearest(name, kernel_names())
-        raise InputError(f"{path}: expected the C file of a kernel of the library{f' ({hint})' if hint else ''}")
+    """Return the kernel or shipped scene that a C file or certificate is of, if the file is as symrot prints it."""
+    file = Path(path)
+    name = file.name.removesuffix(".c").removesuffix(".cert.json")
+    known = {kernel: kernel for kernel in kernel_names()}
+    known |= {scene_kernel_name(scene): scene for scene in shipped_names()}
+    if name not in known:
+        hint = nearest(name, known)
+        said = f"{path}: expected a file that symrot emits of a kernel of the library or a shipped scene"
+        raise InputError(f"{said} ({hint})" if hint else f"{said}; `symrot audit` takes the certificate of any kernel")
     try:
-        text = Path(path).read_text(encoding="utf-8")
+        text = file.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as reason:
-        raise InputError(f"{path}: expected a C file that can be read ({reason})") from None
-    if text != emit(name).source:
-        raise CertificateError(f"{path}: expected the text that symrot emits for {name}, and it was edited")
-    return name
+        why = reason.strerror if isinstance(reason, OSError) else "it is no UTF-8"
+        raise InputError(f"{path}: expected a file that can be read ({why})") from None
+    kernel = known[name]
+    if file.name.endswith(".cert.json"):
+        audit_file(file)
+    elif text != emit(kernel, "c", kept_bounds(kernel, file.parent)).source:
+        raise CertificateError(f"{path}: expected the text that symrot emits for {kernel}, and it was edited")
+    return kernel
 
 
-def _objects_of(texts: dict[str, str], source: str) -> Data:
-    from symrot.certify.object_code_build import objects_section
-
-    with TemporaryDirectory(prefix="symrot-") as directory:
-        write_files(Path(directory), texts)
-        return objects_section(Path(directory) / source)
-
-
-def lines(data: Data) -> list[str]:
-    """Return a certificate in words, line by line."""
+def lines(data: Data, compared: bool = True) -> list[str]:
+    """Return a certificate in words, line by line; ``compared``: what it says of object code was found just now."""
     said = [f"{data['kernel']}: {data['title']}", f"  domain    {data['domain']}"]
     said += [f"  link 1    {law['law']}: proven" for law in data["laws"]]
     if data["coq"]:
@@ -315,9 +313,10 @@ def lines(data: Data) -> list[str]:
         worst = max(part["outputs"], key=lambda item: float.fromhex(item["absolute"]))
         most = f"{float.fromhex(worst['absolute']):.3g}"
         said.append(f"  link 4    {part['precision']}: error at most {most} on the box ({worst['output']})")
-    for item in (data.get("objects") or {"objects": []})["objects"]:
-        verdict = "is the C text" if item["accepted"] else "is not the C text"
-        said.append(f"  link 5    {item['compiler']} {item['flags']}: object code {verdict}")
+    if compared:
+        said += compiled.lines(data.get("objects"))
+    elif data.get("objects"):
+        said.append("  link 5    compared before, which is kept and not looked at (--objects compares)")
     required = ", ".join(data["flags"]["required"])
     return [*said, f"  flags     required {required}; void under {', '.join(data['flags']['void'])}"]
 
