@@ -152,14 +152,14 @@ def test_projection_never_makes_it_worse(monkeypatch, tolerance, omega):
     body = Body(omega)
     on, off = body.at(300.0, tolerance), body.at(300.0, tolerance, project=False)
     assert np.isfinite(on).all()
-    assert body.drift(on) <= max(1.01 * body.drift(off), 4e-16)
+    assert body.drift(on) <= max(body.drift(off), 4e-16)
 
 
 def test_loose_motions_are_refused_ever_more_seldom(monkeypatch):
     monkeypatch.setattr(taylor, "PROJECTED_FROM", 1.0)
     body = Body(["3/10", 1, "1/2"])
-    task = Task(taylor._stepper, body.path, body.p, body.start, 0.0, 1e-3)
-    task.fields["every"] = 2
+    task = Task(taylor._stepper, body.path, body.p, body.start, 0.0, 0.5)
+    task.fields["every"], task.allowed, task.pace = 2, 30.0, 1e-300  # steps of which nothing is right
     run = next(task.runs(300.0))
     task.advance(run, None, 0, None, None, 0)
     assert run.projected == 0 and run.every >= 64

@@ -1,33 +1,49 @@
 /*
  * Projection of the carry onto what a motion keeps: included by taylor.c when the system has invariants.
  *
- * The states are known as y + carry, to about 32 digits. Every few steps the invariants are computed there in pairs of
- * doubles, and the smallest change of the states that restores them, in units of each block, goes into the carry, which
- * hands on to y what y can hold: what rounding and the tail of the series took from the invariants is given back before
- * it is as large as a bit of y.
+ * The states are known as y + carry, to about 32 digits. Every few steps, and at the end of a span, the invariants
+ * are computed there in pairs of doubles, and the smallest change of the states that restores them goes into the
+ * carry, which hands on to y what y can hold. Of the errors of a conservative motion those that leave its invariants
+ * are the ones that grow: it then runs ahead or behind ever faster. Given back at once, tail or rounding, they leave
+ * only their direct part.
  *
- * It can only help: nothing is changed where the invariants are off by more than SYMROT_FAR of their size (the tail is
- * then so loose that the motion is no better known), where the change would be longer than that, or where it leaves a
- * larger residual than it found; after a refusal it is tried half as often. An invariant whose gradient nearly depends
- * on those of the others, as energy and momentum do in steady rotation, is left alone there: restoring it would move
- * the states much further than they are off.
+ * The smallest change is measured in units of what each block is likely to be off by: see symrot_weigh. In units of
+ * its size a body about to rotate steadily, whose rates hardly change, would be given rates that make up for the
+ * rounding of its attitude, and follow them.
+ *
+ * It can only help: nothing is changed where the change would be longer than SYMROT_FAR of a state's size (nothing is
+ * known of the motion any more), or where it leaves a larger residual than it found; after a refusal it is tried half
+ * as often. An invariant whose gradient depends on those of the others to SYMROT_INDEPENDENT, as those of energy and
+ * momentum do in steady rotation, is left alone there: what is left of its gradient is rounding.
  *
  * Source: E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration, 2nd ed., section IV.4 (projection).
  */
 
-static const double SYMROT_FAR = 1e-12;
-static const double SYMROT_INDEPENDENT = 1e-2;  /* least square of the sine between a gradient and those before it */
+static const double SYMROT_FAR = 0.1;
+static const double SYMROT_UNIT_NORM = 1e-12;  /* a norm within this of one is meant to be one */
+static const double SYMROT_INDEPENDENT = 1e-12;  /* least square of the sine between a gradient and those before it */
+static const double SYMROT_LEAST_SHARE = 1e-3;  /* of the fastest block's likely errors: sums of cancelling terms */
 
-/* Return what the errors of a state are measured with: that of its block. */
-static inline void symrot_units(const double *y, double *size)
+/*
+ * Write what the size of a state is measured with, that of its block, and how far its errors may reach in comparison
+ * with those of the others: rounding and the tail take their share of what a step adds, so that a block that hardly
+ * moves is hardly wrong.
+ */
+static inline void symrot_weigh(symrot_v4 (*x)[SYMROT_ORDER + 1], double *size, double *weight)
 {
+    double fastest = 0.0, sizes[SYMROT_BLOCK_COUNT], rates[SYMROT_BLOCK_COUNT];
+    EACH_BLOCK(b) {
+        sizes[b] = symrot_scales[b] > 0.0 ? symrot_scales[b] : symrot_size(x, 0, b);
+        rates[b] = symrot_larger(symrot_size(x, 1, b), symrot_size(x, 2, b));
+        if (sizes[b] > 0.0) fastest = symrot_larger(fastest, rates[b]/sizes[b]);
+    }
     EACH_ROW(r) {
-        double unit = symrot_scales[symrot_blocks[r]];
-        if (unit == 0.0)
-            for (int s = 0; s < SYMROT_ROWS; ++s)
-                if (symrot_blocks[s] == symrot_blocks[r])
-                    for (int i = 0; i < symrot_sizes[s]; ++i) unit = fmax(unit, fabs(y[symrot_starts[s] + i]));
-        for (int i = 0; i < symrot_sizes[r]; ++i) size[symrot_starts[r] + i] = unit;
+        const int b = symrot_blocks[r];
+        const double share = fastest > 0.0 && sizes[b] > 0.0 ? rates[b]/sizes[b]/fastest : 1.0;
+        for (int i = 0; i < symrot_sizes[r]; ++i) {
+            size[symrot_starts[r] + i] = sizes[b];
+            weight[symrot_starts[r] + i] = sizes[b]*symrot_larger(share, SYMROT_LEAST_SHARE);
+        }
     }
 }
 
@@ -104,7 +120,7 @@ static SYMROT_APART void symrot_remember(symrot_run *run, const double *p)
         symrot_invariants(symrot_pair_of(run->t, run->t_low), state, p, value, gradient);
         if (SYMROT_QUATERNION >= 0 && pass == 0) {
             const double excess = symrot_pair_subtract(value[SYMROT_INVARIANTS - 1], symrot_pair_of(1.0, 0.0)).high;
-            if (fabs(excess) < SYMROT_FAR)
+            if (fabs(excess) < SYMROT_UNIT_NORM)
                 for (int i = SYMROT_QUATERNION; i < SYMROT_QUATERNION + 4; ++i)
                     run->carry[i] -= 0.5*excess*(run->y[i] + run->carry[i]);
         }
@@ -117,20 +133,18 @@ static SYMROT_APART void symrot_remember(symrot_run *run, const double *p)
 
 /* Give back to the carry what the invariants have lost; return whether it was done. */
 static SYMROT_APART int symrot_project(const symrot_run *run, const double *p, symrot_pair t, const double *y,
-    double *carry)
+    double *carry, const double *size, const double *weight)
 {
-    double j[SYMROT_INVARIANTS][SYMROT_STATES], r[SYMROT_INVARIANTS], better[SYMROT_STATES], size[SYMROT_STATES];
-    symrot_units(y, size);
-    const double before = symrot_residuals(run, p, t, y, carry, size, j, r);
-    if (!(before < SYMROT_FAR*SYMROT_FAR)) return 0;
+    double j[SYMROT_INVARIANTS][SYMROT_STATES], r[SYMROT_INVARIANTS], better[SYMROT_STATES];
+    const double before = symrot_residuals(run, p, t, y, carry, weight, j, r);
     symrot_solve(j, r);
     for (int i = 0; i < SYMROT_STATES; ++i) {
         double change = 0.0;
         for (int m = 0; m < SYMROT_INVARIANTS; ++m) change += r[m]*j[m][i];
-        if (!(fabs(change) < SYMROT_FAR)) return 0;
-        better[i] = carry[i] + change*size[i];
+        if (!(fabs(change)*weight[i] <= SYMROT_FAR*size[i])) return 0;
+        better[i] = carry[i] + change*weight[i];
     }
-    if (!(symrot_residuals(run, p, t, y, better, size, j, r) <= before)) return 0;
+    if (!(symrot_residuals(run, p, t, y, better, weight, j, r) <= before)) return 0;
     memcpy(carry, better, sizeof better);
     return 1;
 }
@@ -139,15 +153,16 @@ static SYMROT_APART int symrot_project(const symrot_run *run, const double *p, s
 static SYMROT_APART void symrot_keep(symrot_run *run, const double *p, double t, double t_low,
     symrot_v4 (*x)[SYMROT_ORDER + 1], symrot_v4 *carry)
 {
-    double y[SYMROT_STATES], low[SYMROT_STATES];
+    double y[SYMROT_STATES], low[SYMROT_STATES], size[SYMROT_STATES], weight[SYMROT_STATES];
+    symrot_weigh(x, size, weight);
     EACH_ROW(r) {
         memcpy(y + symrot_starts[r], &x[r][0], (size_t)symrot_sizes[r]*sizeof(double));
         memcpy(low + symrot_starts[r], &carry[r], (size_t)symrot_sizes[r]*sizeof(double));
     }
     run->since = 0;
-    if (symrot_project(run, p, symrot_pair_of(t, t_low), y, low)) ++run->projected;
+    if (symrot_project(run, p, symrot_pair_of(t, t_low), y, low, size, weight)) ++run->projected;
     else run->every *= 2;
-    for (int i = 0; i < SYMROT_STATES; ++i) {  /* the series sees y alone: leave no more in the carry than y cannot hold */
+    for (int i = 0; i < SYMROT_STATES; ++i) {  /* the series sees y alone: leave no more in the carry than it must */
         const symrot_pair sum = symrot_pair_sum(y[i], low[i]);
         y[i] = sum.high;
         low[i] = sum.low;

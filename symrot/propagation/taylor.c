@@ -355,15 +355,18 @@ SYMROT_EXPORT int symrot_taylor(symrot_run *run, const double *p, const double *
             carry[r] = V_ADD(V_SUB(y, V_SUB(new_y, rise)), V_SUB(d, rise));  /* Knuth's sum: goes into the next step */
             x[r][0] = y1[r] = new_y;
         }
-        for (; next < count && times[next] == t1 && low1 == 0.0; ++next) symrot_write(y1, states + next*SYMROT_STATES);
-        ++accepted;
-        halvings = 0;
         t = t1;
         t_low = low1;
-        if (at_stop) status = SYMROT_DONE;
 #if SYMROT_INVARIANTS
-        if (run->every > 0 && ++run->since >= run->every) symrot_keep(run, p + SYMROT_PARAMETERS, t, t_low, x, carry);
+        if (run->every > 0 && (++run->since >= run->every || at_stop)) {
+            symrot_keep(run, p + SYMROT_PARAMETERS, t, t_low, x, carry);
+            EACH_ROW(r) y1[r] = x[r][0];
+        }
 #endif
+        for (; next < count && times[next] == t && t_low == 0.0; ++next) symrot_write(y1, states + next*SYMROT_STATES);
+        ++accepted;
+        halvings = 0;
+        if (at_stop) status = SYMROT_DONE;
         if (logarithm > 0.6 || logarithm < -0.6) {
             unit *= symrot_exp2((double)(int)(logarithm + (logarithm > 0.0 ? 0.5 : -0.5)));
             symrot_set_unit(unit, step);
