@@ -422,13 +422,18 @@ def test_a_product_that_is_rounded_here_and_fused_there_is_refused(tmp_path):
 def test_files_that_are_no_object_files_are_refused_in_one_sentence(tmp_path):
     source, target = tmp_path / "kernel.c", tmp_path / "kernel.o"
     source.write_text(TEXT)
-    with pytest.raises(CertificateError, match="there is none"):
+    with pytest.raises(CertificateError, match="got none"):
+        compare_object(TEXT, target)
+    with pytest.raises(CertificateError, match="got a folder"):
+        compare_object(TEXT, tmp_path)
+    target.write_bytes(b"")
+    with pytest.raises(CertificateError, match="got an empty one"):
         compare_object(TEXT, target)
     target.write_text("no object")
     with pytest.raises(CertificateError, match="objdump cannot read it"):
         compare_object(TEXT, target)
     compile_object("gcc", ("-O2",), source, target)
-    with pytest.raises(CertificateError, match=r"expected machine code of g, there is none"):
+    with pytest.raises(CertificateError, match="expected machine code of g, got that of f"):
         compare_object(TEXT.replace("void f(", "void g("), target)
     with pytest.raises(CertificateError, match="expected a definition of h"):
         compare_object(TEXT, target, ["h"])
@@ -439,6 +444,38 @@ def test_files_that_are_no_object_files_are_refused_in_one_sentence(tmp_path):
         compile_object("gcc", ("-fno_such_flag",), source, target)
     with pytest.raises(CompilerError, match="not on the path"):
         compile_object("no_such_compiler", (), source, target)
+
+
+@needs_objdump
+@pytest.mark.parametrize("compiler", HERE)
+def test_objects_of_link_time_optimisation_are_refused_with_what_to_do(compiler, tmp_path):
+    with pytest.raises(CertificateError, match="-flto"):
+        verdicts(tmp_path, TEXT, compiler, ("-O2", "-flto"))
+    if compiler == "gcc":
+        assert verdicts(tmp_path, TEXT, compiler, ("-O2", "-flto", "-ffat-lto-objects"))[0].verdict == IDENTICAL
+
+
+WRONG = GOOD.replace("addsd xmm1,xmm0", "subsd xmm1,xmm0")
+
+
+@needs_objdump
+def test_code_of_another_part_of_the_file_does_not_stand_for_a_function(tmp_path):
+    """A wrong f, and under the same section and address in another part the right code: an archive, a group."""
+    for name, code in (("f", WRONG), ("g", GOOD)):
+        source = tmp_path / f"{name}.s"
+        source.write_text(f".intel_syntax noprefix\n.text\n.globl {name}\n{name}: {code}; ret\n")
+        subprocess.run(["gcc", "-c", source, "-o", tmp_path / f"{name}.o"], check=True)
+    subprocess.run(["ar", "rcs", tmp_path / "both.a", tmp_path / "f.o", tmp_path / "g.o"], check=True)
+    with pytest.raises(CertificateError, match="got an archive"):
+        compare_object(TEXT, tmp_path / "both.a")
+    parts = [
+        f'.section .text.f,"axG",@progbits,{name},comdat\n.globl {name}\n{name}: {code}; ret\n'
+        for name, code in (("f", WRONG), ("g", GOOD))
+    ]
+    (tmp_path / "both.s").write_text(".intel_syntax noprefix\n" + "".join(parts))
+    subprocess.run(["gcc", "-c", tmp_path / "both.s", "-o", tmp_path / "both.o"], check=True)
+    with pytest.raises(CertificateError, match="two sections of one name"):
+        compare_object(TEXT, tmp_path / "both.o")
 
 
 # --- flags ------------------------------------------------------------------------------------------------------------
@@ -480,13 +517,25 @@ def test_flags_are_judged_in_their_order(flags, holds):
         assert found.sentence().startswith("the certificate is void (-")
 
 
-@pytest.mark.parametrize("flag", ["-funny", "-fno-rounding", "-Dsin=cos", "-mllvm", "/fp:fast", '-O2 "'])
-def test_a_flag_that_nobody_knows_is_refused_in_one_sentence(flag):
-    if flag.startswith("/"):
-        assert judge(flag).holds == BOUNDS  # a file's name: no flag at all
-        return
+@pytest.mark.parametrize(
+    "flag",
+    ["-funny", "-fno-rounding", "-Dsin=cos", "-mllvm", "/fp:fast", '-O2 "', "", "cl /fp:fast", "icx -O2", "zig cc -O2", "tcc",
+     "gcc @flags", "gcc -Wp,-Dsin=cos", "gcc -Wa,--defsym", "gcc -DNAN=0", "gcc -DSYMROT_RESTRICT=x", "gcc -include sin.h"],
+)  # fmt: skip
+def test_a_flag_or_a_compiler_that_nobody_knows_is_refused_in_one_sentence(flag):
     with pytest.raises(InputError, match=r"^flags: expected"):
         judge(flag)
+
+
+@pytest.mark.parametrize(
+    ("flags", "holds"),
+    [("/usr/bin/x86_64-linux-gnu-gcc-12 -ffp-contract=off -DMY_APP=1 main.c kernel.c -o main", BITS),
+     ("ccache clang++-14 -O2 -ffp-contract=off", BITS), ("C:\\\\gcc.exe -O2", BOUNDS), ("kernel.c -ffp-contract=off", BITS),
+     ("i686-linux-gnu-gcc -O2 -ffp-contract=off", NOTHING), ("i686-linux-gnu-gcc -mfpmath=sse -ffp-contract=off", BITS)],
+)  # fmt: skip
+def test_compilers_are_known_by_their_names(flags, holds):
+    """One for a processor with x87 keeps more digits than a type has, unless it is told to use SSE."""
+    assert judge(flags).holds == holds
 
 
 def test_the_section_of_flags_gives_a_reason_for_each():

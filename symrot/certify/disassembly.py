@@ -111,9 +111,14 @@ class Listing:
             If the file does not define it.
         """
         section, address = self.symbols.get(name, ("", 0))
-        if (section, address) not in self.code:
-            raise CertificateError(f"{self.where}: expected machine code of {name}, there is none")
-        return section, address
+        if (section, address) in self.code:
+            return section, address
+        others = [other for other, place in self.symbols.items() if place in self.code and not other.startswith(".")]
+        if not self.code:
+            why = "no code at all (an object of -flto has some with -ffat-lto-objects)"
+        else:
+            why = f"that of {', '.join(sorted(others)[:4])}" if others else "code without names"
+        raise CertificateError(f"{self.where}: expected machine code of {name}, got {why}")
 
 
 def missing() -> str:
@@ -137,8 +142,13 @@ def listing(path: Path) -> Listing:
         raise CompilerError(missing())
     where = path.name
     if not path.is_file():
-        raise CertificateError(f"{where}: expected an object file, there is none")
+        got = "a folder" if path.is_dir() else "another kind of file" if path.exists() else "none"
+        raise CertificateError(f"{path}: expected an object file, got {got}")
+    if not path.stat().st_size:
+        raise CertificateError(f"{path}: expected an object file, got an empty one")
     shown = _objdump(path, "-f")
+    if "In archive " in shown:
+        raise CertificateError(f"{where}: expected one object file as `cc -c` makes it, got an archive of them")
     found = re.search(r"file format (\S+)", shown)
     if found is None or found[1] != FORMAT or "DYNAMIC" in shown or "EXEC_P" in shown:
         kind = f"{found[1]}{', linked' if found[1] == FORMAT else ''}" if found else "no object code"
@@ -155,7 +165,8 @@ def _objdump(path: Path, *options: str) -> str:
     done = subprocess.run(command, capture_output=True, env=environment, check=False, timeout=60)
     if done.returncode:
         complaint = done.stderr.decode(errors="replace").strip().split("\n")[-1].removeprefix("objdump: ")[:200]
-        raise CertificateError(f"{path.name}: objdump cannot read it ({complaint})")
+        hint = ": clang -flto writes no machine code" if "not recognized" in complaint else ""
+        raise CertificateError(f"{path.name}: objdump cannot read it ({complaint}){hint}")
     return done.stdout.decode(errors="replace")
 
 
@@ -223,7 +234,10 @@ def _code(text: str, where: str) -> dict[tuple[str, int], Instruction]:
             if found is not None:
                 plus = int(found["plus"] or "0", 16)
                 relocations[section, int(found["address"], 16)] = (found["kind"], found["symbol"], plus)
-    return {(row[0], row[1]): _instruction(*row, relocations, where) for row in rows}
+    code = {(row[0], row[1]): _instruction(*row, relocations, where) for row in rows}
+    if len(code) != len(rows):
+        raise CertificateError(f"{where}: expected one instruction at a place, got two sections of one name")
+    return code
 
 
 def _instruction(

@@ -109,11 +109,17 @@ TABLE: tuple[Rule, ...] = (
          "how code is laid out, checked and linked, no rounding"),
     Rule(r"-(std=(c|gnu|iso9899:|c\+\+|gnu\+\+)\w+|ansi|pedantic(-errors)?|pipe|pthread|c|S|s|static|shared|nostdlib|nodefaultlibs"
          r"|g[\w+-]*(=\w+)?|v|w|rdynamic|no-pie|pie|P|MD|MMD|MP)", "language, debugging and linking, no rounding"),
-    Rule(r"-W.*", "warnings, and what is passed to the linker"),
+    Rule(r"-W(?![ap],).*", "warnings, and what is passed to the linker"),
     Rule(r"-(o|x|I|L|MF|MT|MQ|isystem|iquote|idirafter|Xlinker)", "names of files", takes_next=True),
     Rule(r"-(I|L|l|isystem|iquote).+|-x(c|c\+\+)", "names of files and libraries"),
-    Rule(r"-[DU](NDEBUG|SYMROT_\w+|_\w+)(=.*)?", "a macro that kernels do not use"),
+    Rule(r"-[DU](NDEBUG|_(GNU|DEFAULT|POSIX_C|XOPEN|ISOC99|ISOC11|BSD|FORTIFY)_SOURCE|_REENTRANT|_GLIBCXX_\w+"
+         r"|(?!SYMROT_|HUGE_|MATH_|FP_|FLT_|DBL_|LDBL_|INT|UINT|SIZE_|M_)[A-Z][A-Z0-9]*_[A-Z0-9_]+)(=.*)?"
+         r"|-DSYMROT_(RESTRICT|INDEPENDENT)=?|-DSYMROT_RESTRICT=(__)?restrict(__)?", "a macro that kernels do not use"),
 )  # fmt: skip
+LAUNCHERS = ("ccache", "sccache", "distcc")
+_COMPILER = re.compile(r"(?:.*-)?(?:gcc|g\+\+|clang|clang\+\+|cc|c\+\+|c99|c11)(?:-\d+(?:\.\d+)*)?(?:\.exe)?")
+_X87 = re.compile(r"(?:i[3-6]86|m68k)-.*")  # targets whose compilers round to more digits unless they are told
+_FILE = re.compile(r"[^@].*\.(?:c|cc|cpp|cxx|h|o|a|so|s|S|d|i|ii|obj|exe|lib|dll|dylib)")
 
 
 @dataclass(frozen=True)
@@ -163,18 +169,24 @@ def judge(flags: str | Sequence[str]) -> Judgement:
     Raises
     ------
     InputError
-        For a flag that the table does not know.
+        For a flag that the table does not know, or a compiler that is neither gcc nor clang.
     """
     try:
         words = shlex.split(flags) if isinstance(flags, str) else list(flags)
     except ValueError as reason:
         raise InputError(f"flags: expected words as a shell reads them, got {flags!r} ({reason})") from None
+    if not words:
+        raise InputError("flags: expected the flags of a compiler, such as 'gcc -O2 -ffp-contract=off', got none")
+    compiler, place = _compiler(words)
     switched: dict[str, str] = {}  # what is on -> the flag that did it
-    is_off, place = False, 0
+    if _X87.fullmatch(compiler):
+        switched["excess precision"] = compiler
+    is_off = False
     while place < len(words):
         word = words[place]
         place += 1
         if not word.startswith("-"):
+            _check_file(word)
             continue
         rule = _rule(word)
         place += rule.takes_next
@@ -187,10 +199,26 @@ def judge(flags: str | Sequence[str]) -> Judgement:
         remarks.append(Remark(switched["contraction"], BOUNDS, CONTRACTION))
     elif not is_off:
         remarks.append(Remark(REQUIRED[0], BOUNDS, UNFIXED))
-    elif "fused operations" in switched and "no vectors" not in switched and "clang" not in words[0]:
+    elif "fused operations" in switched and "no vectors" not in switched and "clang" not in compiler:
         remarks.append(Remark(switched["fused operations"], BOUNDS, VECTORS))
     effects = {remark.effect for remark in remarks}
     return Judgement(NOTHING if NOTHING in effects else BOUNDS if effects else BITS, tuple(remarks))
+
+
+def _compiler(words: Sequence[str]) -> tuple[str, int]:
+    """Return the name of the compiler in front of its flags, if there is one, and where the flags begin."""
+    names = [re.split(r"[/\\]", word)[-1] for word in words[:2]]
+    place = 1 if names[0] in LAUNCHERS and len(names) > 1 else 0
+    if words[place].startswith("-") or _FILE.fullmatch(words[place]):
+        return "", place
+    if not _COMPILER.fullmatch(names[place]):
+        raise InputError(f"flags: expected gcc or clang, whose flags are known, in front, got {words[place][:80]!r}")
+    return names[place], place + 1
+
+
+def _check_file(word: str) -> None:
+    if not _FILE.fullmatch(word):
+        raise InputError(f"flags: expected flags and names of files such as kernel.c, got {word[:80]!r}")
 
 
 def _rule(flag: str) -> Rule:
