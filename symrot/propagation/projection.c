@@ -20,6 +20,7 @@
  */
 
 static const double SYMROT_FAR = 0.1;
+static const double SYMROT_LOOSE = 1e-11;
 static const double SYMROT_UNIT_NORM = 1e-12;  /* a norm within this of one is meant to be one */
 static const double SYMROT_INDEPENDENT = 1e-12;  /* least square of the sine between a gradient and those before it */
 static const double SYMROT_LEAST_SHARE = 1e-3;  /* of the fastest block's likely errors: sums of cancelling terms */
@@ -110,11 +111,15 @@ static double symrot_residuals(const symrot_run *run, const double *p, symrot_pa
     return total;
 }
 
-/* Remember what the motion keeps, from its first state; a quaternion of unit norm gets it in the carry too. */
+/*
+ * Remember what the motion keeps, from its first state; a quaternion of unit norm gets it in the carry too. Where that
+ * norm is all, a loose motion is not projected: what its attitude loses in length is no part of its error.
+ */
 static SYMROT_APART void symrot_remember(symrot_run *run, const double *p)
 {
     symrot_pair state[SYMROT_STATES], value[SYMROT_INVARIANTS];
     double gradient[SYMROT_INVARIANTS][SYMROT_STATES];
+    if (SYMROT_INVARIANTS == 1 && SYMROT_QUATERNION >= 0 && run->tail > SYMROT_LOOSE) run->every = 0;
     for (int pass = 0; pass < 2; ++pass) {
         for (int i = 0; i < SYMROT_STATES; ++i) state[i] = symrot_pair_sum(run->y[i], run->carry[i]);
         symrot_invariants(symrot_pair_of(run->t, run->t_low), state, p, value, gradient);

@@ -42,7 +42,6 @@ FILES = ("taylor.h", "pairs.h", "projection.c", "taylor.c")
 PROJECTION = "/* PROJECTION */\n"  # where taylor.c takes projection.c
 NO_INVARIANTS = "#define SYMROT_INVARIANTS 0\n#define SYMROT_INVARIANT_PARAMETERS 0\n"
 PROJECTED_EVERY = 16  # steps: by measurement, seldom enough to cost a few percent and often enough to lose nothing
-PROJECTED_FROM = 1e-11  # of the tolerance down: looser motions leave their invariants by more than is put right
 MANY_PRODUCTS = 40  # of a right-hand side: from there on the work of a step is in its sums, which grow as order squared
 ORDERS = {  # by whether there are many: from which tolerance on which order is fastest, see order_for
     False: ((1e-3, 14), (1e-6, 16), (0.0, 20)),
@@ -147,7 +146,7 @@ def integrate(
     max_steps : int
         Most steps to take before giving up.
     project : bool
-        Whether to hold the motion on its invariants, where the library knows some and the tolerance is tight.
+        Whether to hold the motion on its invariants, where the library knows some.
 
     Returns
     -------
@@ -188,7 +187,7 @@ def task(
 ) -> Task:
     """Return a motion to follow; arguments as :func:`integrate`."""
     found = Task(_stepper, library, p, y0, t0, tolerance, max_step, max_steps)
-    found.fields["every"] = PROJECTED_EVERY if project and tolerance <= PROJECTED_FROM else 0
+    found.fields["every"] = PROJECTED_EVERY if project else 0
     return found
 
 
