@@ -308,25 +308,26 @@ class _Jet:
         """Return the sums over what is known, for orders n and m = n + 1: a over k + j = n, b over k + j = m."""
         lines: list[str] = []
         columns = self.layout.columns
-        for first in range(0, len(columns), COLUMNS_PER_LOOP):
-            group = range(first, min(first + COLUMNS_PER_LOOP, len(columns)))
+        loops = -(-len(columns) // COLUMNS_PER_LOOP)
+        for loop in range(loops):  # all of about one length: a column alone would wait for its own sums
+            group = range(loop * len(columns) // loops, (loop + 1) * len(columns) // loops)
             for i in group:
-                lines.append(f"symrot_v4 a{i} = V_ALL(0.0), b{i} = a{i}, f{i} = {self.at(columns[i].a, '1')};")
-            lines.append("for (int64_t k = 1; k < n - 1; k += 2) {")
+                a, b, _ = columns[i]
+                lines.append(f"symrot_v4 h{i} = {self.at(b, 'n - 1')};")
+                lines.append(f"symrot_v4 a{i} = V_MUL({self.at(a, '1')}, h{i}), b{i} = V_ALL(0.0);")
+            lines.append("for (int64_t k = 2; k < n; k += 2) {")
             for i in group:  # one column after the other: three numbers in work beside the sums
                 a, b, _ = columns[i]
                 lines += [
-                    f"    const symrot_v4 g{i} = {self.at(a, 'k + 1')}, h{i} = {self.at(b, 'n - k')};",
-                    f"    a{i} = V_FMA(f{i}, h{i}, a{i});",
-                    f"    b{i} = V_FMA(g{i}, h{i}, b{i});",
-                    f"    f{i} = {self.at(a, 'k + 2')};",
-                    f"    const symrot_v4 j{i} = {self.at(b, 'n - k - 1')};",
-                    f"    a{i} = V_FMA(g{i}, j{i}, a{i});",
-                    f"    b{i} = V_FMA(f{i}, j{i}, b{i});",
+                    f"    const symrot_v4 f{i} = {self.at(a, 'k')}, j{i} = {self.at(b, 'n - k')};",
+                    f"    b{i} = V_FMA(f{i}, h{i}, b{i});",
+                    f"    a{i} = V_FMA(f{i}, j{i}, a{i});",
+                    f"    const symrot_v4 g{i} = {self.at(a, 'k + 1')};",
+                    f"    h{i} = {self.at(b, 'n - k - 1')};",
+                    f"    b{i} = V_FMA(g{i}, j{i}, b{i});",
+                    f"    a{i} = V_FMA(g{i}, h{i}, a{i});",
                 ]
             lines.append("}")
-            for i in group:
-                lines.append(f"a{i} = V_FMA(f{i}, {self.at(columns[i].b, '1')}, a{i});")
         return lines
 
     def between(self) -> list[str]:

@@ -4,8 +4,8 @@
  * Vectors are no wider than those of the processor they are compiled for: wider ones would live on the stack, written
  * in halves and read whole, for which the processor waits.
  *
- * Included before an emitted jet and taylor.c. Define SYMROT_PAIRS to take two vectors of two in any case, SYMROT_PLAIN to
- * take plain C.
+ * Included before an emitted jet and taylor.c. Define SYMROT_PAIRS to take two vectors of two, SYMROT_PLAIN to take
+ * plain C in any case.
  */
 #include <float.h>
 #include <math.h>
