@@ -359,6 +359,39 @@ def test_a_kernel_may_be_named_by_what_was_emitted_of_it(path, tmp_path, capsys)
     assert said.out == "" and said.err.count("\n") == 1 and str(edited) in said.err
 
 
+EDITS = {  # file, what is edited -> what takes its place, what is said of it
+    "sign": (".c", "omega_2*cos_psi - sin_psi", "omega_2*cos_psi + sin_psi",
+             "line 49 is 'dangles[1] = omega_2*cos_psi + sin_psi*omega_3;'", "expected dangles[1] to be omega_2*cos(psi) - omega"),
+    "order": (".c", "omega_2*cos_psi - ", "cos_psi*omega_2 - ", "with other operations", "was emitted"),
+    "arguments": (".c", "(const double angles[3], const double omega[3]", "(const double omega[3], const double angles[3]",
+                  "is 'void euler_zyx_body_rates(const double omega[3], const double angles[3]", "was emitted"),
+    "constant": (".c", "cos_theta;\n", "cos_theta*1.0000000000000002;\n", "1.0000000000000002", "was emitted"),
+    "header": (".h", "double dangles[3]);", "double dangles[4]);", "double dangles[4]);'", "euler_zyx_body_rates.h is not"),
+    "more": (".h", "\n#endif\n", "\n#endif\n#define sin cos\n", "'#define sin cos', and nothing was emitted", ".h is not"),
+    "ends": (".c", "\n", "\r\n", "its lines end in another way", "is not what was certified"),
+    "none": (".c", None, None, "expected euler_zyx_body_rates.c beside it", "there is none"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("edit", EDITS)
+def test_an_edited_file_is_refused_with_its_line_and_what_it_computes(edit, tmp_path, capsys):
+    end, old, new, *said = EDITS[edit]
+    for name in ("euler_zyx_body_rates.c", "euler_zyx_body_rates.h", "euler_zyx_body_rates.cert.json", "symrot_math.h"):
+        shutil.copy(KERNELS / name, tmp_path)
+    path = tmp_path / f"euler_zyx_body_rates{end}"
+    if old is None:
+        path.unlink()
+    else:
+        text = path.read_text(encoding="utf-8")
+        at = text.rindex(old) if edit == "more" else text.index(old, text.index("*/"))
+        changed = text.replace(old, new) if edit == "ends" else text[:at] + new + text[at + len(old) :]
+        path.write_bytes(changed.encode())
+    assert main(["audit", str(tmp_path / "euler_zyx_body_rates.cert.json")]) == 1
+    found = capsys.readouterr()
+    assert found.out == "" and found.err.count("\n") == 1
+    assert all(each in found.err for each in said), found.err
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [

@@ -93,6 +93,9 @@ def audit(path: Path, said_by: Callable[[Data], Data | None]) -> tuple[Data, lis
         Saying what does not hold.
     """
     data = load(path)
+    for file in data["files"]:
+        if not file.startswith("../") and not (path.parent / file).is_file():
+            raise CertificateError(f"{path}: expected {file} beside it, which it is a certificate of, there is none")
     try:
         said = [recheck.check(path), *_audited(path, data, said_by), *_compared(data)]
         return data, [*said, _bounds(path, data, (path.parent / f"{data['kernel']}.c").read_text(encoding="utf-8"))]

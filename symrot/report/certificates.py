@@ -16,6 +16,7 @@ from symrot.codegen import library
 from symrot.errors import CertificateError, InputError
 from symrot.interface import emit, kernel_names, scene_kernel_name, subject
 from symrot.report import compiled
+from symrot.report.edited import explained, kernel_of
 from symrot.report.kernels import SCENES, WORKERS, certificate_files, kept_bounds, kernel_files, write_files
 from symrot.scene_file import shipped_names
 from symrot.scene_reader import nearest
@@ -83,7 +84,10 @@ def audit_file(
         With the first thing that does not hold.
     """
     progress(f"auditing {path.name} ..")
-    data, found = audit(path, _said)
+    try:
+        data, found = audit(path, _said)
+    except CertificateError as reason:
+        raise CertificateError(f"{reason}{explained(path)}") from None
     source = path.with_name(f"{data['kernel']}.c")
     text = source.read_text(encoding="utf-8")
     found += _bounds_again(data, text, progress) if rerun else []
@@ -279,10 +283,9 @@ def _emitted(path: str) -> str:
     """Return the kernel or shipped scene that a C file or certificate is of, if the file is as symrot prints it."""
     file = Path(path)
     name = file.name.removesuffix(".c").removesuffix(".cert.json")
-    known = {kernel: kernel for kernel in kernel_names()}
-    known |= {scene_kernel_name(scene): scene for scene in shipped_names()}
-    if name not in known:
-        hint = nearest(name, known)
+    kernel = kernel_of(name)
+    if kernel is None:
+        hint = nearest(name, [*kernel_names(), *map(scene_kernel_name, shipped_names())])
         said = f"{path}: expected a file that symrot emits of a kernel of the library or a shipped scene"
         raise InputError(f"{said} ({hint})" if hint else f"{said}; `symrot audit` takes the certificate of any kernel")
     try:
@@ -290,11 +293,11 @@ def _emitted(path: str) -> str:
     except (OSError, UnicodeDecodeError) as reason:
         why = reason.strerror if isinstance(reason, OSError) else "it is no UTF-8"
         raise InputError(f"{path}: expected a file that can be read ({why})") from None
-    kernel = known[name]
     if file.name.endswith(".cert.json"):
         audit_file(file)
     elif text != emit(kernel, "c", kept_bounds(kernel, file.parent)).source:
-        raise CertificateError(f"{path}: expected the text that symrot emits for {kernel}, and it was edited")
+        why = explained(file.with_name(f"{name}.cert.json"))
+        raise CertificateError(f"{path}: expected the text that symrot emits for {kernel}, and it was edited{why}")
     return kernel
 
 
