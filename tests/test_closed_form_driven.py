@@ -1,17 +1,32 @@
 """Gyrostats and driven rotations against higher precision and their own limits."""
 
 import random
+from fractions import Fraction
 
 import numpy as np
 import pytest
 from mpmath import matrix, mp, mpf, odefun
 
-from symrot.closed_form import axial, axial_angle, double_double, free_body, gyrostat, library
+from symrot.closed_form import axial, axial_angle, axial_compiled, double_double, free_body, gyrostat, library
 from symrot.codegen.library import build
 from symrot.errors import CompilerError, InputError
 
 Q0 = (0.1, 0.7, -0.5, 0.5)
 BAR = 1e-15
+
+
+@pytest.fixture
+def no_compiler(monkeypatch):
+    """A machine without a C compiler, and with no loops loaded before: NumPy does everything."""
+    monkeypatch.setenv("CC", "no such compiler")
+    monkeypatch.setattr(axial_compiled, "_bound", {})
+
+
+@pytest.fixture(params=["C", "NumPy"])
+def way(request):
+    """Each way in which a driven rotation is computed."""
+    if request.param == "NumPy":
+        request.getfixturevalue("no_compiler")
 
 
 def flow(moments, omega, t, torque=(0, 0, 0), rotor=(0, 0, 0), damping=(0, 0, 0)):
@@ -54,14 +69,14 @@ def test_a_gyrostat_without_rotor_is_a_free_body():
 
 @pytest.mark.parametrize("damping", [0, 0.125, 3])
 @pytest.mark.parametrize("torque", [0, 0.25, -2])
-def test_driven_and_damped_about_an_axis(torque, damping):
+def test_driven_and_damped_about_an_axis(torque, damping, way):
     t = 2.25
     w, q = flow((1, 3, 2), (0, 0.75, 0), t, torque=(0, torque, 0), damping=(0, damping, 0))
     rates, attitudes = axial.motion((1, 3, 2), 1, torque, (0, 0.75, 0), Q0, damping).evaluate([t])
     assert np.abs(rates[0] - w).max() <= BAR and np.abs(attitudes[0] - q).max() <= BAR
 
 
-def test_a_symmetric_body_driven_about_its_axis():
+def test_a_symmetric_body_driven_about_its_axis(way):
     w, _ = flow((1, 1, 3), (0.3, 1, 0.5), 2.5, torque=(0, 0, 0.25))
     driven = axial.motion((1, 1, 3), 2, 0.25, (0.3, 1, 0.5), Q0)
     assert np.abs(driven.evaluate([2.5], quaternion=False)[0][0] - w).max() <= 2 * BAR
@@ -70,14 +85,14 @@ def test_a_symmetric_body_driven_about_its_axis():
         driven.evaluate([2.5])
 
 
-def test_a_symmetric_body_driven_about_its_axis_and_damped_about_all():
+def test_a_symmetric_body_driven_about_its_axis_and_damped_about_all(way):
     w, _ = flow((1, 1, 3), (0.3, 1, 0.5), 2.5, torque=(0, 0, 0.25), damping=(0.125, 0.125, 0.5))
     driven = axial.motion((1, 1, 3), 2, 0.25, (0.3, 1, 0.5), Q0, 0.5, 0.125)
     assert np.abs(driven.evaluate([2.5], quaternion=False)[0][0] - w).max() <= 2 * BAR
 
 
 @pytest.mark.parametrize("omega, damping", [((0, 0.75, 0), 0), ((0, 0.75, 0), 0.125), ((0, 0, 0), 3)])
-def test_driven_rotations_at_any_times(omega, damping):
+def test_driven_rotations_at_any_times(omega, damping, way):
     """One, many, unsorted, repeated, before the start: each sample is its own, and the first is the start."""
     motion = axial.motion((1, 3, 2), 1, 0.25, omega, Q0, damping)
     times = np.array([3.0, -2.0, 0.0, 1e15 if damping else 1e7, 3.0, 1e-9])
@@ -93,7 +108,7 @@ def test_driven_rotations_at_any_times(omega, damping):
 
 
 @pytest.mark.parametrize("damping, times", [(0, (1e6, 1e9)), (0.125, (-4.0, 1e3, 1e12))])
-def test_phases_over_many_turns(damping, times):
+def test_phases_over_many_turns(damping, times, way):
     """Up to 1e17 turns, against the angle to 60 digits."""
     rate, push, own = 0.75, 0.25, 3.0
     attitudes = axial.motion((1, 2, own), 2, push, (0, 0, rate), damping=damping).evaluate(times)[1]
@@ -140,20 +155,98 @@ def errors_of(motions):
     return np.array(found).max(axis=0)
 
 
-def test_damped_angles_of_random_motions():
-    """1e-15, whichever way: integers for a few times, pairs of doubles for many."""
+def test_damped_angles_of_random_motions(way):
+    """1e-15, whichever way: C; integers for a few times, pairs of doubles for many."""
     assert (errors_of(random_motions(40)) <= BAR).all()
 
 
-def test_doubles_alone_would_not_do(monkeypatch):
+def test_doubles_alone_would_not_do(monkeypatch, no_compiler):
     motion = 75.0, 0.25, 1e-3, [400.0]
     assert (errors_of([motion]) <= BAR).all()
     monkeypatch.setattr(axial_angle, "SMALL", np.inf)
     assert (errors_of([motion]) > 100 * BAR).all()
 
 
+def driven(rate, push, damping, t):
+    """Return w and cosine and sine of half the angle of 2 dw/dt = N - c w to 50 digits and more, as doubles."""
+    growth = max(0.0, -damping / 2 * t)
+    with mp.workdps(140 + int(growth)):  # what cancels in exp(x) - 1 - x, and the whole turns
+        w0, a, k, t = mpf(rate), mpf(push) / 2, mpf(damping) / 2, mpf(t)
+        x = -k * t
+        w = w0 * mp.exp(x) - a / k * mp.expm1(x) if k else w0 + a * t
+        angle = -w0 / k * mp.expm1(x) + a / k**2 * (mp.exp(x) - 1 - x) if k else w0 * t + a * t * t / 2
+        return [float(item) for item in (w, mp.cos(angle / 2), mp.sin(angle / 2))]
+
+
+def all_regimes(count, seed=9):
+    """Return motions with rest, torque or damping alone, or all; damping*t from 1e-20 to 1e15, backward to exp(300)."""
+    draw = random.Random(seed)
+    for _ in range(count):
+        rate, push = (draw.choice((0, 1, -1)) * 10 ** draw.uniform(-6, 4) for _ in range(2))
+        damping = draw.choice((0, 1, 1)) * 10 ** draw.uniform(-14, 3)
+        latest = min(1e15, 300 / damping) if damping else 1e15
+        times = [10 ** draw.uniform(-9, 15) for _ in range(4)] + [-(latest ** draw.uniform(0, 1)) for _ in range(3)]
+        yield rate, push, damping, [*times, *(draw.uniform(0, 3) / damping for _ in range(3 * bool(damping)))]
+
+
+def worst(motions):
+    """Return the largest errors: of w relative to the larger of it and that at the start, and of the attitude."""
+    found = [(0.0, 0.0)]
+    for rate, push, damping, times in motions:
+        rates, attitudes = axial.motion((2, 2, 2), 2, push, (0, 0, rate), damping=damping).evaluate(times)
+        for t, w, q in zip(times, rates[:, 2], attitudes, strict=True):
+            exact, cosine, sine = driven(rate, push, damping, t)
+            found.append(
+                (abs(w - exact) / max(abs(exact), abs(rate), 1e-300), max(abs(q[0] - cosine), abs(q[3] - sine)))
+            )
+    return np.max(found, axis=0)
+
+
+def test_driven_rotations_in_all_regimes(way):
+    assert (worst(all_regimes(60)) <= BAR).all()
+
+
+def test_the_wide_constants_are_needed(monkeypatch):
+    """With pairs in their place phases are lost long before 1e15 s: the comparison sees it."""
+    motion = 0.75, 0.25, 0, [3e12, -1e15]
+    assert worst([motion])[1] <= BAR
+    plain = axial_compiled.parts
+    monkeypatch.setattr(
+        axial_compiled, "parts", lambda top, bottom, count: [*plain(top, bottom, min(count, 2)), 0.0, 0.0][:count]
+    )
+    assert worst([motion])[1] > 1e9 * BAR
+
+
+@pytest.mark.parametrize(
+    "motion", [(1e3, 0.25, 1e-12, [1e3, 1e11]), (1e4, 1e4, 0, [1e15, -1e16]), (1.0, 0.0, 2.0, [-30.0, 1.0, -200.0])]
+)
+def test_what_the_loops_do_not_know_is_done_in_integers(motion):
+    """Some samples of these have more than 1e10 turns of transient, or 1e30 in all."""
+    rate, push, damping, times = motion
+    found = axial.motion((2, 2, 2), 2, push, (0, 0, rate), damping=damping)
+    raw = np.empty((len(times), 4))
+    assert found._loops(np.array(times), None, raw) == axial_compiled.LOST and np.isnan(raw).any()
+    assert worst([motion])[1] <= BAR
+
+
+def test_c_and_numpy_agree_on_bodies_that_turn_across_the_axis(request):
+    times = np.concatenate([np.geomspace(1e-3, 1e9, 60), -np.geomspace(1e-3, 1e3, 20)])
+    arguments = (3, 3, 1), 2, 0.25, (0.3, -1, 0.5), Q0, 0.125, 0.375
+    first = axial.motion(*arguments).evaluate(times, quaternion=False)[0]
+    request.getfixturevalue("no_compiler")
+    second = axial.motion(*arguments).evaluate(times, quaternion=False)[0]
+    assert (np.abs(first - second) <= BAR * np.abs(second).max(axis=1)[:, None]).all()
+
+
+def test_constants_in_parts():
+    value = Fraction(10**80, 3**70)
+    found = axial_compiled.parts(value.numerator, value.denominator, 4)
+    assert abs(sum(map(Fraction, found)) / value - 1) < Fraction(1, 2**205)
+    assert axial_compiled.parts(-(10**400), 3, 2) == [-(2.0**200), 0.0] and axial_compiled.parts(0, 7, 3) == [0.0] * 3
+
+
 @pytest.mark.parametrize("rate, push", [(75.0, 0.25), (1.0, 1e10)])
-def test_a_sample_does_not_depend_on_its_neighbours(rate, push):
+def test_a_sample_does_not_depend_on_its_neighbours(rate, push, way):
     motion = axial.motion((2, 2, 2), 2, push, (0, 0, rate), damping=0.125)
     times = np.concatenate([np.geomspace(1e-12, 1e3, 100), -np.geomspace(1e-12, 100, 100)])
     together = motion.evaluate(times)[1]
@@ -161,7 +254,7 @@ def test_a_sample_does_not_depend_on_its_neighbours(rate, push):
     assert np.array_equal(motion.evaluate(np.tile(times, 40))[1], np.tile(together, (40, 1)))
 
 
-def test_small_angles_take_no_pairs(monkeypatch):
+def test_small_angles_take_no_pairs(monkeypatch, no_compiler):
     taken = []
     for way in ("_near", "_far", "_by_integers"):
         plain = getattr(axial_angle.Turning, way)
@@ -184,14 +277,14 @@ def test_exponentials_in_pairs():
             assert abs((mpf(b) + mpf(c)) / exact - 1) < mpf(2) ** -96 or a < -600  # where the low part is subnormal
 
 
-def test_rates_before_the_start_that_all_but_cancel():
+def test_rates_before_the_start_that_all_but_cancel(way):
     rate, push, damping, t = 474.0, 482.0, 1.0, -21.5
     w = axial.motion((2, 2, 2), 2, push, (0, 0, rate), damping=damping).evaluate([t])[0][0, 2]
     with mp.workdps(40):
         assert abs(w / (push + (mpf(rate) - push) * mp.exp(-mpf(t) / 2)) - 1) <= BAR
 
 
-def test_times_before_the_doubles_are_refused():
+def test_times_before_the_doubles_are_refused(way):
     motion = axial.motion((2, 2, 2), 2, 1, (0, 0, 1), damping=2)
     assert np.isfinite(motion.evaluate(-600.0)[0]).all()
     with pytest.raises(InputError, match=r"after -700 s, before which .* got -800 s"):

@@ -5,7 +5,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from symrot.closed_form import axial, free_body, gyrostat, heavy_top, library, motion
+from symrot.closed_form import axial, axial_compiled, free_body, gyrostat, heavy_top, library, motion
 from symrot.errors import InputError
 from symrot.propagation.propagator import propagator
 
@@ -44,6 +44,7 @@ def no_compiler(monkeypatch):
     monkeypatch.setenv("CC", "no such compiler")
     monkeypatch.setattr(motion, "_bound", {})
     monkeypatch.setattr(library, "_loaded", {})
+    monkeypatch.setattr(axial_compiled, "_bound", {})
 
 
 @pytest.mark.parametrize("name", CASES)

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from symrot.closed_form import free_body, gyrostat, heavy_top
+from symrot.closed_form import axial, free_body, gyrostat, heavy_top
 
 __all__ = ["main", "measure"]
 
@@ -40,6 +40,8 @@ CASES: tuple[Case, ...] = (
     ("heavy top, m < 0.7", _top((0.3, -1.8, 4.0), (0.9, 0.3, 0.0, 0.1))),
     ("heavy top, m >= 0.7", _top((0.0, 0.0, 3.0), (1.0, 0.001, 0.0, 0.0))),
     ("gyrostat", partial(gyrostat.motion, (1.0, 1.0, 2.0), (0.0, 0.0, 3.0), (0.3, 1.0, 0.5), ATTITUDE)),
+    ("one axis, pushed", partial(axial.motion, (1.0, 3.0, 2.0), 1, 0.25, (0.0, 0.75, 0.0), ATTITUDE)),
+    ("one axis, damped", partial(axial.motion, (1.0, 3.0, 2.0), 1, 0.25, (0.0, 0.75, 0.0), ATTITUDE, 0.125)),
 )
 
 

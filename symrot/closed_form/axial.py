@@ -8,18 +8,22 @@ precision for all orders and times: mpmath takes 0.4 ms to 3 s for a value, whil
 motion to 6e-16 in 70 us. The attitude is left to them.
 
 Angles are carried in turns, as pairs of doubles: errors of the attitude stay at a few 1e-16 however many turns have
-passed, with damping or without.
+passed, with damping or without. C does it where there is a compiler (:file:`axial_at.c`), and hands back the samples
+of more than 1e10 turns of transient, or 1e30 in all; NumPy and Python's integers do those, and all without a compiler.
 
 Proof: ``derivations/driven_rotation.md``.
 """
 
+import math
 from collections.abc import Sequence
 from fractions import Fraction
+from typing import NoReturn
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from symrot import number
+from symrot.closed_form import axial_compiled
 from symrot.closed_form.axial_angle import Turning, fallen
 from symrot.closed_form.double_double import two_product
 from symrot.closed_form.library import Floats, times_of
@@ -34,24 +38,30 @@ _LARGEST = 700.0  # the exponential of more leaves the doubles
 class AxialMotion:
     """One motion. Times are counted from that of the initial state."""
 
+    regime = "steady"  # see symrot.closed_form.motion.REGIMES: no series of its own
+
     def __init__(
         self,
         axis: int,
         axial: tuple[Fraction, Fraction, Fraction],
         rates: list[Fraction],
         across: tuple[Fraction, Fraction],
-        attitude: Floats,
+        attitude: tuple[list[float], list[float]],
     ) -> None:
         self._axis, (self._rate, self._push, self._decay) = axis, axial
         self._across = rates[(axis + 1) % 3], rates[(axis + 2) % 3]
         self._lag, self._decay_across = across
-        self._attitude = attitude
-        vector, unit = attitude[1:], np.eye(3)[axis]
-        self._turned = np.concatenate([[-vector @ unit], attitude[0] * unit + np.cross(vector, unit)])
+        self._attitude, self._turned = attitude
         self._fastest = float(max(self._decay, self._decay_across))
         self._slowing = pair(-self._decay)
         self._doubles = float(self._rate), float(self._push), float(self._decay_across)
         self._known: dict[Fraction, Turning] = {}
+        self._first = -_LARGEST / self._fastest if self._fastest else -math.inf
+        self._loops = (
+            axial_compiled.loops(axis, axial, rates, across, attitude, self._first)
+            if axial_compiled.available()
+            else None
+        )
 
     @property
     def has_attitude(self) -> bool:
@@ -69,25 +79,37 @@ class AxialMotion:
             If a time is not finite, or so far before the start that the damped angular velocity was no double, or the
             attitude is asked for and :attr:`has_attitude` is false.
         """
-        times = times_of(t)
-        first = float(times.min(initial=0.0))
-        if self._fastest * -first > _LARGEST:
-            raise InputError(
-                f"expected times after {-_LARGEST / self._fastest:.6g} s, before which the damped angular velocity was "
-                f"beyond all doubles, got {first:.6g} s"
-            )
         if quaternion and not self.has_attitude:
             raise InputError(
                 "the attitude of a body driven about its axis has no closed form here while it turns across it too"
             )
-        return (self._rates(times) if omega else None), (self._quaternions(times) if quaternion else None)
+        times = times_of(t)
+        if self._loops is None:
+            if (times < self._first).any():
+                self._refuse(times)
+            return (self._rates(times) if omega else None), (self._quaternions(times) if quaternion else None)
+        rates = np.empty((len(times), 3)) if omega else None
+        attitudes = np.empty((len(times), 4)) if quaternion else None
+        status = self._loops(times, rates, attitudes)
+        if status == axial_compiled.EARLY:
+            self._refuse(times)
+        if status == axial_compiled.LOST:
+            for found, way in ((rates, self._rates), (attitudes, self._quaternions)):
+                if found is not None and (lost := np.isnan(found).any(axis=1)).any():
+                    found[lost] = way(times[lost])
+        return rates, attitudes
+
+    def _refuse(self, times: Floats) -> NoReturn:
+        raise InputError(
+            f"expected times after {self._first:.6g} s, before which the damped angular velocity was "
+            f"beyond all doubles, got {times.min():.6g} s"
+        )
 
     def _angle(self, t: Floats, share: Fraction) -> tuple[Floats, Floats]:
         """Return sine and cosine of so many times the angle turned about the axis."""
         turning = self._known.get(share)
         if turning is None:
-            turn = share / (2 * number.PI)
-            turning = self._known[share] = Turning(self._rate * turn, self._push * turn, self._decay)
+            turning = self._known[share] = Turning(share, self._rate, self._push, self._decay)
         part = 2.0 * np.pi * turning(t)
         return np.sin(part), np.cos(part)
 
@@ -120,7 +142,7 @@ class AxialMotion:
 
     def _quaternions(self, t: Floats) -> Floats:
         sine, cosine = self._angle(t, Fraction(1, 2))
-        attitudes: Floats = cosine[:, None] * self._attitude + sine[:, None] * self._turned
+        attitudes: Floats = cosine[:, None] * np.array(self._attitude) + sine[:, None] * np.array(self._turned)
         return attitudes
 
 
@@ -172,7 +194,10 @@ def motion(
             "a body that turns across the driven axis must be symmetric about it, got moments "
             f"{[float(x) for x in moments]} kg m^2 and omega {[float(x) for x in rates]} rad/s"
         )
-    norm = number.sqrt(square)
-    unit = np.array([float(x / norm) for x in attitude])
     turning = (own - across) / across, slowing / across
-    return AxialMotion(axis, (rates[axis], push / own, drag / own), rates, turning, unit)
+    norm = number.sqrt(square)
+    start = [float(x / norm) for x in attitude]
+    turned = [0.0] * 4  # the product of the start and the axis
+    turned[0], turned[axis + 1] = -start[axis + 1], start[0]
+    turned[(axis + 1) % 3 + 1], turned[(axis + 2) % 3 + 1] = start[(axis + 2) % 3 + 1], -start[(axis + 1) % 3 + 1]
+    return AxialMotion(axis, (rates[axis], push / own, drag / own), rates, turning, (start, turned))

@@ -13,6 +13,7 @@ from fractions import Fraction
 
 import numpy as np
 
+from symrot import number
 from symrot.closed_form import double_double as dd
 from symrot.closed_form.library import Floats
 from symrot.closed_form.pairs import pair
@@ -60,22 +61,25 @@ class Turning:
 
     Parameters
     ----------
+    share : Fraction
+        How many times the angle is meant.
     rate : Fraction
-        Turns/s, at the start.
+        rad/s, at the start.
     push : Fraction
-        Turns/s^2, of the constant torque.
+        rad/s^2, of the constant torque.
     decay : Fraction
         1/s, of the damping.
     """
 
-    def __init__(self, rate: Fraction, push: Fraction, decay: Fraction) -> None:
-        self._rate, self._push, self._decay = pair(rate), pair(push), pair(-decay)
+    def __init__(self, share: Fraction, rate: Fraction, push: Fraction, decay: Fraction) -> None:
+        turn = share / (2 * number.PI)
+        self._share, self._rate, self._push, self._decay = share, pair(rate * turn), pair(push * turn), pair(-decay)
         final = push / decay if decay else rate
         rest = (rate - final) / decay if decay else push / 2
-        self._final, self._rest = pair(final), pair(rest)
-        self._bits = _BITS + max(int(abs(final)), int(abs(rest)), int(abs(decay))).bit_length()
-        self._scaled = tuple((number.numerator << self._bits) // number.denominator for number in (final, rest, decay))
-        self._octave = int(dd.ln2(self._bits + _GUARD) * (1 << self._bits + _GUARD))
+        self._exact = final, rest, decay
+        self._final, self._rest = pair(final * turn), pair(rest * turn)
+        self._bits = _BITS + max(int(abs(x)) for x in self._exact).bit_length()
+        self._scaled: dict[int, tuple[int, int, int, int]] = {}
 
     def __call__(self, t: Floats) -> Floats:
         """Return the turns at each time, from -1/2 to 1/2."""
@@ -124,30 +128,52 @@ class Turning:
     def _by_integers(self, t: Floats) -> Floats:
         return np.array([self._exactly(time) for time in t.tolist()])
 
+    def _integers(self, bits: int) -> tuple[int, int, int, int]:
+        """Return final and rest in turns, the decay and ln 2, with so many bits behind the point (ln 2: and guards)."""
+        if bits not in self._scaled:
+            from mpmath import mp
+
+            places, (final, rest, decay) = bits + _BITS, self._exact
+            with mp.workprec(places + 8):
+                circle = 2 * int(mp.pi * mp.mpf(2) ** places)
+            turns = [
+                (x.numerator * self._share.numerator << (bits + places))
+                // (x.denominator * self._share.denominator * circle)
+                for x in (final, rest)
+            ]
+            octave = int(dd.ln2(bits + _GUARD) * (1 << bits + _GUARD))
+            self._scaled[bits] = turns[0], turns[1], (decay.numerator << bits) // decay.denominator, octave
+        return self._scaled[bits]
+
     def _exactly(self, t: float) -> float:
         """Return the turns at one time, in integers."""
         top, bottom = t.as_integer_ratio()
-        shift, (final, rest, decay), one = bottom.bit_length() - 1, self._scaled, 1 << self._bits
+        growth = max(0.0, self._decay[0] * t)  # of which each octave takes a bit from all others
+        bits = self._bits + 64 * int(growth / 32)
+        final, rest, decay, octave = self._integers(bits)
+        shift, one = bottom.bit_length() - 1, 1 << bits
         if decay:
-            turns = (final * top >> shift) + (rest * (one - self._exponential(-(decay * top >> shift))) >> self._bits)
+            grown = _exponential(-(decay * top >> shift), bits, octave)
+            turns = (final * top >> shift) + (rest * (one - grown) >> bits)
         else:
             turns = (final * top >> shift) + (rest * top * top >> 2 * shift)
         turns &= one - 1
         return (turns - one if 2 * turns > one else turns) / one
 
-    def _exponential(self, x: int) -> int:
-        """Return exp(x), both of so many bits behind the point."""
-        if x < -self._bits << self._bits:
-            return 0
-        octaves, rest = divmod(x << _GUARD, self._octave)
-        bits = self._bits + _GUARD
-        rest >>= _HALVINGS
-        total = term = 1 << bits
-        n = 1
-        while term:
-            term = (term * rest >> bits) // n
-            total += term
-            n += 1
-        for _ in range(_HALVINGS):
-            total = total * total >> bits
-        return (total << octaves if octaves > 0 else total >> -octaves) >> _GUARD
+
+def _exponential(x: int, bits: int, octave: int) -> int:
+    """Return exp(x), both of so many bits behind the point."""
+    if x < -bits << bits:
+        return 0
+    octaves, rest = divmod(x << _GUARD, octave)
+    bits += _GUARD
+    rest >>= _HALVINGS
+    total = term = 1 << bits
+    n = 1
+    while term:
+        term = (term * rest >> bits) // n
+        total += term
+        n += 1
+    for _ in range(_HALVINGS):
+        total = total * total >> bits
+    return (total << octaves if octaves > 0 else total >> -octaves) >> _GUARD

@@ -167,12 +167,12 @@ FORMS = (
         "gyrostat",
         "symmetric_gyrostat",
     ),
-    Form("rotation about one axis", lambda scene: _driven_axis(scene) is not None, _axial, "", "driven_rotation"),
+    Form("rotation about one axis", lambda scene: _driven_axis(scene) is not None, _axial, "axial", "driven_rotation"),
     Form(
         "symmetric body driven about its axis, angular velocity alone",
         lambda scene: _driven_symmetry_axis(scene) is not None,
         _axial,
-        "",
+        "axial",
         "driven_rotation",
     ),
 )

@@ -1,7 +1,8 @@
 """Compile the closed forms, once per machine, and load them: all scenes share them, only their constants differ.
 
 A closed form is two C files, compiled side by side: ``name.c`` finds the constants of a motion, once, and is compiled
-at -Og, in a third of the time that -O2 takes for 5 us less; ``name_at.c`` holds the loops over samples. Error-free
+at -Og, in a third of the time that -O2 takes for 5 us less; ``name_at.c`` holds the loops over samples. Elementary
+constants need no ``name.c``. Error-free
 arithmetic needs every rounding as written: contraction is off, and each prepared motion first asks the compiled code
 whether that is so.
 """
@@ -56,7 +57,7 @@ def source(name: str) -> str:
 
 
 def begin(name: str) -> list[library.Building]:
-    """Return the libraries of a closed form, one for each of :data:`PARTS`, from the cache or while they are compiled.
+    """Return the libraries of a closed form, one for each of its :data:`PARTS`, from the cache or while they compile.
 
     Raises
     ------
@@ -67,12 +68,13 @@ def begin(name: str) -> list[library.Building]:
         _begun[name] = [
             library.Building(source(f"{name}{part}"), f"closed_form_{name}{part}", flags)
             for part, flags in PARTS.items()
+            if Path(__file__).with_name(f"{name}{part}.c").exists()
         ]
     return _begun[name]
 
 
 def load(name: str) -> tuple[Any, ...]:
-    """Return the loaded libraries of a closed form: that of its constants, that of its samples.
+    """Return the loaded libraries of a closed form: that of its constants, if C finds them, and that of its samples.
 
     Raises
     ------
