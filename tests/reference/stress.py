@@ -12,6 +12,7 @@ from time import perf_counter
 
 from tests.reference import stress_conversions as conversions
 from tests.reference import stress_exact as exact
+from tests.reference import stress_order as order
 from tests.reference import stress_speed as speed
 from tests.reference import stress_stepping as stepping
 from tests.reference.figures import Figure, Stress
@@ -41,7 +42,7 @@ STRESSES = (
     Stress("S22", "norm sensitivity", "q0 (1 +- 1e-15)", exact.s22),
     Stress("S23", "fast spin", "w3 = 50, 500", exact.s23),
     Stress("S24", "asymmetric top accuracy", "t = 200", stepping.s24),
-    Stress("S25", "convergence order", "fixed step, asymmetric top", stepping.s25, quick=False),
+    Stress("S25", "convergence order", "fixed step, asymmetric top", order.s25, quick=False),
     Stress("S26", "Taylor equals closed form", "tolerance 1e-15", stepping.s26),
     Stress("S27", "Brouwer", "free plate, no projection", stepping.s27),
     Stress("S28", "fast-math canary", "", stepping.s28),
