@@ -346,13 +346,11 @@ def test_a_changed_sign_in_the_text_is_seen_in_the_object(tmp_path):
 @needs_objdump
 @pytest.mark.parametrize("compiler", HERE)
 def test_corrupted_object_files_are_refused(compiler):
-    """A slice of `python -m symrot.certify.object_campaign`: what is accepted gives the same bits on many inputs."""
+    """A slice of `python -m symrot.certify.object_campaign`: what gives the same bits on many inputs is no corruption."""
     sources = [KERNELS / f"{name}.c" for name in ("euler_zyx_body_rates", "mrp_shadow")]
     counts, said = corrupted(sources, compiler, ("-O2", *STRICT), 20, 11)
-    assert counts.total() == 20
-    assert not any(name.endswith(": accepted") for name in counts), said
-    assert sum(number for name, number in counts.items() if name.endswith("refused")) >= 13
-    assert not any(name.startswith("source: accepted") for name in counts), said
+    assert counts.total() == 20 and all(name.endswith(": refused") for name in counts), said
+    assert len({name.partition(":")[0] for name in counts}) >= 4  # of different kinds
 
 
 # --- what is refused --------------------------------------------------------------------------------------------------
