@@ -112,6 +112,16 @@ static inline double symrot_square_sum(const double *v, int block)
     return sum;
 }
 
+/* Return the length of a block of v, whose squares may be too large or too small for a double. */
+static inline double symrot_length(const double *v, int block)
+{
+    double largest = 0.0, sum = 0.0;
+    for (int i = symrot_edges[block]; i < symrot_edges[block + 1]; ++i) largest = fmax(largest, fabs(v[i]));
+    if (!(largest > 0.0 && largest <= DBL_MAX)) return largest;
+    for (int i = symrot_edges[block]; i < symrot_edges[block + 1]; ++i) sum += v[i]/largest*(v[i]/largest);
+    return largest*sqrt(sum);
+}
+
 /* Return the square of the size that the error of a block is compared with. */
 static inline double symrot_scale_squared(const double *y, const double *y1, double h, int block)
 {
@@ -129,8 +139,8 @@ static SYMROT_APART double symrot_first_step(const symrot_run *run, const double
     const double span = fabs(run->stop - run->t), side = run->stop < run->t ? -1.0 : 1.0;
 
     for (int b = 0; b < SYMROT_COUNT; ++b) {
-        const double size = symrot_scales[b] > 0.0 ? symrot_scales[b] : sqrt(symrot_square_sum(run->y, b));
-        const double block = sqrt(symrot_square_sum(run->dy, b))/size;
+        const double size = symrot_scales[b] > 0.0 ? symrot_scales[b] : symrot_length(run->y, b);
+        const double block = symrot_length(run->dy, b)/size;
         if (size > 0.0 && block > rate) rate = block;
     }
     const double probe = side*fmin(fmin(0.01/rate, 1e-3*span), run->max_step);
@@ -138,8 +148,8 @@ static SYMROT_APART double symrot_first_step(const symrot_run *run, const double
     symrot_rate(run->first + probe, y1, p, dy1);
     EACH_STATE(i) dy1[i] = (dy1[i] - run->dy[i])/probe;
     for (int b = 0; b < SYMROT_COUNT; ++b) {
-        const double size = symrot_scales[b] > 0.0 ? symrot_scales[b] : sqrt(symrot_square_sum(run->y, b));
-        const double block = sqrt(sqrt(symrot_square_sum(dy1, b))/size);
+        const double size = symrot_scales[b] > 0.0 ? symrot_scales[b] : symrot_length(run->y, b);
+        const double block = sqrt(symrot_length(dy1, b)/size);
         if (size > 0.0 && block > bend) bend = block;
     }
     const double fastest = rate > bend ? rate : bend;
