@@ -85,8 +85,8 @@ def _function_name(expr: Expr) -> str:
 class _Gather:
     """Splits every expression into constant times core, hoisting what does not depend on the variables."""
 
-    def __init__(self, variables: Iterable[Symbol]) -> None:
-        self.variables = frozenset(variables)
+    def __init__(self, variables: Iterable[Symbol], flat: bool = False) -> None:
+        self.variables, self.flat = frozenset(variables), flat
         self.hoisted: dict[Expr, str] = {}
         self.memo: dict[Expr, tuple[Expr, Tree]] = {}
 
@@ -138,13 +138,27 @@ class _Gather:
         sign, tree = self.scaled(*self.split(expr))
         return tree if sign > 0 else ("add", ((-1, tree),))
 
+    def _distributed(self, ordered: Sequence[Expr]) -> list[Expr]:
+        """Return the terms of a constant times one sum, which are cheaper: c*(a + b*x) is c*a + (c*b)*x; else none."""
+        sums = [argument for argument in ordered if self.is_variable(argument)]
+        if len(sums) != 1 or not sums[0].is_Add:
+            return []
+        outer = Mul(*(argument for argument in ordered if argument is not sums[0]))
+        return [outer * term for term in sums[0].args]
+
+    def _flattened(self, terms: Iterable[Expr]) -> Iterable[Expr]:
+        """Yield the terms of a sum, and those of sums in it, so that constants and equal terms meet."""
+        for term in terms:
+            inner = list(term.args) if term.is_Add else []
+            if term.is_Mul:
+                inner = self._distributed(sorted(term.args, key=default_sort_key))
+            yield from self._flattened(inner) if inner else (term,)
+
     def _product(self, arguments: Iterable[Expr]) -> tuple[Expr, Tree]:
         constant, factors, divisors = S.One, [], []
         ordered = sorted(arguments, key=default_sort_key)
-        sums = [argument for argument in ordered if self.is_variable(argument)]
-        if len(sums) == 1 and sums[0].is_Add:  # c*(a + b*x) is cheaper as c*a + (c*b)*x
-            outer = Mul(*(argument for argument in ordered if argument is not sums[0]))
-            return self._sum(outer * term for term in sums[0].args)
+        if terms := self._distributed(ordered):
+            return self._sum(terms)
         for argument in ordered:
             own, core = self.split(argument)
             constant *= own
@@ -177,7 +191,7 @@ class _Gather:
 
     def _sum(self, terms: Iterable[Expr]) -> tuple[Expr, Tree]:
         total: dict[Tree, Expr] = {}  # core -> its constant, equal cores taken together
-        for term in sorted(terms, key=default_sort_key):
+        for term in sorted(self._flattened(terms) if self.flat else terms, key=default_sort_key):
             constant, core = self.split(term)
             total[core] = total.get(core, S.Zero) + constant
         groups: dict[Expr, list[tuple[int, Tree]]] = {}
@@ -448,10 +462,19 @@ def lower(
     InputError
         For a function or a power that kernels do not hold.
     """
+    ways = [_lowered(signature, outputs, definitions, parameter_argument, flat) for flat in (False, True)]
+    return min(ways, key=lambda way: way.program.operations().total())
+
+
+def _lowered(
+    signature: Signature, outputs: Sequence[tuple[str, Expr]], definitions: Sequence[tuple[Symbol, Expr]],
+    parameter_argument: str, flat: bool,
+) -> Lowered:  # fmt: skip
+    """Return the program with sums as they stand, whose parts may be shared, or with ``flat`` ones."""
     inputs = [name for a in signature.arguments if a.role == "in" for name, *_ in a.components]
     held = {symbol for _, expr in [*outputs, *definitions] for symbol in expr.free_symbols}
     defined = [symbol for symbol, _ in definitions]
-    gather = _Gather([symbol for symbol in held if str(symbol) in inputs or symbol in defined])
+    gather = _Gather([symbol for symbol in held if str(symbol) in inputs or symbol in defined], flat)
     share, named = _Share(), {}
     alias: dict[str, Tree] = {}
     for symbol, expr in definitions:

@@ -1,0 +1,32 @@
+"""Lowering costs no operation that a special case does not need."""
+
+import sympy
+
+from symrot.bench.skip import general_plan, rungs
+from symrot.codegen.lower import lower
+from symrot.codegen.scene_kernels import rates_program
+from symrot.dynamics.equations import equations_of_motion
+from symrot.kernel import Argument, Signature
+from symrot.planner import make_plan
+
+
+def test_constants_of_nested_sums_meet_in_one():
+    """``k + m (1 - 2 a^2) + n (1 - 2 a^2 - 2 b^2)`` has one constant term, and one for each square."""
+    a, b, k, m, n = (sympy.Symbol(s, real=True) for s in "abkmn")
+    given = Argument("v", "in", (("a", "1", ""), ("b", "1", "")))
+    out = Argument("out", "out", (("x", "1", ""),))
+    nested = k + m * (1 - 2 * a**2) + n * (1 - 2 * a**2 - 2 * b**2)
+    lowered = lower(Signature("f", (given, out)), [("x", nested)])
+    assert lowered.program.operations() == {"mul": 4, "add": 2}
+    assert len(lowered.parameters) == 3
+
+
+def test_a_special_case_takes_no_more_operations():
+    """Down the ladder of `symrot bench --skip`, each motion's own rates and the general ones."""
+    scenes = [scene for _, scene in rungs().values()][:3]
+    plans = [general_plan(scenes[0]), *map(make_plan, scenes)]
+    costs = [
+        sum(rates_program(equations_of_motion(plan.structure), "rates").program.operations().values()) for plan in plans
+    ]
+    assert costs == sorted(costs, reverse=True)
+    assert costs[2] <= 0.9 * costs[1]  # principal axes: no products of inertia
