@@ -1,6 +1,6 @@
 """Measure kernels against those of other tools: operations, ns for one sample, in a batch in cache, in one of 10^6.
 
-    python -m symrot.bench.kernels [--rounds 15] [--many 1000000] [--kernels NAME ..]
+    python -m symrot.bench.kernels [--rounds 31] [--many 1000000] [--kernels NAME ..]
 
 All contestants take turns in one run, on one thread, on the same memory, and compute the same numbers, which is
 checked. What makes C is compiled with the same compiler and flags; heyoka's machine code, with its sines of 3.5 ulp, is
@@ -14,6 +14,7 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cache, partial
+from random import Random
 from time import perf_counter
 from typing import Any
 
@@ -301,9 +302,10 @@ def _casadi_text(name: str, function: Any) -> str:
 
 
 def measure(contestants: Sequence[Contestant], rounds: int) -> None:
-    """Let all contestants take their turns."""
+    """Let all contestants take their turns, in another order each round: what ran before decides what is in cache."""
+    draw = Random(5)
     for _ in range(rounds):
-        for contestant in contestants:
+        for contestant in draw.sample(contestants, len(contestants)):
             for shape, run in contestant.runs.items():
                 contestant.seconds[shape].append(run())
 
@@ -369,7 +371,7 @@ def _missed(name: str, contestants: Sequence[Contestant]) -> list[str]:
 def main(arguments: list[str] | None = None) -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(prog="python -m symrot.bench.kernels", description=(__doc__ or "").split("\n")[0])
-    parser.add_argument("--rounds", type=int, default=15)
+    parser.add_argument("--rounds", type=int, default=31)
     parser.add_argument("--many", type=int, default=MANY, help="samples of the large batch; 0 leaves it out")
     parser.add_argument("--kernels", nargs="*", help="kernels to compare, in the place of those of the table")
     options = parser.parse_args(arguments)
