@@ -57,6 +57,12 @@ def plan(scene: Scene | str | Path) -> Plan:
     scene : Scene, str or Path
         A scene, the name of a shipped one, or the path of a scene file.
     """
+    found = _scene(scene)
+    return make_plan(found, driven=found.table is not None)
+
+
+def _formulas(scene: Scene | str | Path) -> Plan:
+    """Return the plan of a scene whose torques are formulas, which alone has a kernel to print."""
     return make_plan(_scene(scene))
 
 
@@ -123,7 +129,7 @@ def subject(kernel: Scene | str | Path, bounds: Mapping[str, Any] | None = None)
     files[f"../numpy/{c.name}.py" if is_kernel else f"../../numpy/scenes/{c.name}.py"] = numpy.source
     if is_kernel:
         return library_subject(definition(kernel), _library_kernel(kernel, "c")[1], files)
-    found = plan(kernel)
+    found = _formulas(kernel)
     equations = equations_of_motion(found.structure)
     lowered, description = _scene_rates(found, equations, "c")
     return scene_subject(equations, lowered.program, lowered.parameters, description, files)
@@ -152,7 +158,7 @@ def _scene_kernel(
     from symrot.codegen.scene_kernels import with_values
     from symrot.dynamics.equations import equations_of_motion
 
-    found = plan(scene)
+    found = _formulas(scene)
     said = contract(scene_inputs(scene), bounds) if bounds and target == "c" else ()
     lowered, description = _scene_rates(found, equations_of_motion(found.structure), target, said)
     return with_values(lowered.program, lowered.parameters, found.constants), description
@@ -164,7 +170,7 @@ def scene_inputs(scene: Scene | str | Path) -> "SceneInputs":
     from symrot.dynamics.equations import equations_of_motion
     from symrot.scene_kernel import bind
 
-    found = plan(scene)
+    found = _formulas(scene)
     lowered, _ = _scene_rates(found, equations_of_motion(found.structure), "c")
     values = tuple(bind(lowered.parameters, found.constants))
     formulas = {f"p[{place}]": parameter for place, parameter in enumerate(lowered.parameters)}

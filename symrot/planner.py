@@ -12,6 +12,7 @@ from functools import cached_property
 from typing import Any
 
 from symrot import expression
+from symrot.errors import InputError
 from symrot.number import equal
 from symrot.scene import Initial, Scene
 
@@ -83,7 +84,7 @@ class Plan:
         return explanation(self)
 
 
-def make_plan(scene: Scene, initial: Initial | None = None) -> Plan:
+def make_plan(scene: Scene, initial: Initial | None = None, driven: bool = False) -> Plan:
     """Return the plan of a scene, perhaps with another initial state.
 
     Parameters
@@ -92,12 +93,24 @@ def make_plan(scene: Scene, initial: Initial | None = None) -> Plan:
         The problem.
     initial : Initial, optional
         Instead of the scene's own.
+    driven : bool
+        Whether a torque acts too that is no formula: nothing is left out that it could change.
+
+    Raises
+    ------
+    InputError
+        If the scene has a table of samples and ``driven`` is false: it is no formula to derive a kernel from.
     """
+    if scene.table is not None and not driven:
+        raise InputError(
+            f"{scene.name}: expected torques that are formulas, got one of kind table: samples have no equations to "
+            "emit, certify, vary or compare; symrot run and symrot.propagator follow them"
+        )
     if initial is not None:
         scene = replace(scene, initial=initial)
     structure = general_structure(scene)
     rows = []
-    for item, rule in RULES:
+    for item, rule in _RULES_WHEN_DRIVEN if driven else RULES:
         structure, skipped, why, derivation = rule(scene, structure)
         rows.append(Row(item, skipped, why, derivation, structure))
     return Plan(scene, structure, tuple(rows))
@@ -357,3 +370,20 @@ RULES: tuple[tuple[str, Callable[[Scene, Structure], Outcome]], ...] = (
     ("rate of spin", _constant_spin),
 )
 """The rules in their order: (what it is about, rule). A rule returns structure, whether it skips, why, derivation."""
+
+
+def _whole_motion(scene: Scene, structure: Structure) -> Outcome:
+    return structure, False, "a torque that is no formula may depend on it, and on all components of omega", ""
+
+
+def _terms_when_driven(scene: Scene, structure: Structure) -> Outcome:
+    if not scene.torques:
+        return structure, False, "the torque that is no formula acts alone", ""
+    return _special_constants(scene, structure)
+
+
+_RULES_WHEN_DRIVEN: tuple[tuple[str, Callable[[Scene, Structure], Outcome]], ...] = (
+    *RULES[:2],
+    ("torque terms", _terms_when_driven),
+    ("attitude", _whole_motion),
+)

@@ -10,14 +10,17 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from symrot.dynamics.torque_kinds import TABLE_KIND
 from symrot.scene_attitude import Vector, read_attitude, read_sequence, to_body
 from symrot.scene_body import Body, read_body
 from symrot.scene_file import SHIPPED, find_scene, read_toml, shipped_names
 from symrot.scene_reader import Entry, choice, expected, flag, number, read_table, table, text, vector
+from symrot.scene_table import Table, read_samples
 from symrot.scene_torque import Torque, read_torque
 
 __all__ = [
-    "QUANTITIES", "SCHEMA", "Body", "Initial", "Output", "Scene", "Span", "Torque", "load_scene", "shipped_scenes",
+    "QUANTITIES", "SCHEMA", "Body", "Initial", "Output", "Scene", "Span", "Table", "Torque", "load_scene",
+    "shipped_scenes",
 ]  # fmt: skip
 
 SCHEMA = 1
@@ -79,6 +82,13 @@ class Scene:
     span: Span
     output: Output
     tolerance: Fraction
+    table: Table | None = None  # a torque by samples, besides the torques that are formulas
+
+    @property
+    def torque_kinds(self) -> tuple[str, ...]:
+        """The kinds of all that acts: the formulas, then the table."""
+        table = () if self.table is None else (self.table.kind,)
+        return (*(torque.kind for torque in self.torques), *table)
 
     @classmethod
     def from_dict(cls, content: Mapping[str, Any], where: str = "scene") -> "Scene":
@@ -236,18 +246,28 @@ TOP: dict[str, Entry] = {
 """The tables and keys of a scene file; torques are read last, since they are fitted to the body."""
 
 
-def _read_torques(value: Any, body: Body, where: str) -> tuple[Torque, ...]:
+def _read_torques(
+    value: Any, body: Body, span: Span, folder: Path, where: str
+) -> tuple[tuple[Torque, ...], Table | None]:
     if not isinstance(value, list | tuple):
         expected(where, "a list of torques, each written as [[torque]]", value)
     if len(value) > MOST_TORQUES:
         expected(where, f"at most {MOST_TORQUES} torques", len(value))
-    return tuple(read_torque(item, body, f"{where}[{index}]") for index, item in enumerate(value))
+    word = TABLE_KIND.kind
+    tables = [index for index, item in enumerate(value) if isinstance(item, Mapping) and item.get("kind") == word]
+    if len(tables) > 1:
+        expected(f"{where}[{tables[1]}].kind", "at most one torque of kind table: add their samples up", word)
+    formulas = [read_torque(value[i], body, f"{where}[{i}]") for i in range(len(value)) if i not in tables]
+    samples = [read_samples(value[i], folder, f"{where}[{i}]", (span.start, span.stop)) for i in tables]
+    return tuple(formulas), next(iter(samples), None)
 
 
 def _read_scene(content: Mapping[str, Any], label: str, name: str, path: str | None) -> Scene:
     where = f"{label}: "
     table(content, where, "a table with schema, body, initial, span")
     found = read_table(content, where, TOP, "a scene")
+    folder = Path() if path is None else Path(path).parent
+    torques, samples = _read_torques(found["torque"], found["body"], found["span"], folder, f"{where}torque")
     return Scene(
         name=name,
         path=path,
@@ -255,8 +275,9 @@ def _read_scene(content: Mapping[str, Any], label: str, name: str, path: str | N
         source=found["source"],
         body=found["body"],
         initial=found["initial"],
-        torques=_read_torques(found["torque"], found["body"], f"{where}torque"),
+        torques=torques,
         span=found["span"],
         output=found["output"],
         tolerance=found["accuracy"],
+        table=samples,
     )

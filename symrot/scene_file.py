@@ -5,10 +5,11 @@ from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
+from symrot.dynamics.torque_kinds import TABLE_KIND
 from symrot.errors import InputError
 from symrot.scene_reader import nearest
 
-__all__ = ["LARGEST_FILE", "SHIPPED", "find_scene", "read_toml", "shipped_names"]
+__all__ = ["LARGEST_FILE", "SHIPPED", "find_scene", "names_with_kernels", "read_toml", "shipped_names"]
 
 SHIPPED = Path(__file__).parent / "scenes"
 LARGEST_FILE = 1_000_000
@@ -21,6 +22,15 @@ _KEY = re.compile(r"[A-Za-z0-9_-]+|\"[^\"\n]*\"|'[^'\n]*'")
 def shipped_names() -> list[str]:
     """Return the names of the scenes that come with symrot, sorted."""
     return sorted(path.stem for path in SHIPPED.glob("*.toml"))
+
+
+def names_with_kernels() -> list[str]:
+    """Return those whose torques are all formulas: a table of samples has no kernel to emit or certify."""
+
+    def kinds(name: str) -> list[str]:
+        return [torque["kind"] for torque in read_toml(SHIPPED / f"{name}.toml", name).get("torque", [])]
+
+    return [name for name in shipped_names() if TABLE_KIND.kind not in kinds(name)]
 
 
 def find_scene(source: str | Path) -> Path:

@@ -5,7 +5,7 @@ from fractions import Fraction
 from typing import Any, NamedTuple
 
 from symrot import expression
-from symrot.dynamics.torque_kinds import EXPRESSION_NAMES, TORQUE_KINDS, Field, TorqueKind
+from symrot.dynamics.torque_kinds import EXPRESSION_NAMES, TABLE_KIND, TORQUE_KINDS, Field, TorqueKind
 from symrot.errors import InputError
 from symrot.number import PI, read, show, sqrt
 from symrot.scene_attitude import Vector, read_attitude
@@ -194,17 +194,18 @@ _ABOUT_ADVICE = {
 
 
 def read_torque(value: Any, body: Body, where: str) -> Torque:
-    """Read one ``[[torque]]``, fitted to the body.
+    """Read one ``[[torque]]`` that is a formula, fitted to the body.
 
     Raises
     ------
     InputError
         For an unknown kind, key or name in a formula, a value out of range, or a torque that the body cannot feel.
     """
-    found = table(value, where, f"a table with a kind, one of {', '.join(TORQUE_KINDS)}")
+    kinds = (*TORQUE_KINDS, TABLE_KIND.kind)
+    found = table(value, where, f"a table with a kind, one of {', '.join(kinds)}")
     if "kind" not in found:
-        expected(f"{where}.kind", f"one of {', '.join(TORQUE_KINDS)}, the key is missing")
-    name = choice(*TORQUE_KINDS)(found["kind"], f"{where}.kind")
+        expected(f"{where}.kind", f"one of {', '.join(kinds)}, the key is missing")
+    name = choice(*kinds)(found["kind"], f"{where}.kind")
     kind = TORQUE_KINDS[name]
     values = read_table(found, where, _entries(kind), f"a torque of kind {name}")
     del values["kind"]

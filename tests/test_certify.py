@@ -23,7 +23,7 @@ from symrot.interface import emit, subject
 from symrot.kernels.definition import Law
 from symrot.kernels.library import definition, kernel_names
 from symrot.report import certificates
-from symrot.scene_file import shipped_names
+from symrot.scene_file import names_with_kernels
 from symrot.symbols import constant
 
 SLICE = ("quaternion_dcm", "quaternion_of_dcm", "euler_zyx_body_rates", "euler_zxz_of_quaternion", "mrp_shadow",
@@ -91,7 +91,7 @@ def test_recheck_imports_nothing_of_symrot(kernels, tmp_path):
 
 
 @pytest.mark.campaign
-@pytest.mark.parametrize("name", (*kernel_names(), *shipped_names()))
+@pytest.mark.parametrize("name", (*kernel_names(), *names_with_kernels()))
 def test_every_certificate_holds(name, tmp_path):
     assert Files(tmp_path, subject(name), emit(name).certificate).accepted() == ["recheck", "audit"]
 
@@ -325,7 +325,7 @@ def test_certify_and_audit(tmp_path, capsys, monkeypatch):
 def test_certify_all(tmp_path, capsys, monkeypatch):
     """All there is, here a kernel and a scene: which links each has; written as `symrot certify KERNEL -o` does."""
     monkeypatch.setattr(certificates, "kernel_names", lambda: ("quaternion_dcm",))
-    monkeypatch.setattr(certificates, "shipped_names", lambda: ("heavy_top_loops",))
+    monkeypatch.setattr(certificates, "names_with_kernels", lambda: ("heavy_top_loops",))
     for options in ([], ["-o", str(tmp_path)]):
         assert main(["certify", "--all", *options]) == 0
         lines = capsys.readouterr().out.splitlines()

@@ -7,7 +7,7 @@ The torques themselves, as formulas with their potentials and the invariants the
 from fractions import Fraction
 from typing import NamedTuple
 
-__all__ = ["EXPRESSION_NAMES", "TORQUE_KINDS", "Field", "TorqueKind"]
+__all__ = ["EXPRESSION_NAMES", "TABLE_KIND", "TORQUE_KINDS", "Field", "TorqueKind"]
 
 EXPRESSION_NAMES = ("t", "omega_1", "omega_2", "omega_3", "q0", "q1", "q2", "q3")
 """What the text of an ``expression`` torque may name besides its parameters: time (s), omega_b (rad/s), quaternion."""
@@ -113,4 +113,21 @@ _TABLE = (
 )  # fmt: skip
 
 TORQUE_KINDS: dict[str, TorqueKind] = {entry.kind: entry for entry in _TABLE}
-"""Every kind of torque by name, in reading order."""
+"""Every kind of torque that is a formula by name, in reading order."""
+
+TABLE_KIND = TorqueKind(
+    "table",
+    (
+        Field("t", "times", "s", "when the samples were taken, rising; twice the same at a switching time"),
+        Field("moment", "moments", "N m", "the samples, three components each"),
+        Field("file", "path", "1", "instead of both: a CSV file beside the scene, columns t, M1, M2, M3"),
+        Field("interpolation", "cubic_spline", "1", "through the samples between switching times",
+              default="cubic_spline"),
+        Field("frame", "body|space", "1", "the axes of the components", default="body"),
+        Field("switching_times", "times", "s", "when the torque jumps: the motion is stepped exactly to each",
+              default=()),
+    ),
+    "any",
+    "a torque given by samples, which is no formula",
+)  # fmt: skip
+"""The one kind that is no formula, so that nothing is derived from it; read by :mod:`symrot.scene_table`."""

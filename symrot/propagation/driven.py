@@ -19,12 +19,12 @@ from numpy.typing import ArrayLike, NDArray
 from symrot import number
 from symrot.codegen import library
 from symrot.errors import InputError, PropagationError
-from symrot.planner import Plan
+from symrot.planner import Plan, make_plan
 from symrot.propagation import dop853
 from symrot.propagation.kernels import error_blocks, scene_kernel
-from symrot.propagation.propagator import Choice, Motion, Propagator
+from symrot.propagation.propagator import DRIVEN, Motion, Propagator
 from symrot.propagation.stepping import Recording, Stats, Task
-from symrot.scene import Scene
+from symrot.scene import Initial, Scene
 from symrot.scene_kernel import SceneKernel
 
 __all__ = ["DrivenPropagator"]
@@ -171,7 +171,7 @@ class DrivenMotion(Motion):
     def __init__(self, plan: Plan, tolerance: float, drive: Any, in_space: bool, switching: Sequence[float]) -> None:
         plan = replace(plan, structure=plan.structure | WHOLE)
         self.plan, self.tolerance = plan, tolerance
-        self.choice = Choice("dop853", "a torque that is no formula has no Taylor series")
+        self.choice = DRIVEN
         self.start = float(plan.scene.span.start)
         self._drive, self.switching = drive, switching
         bare = scene_kernel(plan)
@@ -252,6 +252,9 @@ class DrivenPropagator(Propagator):
         self._switching = tuple(sorted(set(switching.tolist())))
         self._torque, self._in_space = _drive(torque, self._switching), frame == "space"
         super().__init__(scene, "dop853", tolerance)
+
+    def _planned(self, initial: Initial | None = None) -> Plan:
+        return make_plan(self.scene, initial, driven=True)
 
     def _prepare(self, plan: Plan) -> Motion:
         return DrivenMotion(plan, self.tolerance, self._torque, self._in_space, self._switching)

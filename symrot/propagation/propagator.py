@@ -73,6 +73,10 @@ AUTO: tuple[tuple[str, Callable[[Plan], str]], ...] = (
 """What ``auto`` tries, in order: (method, condition); a condition returns the reason to take it, or nothing."""
 
 
+DRIVEN = Choice("dop853", "a torque that is no formula has no Taylor series")
+"""The method for such a torque, and why."""
+
+
 def choose_method(plan: Plan, method: str = "auto") -> Choice:
     """Return the method for a plan.
 
@@ -81,6 +85,10 @@ def choose_method(plan: Plan, method: str = "auto") -> Choice:
     InputError
         If there is no such method.
     """
+    if plan.scene.table is not None:
+        if method not in ("auto", "dop853"):
+            raise InputError(f"method: expected 'auto' or 'dop853' for a torque that is no formula, got {method!r}")
+        return DRIVEN
     if method == "auto":
         return next(Choice(name, reason) for name, condition in AUTO if (reason := condition(plan)))
     if method == "exact":
@@ -286,7 +294,10 @@ class Propagator:
 
     def __init__(self, scene: Scene, method: str, tolerance: float) -> None:
         self.scene, self.tolerance, self._method = scene, tolerance, method
-        self._motion = self._prepare(make_plan(scene))
+        self._motion = self._prepare(self._planned())
+
+    def _planned(self, initial: Initial | None = None) -> Plan:
+        return make_plan(self.scene, initial)
 
     def _prepare(self, plan: Plan) -> Motion:
         return Motion(plan, choose_method(plan, self._method), self.tolerance)
@@ -356,7 +367,7 @@ class Propagator:
         rise = _in_order(times)
         motion = self._motion
         if omega is not None or quaternion is not None:
-            motion = self._prepare(make_plan(self.scene, _initial(self.scene, omega, quaternion)))
+            motion = self._prepare(self._planned(_initial(self.scene, omega, quaternion)))
         message = f"{motion.choice.method}: {motion.choice.reason}"
         try:
             if events is not None:
@@ -466,6 +477,13 @@ def propagator(
     if not isinstance(scene, Scene):
         scene = load_scene(scene)
     aim = float(scene.tolerance) if tolerance is None else _tolerance(tolerance)
+    if scene.table is not None:
+        if torque is not None:
+            raise InputError(
+                f"torque: expected none for a scene with a torque of kind table, got {number.show(torque)}"
+            )
+        samples = scene.table
+        torque, switching_times, torque_frame = samples[:2], samples.switching_times, samples.frame
     if state != "quaternion":
         if torque is not None:
             raise InputError(f"state: expected 'quaternion' for a torque that is no formula, got {state!r}")

@@ -18,7 +18,7 @@ from symrot.interface import emit, kernel_names, scene_kernel_name, subject
 from symrot.report import compiled
 from symrot.report.edited import explained, kernel_of
 from symrot.report.kernels import SCENES, WORKERS, certificate_files, kept_bounds, kernel_files, write_files
-from symrot.scene_file import shipped_names
+from symrot.scene_file import names_with_kernels
 from symrot.scene_reader import nearest
 
 __all__ = ["all_lines", "audit_file", "audit_files", "certify", "certify_all", "flag_lines", "lines", "refuted"]
@@ -38,7 +38,7 @@ def _said(data: Data) -> Data | None:
     name = data["kernel"]
     scene = str(data["regenerate"]).removeprefix("symrot emit ").removesuffix(" --target c")
     if name not in kernel_names():
-        if scene not in shipped_names() or scene_kernel_name(scene) != name:
+        if scene not in names_with_kernels() or scene_kernel_name(scene) != name:
             return None
         name = scene
     bounds = data.get("rounding") if name != data["kernel"] else None  # a scene has no box of its own
@@ -234,7 +234,7 @@ def certify_all(
     """
     if objects:
         compiled.require_compiler()
-    names = (*kernel_names(), *shipped_names())
+    names = (*kernel_names(), *names_with_kernels())
     found: dict[str, Data] = {}
     written: list[Path] = []
     with ProcessPoolExecutor(WORKERS) as pool:
@@ -285,7 +285,7 @@ def _emitted(path: str) -> str:
     name = file.name.removesuffix(".c").removesuffix(".cert.json")
     kernel = kernel_of(name)
     if kernel is None:
-        hint = nearest(name, [*kernel_names(), *map(scene_kernel_name, shipped_names())])
+        hint = nearest(name, [*kernel_names(), *map(scene_kernel_name, names_with_kernels())])
         said = f"{path}: expected a file that symrot emits of a kernel of the library or a shipped scene"
         raise InputError(f"{said} ({hint})" if hint else f"{said}; `symrot audit` takes the certificate of any kernel")
     try:

@@ -60,10 +60,21 @@ def _others(plan: Plan) -> list[dict[str, Any]]:
     return [
         _row("states", not plan.states, f"{', '.join(plan.states) or 'none changes'}"),
         _row("stepping", form is not None or not plan.states, stepped, form.derivation if form else ""),
+        *_samples(plan),
         _row("outputs asked for", False, ", ".join(asked)),
         *([_row("other outputs", True, f"not asked for: {', '.join(missing)}")] if missing else []),
         _row("deriving the kernel", known, kernel),
     ]
+
+
+def _samples(plan: Plan) -> list[dict[str, Any]]:
+    """Return the row of a torque by samples, whose operations are not among those counted."""
+    table = plan.scene.table
+    if table is None:
+        return []
+    jumps = f", jumps at {', '.join(f'{t:g}' for t in table.switching_times)} s" if table.switching_times else ""
+    why = f"{len(table.times)} samples from {table.times[0]:g} to {table.times[-1]:g} s, cubic splines{jumps}"
+    return [_row("torque by samples", False, f"{why}; besides the operations counted here")]
 
 
 def facts(plan: Plan) -> dict[str, Any]:

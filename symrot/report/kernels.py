@@ -19,7 +19,7 @@ from symrot.errors import CertificateError, InputError
 from symrot.interface import emit
 from symrot.kernels.library import definition, kernel_names
 from symrot.report.files import write
-from symrot.scene_file import shipped_names
+from symrot.scene_file import names_with_kernels
 
 __all__ = ["certificate_files", "kept_bounds", "kernel_files", "kernel_lines", "stale", "write_all", "write_files"]
 
@@ -107,7 +107,9 @@ def _files_of(name: str, room: str, targets: Sequence[str], directory: Path) -> 
 
 def _all_files(targets: Sequence[str], directory: Path, progress: Callable[[str], object]) -> dict[str, str]:
     """Return path -> text of the library and of the kernels of all shipped scenes; several processes print them."""
-    work = [(name, room) for room, names in (("", kernel_names()), (f"{SCENES}/", shipped_names())) for name in names]
+    work = [
+        (name, room) for room, names in (("", kernel_names()), (f"{SCENES}/", names_with_kernels())) for name in names
+    ]
     files: dict[str, str] = {}
     with ProcessPoolExecutor(WORKERS) as pool:
         names, rooms = zip(*work, strict=True)

@@ -133,7 +133,7 @@ def _drift(axes: Any, t: Floats, trajectory: Any, tolerance: float) -> None:
 def _body_sphere(axes: Any, trajectory: Any) -> None:
     """Draw the angular momentum of a free body among the curves it may follow, or the axis of rotation of another."""
     torques = trajectory.scene.torques
-    if any(torque.kind != "rotor" for torque in torques):
+    if any(kind != "rotor" for kind in trajectory.scene.torque_kinds):
         draw_directions(axes, trajectory.omega, ("1", "2", "3"))
         axes.set_title("Axis of rotation in the body")
         return

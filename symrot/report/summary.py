@@ -35,7 +35,7 @@ def facts(propagator: Any, trajectory: Any, preparation: float) -> dict[str, Any
             "about": body.about,
             "mass": None if body.mass is None else exact(body.mass),
         },
-        "torques": [torque.kind for torque in scene.torques],
+        "torques": list(scene.torque_kinds),
         "initial": {
             "omega": [exact(value) for value in scene.initial.omega_b],
             "quaternion": [float(value) for value in scene.initial.quaternion],
