@@ -357,6 +357,8 @@ def test_corrupted_object_files_are_refused(compiler):
 
 TEXT = "void f(const double x[2], double y[1])\n{\n    y[0] = x[0]*x[1] + x[0];\n}\n"
 GOOD = "movsd xmm0,QWORD PTR [rdi]; movapd xmm1,xmm0; mulsd xmm1,QWORD PTR [rdi+8]; addsd xmm1,xmm0; movsd QWORD PTR [rsi],xmm1"
+UPPER = ("vmovsd xmm17,QWORD PTR [rdi]{}; vmulsd xmm18,xmm17,QWORD PTR [rdi+8]; vmovdqa64 ymm19,ymm17; "
+         "vaddsd xmm18,xmm18,xmm17; vmovsd QWORD PTR [rsi],xmm18; ret")  # fmt: skip
 STRANGE = (
     (f"{GOOD}; ret", IDENTICAL, ""),
     (f"{GOOD}; xor ebx,ebx; ret", NOT_UNDERSTOOD, "rbx is not as it was"),
@@ -380,6 +382,11 @@ STRANGE = (
     (GOOD.replace("addsd xmm1,xmm0", "addsd xmm1,xmm3") + "; ret", DIFFERS, "a value that nobody set"),
     (GOOD.replace("mulsd", "divsd") + "; ret", DIFFERS, "div(x[0], x[1])"),
     (GOOD.replace("addsd xmm1,xmm0", "subsd xmm1,xmm0") + "; ret", DIFFERS, "the object code"),
+    (UPPER.format(""), IDENTICAL, ""),  # registers that AVX-512 has
+    (UPPER.format("; vzeroupper"), IDENTICAL, ""),
+    (UPPER.replace("xmm18,xmm18,", "xmm18{{k1}},xmm18,").format(""), NOT_UNDERSTOOD, "an instruction that is not known"),
+    (UPPER.replace("xmm18,xmm18,xmm17", "xmm18,xmm18,xmm17,{{ru-sae}}").format(""), NOT_UNDERSTOOD, "not known"),
+    (UPPER.replace("vaddsd", "vsubsd").format(""), DIFFERS, "the object code"),
     ("movsd xmm0,QWORD PTR [rdi]; movsd xmm1,QWORD PTR [rdi+8]; vfmadd213sd xmm1,xmm0,xmm0; movsd QWORD PTR [rsi],xmm1; ret",
      CONTRACTED, ""),
 )  # fmt: skip

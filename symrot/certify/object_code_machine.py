@@ -53,7 +53,7 @@ def arguments(context: Context, names: tuple[str, ...], numbers: tuple[str, ...]
     state = State(context, start, {}, {})
     for name in (*LOST, *SAVED, "rsp"):
         state.general[name] = state.halves(terms.token(f"{name} at the call"))
-    for number in range(16):
+    for number in range(32):
         state.vector[f"ymm{number}"] = [terms.unknown() for _ in range(8)]
     for place, name in enumerate(names):
         pointer = state.halves(terms.address(name, 0))
@@ -234,7 +234,7 @@ def _call_library(state: State, name: str, on_stack: int) -> None:
         state.store(*place)
     for register in LOST:
         state.general[register] = [terms.unknown(), terms.unknown()]
-    for number in range(16):
+    for number in range(32):
         state.vector[f"ymm{number}"] = [terms.unknown() for _ in range(8)]
     state.vector["ymm0"][: len(result)] = result
     state.flags = ("unknown", ())

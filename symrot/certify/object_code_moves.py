@@ -10,8 +10,8 @@ from symrot.certify.object_code_state import VECTORS, NotUnderstood, State, Word
 
 __all__ = ["vector"]
 
-ALIGNED = {"movaps", "movapd", "movdqa", "movntpd", "movntps"}
-UNALIGNED = {"movups", "movupd", "movdqu", "lddqu"}
+ALIGNED = {"movaps", "movapd", "movdqa", "movdqa32", "movdqa64", "movntpd", "movntps"}
+UNALIGNED = {"movups", "movupd", "movdqu", "movdqu32", "movdqu64", "lddqu"}
 
 
 def _source(state: State, instruction: Instruction, operand: object, size: int, bare: str) -> Words:

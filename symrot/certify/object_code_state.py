@@ -20,8 +20,8 @@ GENERAL: dict[str, tuple[str, int]] = {  # name -> the whole register, bytes
     **{f"{name}{mark}": (name, size) for name in _NEW for mark, size in (("d", 4), ("w", 2), ("b", 1))},
 }
 VECTORS: dict[str, tuple[str, int]] = {  # name -> the whole register, words
-    **{f"xmm{number}": (f"ymm{number}", 4) for number in range(16)},
-    **{f"ymm{number}": (f"ymm{number}", 8) for number in range(16)},
+    **{f"xmm{number}": (f"ymm{number}", 4) for number in range(32)},
+    **{f"ymm{number}": (f"ymm{number}", 8) for number in range(32)},
 }
 
 
