@@ -235,10 +235,10 @@ static SYMROT_APART void symrot_first_units(symrot_job *job, symrot_lanes *lanes
     }
     SYMROT_UNROLLED for (int b = 0; b < SYMROT_BLOCKS; ++b) {
         const symrot_v zero = V_ALL(0.0), first = symrot_block(x, 1, b), second = symrot_block(x, 2, b);
-        const symrot_v size = symrot_scales[b] > 0.0 ? V_ALL(symrot_scales[b]) : symrot_block(x, 0, b);
-        const symrot_v rest = V_CALL(sqrt, V_DIV(first, unit));
+        const symrot_v rest = V_CALL(sqrt, V_DIV(first, unit)), scale = V_ALL(symrot_scales[b]);  /* from rest */
+        const symrot_v size = symrot_scales[b] > 0.0 ? scale : symrot_larger(symrot_block(x, 0, b), rest);
         const symrot_v turn = V_DIV(V_DIV(first, size), unit), swing = V_DIV(V_CALL(sqrt, V_DIV(second, size)), unit);
-        const symrot_v rate = V_SELECT(V_LESS(zero, size), symrot_larger(turn, swing), rest);
+        const symrot_v rate = V_SELECT(V_LESS(zero, size), symrot_larger(turn, swing), zero);
         fastest = symrot_larger(fastest, rate);
     }
     EACH_LANE(l) {

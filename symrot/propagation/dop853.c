@@ -132,6 +132,13 @@ static inline double symrot_scale_squared(const double *y, const double *y1, dou
     return larger > least ? larger : least;
 }
 
+/* Return the size of a block at the start: of a rate no less than it has when it has turned the body from rest. */
+static inline double symrot_first_size(const symrot_run *run, int block)
+{
+    const double fixed = symrot_scales[block];
+    return fixed > 0.0 ? fixed : fmax(symrot_length(run->y, block), sqrt(symrot_length(run->dy, block)));
+}
+
 /* Choose a first step from the rates |y'|/|y| and sqrt(|y''|/|y|) of the fastest block. */
 static SYMROT_APART double symrot_first_step(const symrot_run *run, const double *p)
 {
@@ -139,7 +146,7 @@ static SYMROT_APART double symrot_first_step(const symrot_run *run, const double
     const double span = fabs(run->stop - run->t), side = run->stop < run->t ? -1.0 : 1.0;
 
     for (int b = 0; b < SYMROT_COUNT; ++b) {
-        const double size = symrot_scales[b] > 0.0 ? symrot_scales[b] : symrot_length(run->y, b);
+        const double size = symrot_first_size(run, b);
         const double block = symrot_length(run->dy, b)/size;
         if (size > 0.0 && block > rate) rate = block;
     }
@@ -148,7 +155,7 @@ static SYMROT_APART double symrot_first_step(const symrot_run *run, const double
     symrot_rate(run->first + probe, y1, p, dy1);
     EACH_STATE(i) dy1[i] = (dy1[i] - run->dy[i])/probe;
     for (int b = 0; b < SYMROT_COUNT; ++b) {
-        const double size = symrot_scales[b] > 0.0 ? symrot_scales[b] : symrot_length(run->y, b);
+        const double size = symrot_first_size(run, b);
         const double block = sqrt(symrot_length(dy1, b)/size);
         if (size > 0.0 && block > bend) bend = block;
     }

@@ -162,12 +162,11 @@ static SYMROT_APART double symrot_first_unit(const symrot_v4 *c, double t, doubl
     }
     if (tries == 64) return 0.0;
     EACH_BLOCK(b) {
-        const double fixed = symrot_scales[b], size = fixed > 0.0 ? fixed : symrot_size(x, 0, b);
+        const double fixed = symrot_scales[b], rest = sqrt(symrot_size(x, 1, b)/unit);  /* as it turns from rest */
+        const double size = fixed > 0.0 ? fixed : symrot_larger(symrot_size(x, 0, b), rest);
         if (size > 0.0) {
             fastest = symrot_larger(fastest, symrot_size(x, 1, b)/size/unit);
             fastest = symrot_larger(fastest, sqrt(symrot_size(x, 2, b)/size)/unit);
-        } else {
-            fastest = symrot_larger(fastest, sqrt(symrot_size(x, 1, b)/unit));
         }
     }
     const double first = fastest*span > 1.0 ? 1.0/fastest : span;
