@@ -132,10 +132,12 @@ def _driven_axis(scene: Scene) -> int | None:
 
 
 def _driven_symmetry_axis(scene: Scene) -> int | None:
-    """Return the symmetry axis that a constant torque acts about, where no attitude is asked for."""
-    if not _is_driven(scene) or set(scene.output.quantities) & ATTITUDE_QUANTITIES:
+    """Return the symmetry axis that a constant torque acts about; undamped, where an attitude is asked for."""
+    if not _is_driven(scene):
         return None
     push, drag = _push_and_drag(scene)
+    if any(drag) and set(scene.output.quantities) & ATTITUDE_QUANTITIES:
+        return None
     for axis in range(3):
         if (
             _symmetric_about(scene, axis)
@@ -157,6 +159,19 @@ def _axial(scene: Scene) -> Exact:
     return axial.motion(_moments(scene), axis, push[axis], start.omega_b, start.quaternion, drag[axis], drag[axis - 1])
 
 
+def _is_spun_up(scene: Scene) -> bool:
+    return bool(set(scene.output.quantities) & ATTITUDE_QUANTITIES) and _driven_symmetry_axis(scene) is not None
+
+
+def _spin_up(scene: Scene) -> Exact:
+    from symrot.closed_form import spin_up
+
+    axis = _driven_symmetry_axis(scene)
+    assert axis is not None
+    start, (push, _) = scene.initial, _push_and_drag(scene)
+    return spin_up.motion(_moments(scene), axis, push[axis], start.omega_b, start.quaternion)
+
+
 FORMS = (
     Form("free body, theta functions", _is_free, _free_body, "free_body", "free_body_attitude"),
     Form("symmetric heavy top, theta functions", _is_symmetric_top, _heavy_top, "heavy_top", "heavy_top_motion"),
@@ -168,6 +183,13 @@ FORMS = (
         "symmetric_gyrostat",
     ),
     Form("rotation about one axis", lambda scene: _driven_axis(scene) is not None, _axial, "axial", "driven_rotation"),
+    Form(
+        "symmetric body driven about its axis, parabolic cylinder functions",
+        _is_spun_up,
+        _spin_up,
+        "spin_up",
+        "driven_rotation",
+    ),
     Form(
         "symmetric body driven about its axis, angular velocity alone",
         lambda scene: _driven_symmetry_axis(scene) is not None,

@@ -1,0 +1,164 @@
+"""A symmetric body driven about its axis by NumPy; the formulas are those of :file:`spin_up.h`."""
+
+from collections.abc import Callable, Sequence
+from itertools import islice
+from typing import Any
+
+import numpy as np
+
+from symrot import number
+from symrot.closed_form import double_double as dd
+from symrot.closed_form.library import Floats
+from symrot.closed_form.pairs import pair
+from symrot.closed_form.spin_up_near import PIECES
+from symrot.closed_form.spin_up_series import DEGREE
+
+__all__ = ["SpinUp"]
+
+_QUARTER = pair(1 / (4 * number.PI))
+_TERMS = 10  # of atanh, for arguments to 1/60
+_SMALL = 2.0**-5
+
+
+def _less(a: dd.Pair, b: dd.Pair) -> dd.Pair:
+    return dd.add(a, (-b[0], -b[1]))
+
+
+def _over(a: dd.Pair, b: dd.Pair) -> dd.Pair:
+    first = a[0] / b[0]
+    rest = _less(a, dd.multiply((first, 0.0), b))
+    second = rest[0] / b[0]
+    rest = _less(rest, dd.multiply((second, 0.0), b))
+    return dd.add(dd.two_sum(first, second), (rest[0] / b[0], 0.0))
+
+
+def _root(a: dd.Pair) -> dd.Pair:
+    root = np.sqrt(a[0])
+    for _ in range(2):
+        pair = (root, 0.0) if isinstance(root, np.ndarray) else root
+        root = dd.add(pair, (_less(a, dd.multiply(pair, pair))[0] / (2.0 * pair[0]), 0.0))
+    found: dd.Pair = root
+    return found
+
+
+def _atanh_ratio(x: dd.Pair) -> dd.Pair:
+    """Return atanh(x)/x of small pairs."""
+    square, total = dd.multiply(x, x), (np.zeros_like(x[0]), 0.0)
+    for k in range(_TERMS, -1, -1):
+        total = dd.add(dd.multiply(total, square), _over((1.0, 0.0), (2.0 * k + 1.0, 0.0)))
+    return total
+
+
+def _asinh_ratio(z: dd.Pair, root: dd.Pair) -> dd.Pair:
+    """Return asinh(z)/z: half the argument as often as it takes."""
+    size = (np.abs(z[0]), np.where(z[0] < 0.0, -z[1], z[1]))
+    small, above, times = size, dd.add(root, (1.0, 0.0)), np.ones_like(z[0])
+    while (large := small[0] > _SMALL).any():
+        halved = _over(small, _root(dd.multiply((2.0, 0.0), above)))
+        small = tuple(np.where(large, new, old) for new, old in zip(halved, small, strict=True))
+        times = np.where(large, 2.0 * times, times)
+        above = dd.add(_root(dd.add((1.0, 0.0), dd.multiply(small, small))), (1.0, 0.0))
+    tau = _over(small, above)
+    whole = dd.multiply((2.0 * times, 0.0), _over(_atanh_ratio(tau), above))
+    shrunk = _over(small, (np.where(size[0] == 0.0, 1.0, size[0]), size[1]))
+    found = dd.multiply(whole, shrunk)
+    return np.where(times == 1.0, whole[0], found[0]), np.where(times == 1.0, whole[1], found[1])
+
+
+def _circle(turns: dd.Pair) -> tuple[Floats, Floats]:
+    whole = (turns[0] - np.rint(turns[0])) + (turns[1] - np.rint(turns[1]))
+    return np.sin(2.0 * np.pi * whole), np.cos(2.0 * np.pi * whole)
+
+
+class SpinUp:
+    """One motion, from the constants that C takes and the table near resonance, if it is needed."""
+
+    def __init__(self, constants: Sequence[float], table: Floats | None) -> None:
+        values = iter(constants)
+
+        def take(count: int) -> list[float]:
+            return list(islice(values, count))
+
+        def both() -> tuple[float, float]:
+            return next(values), next(values)
+
+        self._scale, self._edge, self._wide = take(3)
+        self._turn, self._sweep = (both(), both()), (both(), both())
+        self._across, self._inverse, self._unit = both(), both(), next(values)
+        self._series = [np.array(take(DEGREE + 1)) for _ in range(3)]
+        self._rates, self._axial = np.array(take(6)).reshape(3, 2), np.array(take(3))
+        self._spin = both(), both()
+        self._sides = [(both(), both(), next(values), np.array(take(16)).reshape(4, 4)) for _ in range(2)]
+        self._near, self._table = np.array(take(16)).reshape(4, 4), table
+
+    def evaluate(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> None:
+        """Write angular velocity (n, 3) and attitude (n, 4) at the times, where an array is given."""
+        t = (times * self._scale, np.zeros_like(times))
+        sine, cosine = _circle(dd.multiply(t, dd.add(self._turn[0], dd.multiply(t, self._turn[1]))))
+        if omega is not None:
+            spin = dd.add(self._spin[0], dd.multiply(t, self._spin[1]))[0]
+            turned = np.stack([(cosine - sine) * (cosine + sine), 2.0 * sine * cosine], axis=1)
+            omega[:] = turned @ self._rates.T + np.multiply.outer(spin, self._axial)
+        if quaternion is None:
+            return
+        here = dd.add(self._sweep[0], dd.multiply(t, self._sweep[1]))
+        close = (np.abs(here[0]) < self._edge) & (self._wide == 0.0)
+        upper = (here[0] > 0.0) & (self._wide == 0.0)
+        ways: list[tuple[Any, Callable[..., tuple[Any, Any]], Floats]] = [(close, self._close, self._near)]
+        for k, chosen in enumerate((~upper & ~close, upper & ~close)):
+            ways.append((chosen, lambda t, here, k=k: self._far(self._sides[k], t, here), self._sides[k][3]))
+        for chosen, way, mapping in ways:
+            if chosen.any():
+                a, b = way(*((x[0][chosen], x[1][chosen]) for x in (t, here)))
+                turn = cosine[chosen] + 1j * sine[chosen]
+                a, b = a * turn.conj(), b * turn
+                quaternion[chosen] = np.stack([a.real, b.real, b.imag, a.imag], axis=1) @ mapping.T
+
+    def _far(self, side: Any, t: dd.Pair, omega: dd.Pair) -> tuple[Any, Any]:
+        """Return q0 + i q3 and q1 + i q2 of the turning axes, from where a side is counted."""
+        time, start, delta, _ = side
+        square = dd.multiply(self._across, self._across)
+        here, there = (dd.add(dd.multiply(x, x), square) for x in (omega, start))
+        speed, product = _root(here), dd.multiply(omega, start)
+        speeds = dd.multiply(speed, _root(tuple(np.array([x]) for x in there)))  # type: ignore[arg-type]
+        opposed = dd.multiply(square, dd.add(here, dd.multiply(start, start)))
+        other = product[0] < 0.0
+        apart = _less(speeds, (-np.abs(product[0]), np.where(other, product[1], -product[1])))
+        ratio = _over(opposed, apart)
+        together = np.where(other, ratio[0], apart[0]), np.where(other, ratio[1], apart[1])
+        middle = _root(dd.multiply((0.5, 0.0), dd.add(square, together)))
+        half = dd.multiply((0.5, 0.0), _over(_less(t, time), middle))
+        z = dd.multiply(self._sweep[1], half)
+        root = _root(dd.add((1.0, 0.0), dd.multiply(z, z)))
+        steady = dd.add(dd.multiply(root, together), dd.multiply(square, _asinh_ratio(z, root)))
+        r = 1.0 / speed[0]
+        across, along = self._across[0] * r, omega[0] * r
+        y = self._unit * r * r
+        g, c, e = (np.polynomial.polynomial.polyval(y, series) for series in self._series)
+        m1, m2 = across * along * y * y * g, across * y * c
+        more = (along * e - delta) * _QUARTER[0]
+        sine, cosine = _circle(dd.add(dd.multiply(dd.multiply(half, steady), _QUARTER), (more, 0.0)))
+        m3 = 1.0 + np.sqrt(1.0 - m1 * m1 - m2 * m2)
+        norm = 1.0 / np.sqrt(m3 * m3 + m1 * m1 + m2 * m2)
+        n0, n1, n2 = m3 * norm, m1 * norm, m2 * norm
+        larger = np.sqrt(0.5 + 0.5 * np.abs(along))
+        smaller = 0.5 * across / larger
+        first, second = np.where(along >= 0.0, [larger, smaller], [smaller, larger])
+        turn = cosine + 1j * sine
+        return (
+            turn * ((n0 * first - n1 * second) - 1j * (n2 * second)),
+            turn * (n2 * first - 1j * (n0 * second + n1 * first)),
+        )
+
+    def _close(self, _: dd.Pair, omega: dd.Pair) -> tuple[Any, Any]:
+        """The same near resonance, from x = 0, by Taylor's polynomials."""
+        assert self._table is not None
+        sign = np.where(omega[0] < 0.0, -1.0, 1.0)
+        high, low = dd.multiply((sign * omega[0], sign * omega[1]), self._inverse)
+        piece = np.floor(high * PIECES)
+        rest = (high - (piece + 0.5) / PIECES) + low
+        terms = self._table[piece.astype(np.int64)]
+        q = terms[:, -1]
+        for n in range(terms.shape[1] - 2, -1, -1):
+            q = q * rest[:, None] + terms[:, n]
+        return q[:, 0] + 1j * q[:, 3], sign * (q[:, 1] + 1j * q[:, 2])
