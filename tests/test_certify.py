@@ -399,14 +399,24 @@ def test_an_edited_file_is_refused_with_its_line_and_what_it_computes(edit, tmp_
         (["certify", "mine.c"], "`symrot audit` takes the certificate of any kernel"),
         (["certify", "quaternion_dc.cert.json"], "did you mean 'quaternion_dcm'?"),
         (["certify", "nowhere/quaternion_dcm.c"], "can be read (No such file or directory)"),
+        (["bound", str(KERNELS / "quaternion_dcm.c")], "did you mean 'quaternion_dcm'?"),
         (["audit", "quaternion_dcm.c"], "its own is quaternion_dcm.cert.json"),
     ],
-    ids=lambda value: value[1] if isinstance(value, list) else "",
+    ids=lambda value: Path(value[1]).name if isinstance(value, list) else "",
 )
 def test_what_is_no_kernel_is_refused_in_one_sentence(arguments, said, capsys):
     assert main(arguments) in (1, 2)
     found = capsys.readouterr()
     assert found.out == "" and said in found.err and found.err.count("\n") == 1
+
+
+def test_nothing_is_half_written(tmp_path, capsys):
+    """A file that cannot take its place is found before the others are written."""
+    (tmp_path / "quaternion_dcm.cert.json").mkdir()
+    for command in ("certify", "emit"):
+        assert main([command, "quaternion_dcm", "-o", str(tmp_path)]) == 2
+        assert "cannot be written" in capsys.readouterr().err
+    assert [path.name for path in tmp_path.iterdir()] == ["quaternion_dcm.cert.json"]
 
 
 def test_bounds_of_other_operations_are_not_kept():

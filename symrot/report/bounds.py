@@ -25,6 +25,7 @@ from symrot.scene_reader import nearest
 
 __all__ = ["facts", "given", "lines", "require_known", "section", "target_facts", "target_lines"]
 
+EMITTED = (".c", ".h", ".o", ".json")  # files that are no scenes
 PRECISIONS = {"double": "", "float": "f"}
 
 
@@ -74,9 +75,10 @@ def _of_library(kernel: str, precision: str) -> tuple[Operations, Problem, None]
 
 def require_known(kernel: str) -> None:
     """Refuse what is neither a kernel of the library, nor a scene, nor a file; with the nearest name that is one."""
-    if kernel in kernel_names() or kernel in shipped_names() or Path(kernel).exists():
+    path = Path(kernel)
+    if kernel in kernel_names() or kernel in shipped_names() or (path.exists() and path.suffix not in EMITTED):
         return
-    hint = nearest(kernel, [*kernel_names(), *shipped_names()])
+    hint = nearest(path.name, [*kernel_names(), *shipped_names()])
     said = f"expected the name of a kernel (see `symrot emit --list`) or a scene, got {kernel[:60]!r}"
     raise InputError(f"{said} ({hint})" if hint else said)
 

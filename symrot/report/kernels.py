@@ -144,17 +144,19 @@ def write_files(directory: Path, files: Mapping[str, str]) -> list[Path]:
         If the folder or a file cannot be written.
     """
     changed = []
-    for name, text in files.items():
+    for name, text in files.items():  # all that can be known to fail fails before anything is written
         path, content = directory / name, text.encode()
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
-            same = path.is_file() and path.read_bytes() == content
+            if path.is_dir() or not os.access(path.parent, os.W_OK):
+                raise InputError(f"{str(path)!r} cannot be written: it, or the folder it is in, is not to be changed")
+            if not path.is_file() or path.read_bytes() != content:
+                changed.append((path, content))
         except OSError as reason:
             raise InputError(f"{str(path)!r} cannot be written: {reason.strerror or reason}") from None
-        if not same:
-            write(path, lambda stream, content=content: stream.write(content))  # type: ignore[misc]
-            changed.append(path)
-    return changed
+    for path, content in changed:
+        write(path, lambda stream, content=content: stream.write(content))  # type: ignore[misc]
+    return [path for path, _ in changed]
 
 
 def write_all(directory: Path, targets: Sequence[str], progress: Callable[[str], object]) -> list[Path]:
