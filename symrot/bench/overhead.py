@@ -9,6 +9,7 @@ Python's but the call. Runs take turns; medians of the processor's time.
 import argparse
 import ctypes
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -47,11 +48,12 @@ def _bare_stepper(found: Propagator, times: "np.ndarray[tuple[int], np.dtype[np.
 
 
 def _bare_exact(found: Propagator, times: "np.ndarray[tuple[int], np.dtype[np.float64]]") -> Callable[[], object]:
-    motion = found._motion.exact
-    call, constants = motion._evaluate, motion._address  # type: ignore[attr-defined]
+    motion: Any = found._motion.exact
+    loops = getattr(motion, "_loops", None)
+    call, constants = (loops.evaluate, loops.place) if loops else (motion._evaluate, motion._address)
     omega, quaternion = np.empty((len(times), 3)), np.empty((len(times), 4))
     given = (constants, len(times), times.ctypes.data, omega.ctypes.data, quaternion.ctypes.data)
-    return lambda kept=(omega, quaternion): call(*given)  # type: ignore[misc]
+    return lambda kept=(omega, quaternion): call(*given)  # type: ignore[misc]  # whose memory is used
 
 
 def measure(name: str, method: str, samples: int, rounds: int) -> tuple[float, float] | None:

@@ -103,7 +103,7 @@ def times_of(t: ArrayLike) -> Floats:
     if times.ndim > 1:
         raise InputError(f"times are a number or a sequence of numbers (s), got an array of shape {times.shape}")
     times = times.reshape(-1)
-    if not isfinite(times.sum()) and not np.isfinite(times).all():
+    if not isfinite(np.add.reduce(times)) and not np.isfinite(times).all():
         raise InputError(f"times must be finite, got {times[~np.isfinite(times)][0]}")
     return times
 

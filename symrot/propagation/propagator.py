@@ -195,6 +195,10 @@ class Motion:
         """Return the states at the times, shape (n, N), and what it cost; ``rise``: they are known to be in order."""
         return INTEGRATORS[self.choice.method.partition(":")[0]](self, times, rise)
 
+    def follow(self, times: Floats, rise: bool = False) -> tuple[Floats | tuple[Floats, ...], Stats]:
+        """Return as :meth:`integrate`, but of an exact motion angular velocity and attitude in an array each."""
+        return _exact_parts(self, times, rise) if self.choice.method == "exact" else self.integrate(times, rise)
+
     @cached_property
     def rates(self) -> Callable[..., Any]:
         """The emitted NumPy kernel as ``f(t, y, p)``."""
@@ -259,15 +263,22 @@ def _stepped(motion: Motion, times: Floats, rise: bool) -> tuple[Floats, Stats]:
     return motion.stepping.once(times, rise)
 
 
-def _exact(motion: Motion, times: Floats, rise: bool = False) -> tuple[Floats, Stats]:
+def _exact_parts(motion: Motion, times: Floats, rise: bool) -> tuple[tuple[Floats, ...], Stats]:
     attitude, exact = motion.plan.structure["attitude"], motion.exact
     began, start = perf_counter(), motion.start
     omega, quaternion = exact.evaluate(times - start if start else times, quaternion=attitude)
     assert omega is not None
-    states = omega if quaternion is None else np.concatenate((omega, quaternion), axis=1)
-    if not (rise and len(times) and times.item(0) > start):
-        states[times == start] = motion.plan.initial_state  # to the last bit, as every method has it
-    return states, Stats(0, 0, 0, perf_counter() - began)
+    if not (rise and len(times) and times.item(0) > start):  # to the last bit, as every method has it
+        at_start = times == start
+        omega[at_start] = motion.plan.initial_state[:3]
+        if quaternion is not None:
+            quaternion[at_start] = motion.plan.initial_state[3:]
+    return (omega,) if quaternion is None else (omega, quaternion), Stats(0, 0, 0, perf_counter() - began)
+
+
+def _exact(motion: Motion, times: Floats, rise: bool = False) -> tuple[Floats, Stats]:
+    parts, stats = _exact_parts(motion, times, rise)
+    return np.concatenate(parts, axis=1), stats
 
 
 def _scipy(motion: Motion, times: Floats, rise: bool) -> tuple[Floats, Stats]:
@@ -376,7 +387,7 @@ class Propagator:
 
                 found = follow(motion, times, read_events(events))
                 return Trajectory(motion, found.t, found.states, motion.choice.method, found.stats, message, found)
-            states, stats = motion.integrate(times, rise)
+            states, stats = motion.follow(times, rise)
         except PropagationError as error:
             raise PropagationError(f"{self.scene.name}: {error}") from None
         return Trajectory(motion, times, states, motion.choice.method, stats, message)

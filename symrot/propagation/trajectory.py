@@ -66,13 +66,13 @@ class Trajectory:
         self,
         motion: "Motion",
         t: Floats,
-        states: Floats,
+        states: Floats | tuple[Floats, ...],
         method: str,
         stats: Stats,
         message: str,
         events: "Eventful | None" = None,
     ) -> None:
-        self._motion, self._states = motion, states
+        self._motion, self._found = motion, states
         self.t, self.method, self.stats, self.message = t, method, stats, message
         self.t_events = events and events.t_events
         self.y_events = events and events.y_events
@@ -101,6 +101,11 @@ class Trajectory:
         """Names of the integrated states."""
         return self._motion.plan.states
 
+    @cached_property
+    def _states(self) -> Floats:
+        """The integrated states, shape (n, N); those of an exact motion are put side by side when asked for."""
+        return np.concatenate(self._found, axis=1) if isinstance(self._found, tuple) else self._found
+
     @property
     def y(self) -> Floats:
         """The integrated states, shape (N, n)."""
@@ -125,13 +130,16 @@ class Trajectory:
     @cached_property
     def omega(self) -> Floats:
         """Angular velocity, body components, rad/s, shape (n, 3)."""
+        if isinstance(self._found, tuple):
+            return self._found[0].copy()
         return self._evaluate("omega_1 of t", "omega_2 of t", "omega_3 of t")
 
     @cached_property
     def quaternion(self) -> Floats:
         """Attitude, unit, scalar first, body to space, shape (n, 4)."""
         self._need_attitude()
-        return conversions.normalize(self._evaluate("q0 of t", "q1 of t", "q2 of t", "q3 of t"))
+        found = self._found[1] if isinstance(self._found, tuple) else self._evaluate(*(f"q{i} of t" for i in range(4)))
+        return conversions.normalize(found)
 
     @cached_property
     def dcm(self) -> Floats:
