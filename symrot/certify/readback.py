@@ -23,6 +23,7 @@ LIBRARY: dict[str, int] = {  # functions of <math.h> that kernels call, without 
 ROUNDED = {"sqrt": ("sqrt", 1), "fabs": ("abs", 1), "copysign": ("copysign", 2)}  # exact, or rounded correctly
 NEAR = {"symrot_sin": "sin", "symrot_cos": "cos"}  # of symrot_math.h, in batches: assumed to its stated error
 SELECT = {"symrot_select_lt": "<", "symrot_select_eq": "=="}  # of symrot_math.h: choices without a branch
+SPAN = "SYMROT_SPAN"  # samples that several loops of a batch take in turn
 DEEPEST = 200  # nested levels of an expression
 
 _TOKEN = re.compile(
@@ -486,7 +487,9 @@ def read_batch(text: str, name: str, where: str = "kernel") -> Operations:
         cursor.expect("(", "void", ")")
         reader._known(cursor, scope, cursor.name())
         cursor.expect(";")
-    if cursor.peek(3) == "start":
+    if cursor.peek(3) == "start" and cursor.peek(14) == SPAN:
+        _parts(cursor, reader, scope)
+    elif cursor.peek(3) == "start":
         _blocks(cursor, reader, scope)
     else:
         reader.statements(_Cursor(_samples(cursor, scope, "0", scope.count), where), scope)
@@ -507,14 +510,31 @@ def _samples(cursor: _Cursor, scope: _Scope, start: str, end: str) -> tuple[_Tok
     return cursor.block()
 
 
+def _parts(cursor: _Cursor, reader: _Reader, scope: _Scope) -> None:
+    """Read loops over the same samples, one block after the other: each assigns outputs of its own."""
+    _heads(cursor, scope, SPAN)
+    while cursor.peek() != "}":
+        part = _Scope(arrays=scope.arrays, count=scope.count)
+        reader.statements(_Cursor(_samples(cursor, part, "start", "end"), cursor.where), part)
+        twice = [f"{name}[{index}]" for name, index in part.written if (name, index) in scope.written]
+        if twice:
+            raise cursor.fail(f"one assignment to {twice[0]}, and the loop before has a second; before")
+        scope.written |= part.written
+    cursor.expect("}")
+
+
+def _heads(cursor: _Cursor, scope: _Scope, size: str) -> None:
+    """Read the head of a loop over blocks of samples, and the end of the block at hand."""
+    cursor.expect(*f"for ( size_t start = 0 ; start < {scope.count} ; start + = {size} ) {{".split())
+    cursor.expect(*f"const size_t end = {scope.count} - start < {size} ? {scope.count} : start + {size} ;".split())
+
+
 def _blocks(cursor: _Cursor, reader: _Reader, scope: _Scope) -> None:
     """Read the loop over blocks: samples by ``symrot_math.h``, and again by the C library if an angle is far.
 
     Both compute the same, and each angle that ``symrot_sin`` or ``symrot_cos`` is taken of is asked how far it is.
     """
-    size = "SYMROT_BLOCK"
-    cursor.expect(*f"for ( size_t start = 0 ; start < {scope.count} ; start + = {size} ) {{".split())
-    cursor.expect(*f"const size_t end = {scope.count} - start < {size} ? {scope.count} : start + {size} ;".split())
+    _heads(cursor, scope, "SYMROT_BLOCK")
     cursor.expect("uint32_t" if reader.real == "float" else "uint64_t", "beyond", "=", "0", ";")
     far = "symrot_farf" if reader.real == "float" else "symrot_far"
     body = _samples(cursor, scope, "start", "end")
