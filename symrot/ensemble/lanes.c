@@ -1,7 +1,7 @@
 /*
  * Many motions by Taylor series, one in each lane, each with a step of its own; a lane whose motion ends takes the next.
  *
- * Included after lanes.h and an emitted system, in one translation unit. The system defines
+ * Included after lanes.h, an emitted system and series.h, in one translation unit. The system defines
  *     SYMROT_STATES, SYMROT_PARAMETERS   numbers of states N and parameters
  *     SYMROT_ORDER                       order of the series, even
  *     SYMROT_BLOCKS, SYMROT_EDGES, SYMROT_SCALES   blocks of states whose errors are judged apart, as in taylor.c
@@ -144,21 +144,6 @@ static inline symrot_bits symrot_finite(symrot_v (*x)[SYMROT_ORDER + 1], int ord
     return V_EQUAL(sum, V_ALL(0.0));
 }
 
-/* Return coefficients from 1 on, summed at s units, and divided by s: four sums, each of every fourth power. */
-static inline symrot_v symrot_sum(const symrot_v *x, symrot_v s)
-{
-    const symrot_v second = V_MUL(s, s), fourth = V_MUL(second, second);
-    symrot_v a = x[SYMROT_ORDER - 3], b = x[SYMROT_ORDER - 2], c = x[SYMROT_ORDER - 1], d = x[SYMROT_ORDER];
-    for (int n = SYMROT_ORDER - 7; n > 0; n -= 4) {
-        a = V_FMA(a, fourth, x[n]);
-        b = V_FMA(b, fourth, x[n + 1]);
-        c = V_FMA(c, fourth, x[n + 2]);
-        d = V_FMA(d, fourth, x[n + 3]);
-    }
-    const symrot_v sum = V_FMA(V_FMA(d, s, c), second, V_FMA(b, s, a));
-    return SYMROT_ORDER%4 ? V_FMA(sum, second, V_FMA(x[2], s, x[1])) : sum;  /* two are left of an order 4 k + 2 */
-}
-
 /* Return the time of a lane's next sample, endlessly far where there is none. */
 static inline double symrot_due(const symrot_job *job, const symrot_lanes *lanes, int l)
 {
@@ -235,10 +220,10 @@ static SYMROT_APART void symrot_first_units(symrot_job *job, symrot_lanes *lanes
     }
     SYMROT_UNROLLED for (int b = 0; b < SYMROT_BLOCKS; ++b) {
         const symrot_v zero = V_ALL(0.0), first = symrot_block(x, 1, b), second = symrot_block(x, 2, b);
-        const symrot_v rest = V_CALL(sqrt, V_DIV(first, unit)), scale = V_ALL(symrot_scales[b]);  /* from rest */
-        const symrot_v size = symrot_scales[b] > 0.0 ? scale : symrot_larger(symrot_block(x, 0, b), rest);
+        const symrot_v size = symrot_scales[b] > 0.0 ? V_ALL(symrot_scales[b]) : symrot_block(x, 0, b);
+        const symrot_v rest = V_CALL(sqrt, V_DIV(first, unit));
         const symrot_v turn = V_DIV(V_DIV(first, size), unit), swing = V_DIV(V_CALL(sqrt, V_DIV(second, size)), unit);
-        const symrot_v rate = V_SELECT(V_LESS(zero, size), symrot_larger(turn, swing), zero);
+        const symrot_v rate = V_SELECT(V_LESS(zero, size), symrot_larger(turn, swing), rest);
         fastest = symrot_larger(fastest, rate);
     }
     EACH_LANE(l) {
@@ -353,15 +338,14 @@ SYMROT_EXPORT int symrot_lanes_run(symrot_lanes *lanes, symrot_job *job, int64_t
             const symrot_bits inside = stepping & V_LESS(V_MUL(V_SUB(due, t1), side), V_ALL(0.0));
             if (!V_ANY(inside)) break;
             const symrot_v at = V_DIV(V_SUB(V_SUB(due, t), low), unit);
-            EACH_STATE(i) y1[i] = V_ADD(x[i][0], V_FMA(symrot_sum(x[i], at), at, carry[i]));
+            EACH_STATE(i) y1[i] = symrot_inside(x[i], at, carry[i]);
             EACH_LANE(l) if (V_LANE(inside, l)) symrot_sample(job, lanes, l, y1);
         }
         EACH_STATE(i) {
-            const symrot_v y = x[i][0], d = V_FMA(symrot_sum(x[i], s), s, carry[i]), new_y = V_ADD(y, d);
-            const symrot_v up = V_SUB(new_y, y);  /* Knuth's sum: what rounding takes goes into the next step */
-            const symrot_v lost = V_ADD(V_SUB(y, V_SUB(new_y, up)), V_SUB(d, up));
+            symrot_v lost = carry[i];
+            const symrot_v end = symrot_end(x[i], s, &lost);
             carry[i] = V_SELECT(stepping, lost, carry[i]);
-            x[i][0] = V_SELECT(stepping, new_y, y);
+            x[i][0] = V_SELECT(stepping, end, x[i][0]);
         }
         t = V_SELECT(stepping, t1, t);
         low = V_SELECT(stepping, low1, low);

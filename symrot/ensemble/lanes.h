@@ -23,8 +23,10 @@
 #if !defined(SYMROT_LANES)
 #if defined(__AVX512F__)
 #define SYMROT_LANES 8
-#else
+#elif defined(__AVX__)
 #define SYMROT_LANES 4
+#else
+#define SYMROT_LANES 2  /* no wider than a register: what lives on the stack waits for it */
 #endif
 #endif
 #else

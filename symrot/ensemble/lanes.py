@@ -61,7 +61,7 @@ def translation_unit(
     program, blocks, scales, order
         As :func:`symrot.propagation.taylor.translation_unit` takes them.
     width : int, optional
-        Number of lanes: 1 (plain C), 4 or 8; default: 8 where the processor has registers for them, else 4.
+        Number of lanes: 1 (plain C), 2, 4 or 8; default: as many as the processor's registers hold.
 
     Raises
     ------
@@ -77,8 +77,9 @@ def around(definitions: str, width: int | None = None) -> str:
     """Return the C source of a library from the text of its system; see :func:`translation_unit`."""
     here = Path(__file__).parent
     head = "" if width is None else "#define SYMROT_PLAIN\n" if width == 1 else f"#define SYMROT_LANES {width}\n"
-    texts = [(here / name).read_text(encoding="utf-8") for name in ("lanes.h", "lanes.c")]
-    return head + "\n".join((texts[0], definitions, texts[1]))
+    places = (here / "lanes.h", here.parent / "propagation" / "series.h", here / "lanes.c")
+    operations, series, steps = (place.read_text(encoding="utf-8") for place in places)
+    return head + "\n".join((operations, definitions, series, steps))
 
 
 _POINTERS = (

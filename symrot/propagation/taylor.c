@@ -1,7 +1,7 @@
 /*
  * Taylor series of high order with dense output: the whole loop of steps around one emitted jet.
  *
- * Included after taylor.h and an emitted system, in one translation unit. The system defines
+ * Included after taylor.h, an emitted system and series.h, in one translation unit. The system defines
  *     SYMROT_STATES, SYMROT_PARAMETERS   numbers of states N and parameters
  *     SYMROT_ORDER                       order of the series, even
  *     SYMROT_ROWS                        rows of four lanes that hold the states,
@@ -59,11 +59,6 @@ enum { SYMROT_BLOCK_COUNT = (int)(sizeof(symrot_scales)/sizeof(symrot_scales[0])
 #define EACH_ROW(r) SYMROT_UNROLLED for (int r = 0; r < SYMROT_ROWS; ++r)
 #define EACH_BLOCK(b) SYMROT_UNROLLED for (int b = 0; b < SYMROT_BLOCK_COUNT; ++b)
 
-/*
- * A third is larger than its double by 2^-54 of it, and so are, nearly, all terms of a series from the third on, to the
- * same side at every step: over 1e5 revolutions that is a turn of 1e-13 rad. What the terms lack goes into the carry.
- */
-static const double SYMROT_THIRD = 1.0/18014398509481984.0;
 static const double SYMROT_LEAST_TAIL = 1e-18;   /* below round-off nothing is gained */
 static const double SYMROT_RATE_FLOOR = 1e-3;    /* a rate turns the body by less than this in a step: no need to see it */
 
@@ -172,21 +167,6 @@ static SYMROT_APART double symrot_first_unit(const symrot_v4 *c, double t, doubl
     const double first = fastest*span > 1.0 ? 1.0/fastest : span;
     frexp(first, &exponent);
     return ldexp(1.0, exponent);
-}
-
-/* Return coefficients from 1 on, summed at s units, and divided by s: four sums, each of every fourth power. */
-static inline symrot_v4 symrot_sum(const symrot_v4 *x, double s)
-{
-    const symrot_v4 first = V_ALL(s), second = V_ALL(s*s), fourth = V_ALL(s*s*(s*s));
-    symrot_v4 a = x[SYMROT_ORDER - 3], b = x[SYMROT_ORDER - 2], c = x[SYMROT_ORDER - 1], d = x[SYMROT_ORDER];
-    for (int n = SYMROT_ORDER - 7; n > 0; n -= 4) {
-        a = V_FMA(a, fourth, x[n]);
-        b = V_FMA(b, fourth, x[n + 1]);
-        c = V_FMA(c, fourth, x[n + 2]);
-        d = V_FMA(d, fourth, x[n + 3]);
-    }
-    const symrot_v4 sum = V_FMA(V_FMA(d, first, c), second, V_FMA(b, first, a));
-    return SYMROT_ORDER%4 ? V_FMA(sum, second, V_FMA(x[2], first, x[1])) : sum;  /* two are left of an order 4 k + 2 */
 }
 
 /* Write the lanes of all rows as one vector of states. */
@@ -343,17 +323,10 @@ SYMROT_EXPORT int symrot_taylor(symrot_run *run, const double *p, const double *
         const double per_unit = 1.0/unit;  /* exact: units are powers of two */
         for (; next < count && (times[next] - t1)*side < 0.0; ++next) {
             const double at = ((times[next] - t) - t_low)*per_unit;
-            EACH_ROW(r) y1[r] = V_ADD(x[r][0], V_FMA(symrot_sum(x[r], at), V_ALL(at), carry[r]));
+            EACH_ROW(r) y1[r] = symrot_inside(x[r], V_ALL(at), carry[r]);
             symrot_write(y1, states + next*SYMROT_STATES);
         }
-        EACH_ROW(r) {
-            const symrot_v4 sum = symrot_sum(x[r], s), after = V_SUB(sum, V_FMA(x[r][2], V_ALL(s), x[r][1]));
-            const symrot_v4 lack = V_MUL(after, V_ALL(s*SYMROT_THIRD)), y = x[r][0];
-            const symrot_v4 d = V_FMA(sum, V_ALL(s), V_ADD(carry[r], lack));
-            const symrot_v4 new_y = V_ADD(y, d), rise = V_SUB(new_y, y);
-            carry[r] = V_ADD(V_SUB(y, V_SUB(new_y, rise)), V_SUB(d, rise));  /* Knuth's sum: goes into the next step */
-            x[r][0] = y1[r] = new_y;
-        }
+        EACH_ROW(r) x[r][0] = y1[r] = symrot_end(x[r], V_ALL(s), &carry[r]);
         t = t1;
         t_low = low1;
 #if SYMROT_INVARIANTS

@@ -143,3 +143,4 @@ static inline symrot_v4 symrot_pick(symrot_v4 v, symrot_v4 u, int i, int j, int 
         k < 4 ? v.lane[k & 3] : u.lane[k & 3], l < 4 ? v.lane[l & 3] : u.lane[l & 3]);
 }
 #endif
+typedef symrot_v4 symrot_v;  /* as series.h calls it */

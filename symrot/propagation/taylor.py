@@ -38,7 +38,7 @@ from symrot.propagation.stepping import (
 __all__ = ["integrate", "order_for", "record", "refusal", "step_tail", "translation_unit"]
 
 STEPS_OF_ALL = 4.0  # a span of so many steps allows each of them the whole tolerance, see step_tail
-FILES = ("taylor.h", "pairs.h", "projection.c", "taylor.c")
+FILES = ("taylor.h", "series.h", "pairs.h", "projection.c", "taylor.c")
 PROJECTION = "/* PROJECTION */\n"  # where taylor.c takes projection.c
 NO_INVARIANTS = "#define SYMROT_INVARIANTS 0\n#define SYMROT_INVARIANT_PARAMETERS 0\n"
 PROJECTED_EVERY = 16  # steps: by measurement, seldom enough to cost a few percent and often enough to lose nothing
@@ -114,10 +114,10 @@ def translation_unit(
     own = {name: (Path(__file__).parent / name).read_text(encoding="utf-8") for name in FILES}
     definitions = taylor_definitions(program, blocks, scales, ORDER if order is None else order)
     if not invariants:
-        parts = [own["taylor.h"], definitions, NO_INVARIANTS, own["taylor.c"].replace(PROJECTION, "")]
+        parts = [own["taylor.h"], definitions, own["series.h"], NO_INVARIANTS, own["taylor.c"].replace(PROJECTION, "")]
     else:
         stepper = own["taylor.c"].replace(PROJECTION, own["projection.c"])
-        parts = [own["taylor.h"], own["pairs.h"], definitions, invariants, stepper]
+        parts = [own["taylor.h"], own["pairs.h"], definitions, own["series.h"], invariants, stepper]
     return "\n".join(parts)
 
 
