@@ -26,7 +26,8 @@ __all__ = [
 
 PACKAGE = Path(__file__).parents[1]
 TAYLOR = tuple(
-    f"propagation/{name}" for name in ("taylor.py", "taylor.h", "taylor.c", "pairs.h", "projection.c", "invariants.py")
+    f"propagation/{name}"
+    for name in ("taylor.py", "taylor.h", "series.h", "taylor.c", "pairs.h", "projection.c", "invariants.py")
 )  # kept together with the recurrences
 MODULES = ("expression.py", "kernel.py", "scene_kernel.py", "symbols.py")
 DERIVING = ("codegen", "dynamics", "exact", "kinematics", *MODULES, *TAYLOR)
