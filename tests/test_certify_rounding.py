@@ -24,6 +24,7 @@ from symrot.certify.rounding_words import in_words, library_section, rounded_up
 from symrot.cli import main
 from symrot.errors import CertificateError, InputError
 from symrot.kernels.library import definition, kernel_names
+from symrot.report.bound_table import understated
 
 GENERATED = Path(__file__).parents[1] / "generated" / "c"
 UNIT = {"binary64": 2.0**-53, "binary32": 2.0**-24}
@@ -335,6 +336,22 @@ def test_bounds_of_the_table_are_found_again(name):
         given = problem(definition(name), operations)
         for task in tasks(operations, given.box, given.region).values():
             assert bound_task(task, fresh=True) == STORE.get(task.key)
+
+
+@pytest.mark.parametrize(
+    "change", [{"pointwise": 0.0, "bound": 0.0}, {"worst": ()}, {"pointwise": 1.0}, {"bound": float("inf")}]
+)
+def test_a_forged_bound_of_the_table_is_found(change, monkeypatch):
+    """By the point that it names: `python -m symrot.report.bound_table --check` looks at all of them."""
+    double, _ = operations_of("quaternion_dcm", text_of("quaternion_dcm"))
+    given = problem(definition("quaternion_dcm"), double)
+    wanted = {task.key: task for task in tasks(double, given.box, given.region).values()}
+    assert understated(wanted) == []
+    key = next(iter(wanted))
+    forged = replace(STORE.get(key), **change)
+    kept = json.loads(printed_table([(key, forged)]))["bounds"][key]
+    monkeypatch.setitem(table()["bounds"], key, kept)
+    assert understated(wanted) == [key]
 
 
 def test_certificates_and_heads_say_the_bounds_of_the_text_under_them():

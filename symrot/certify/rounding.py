@@ -30,7 +30,7 @@ from symrot.errors import CertificateError, InputError
 from symrot.number import show
 
 __all__ = ["BUDGET", "STORE", "Box", "OutputBound", "Task", "bound_outputs", "bound_task", "check_bounds",
-           "check_section", "rounding_section", "tasks"]  # fmt: skip
+           "check_section", "reached", "rounding_section", "tasks"]  # fmt: skip
 
 Box = Mapping[str, tuple[Fraction, Fraction]]  # place of an input, such as "q[1]" -> least and largest value
 
@@ -405,16 +405,16 @@ def _check_precision(
             raise CertificateError(f"{name}: expected the choices of {item['output']} as they are in its operations")
         if at.size and not ((task.box[0] <= at) & (at <= task.box[1])).all():
             raise CertificateError(f"{name}: expected a point of the box for {item['output']}, got another")
-        reached = _reached(task, at)
-        if not reached <= float.fromhex(item["pointwise"]) * (1 + 1e-9) or float.fromhex(item["pointwise"]) > said:
+        least = reached(task, at)
+        if not least <= float.fromhex(item["pointwise"]) * (1 + 1e-9) or float.fromhex(item["pointwise"]) > said:
             raise CertificateError(
-                f"{name}: expected a bound of {item['output']} of at least {reached / unit:.6g} units, "
+                f"{name}: expected a bound of {item['output']} of at least {least / unit:.6g} units, "
                 f"which a point of the box reaches, got {item['units']}"
             )
 
 
-def _reached(task: Task, at: Array) -> float:
-    """Return what the method finds at one point, the least over the branches that are open there."""
+def reached(task: Task, at: Array) -> float:
+    """Return what the method finds at one point, the least over the branches that are open there: no bound is below."""
     point = np.stack([at, at])[:, :, None]
     found = evaluate(task.cone, point, np.full((len(task.cone.conditions), 1), -1, np.int8), task.region, task.libm_ulp)
     value = float(found.bound[0])

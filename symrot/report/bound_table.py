@@ -1,22 +1,28 @@
 """Print the table of bounds that comes with symrot: ``python -m symrot.report.bound_table``.
 
 Bounds what changed since, on two processes; with another method (its sources differ) everything. Exit code 1 with
-``--check`` if the table is not what would be printed, as far as that is told without bounding anything.
+``--check`` if the table is not what would be printed, as far as that is told by looking at one point of each box.
 """
 
 import sys
 from argparse import ArgumentParser
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from math import inf
 
-from symrot.certify.rounding import STORE, Task, tasks
+import numpy as np
+
+from symrot.certify.rounding import STORE, Task, reached, tasks
 from symrot.certify.rounding_library import operations_of, prepare, problem
 from symrot.certify.rounding_store import TABLE, method, printed_table, table
+from symrot.certify.rounding_subdivision import Search
 from symrot.codegen.c_source import DOUBLE, FLOAT, c_source
 from symrot.codegen.library_kernels import kernel_description, kernel_program
 from symrot.kernels.library import definition, kernel_names
 from symrot.report.files import write
 
-__all__ = ["library_tasks", "missing"]
+__all__ = ["library_tasks", "missing", "understated"]
+
+SPARE = 1e-9  # relative, for another order of additions
 
 
 def _texts() -> dict[str, str]:
@@ -45,7 +51,23 @@ def missing() -> list[str]:
         said.append(f"{lacking} bounds are not in the table")
     if others := len(set(known) - set(wanted)):
         said.append(f"{others} bounds of the table are of nothing in the library")
+    if wrong := understated({key: task for key, task in wanted.items() if key in known}):
+        said.append(f"{len(wrong)} bounds are below what a point of their box reaches, the first that of {wrong[0]}")
     return said
+
+
+def understated(wanted: Mapping[str, Task]) -> list[str]:
+    """Return the keys of bounds in the table that a point of their box, the one they name as worst, contradicts."""
+    return [key for key, task in wanted.items() if not _may_be(task, STORE.get(key))]
+
+
+def _may_be(task: Task, kept: Search | None) -> bool:
+    """Return whether a bound is finite and not below what the method finds at the point that it names."""
+    if kept is None or len(kept.worst) != len(task.low):
+        return False
+    at = np.array(kept.worst)
+    inside = bool(((task.box[0] <= at) & (at <= task.box[1])).all())
+    return inside and reached(task, at) <= kept.pointwise * (1 + SPARE) and kept.pointwise <= kept.bound < inf
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
