@@ -12,6 +12,7 @@ from time import perf_counter
 
 from tests.reference import stress_conversions as conversions
 from tests.reference import stress_exact as exact
+from tests.reference import stress_found as found
 from tests.reference import stress_order as order
 from tests.reference import stress_speed as speed
 from tests.reference import stress_stepping as stepping
@@ -61,6 +62,16 @@ STRESSES = (
     Stress("S41", "instruction sets", "those of this processor", speed.s41),
     Stress("S42", "non-smooth torque", "restarted at the switches", stepping.s42),
 )
+FOUND = (  # beyond NUMERICS.md
+    Stress("F1", "dependent invariants", "I = (1,1.5,1.5000001), near steady", found.f1),
+    Stress("F2", "units", "to the limits of scenes", found.f2),
+    Stress("F3", "from rest", "w = 0, 1e-300 .. 1e-20, heavy", found.f3),
+    Stress("F4", "times in any order", "repeated, denormal, none", found.f4),
+    Stress("F5", "needles", "moments 1 : 1e-12", found.f5),
+    Stress("F6", "equilibria", "upright and hanging, exactly", found.f6),
+    Stress("F7", "locked Euler angles", "theta = 0, pi, 1e-8", found.f7),
+    Stress("F8", "switch at a sample", "declared in five ways", found.f8),
+)
 
 
 def verdict(figure: Figure) -> str:
@@ -83,13 +94,13 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--quick", action="store_true", help="the shorter form of each, as the test suite runs it")
     parser.add_argument("--json", action="store_true", help="print JSON")
     options = parser.parse_args(arguments)
-    unknown = sorted(set(options.ids) - {stress.id for stress in STRESSES})
+    unknown = sorted(set(options.ids) - {stress.id for stress in STRESSES + FOUND})
     if unknown:
-        parser.error(f"expected S1 to S42, got {', '.join(unknown)}")
+        parser.error(f"expected S1 to S42, F1 to F8, got {', '.join(unknown)}")
     rows, met = [], True
     if not options.json:
         print(f"{'':5}{'stress test':29}{'method':19}{'what':58}{'bar':>9}{'reached':>10}  verdict")
-    for stress in STRESSES:
+    for stress in STRESSES + FOUND:
         if options.ids and stress.id not in options.ids:
             continue
         began = perf_counter()
