@@ -208,7 +208,7 @@ def _end_and_span(drifts):
 
 def s30(long):
     """Projected every 4 steps, as NUMERICS.md has it, and every 16, as users get it; its own figures were medians."""
-    top, count, found = *((5, 8) if long else (3, 2)), []
+    top, count, found = *((5, 8) if long else (3, 3)), []
     for every in (4, taylor.PROJECTED_EVERY):
         energies, attitudes = _long_runs(PLATE_STATES[:count], [10.0**top], every)
         title = f"1e{top} rev, every {every} steps, worst of {count}"
