@@ -27,11 +27,12 @@ from symrot.closed_form import axial_compiled
 from symrot.closed_form.axial_angle import Turning, fallen
 from symrot.closed_form.double_double import two_product
 from symrot.closed_form.library import Floats, times_of
-from symrot.closed_form.pairs import Number, numbers, pair
+from symrot.closed_form.pairs import Number, common, numbers, pair
 from symrot.errors import InputError
 
 __all__ = ["AxialMotion", "motion"]
 
+_BITS = 200  # of a norm
 _LARGEST = 700.0  # the exponential of more leaves the doubles
 
 
@@ -53,8 +54,6 @@ class AxialMotion:
         self._lag, self._decay_across = across
         self._attitude, self._turned = attitude
         self._fastest = float(max(self._decay, self._decay_across))
-        self._slowing = pair(-self._decay)
-        self._doubles = float(self._rate), float(self._push), float(self._decay_across)
         self._known: dict[Fraction, Turning] = {}
         self._first = -_LARGEST / self._fastest if self._fastest else -math.inf
         self._loops = (
@@ -118,7 +117,7 @@ class AxialMotion:
         rates[:, self._axis] = self._axial(t)
         if not any(self._across):
             return rates
-        left = np.exp(-self._doubles[2] * t)
+        left = np.exp(-float(self._decay_across) * t)
         first, second = (float(w) * left for w in self._across)
         sine, cosine = self._angle(t, self._lag)
         rates[:, (self._axis + 1) % 3] = first * cosine - second * sine
@@ -127,7 +126,7 @@ class AxialMotion:
 
     def _axial(self, t: Floats) -> Floats:
         """Return the angular velocity about the axis."""
-        (rate, push, _), (high, low) = self._doubles, self._slowing
+        rate, push, (high, low) = float(self._rate), float(self._push), pair(-self._decay)
         found: Floats = rate + push * t
         if not high:
             return found
@@ -180,13 +179,13 @@ def motion(
     """
     moments = [Fraction(x) for x in numbers("inertia", inertia, 3)]
     rates = [Fraction(x) for x in numbers("omega", omega0, 3)]
-    attitude = [Fraction(x) for x in numbers("quaternion", quaternion0, 4)]
+    attitude, _ = common(numbers("quaternion", quaternion0, 4))
     push, drag, slowing = (Fraction(x) for x in numbers("torque and damping", [torque, damping, damping_across], 3))
-    square = sum((x * x for x in attitude), Fraction(0))
+    square = sum(x * x for x in attitude)
     if axis not in (0, 1, 2) or min(moments) <= 0 or not square:
         raise InputError(
             f"expected an axis 0, 1 or 2, positive moments and a quaternion that is not zero, got axis {axis}, moments "
-            f"{[float(x) for x in moments]} kg m^2 and quaternion {[float(x) for x in attitude]}"
+            f"{[float(x) for x in moments]} kg m^2 and quaternion {list(quaternion0)}"
         )
     across, other, own = moments[axis - 2], moments[axis - 1], moments[axis]
     if (rates[axis - 2] or rates[axis - 1]) and not number.equal(across, other):
@@ -195,8 +194,8 @@ def motion(
             f"{[float(x) for x in moments]} kg m^2 and omega {[float(x) for x in rates]} rad/s"
         )
     turning = (own - across) / across, slowing / across
-    norm = number.sqrt(square)
-    start = [float(x / norm) for x in attitude]
+    norm = math.isqrt(square << 2 * _BITS)
+    start = [(x << _BITS) / norm for x in attitude]
     turned = [0.0] * 4  # the product of the start and the axis
     turned[0], turned[axis + 1] = -start[axis + 1], start[0]
     turned[(axis + 1) % 3 + 1], turned[(axis + 2) % 3 + 1] = start[(axis + 2) % 3 + 1], -start[(axis + 1) % 3 + 1]
