@@ -116,12 +116,17 @@ ALWAYS_INLINE double exponential(const block *b, ptrdiff_t i)
     return MUL_ADD(b->power[i], small, b->power[i]);
 }
 
+/* Within an octave or so of the start the change since then is smaller than the last rate and what is left to it. */
 STAGE damped_rate(const double axial[4], ptrdiff_t n, block *restrict b)
 {
     EACH (i, n) {
-        const double mean = MUL_ADD(b->r[i], b->second[i], 1.0); /* (exp(x) - 1)/x where x is r */
-        const double near = axial[0] + axial[1]*b->t[i]*mean, far = axial[2] + axial[3]*exponential(b, i);
-        b->rate[i] = b->power[i] == 1.0 ? near : far;
+        const double r = b->r[i], power = b->power[i], small = r + MUL_ADD(r*r, b->second[i], b->r_low[i]);
+        const double mean = MUL_ADD(r, b->second[i], 1.0); /* (exp(x) - 1)/x where x is r */
+        const double near = MUL_ADD(axial[1]*b->t[i], mean, axial[0]);
+        const double middle = MUL_ADD(axial[3], MUL_ADD(power, small, power - 1.0), axial[0]);
+        const double far = MUL_ADD(axial[3], MUL_ADD(power, small, power), axial[2]);
+        const double moved = fabs(MUL_ADD(power, -4.0, 5.0)) <= 3.0 ? middle : far; /* power 1/2, 1, 2 */
+        b->rate[i] = power == 1.0 ? near : moved;
     }
 }
 
