@@ -8,6 +8,7 @@ from random import Random
 import pytest
 
 from symrot.certify.readback import read_kernel
+from symrot.certify.rounding import check_section
 from symrot.certify.rounding_constants import enclosed
 from symrot.cli import main
 from symrot.errors import InputError
@@ -97,18 +98,25 @@ def test_certify_audit_and_emit_keep_the_bounds(tmp_path, capsys, monkeypatch):
     assert main(["audit", str(path)]) == 1
 
 
-@pytest.mark.parametrize("part", ["absolute", "budget"])
+@pytest.mark.parametrize("part", ["absolute", "scale", "budget"])
 def test_a_forged_bound_is_not_printed_again(tmp_path, capsys, monkeypatch, part):
-    """A little smaller and consistent in itself, or found with another budget: emitted anew without any bound."""
+    """Consistent in itself, so that one point tells nothing: emitted anew without any bound."""
     monkeypatch.chdir(tmp_path)
     assert main(["certify", "t_handle", *_options(BOXES["t_handle"]), "-o", "k"]) == 0
     path = Path("k/t_handle_rates.cert.json")
     data = json.loads(path.read_text(encoding="utf-8"))
-    worst = data["rounding"]["precisions"][0]["outputs"][0]
+    found, less = data["rounding"]["precisions"][0]["outputs"], 1 - 2**-31
     if part == "absolute":
-        worst["absolute"] = worst["pointwise"] = (float.fromhex(worst["absolute"]) * (1 - 2**-40)).hex()
+        worst = found[-1]  # of 2.6875 units, 2.688 as they are rounded up
+        worst["absolute"], worst["pointwise"] = (
+            (float.fromhex(worst[name]) * less).hex() for name in ("absolute", "pointwise")
+        )
+    elif part == "scale":
+        found[0]["scale"] = (float.fromhex(found[0]["scale"]) / 2).hex()
     else:
         data["rounding"]["budget"] = 10**9
+    emitted = emit("t_handle")
+    check_section(data["rounding"], read_kernel(emitted.source, emitted.name, "t_handle_rates.c"), None)
     path.write_text(json.dumps(data), encoding="utf-8")
     assert kept_bounds("t_handle", Path("k")) is None
     assert main(["emit", "t_handle", "-o", "k"]) == 0
