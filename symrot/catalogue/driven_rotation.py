@@ -1,6 +1,6 @@
 """Constant torque and linear damping about one axis, in closed form."""
 
-from sympy import Expr, Matrix, Rational, S, cos, diag, exp, sin
+from sympy import Expr, Matrix, Rational, S, Symbol, cos, diag, exp, sin
 
 from symrot import symbols
 from symrot.catalogue._elliptic import I, imaginary
@@ -33,6 +33,8 @@ def derive() -> Derivation:
     _braked(d)
     _across(d)
     _attitude(d)
+    _by_kummer(d)
+    _far(d)
     return d
 
 
@@ -198,12 +200,117 @@ def _attitude(d: Derivation) -> None:
         r"\end{bmatrix}",
     )
     d.step(
-        r"One alone obeys Weber's equation, $\dot\Omega$ being constant: parabolic cylinder functions of time. The "
-        "numeric code does not offer them; such a motion is stepped.",
+        r"One alone obeys Weber's equation, $\dot\Omega$ being constant: parabolic cylinder functions of time.",
         rate(rate(first, motion), motion),
         (I * growth / 2 - (sweep**2 + across**2) / 4) * first,
         because="the second number is eliminated",
         relations=[imaginary()],
         named=r"\ddot\alpha",
         shown=r"\left( \frac{i}{2}\,\dot\Omega - \frac{\Omega^2 + \omega_1^2}{4} \right) \alpha",
+    )
+
+
+def _by_kummer(d: Derivation) -> None:
+    d.section("The attitude in closed form")
+    across, sweep, growth = symbols.omega_1, symbols.Omega, symbols.domega_3
+    value, slope, phase = Symbol("M"), Symbol("N"), Symbol("E")
+    a = -I * across**2 / (8 * growth)
+    z = -I * sweep**2 / (2 * growth)
+    motion = {
+        sweep: growth,
+        phase: I * sweep / 2 * phase,
+        value: -I * sweep * slope,
+        slope: 2 * growth / sweep * (a * value - (HALF - z) * slope),
+    }
+    first, second = phase * value, 2 * I * sweep / across * phase * slope
+    d.given(
+        r"Kummer's function $M = {}_1F_1(a; \tfrac12; z)$ and its derivative $N = dM/dz$ obey $z \frac{dN}{dz} = a M - "
+        r"(\tfrac12 - z) N$. With $a = -\frac{i \omega_1^2}{8 \dot\Omega}$, $z = -\frac{i \Omega^2}{2 \dot\Omega}$, so "
+        r"that $\dot z = -i \Omega$, and $E = e^{i \Omega^2 / 4 \dot\Omega}$, so that $\dot E = \frac{i}{2} \Omega E$:",
+        (r"\alpha", first),
+        (r"\beta", second),
+    )
+    d.notation({r"\alpha": first, r"\beta": second, "M": value, "N": slope, "E": phase, "i": I}, motion)
+    d.step(
+        r"They are the attitude of axes that start along those of space at $\Omega = 0$, where $\alpha = 1$ and "
+        r"$\beta = 0$. From any other start the attitude is a constant quaternion times this one.",
+        rate(Matrix([first, second]), motion),
+        HALF * Matrix([I * sweep * first - across * second, across * first - I * sweep * second]),
+        because="of Kummer's equation",
+        relations=[imaginary()],
+        named=r"\begin{bmatrix} \dot\alpha \\ \dot\beta \end{bmatrix}",
+        shown=r"\tfrac12 \begin{bmatrix} i \Omega\,\alpha - \omega_1\,\beta \\ \omega_1\,\alpha - i \Omega\,\beta "
+        r"\end{bmatrix}",
+    )
+    speed, area = Symbol("S"), Symbol("Z")
+    swept = {sweep: growth, speed: sweep * growth / speed, area: growth / speed}
+    angle = (sweep * speed + across**2 * area) / (2 * growth)
+    d.given(
+        r"Let $S = \sqrt{\Omega^2 + \omega_1^2}$ be the rate of these axes and $Z = \operatorname{arsinh} "
+        r"(\Omega/\omega_1)$, so that $\dot Z = \dot\Omega / S$."
+    )
+    d.notation({"S": speed, "Z": area}, swept)
+    d.step(
+        "The integral of that rate is elementary: the phase of a slow sweep.",
+        rate(angle, swept),
+        speed,
+        because=r"$S^2 = \Omega^2 + \omega_1^2$",
+        relations=[speed**2 - sweep**2 - across**2],
+        named=r"\frac{d}{dt} \frac{\Omega S + \omega_1^2 Z}{2 \dot\Omega}",
+        shown="S",
+    )
+
+
+def _far(d: Derivation) -> None:
+    d.section("Far from resonance")
+    x, r, kappa = Symbol("x"), Symbol("r"), Symbol("kappa")
+    a, b, c = Symbol("a"), Symbol("b"), Symbol("c")
+    v = 1 / r**2
+    moved = -2 * x / r**4
+    motion = {
+        x: S.One,
+        r: x / r,
+        a: moved * -(a + c) / (2 * v),
+        b: moved * kappa**2 * (b + c) / (2 * (1 - kappa**2 * v)),
+        c: moved * ((a - b) / v**2 - 3 * c) / (2 * v),
+    }
+    n = Matrix([kappa / r * a, kappa / r**3 * c, x / r * b])
+    d.given(
+        r"In the unit of time $\dot\Omega^{-1/2}$ the body turns at $(\kappa, 0, x)$, $x$ the time; $r^2 = x^2 + "
+        r"\kappa^2$, $v = 1/r^2$. Let $a, b, c$ be series in $v$ with $c = -(a + 2 v a')$, $b - a = -v^2 (3 c + 2 v "
+        r"c')$ and $2 (1 - \kappa^2 v) b' = \kappa^2 (b + c)$: from $a = b = 1$ at $v = 0$ each coefficient follows "
+        "from those before.",
+        ("n", n),
+    )
+    d.notation({"n": n, r"\kappa": kappa, "r": r, "x": x}, motion)
+    d.step(
+        "This vector is at rest in space. Far from resonance it follows the axis of rotation, and the body turns about "
+        "it by the phase above, but for a small angle.",
+        rate(n, motion),
+        n.cross(Matrix([kappa, 0, x])),
+        because="a vector at rest in space turns backwards in the body",
+        relations=[r**2 - x**2 - kappa**2],
+        named=r"\frac{dn}{dx}",
+        shown=r"n \times (\kappa, 0, x)",
+    )
+    first, second, third = (Symbol(f"m_{k}") for k in (1, 2, 3))
+    tilt = -kappa / r**2
+    turning = {x: S.One, r: x / r, first: r * second - tilt * third, second: -r * first, third: tilt * first}
+    squares = first**2 + second**2 + third**2
+    spin = r * third + tilt * second + (second * turning[first] - first * turning[second]) / (1 + third)
+    d.given(
+        r"In axes turned about the second one until the third lies along $(\kappa, 0, x)$ the body turns at $(0, "
+        r"\dot\vartheta, r)$, $\dot\vartheta = -\kappa/r^2$, and $n$ is a vector $m$ near the third axis. The axes "
+        r"turned on by the shortest way until the third lies along $m$ turn about it alone, at the rate $m \cdot "
+        r"\omega + (m_2 \dot m_1 - m_1 \dot m_2)/(1 + m_3)$."
+    )
+    d.notation({"m": Matrix([first, second, third]), "r": r}, turning)
+    d.step(
+        "It exceeds $r$ by the rate of the small angle.",
+        spin,
+        r + tilt * second / (1 + third),
+        because="$m$ has length 1 and is at rest in space",
+        relations=[squares - 1],
+        named=r"m \cdot \omega + \frac{m_2 \dot m_1 - m_1 \dot m_2}{1 + m_3}",
+        shown=r"r + \frac{\dot\vartheta\,m_2}{1 + m_3}",
     )

@@ -23,7 +23,7 @@ from symrot.closed_form import frames, spin_up_compiled
 from symrot.closed_form.library import Floats, times_of
 from symrot.closed_form.pairs import Number, numbers, pair
 from symrot.closed_form.spin_up_compiled import CompiledNear
-from symrot.closed_form.spin_up_exact import Sweep, about_third, conjugate, rounded
+from symrot.closed_form.spin_up_exact import ONE, Quaternion, Sweep, about_third, conjugate, fixed, product, rounded
 from symrot.closed_form.spin_up_near import Near
 from symrot.closed_form.spin_up_series import NEAR, series
 from symrot.errors import InputError
@@ -31,7 +31,6 @@ from symrot.errors import InputError
 __all__ = ["SpinUp", "motion"]
 
 _PHASE = 1e13  # rad, from here on pairs of doubles would not do
-_ONE = (Fraction(1), Fraction(0), Fraction(0), Fraction(0))
 
 
 def _scale(*values: Fraction) -> Fraction:
@@ -41,10 +40,11 @@ def _scale(*values: Fraction) -> Fraction:
     return Fraction(2) ** max(-900, min(900, size))
 
 
-def _map(left: Sequence[Fraction], right: Sequence[Fraction]) -> list[float]:
+def _map(left: Quaternion, right: Quaternion) -> list[float]:
     """Return the matrix of q -> left q right, row by row."""
-    columns = [frames.product(frames.product(left, [Fraction(int(i == k)) for i in range(4)]), right) for k in range(4)]
-    return [float(column[i]) for i in range(4) for column in columns]
+    units = ((ONE[0] if i == k else 0 for i in range(4)) for k in range(4))
+    columns = [product(left, (a, b, c, d), right) for a, b, c, d in units]
+    return [column[i] / ONE[0] for i in range(4) for column in columns]
 
 
 class SpinUp:
@@ -85,7 +85,7 @@ class SpinUp:
         self._sweep = Sweep(rounded(width / scale), rounded(s / scale**2), series(kappa2, 1.0 / kappa2))
         self._edge = Fraction(0) if self._sweep.series.wide else rounded(Fraction(NEAR) * self._root / scale)
         self._axes = self._body_axes(axis, sign, first / width, second / width)
-        self._given = tuple(map(rounded, frames.product(frames.unit(attitude), self._axes)))
+        self._given = product(fixed(frames.unit(attitude)), self._axes)
         self._rates = [[0.0, 0.0] for _ in range(3)]
         self._rates[axis - 2] = [float(first), -sign * float(second)]
         self._rates[axis - 1] = [float(second), sign * float(first)]
@@ -94,13 +94,13 @@ class SpinUp:
         self._kinds: dict[bool, Callable[..., None]] = {}
 
     @staticmethod
-    def _body_axes(axis: int, sign: int, first: Fraction, second: Fraction) -> tuple[Fraction, ...]:
+    def _body_axes(axis: int, sign: int, first: Fraction, second: Fraction) -> Quaternion:
         """Return the turn from e1, e2, e3 to the body's axes: e3 along the torque, e1 along what turns across it."""
         columns = [[Fraction(0)] * 3 for _ in range(3)]
         columns[0][axis - 2], columns[0][axis - 1] = first, second
         columns[1][axis - 2], columns[1][axis - 1] = -sign * second, sign * first
         columns[2][axis] = Fraction(sign)
-        return tuple(map(rounded, frames.quaternion_of([list(row) for row in zip(*columns, strict=True)])))
+        return fixed(frames.quaternion_of([list(row) for row in zip(*columns, strict=True)]))
 
     @cached_property
     def _near(self) -> Near | CompiledNear:
@@ -116,26 +116,22 @@ class SpinUp:
     def _x(self, omega: Fraction) -> Fraction:
         return rounded(omega * self._scale / self._root)
 
-    def _to_resonance(self) -> tuple[Fraction, ...]:
+    @cached_property
+    def _resonance(self) -> Quaternion:
         """Return the rotation of the body from the start to Omega = 0, seen from it."""
         side, sweep = self._side(self._start), self._sweep
         if not side:
             return conjugate(self._near.quaternion(self._x(self._start)))
         edge = side * self._edge
         leaving = sweep.rotation(self._start, rounded((edge - self._start) / sweep.s))
-        return frames.product(leaving, conjugate(self._near.quaternion(Fraction(side * int(NEAR)))))
+        return product(leaving, conjugate(self._near.quaternion(Fraction(side * int(NEAR)))))
 
-    @cached_property
-    def _resonance(self) -> tuple[Fraction, ...]:
-        return tuple(map(rounded, self._to_resonance()))
-
-    def _begin(self, side: int) -> tuple[Fraction, Fraction, tuple[Fraction, ...]]:
+    def _begin(self, side: int) -> tuple[Fraction, Fraction, Quaternion]:
         """Return from where a side is counted: the time, Omega, and the rotation of the body until then."""
         if self._side(self._start) == side:
-            return Fraction(0), self._start, _ONE
+            return Fraction(0), self._start, ONE
         edge, crossed = side * self._edge, self._near.quaternion(Fraction(side * int(NEAR)))
-        rotation = tuple(map(rounded, frames.product(self._resonance, crossed)))
-        return rounded((edge - self._start) / self._sweep.s), edge, rotation
+        return rounded((edge - self._start) / self._sweep.s), edge, product(self._resonance, crossed)
 
     def _constants(self, near: bool) -> list[float]:
         """Return what C takes; without what only samples near resonance or beyond it need, or with it."""
@@ -157,8 +153,8 @@ class SpinUp:
                 continue
             time, omega, rotation = self._begin(1 if wide else side)
             values += [*pair(time), *pair(omega), sweep.delta(omega)]
-            values += _map(frames.product(self._given, frames.product(rotation, sweep.axes(omega))), back)
-        return values + (_map(frames.product(self._given, self._resonance), back) if near else [0.0] * 16)
+            values += _map(product(self._given, rotation, sweep.axes(omega)), back)
+        return values + (_map(product(self._given, self._resonance), back) if near else [0.0] * 16)
 
     def _fill(self, near: bool) -> Callable[..., None]:
         """Return the loops over samples."""
@@ -212,11 +208,11 @@ class SpinUp:
         side = self._side(omega)
         if side:
             begun, place, rotation = self._begin(side)
-            turned = frames.product(rotation, self._sweep.rotation(place, t - begun))
+            turned = product(rotation, self._sweep.rotation(place, t - begun))
         else:
-            turned = frames.product(self._resonance, self._near.quaternion(self._x(omega)))
-        body = frames.product(frames.product(turned, about_third(-angle)), conjugate(self._axes))
-        attitudes[i] = [float(x) for x in frames.product(self._given, body)]
+            turned = product(self._resonance, self._near.quaternion(self._x(omega)))
+        found = product(self._given, turned, about_third(-angle), conjugate(self._axes))
+        attitudes[i] = [x / ONE[0] for x in found]
 
 
 def motion(

@@ -9,6 +9,7 @@ import numpy as np
 
 from symrot.closed_form.library import Floats, address, load
 from symrot.closed_form.pairs import pair
+from symrot.closed_form.spin_up_exact import FIXED, Quaternion
 from symrot.closed_form.spin_up_near import DEGREE, PIECES
 from symrot.closed_form.spin_up_series import NEAR
 from symrot.codegen import library
@@ -61,15 +62,15 @@ class CompiledNear:
         self._table, self._middles = np.empty((_COUNT, DEGREE + 1, 4)), np.empty((_COUNT, 4, 2))
         _functions().near(address(self._kappa), _COUNT, address(self._table), address(self._middles))
 
-    def quaternion(self, x: Fraction) -> tuple[Fraction, ...]:
+    def quaternion(self, x: Fraction) -> Quaternion:
         """Return the attitude at one x."""
         piece = min(int(abs(x) * PIECES), _COUNT - 1)
         place, attitude = Fraction(2 * piece + 1, 2 * PIECES), self._middles[piece].copy()
         distance = np.array(pair(abs(x) - place))
         _functions().further(address(self._kappa), float(place), address(distance), address(attitude))
-        q = [Fraction(high) + Fraction(low) for high, low in attitude.tolist()]
+        q0, q1, q2, q3 = (int(high * 2.0**FIXED) + int(low * 2.0**FIXED) for high, low in attitude.tolist())
         sign = -1 if x < 0 else 1
-        return q[0], sign * q[1], sign * q[2], q[3]
+        return q0, sign * q1, sign * q2, q3
 
     def table(self) -> Floats:
         """Return the coefficients, by piece, power of the distance from its middle, and component of the quaternion."""

@@ -18,9 +18,14 @@ from symrot.closed_form import frames
 from symrot.closed_form.library import Floats
 from symrot.closed_form.spin_up_series import NEAR, Series
 
-__all__ = ["Sweep", "about_third", "conjugate", "rounded"]
+__all__ = ["FIXED", "ONE", "Quaternion", "Sweep", "about_third", "conjugate", "fixed", "product", "rounded"]
 
-Quaternion = tuple[Fraction, ...]
+FIXED = 144
+"""Bits behind the point of unit quaternions, which are integers here: with Fractions they take four times as long."""
+
+Quaternion = tuple[int, int, int, int]
+
+ONE: Quaternion = (1 << FIXED, 0, 0, 0)
 
 _HALVINGS = 12  # of the argument of asinh, at least
 _SMALL = Fraction(1, 1 << _HALVINGS)
@@ -36,14 +41,33 @@ def rounded(value: Fraction) -> Fraction:
     return Fraction((value.numerator // value.denominator >> -shift) << -shift)
 
 
-def conjugate(q: Sequence[Fraction]) -> Quaternion:
+def fixed(values: Sequence[Fraction]) -> Quaternion:
+    """Return a unit quaternion in integers."""
+    q0, q1, q2, q3 = ((x.numerator << FIXED) // x.denominator for x in values)
+    return q0, q1, q2, q3
+
+
+def product(a: Quaternion, *others: Quaternion) -> Quaternion:
+    """Return the product of unit quaternions."""
+    for b0, b1, b2, b3 in others:
+        a0, a1, a2, a3 = a
+        a = (
+            a0 * b0 - a1 * b1 - a2 * b2 - a3 * b3 >> FIXED,
+            a0 * b1 + a1 * b0 + a2 * b3 - a3 * b2 >> FIXED,
+            a0 * b2 - a1 * b3 + a2 * b0 + a3 * b1 >> FIXED,
+            a0 * b3 + a1 * b2 - a2 * b1 + a3 * b0 >> FIXED,
+        )
+    return a
+
+
+def conjugate(q: Quaternion) -> Quaternion:
     """Return the inverse of a unit quaternion."""
     return (q[0], -q[1], -q[2], -q[3])
 
 
 def about_third(angle: Fraction) -> Quaternion:
     """Return the turn through an angle, rad, about the third axis."""
-    return number.cos(angle / 2), Fraction(0), Fraction(0), number.sin(angle / 2)
+    return fixed([number.cos(angle / 2), Fraction(0), Fraction(0), number.sin(angle / 2)])
 
 
 def _asinh_ratio(z: Fraction) -> Fraction:
@@ -100,8 +124,8 @@ class Sweep:
         larger = number.sqrt(rounded((1 + abs(omega) / self.speed(omega)) / 2))
         smaller = rounded(self.across / (2 * larger * self.speed(omega)))
         half = (larger, smaller) if omega >= 0 else (smaller, larger)
-        turn = frames.product((half[0], Fraction(0), half[1], Fraction(0)), frames.unit((m3, -m2, m1, Fraction(0))))
-        return tuple(map(rounded, turn))
+        turn = fixed([half[0], Fraction(0), half[1], Fraction(0)])
+        return product(turn, fixed(frames.unit((m3, -m2, m1, Fraction(0)))))
 
     def angle(self, start: Fraction, time: Fraction) -> Fraction:
         """Return the angle that the body turns about that vector within a time, from Omega = start."""
@@ -120,5 +144,4 @@ class Sweep:
     def rotation(self, start: Fraction, time: Fraction) -> Quaternion:
         """Return the rotation of the body within a time, seen from it, all of which is far."""
         end = conjugate(self.axes(start + self.s * time))
-        turned = frames.product(self.axes(start), about_third(self.angle(start, time)))
-        return tuple(map(rounded, frames.product(turned, end)))
+        return product(self.axes(start), about_third(self.angle(start, time)), end)

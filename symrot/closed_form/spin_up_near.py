@@ -16,6 +16,7 @@ from fractions import Fraction
 import numpy as np
 
 from symrot.closed_form.library import Floats
+from symrot.closed_form.spin_up_exact import FIXED, Quaternion
 from symrot.closed_form.spin_up_series import NEAR
 
 __all__ = ["DEGREE", "PIECES", "Near"]
@@ -26,7 +27,6 @@ PIECES = 4
 DEGREE = 19
 """Of the polynomials: (r/2)^20/20!/8^20 < 1e-20 for r < 13.5."""
 
-_BITS = 144  # behind the point
 _TERMS = 34  # of a series in integers
 
 _Spinor = tuple[int, int, int, int]  # q0, q3, q1, q2
@@ -38,7 +38,7 @@ class Near:
     def __init__(self, kappa: Fraction) -> None:
         self._kappa = self._fixed(kappa)
         half = Fraction(1, 2 * PIECES)
-        spinor = self._sum(self._coefficients((1 << _BITS, 0, 0, 0), Fraction(0)), half)
+        spinor = self._sum(self._coefficients((1 << FIXED, 0, 0, 0), Fraction(0)), half)
         self._series: list[list[_Spinor]] = []
         for piece in range(int(NEAR) * PIECES):
             self._series.append(self._coefficients(spinor, (2 * piece + 1) * half))
@@ -46,7 +46,7 @@ class Near:
 
     @staticmethod
     def _fixed(value: Fraction) -> int:
-        return (value.numerator << _BITS) // value.denominator
+        return (value.numerator << FIXED) // value.denominator
 
     def _coefficients(self, spinor: _Spinor, place: Fraction) -> list[_Spinor]:
         """Return the series about a place, whose denominator is a power of two."""
@@ -58,10 +58,10 @@ class Near:
             p0, p3, p1, p2 = before
             found.append(
                 (
-                    (-(q3 * top >> shift) - p3 - (kappa * q1 >> _BITS)) // (2 * n),
-                    ((q0 * top >> shift) + p0 - (kappa * q2 >> _BITS)) // (2 * n),
-                    ((q2 * top >> shift) + p2 + (kappa * q0 >> _BITS)) // (2 * n),
-                    (-(q1 * top >> shift) - p1 + (kappa * q3 >> _BITS)) // (2 * n),
+                    (-(q3 * top >> shift) - p3 - (kappa * q1 >> FIXED)) // (2 * n),
+                    ((q0 * top >> shift) + p0 - (kappa * q2 >> FIXED)) // (2 * n),
+                    ((q2 * top >> shift) + p2 + (kappa * q0 >> FIXED)) // (2 * n),
+                    (-(q1 * top >> shift) - p1 + (kappa * q3 >> FIXED)) // (2 * n),
                 )
             )
             before = now
@@ -70,19 +70,19 @@ class Near:
     def _sum(self, series: list[_Spinor], step: Fraction) -> _Spinor:
         x, total = self._fixed(step), [0, 0, 0, 0]
         for term in reversed(series):
-            total = [(value * x >> _BITS) + more for value, more in zip(total, term, strict=True)]
+            total = [(value * x >> FIXED) + more for value, more in zip(total, term, strict=True)]
         return total[0], total[1], total[2], total[3]
 
-    def quaternion(self, x: Fraction) -> tuple[Fraction, ...]:
-        """Return the attitude at one x, to 1e-35."""
+    def quaternion(self, x: Fraction) -> Quaternion:
+        """Return the attitude at one x, to 1e-30."""
         piece = min(int(abs(x) * PIECES), len(self._series) - 1)
         q0, q3, q1, q2 = self._sum(self._series[piece], abs(x) - Fraction(2 * piece + 1, 2 * PIECES))
         sign = -1 if x < 0 else 1
-        return tuple(Fraction(q, 1 << _BITS) for q in (q0, sign * q1, sign * q2, q3))
+        return q0, sign * q1, sign * q2, q3
 
     def table(self) -> Floats:
         """Return the coefficients, by piece, power of the distance from its middle, and component of the quaternion."""
-        one = 1 << _BITS
+        one = 1 << FIXED
         return np.array(
             [[[q0 / one, q1 / one, q2 / one, q3 / one] for q0, q3, q1, q2 in s[: DEGREE + 1]] for s in self._series]
         )

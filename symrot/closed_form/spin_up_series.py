@@ -6,9 +6,9 @@ x)``. One such vector follows the axis of rotation. With ``r^2 = x^2 + kappa^2``
     n1 = (kappa/r) a(v),  n2 = (kappa/r) v c(v),  n3 = (x/r) b(v),
 
 the equation becomes ``c = -(a + 2 v a')``, ``b - a = -v^2 (3 c + 2 v c')``, ``2 (1 - kappa^2 v) b' = kappa^2 (b + c)``:
-coefficients follow one from another. They are ordered by powers of ``v^2``; each order is a polynomial in ``kappa^2 v``,
-at most 1. The series does not converge, yet beyond :data:`NEAR`, or for more than :data:`WIDE`, its terms fall below
-1e-18 before they grow.
+coefficients follow one from another. They are ordered by powers of ``v^2``; each order is a polynomial in
+``kappa^2 v``, at most 1. The series does not converge, yet beyond :data:`NEAR`, or for more than :data:`WIDE`, its
+terms fall below 1e-18 before they grow.
 
 What is left of ``n`` in axes whose third is the axis of rotation is ``m = (kappa/r) (x/r v^2 g, v c, ..)``. The angle
 about it exceeds the integral of ``r`` by ``delta = (x/r) e(v)``.
@@ -54,28 +54,31 @@ class Series(NamedTuple):
 
 @cache
 def _nodes() -> tuple[Floats, Floats]:
-    """Return Chebyshev's points between 0 and 1, and their powers."""
+    """Return Chebyshev's points between 0 and 1, and their powers, as many as a series has."""
     y = 0.5 - 0.5 * np.cos(np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1))
-    return y, np.vander(y, increasing=True)
+    return y, np.vander(y, 3 * _ORDERS + 1, increasing=True)
 
 
-def _first(share: float, v: float) -> list[dict[int, float]]:
-    """Return the coefficients of a by order, each by its power of y; ``share`` is kappa^2/radius2, v = 1/radius2."""
-    orders = [{0: 1.0}]
+def _first(share: float, v: float) -> Floats:
+    """Return the coefficients of a by the power of y; ``share`` is kappa^2/radius2, v = 1/radius2."""
+    order, total = {0: 1.0}, [0.0] * (3 * _ORDERS + 1)
+    total[0] = 1.0
     for _ in range(_ORDERS):
         found: dict[int, float] = {}
-        for power, value in orders[-1].items():
+        for power, value in order.items():
             j = power + 2
             gap = (2 * j - 1) * (2 * j - 3) * v * v * value  # b_j - a_j
             found[j] = found.get(j, 0.0) - gap
             found[j + 1] = found.get(j + 1, 0.0) + share * (2 * j + 1) * gap / (2 * j + 2)
-        orders.append(found)
-    return orders
+        for power, value in found.items():
+            total[power] += value
+        order = found
+    return np.array(total)
 
 
 def _angle(share: float, v: float, h: Floats) -> Floats:
     """Return e at the nodes from the coefficients of h, where delta' = kappa^2 v^(5/2) h."""
-    y, _ = _nodes()
+    powers = _nodes()[1]
     if share >= _SMALL:  # from x = 0
         e = np.zeros(len(h) + 2)
         for j in range(len(h), -1, -1):
@@ -84,7 +87,7 @@ def _angle(share: float, v: float, h: Floats) -> Floats:
         e = np.zeros(_TERMS)
         for j in range(_TERMS - 1):
             e[j + 1] = share * ((1 + 2 * j) * e[j] - (v * h[j - 1] if 0 < j <= len(h) else 0.0)) / (2 * j + 2)
-    angle: Floats = np.vander(y, len(e), increasing=True) @ e
+    angle: Floats = powers[:, : len(e)] @ e
     return angle
 
 
@@ -94,15 +97,12 @@ def series(kappa2: float, inverse: float) -> Series:
     radius2 = kappa2 if wide else NEAR * NEAR + kappa2
     share, v = (1.0, inverse) if wide else (kappa2 / radius2, 1.0 / radius2)
     y, powers = _nodes()
-    g: Floats = np.zeros_like(y)
-    c: Floats = np.zeros_like(y)
-    for order in _first(share, v):
-        for j, value in order.items():
-            g -= (2 * j + 3) * (2 * j + 1) * value * y**j
-            c -= (2 * j + 1) * value * y**j
+    square = powers[:, : DEGREE + 1]
+    a, twice = _first(share, v), 2.0 * np.arange(powers.shape[1])
+    g, c = -powers @ ((twice + 3.0) * (twice + 1.0) * a), -powers @ ((twice + 1.0) * a)
     first2 = share * y * (1.0 - share * y) * (v * y) ** 4 * g * g
     second2 = share * y * (v * y) ** 2 * c * c
-    h = np.asarray(np.linalg.solve(powers, -c / (1.0 + np.sqrt(1.0 - first2 - second2))), np.float64)
+    h = np.asarray(np.linalg.solve(square, -c / (1.0 + np.sqrt(1.0 - first2 - second2))), np.float64)
     e = _angle(share, v, h)
-    kept = np.asarray(np.linalg.solve(powers, np.stack([v * v * g, v * c, e], axis=1)), np.float64)
+    kept = np.asarray(np.linalg.solve(square, np.stack([v * v * g, v * c, e], axis=1)), np.float64)
     return Series(wide, kept[:, 0], kept[:, 1], kept[:, 2])
