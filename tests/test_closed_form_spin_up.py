@@ -1,0 +1,179 @@
+"""A symmetric body driven about its axis: the closed form against Kummer's function and Taylor series of mpmath."""
+
+import random
+
+import numpy as np
+import pytest
+from mpmath import exp, hyp1f1, mp, mpc, mpf
+
+from symrot.closed_form import library, spin_up, spin_up_compiled, spin_up_series
+from symrot.errors import InputError
+from symrot.propagation.propagator import propagate
+from symrot.scene import load_scene
+from tests.test_closed_form_driven import flow
+
+Q0 = (0.1, 0.7, -0.5, 0.5)
+BAR = 1e-15
+
+
+def product(a, b):
+    (a0, a1, a2, a3), (b0, b1, b2, b3) = a, b
+    return [a0 * b0 - a1 * b1 - a2 * b2 - a3 * b3, a0 * b1 + a1 * b0 + a2 * b3 - a3 * b2,
+            a0 * b2 - a1 * b3 + a2 * b0 + a3 * b1, a0 * b3 + a1 * b2 - a2 * b1 + a3 * b0]  # fmt: skip
+
+
+def inverse(q):
+    return [q[0], -q[1], -q[2], -q[3]]
+
+
+def about_axis(angle):
+    return [mp.cos(angle / 2), mpf(0), mpf(0), mp.sin(angle / 2)]
+
+
+def swept(kappa, x):
+    """Return the attitude at x of what turns at (kappa, 0, x) from 1 at x = 0: step 13 of driven_rotation.md."""
+    a, z = mpc(0, -1) * kappa**2 / 8, mpc(0, -1) * x**2 / 2
+    alpha = exp(-z / 2) * hyp1f1(a, mpf(1) / 2, z)
+    beta = kappa / 2 * x * exp(z / 2) * hyp1f1(mpf(1) / 2 - a, mpf(3) / 2, -z)
+    return [alpha.real, beta.real, beta.imag, alpha.imag]
+
+
+def kummer(a, c, torque, omega, t):
+    """Return q at t for moments a, a, c, to 50 digits."""
+    with mp.workdps(50):
+        a, c, torque, t, *omega = map(mpf, (a, c, torque, t, *omega))
+        norm = mp.sqrt(sum(mpf(x) ** 2 for x in Q0))
+        sign, root, lag = mp.sign(torque), mp.sqrt(abs(torque) / a), (c - a) / a
+        width, start = mp.hypot(omega[0], omega[1]), mp.atan2(omega[1], omega[0])
+        x0, kappa = sign * c / a * omega[2] / root, width / root
+        flip = [mpf(1), 0, 0, 0] if sign > 0 else [0, mpf(1), 0, 0]
+        q = product(product([mpf(x) / norm for x in Q0], about_axis(start)), flip)
+        q = product(product(q, inverse(swept(kappa, x0))), swept(kappa, x0 + root * t))
+        phase = start + lag * (omega[2] * t + torque / (2 * c) * t**2)
+        return np.array([float(x) for x in product(product(q, inverse(flip)), about_axis(-phase))])
+
+
+def at(kappa, x0, torque=0.37, a=1.25, c=2.0):
+    """Return arguments of a motion that begins at x0, and the unit of time."""
+    root = (abs(torque) / a) ** 0.5
+    across = kappa * root
+    return (a, a, c), 2, torque, (0.6 * across, -0.8 * across, np.sign(torque) * x0 * root * a / c), Q0, 1 / root
+
+
+@pytest.mark.parametrize(
+    "kappa, torque",
+    [(1e-6, 0.37), (0.03, -2), (1, 0.37), (1, -2), (4, 0.37), (6.5, -2), (8.999, 0.37), (9.001, 0.37), (20, -2)],
+)
+def test_every_regime_against_kummers_function(kappa, torque):
+    """From either side of resonance and from within, to either side and within."""
+    draw = random.Random(repr((kappa, torque)))
+    for x0 in (-17.0, 1.5, 11.0):
+        *given, unit = at(kappa, x0, torque, c=draw.uniform(0.2, 2.4))
+        times = [(x - x0) * unit for x in (draw.uniform(-9, 9), draw.uniform(-25, -10), draw.uniform(10, 25))]
+        found = spin_up.motion(*given).evaluate(times)[1]
+        for t, q in zip(times, found, strict=True):
+            exact = kummer(given[0][0], given[0][2], torque, given[3], t)
+            assert np.abs(q - exact).max() <= BAR
+
+
+@pytest.mark.parametrize("moments, axis, torque, omega", [
+    ((1, 1, 2), 2, 0.5, (0.3, 1, -0.4)), ((2, 1, 1), 0, -1.5, (3, 0, 1)), ((1, 3, 1), 1, 1e-3, (0.3, 1, 0.2)),
+    ((2, 2, 2), 2, 3, (0.3, 1, 0.5)), ((1, 1, 2), 2, 0, (0.3, 1, -0.4)),
+])  # fmt: skip
+def test_against_eulers_equations(moments, axis, torque, omega):
+    push = [torque if k == axis else 0 for k in range(3)]
+    w, q = flow(moments, omega, 2.75, torque=push)
+    rates, attitudes = spin_up.motion(moments, axis, torque, omega, Q0).evaluate([2.75, 0.0])
+    assert np.abs(rates[0] - w).max() <= BAR and np.abs(attitudes[0] - q).max() <= BAR
+    assert (rates[1] == omega).all() and np.abs(attitudes[1] - np.array(Q0) / np.linalg.norm(Q0)).max() < 3e-16
+
+
+def extremes(count, seed=7):
+    """Return motions of kappa from 1e-6 to 1e6, x to 1e5 (1e9 turns), both ways."""
+    draw = random.Random(seed)
+    for _ in range(count):
+        torque = draw.choice((-1, 1)) * 10 ** draw.uniform(-3, 3)
+        *given, unit = at(10 ** draw.uniform(-6, 6), draw.choice((-1, 1)) * 10 ** draw.uniform(-3, 4), torque)
+        yield given, np.array([0.0, *(draw.choice((-1, 1)) * 10 ** draw.uniform(-3, 5) * unit for _ in range(6))])
+
+
+def by_integers(motion, times):
+    rates, attitudes = np.empty((len(times), 3)), np.empty((len(times), 4))
+    for i, t in enumerate(times.tolist()):
+        motion._put(i, t, rates, attitudes)
+    return rates, attitudes
+
+
+def without_compiler(given, monkeypatch):
+    monkeypatch.setenv("CC", "no such compiler")
+    monkeypatch.setattr(spin_up_compiled, "_bound", [])
+    monkeypatch.setattr(library, "_loaded", {})
+    return spin_up.motion(*given)
+
+
+def test_pairs_of_doubles_hold_what_integers_find():
+    for given, times in extremes(12):
+        motion = spin_up.motion(*given)
+        (w, q), (rates, attitudes) = motion.evaluate(times), by_integers(motion, times)
+        assert np.abs(q - attitudes).max() <= BAR and np.abs(w - rates).max() <= BAR * np.abs(w).max()
+
+
+def test_numpy_returns_what_c_returns(monkeypatch):
+    cases = [*extremes(6, 8), (at(1.0, -12.0)[:-1], np.linspace(-5, 50, 40))]
+    found = [spin_up.motion(*given).evaluate(times) for given, times in cases]
+    for (given, times), (w, q) in zip(cases, found, strict=True):
+        rates, attitudes = without_compiler(given, monkeypatch).evaluate(times)
+        assert np.abs(q - attitudes).max() <= BAR and np.abs(w - rates).max() <= BAR * np.abs(w).max()
+
+
+def test_a_spin_up_of_any_length():
+    """Beyond 1e13 rad integers take over; the change of hands shows nowhere."""
+    *given, unit = at(0.8, -3.0)
+    motion = spin_up.motion(*given)
+    times = np.array([4e6, 1e9, 1e15]) * unit
+    w, q = motion.evaluate(times)
+    assert np.array_equal(q[1:], by_integers(motion, times)[1][1:])
+    assert np.abs(q[0] - by_integers(motion, times[:1])[1][0]).max() <= BAR
+    assert np.abs(np.linalg.norm(q, axis=1) - 1).max() < BAR and np.isfinite(w).all()
+
+
+def test_a_weak_torque_leaves_a_free_body():
+    free = spin_up.motion((1, 1, 2), 2, 0, (0.3, 1, -0.4), Q0)
+    for torque in (1e-300, -1e-60, 1e-25):
+        weak = spin_up.motion((1, 1, 2), 2, torque, (0.3, 1, -0.4), Q0)
+        for a, b in zip(free.evaluate([-7.0, 1e3]), weak.evaluate([-7.0, 1e3]), strict=True):
+            assert np.abs(a - b).max() < BAR
+
+
+def test_a_sample_does_not_depend_on_its_neighbours():
+    *given, unit = at(1.0, -12.0)
+    motion, times = spin_up.motion(*given), np.array([3.0, 12.0, 12.0, 30.0, -1.0]) * unit
+    w, q = motion.evaluate(times)
+    for k, t in enumerate(times):
+        one = motion.evaluate(t)
+        assert np.array_equal(one[0][0], w[k]) and np.abs(one[1][0] - q[k]).max() < BAR
+    assert motion.evaluate([])[1].shape == (0, 4) and motion.evaluate(1.0, quaternion=False)[1] is None
+
+
+def test_the_series_alone_would_not_do_near_resonance(monkeypatch):
+    """Were it taken for a smaller kappa, its terms would grow before they are small."""
+    *given, unit = at(5.0, -12.0)
+    exact = kummer(given[0][0], given[0][2], given[2], given[3], 20 * unit)
+    assert np.abs(spin_up.motion(*given).evaluate([20 * unit])[1][0] - exact).max() <= BAR
+    monkeypatch.setattr(spin_up_series, "WIDE", 5.0)
+    assert np.abs(spin_up.motion(*given).evaluate([20 * unit])[1][0] - exact).max() > 1000 * BAR
+
+
+def test_the_shipped_scene():
+    scene = load_scene("spin_up")
+    exact, stepped = propagate(scene), propagate(scene, method="taylor", tolerance=1e-14)
+    assert exact.method == "exact" and np.abs(exact.quaternion - stepped.quaternion).max() < 1e-12
+
+
+def test_what_is_no_such_motion():
+    with pytest.raises(InputError, match="symmetric about the driven axis"):
+        spin_up.motion((1, 2, 3), 2, 1, (1, 0, 0))
+    with pytest.raises(InputError, match="turns across it too"):
+        spin_up.motion((1, 1, 3), 2, 1, (0, 0, 1))
+    with pytest.raises(InputError, match="axis 0, 1 or 2"):
+        spin_up.motion((1, 1, 3), 3, 1, (1, 0, 1))
