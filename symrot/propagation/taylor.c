@@ -169,10 +169,13 @@ static SYMROT_APART double symrot_first_unit(const symrot_v4 *c, double t, doubl
     return ldexp(1.0, exponent);
 }
 
-/* Write the lanes of all rows as one vector of states. */
+/* Write the lanes of all rows as one vector of states. What a row has too many, the next one writes over. */
 static inline void symrot_write(const symrot_v4 *rows, double *out)
 {
-    EACH_ROW(r) memcpy(out + symrot_starts[r], &rows[r], (size_t)symrot_sizes[r]*sizeof(double));
+    EACH_ROW(r) {
+        const int whole = r + 1 < SYMROT_ROWS && symrot_starts[r] + 4 <= SYMROT_STATES;
+        memcpy(out + symrot_starts[r], &rows[r], (size_t)(whole ? 4 : symrot_sizes[r])*sizeof(double));
+    }
 }
 
 /* Tell the caller the numbers of states and parameters, the order, and the numbers in run->kept. */
