@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from symrot.closed_form import axial, free_body, gyrostat, heavy_top
+from symrot.closed_form import axial, free_body, gyrostat, heavy_top, spin_up
 
 __all__ = ["main", "measure"]
 
@@ -42,6 +42,8 @@ CASES: tuple[Case, ...] = (
     ("gyrostat", partial(gyrostat.motion, (1.0, 1.0, 2.0), (0.0, 0.0, 3.0), (0.3, 1.0, 0.5), ATTITUDE)),
     ("one axis, pushed", partial(axial.motion, (1.0, 3.0, 2.0), 1, 0.25, (0.0, 0.75, 0.0), ATTITUDE)),
     ("one axis, damped", partial(axial.motion, (1.0, 3.0, 2.0), 1, 0.25, (0.0, 0.75, 0.0), ATTITUDE, 0.125)),
+    ("spin-up near resonance", partial(spin_up.motion, (1.1, 1.1, 0.8), 2, 0.05, (0.2, 0.1, -0.5), ATTITUDE)),
+    ("spin-up, far from it", partial(spin_up.motion, (1.1, 1.1, 0.8), 2, 0.05, (0.2, 0.1, 5.0), ATTITUDE)),
 )
 
 
@@ -84,12 +86,12 @@ def main(arguments: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
     parser.add_argument("--rounds", type=int, default=300, help="repetitions, of which the fastest counts")
     rounds = parser.parse_args(arguments).rounds
-    print(f"{'':24}{'series':>12}{'set-up':>9}{'both':>8}{'omega':>8}{'q':>8}{'1 sample':>10}{f'{SAMPLES} in all':>13}")
-    print(f"{'':36}{'us':>9}{'ns':>8}{'ns':>8}{'ns':>8}{'us':>10}{'us':>13}")
+    print(f"{'':26}{'series':>12}{'set-up':>9}{'both':>8}{'omega':>8}{'q':>8}{'1 sample':>10}{f'{SAMPLES} in all':>13}")
+    print(f"{'':38}{'us':>9}{'ns':>8}{'ns':>8}{'ns':>8}{'us':>10}{'us':>13}")
     for name, regime, (setup, both, omega, attitude, one, whole) in measure(rounds):
         each = [(seconds - one) / (SAMPLES - 1) * 1e9 for seconds in (both, omega, attitude)]
         print(
-            f"{name:24}{regime:>12}{setup * 1e6:9.1f}"
+            f"{name:26}{regime:>12}{setup * 1e6:9.1f}"
             + "".join(f"{x:8.1f}" for x in each)
             + f"{one * 1e6:10.1f}{whole * 1e6:13.1f}"
         )

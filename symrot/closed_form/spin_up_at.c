@@ -81,14 +81,14 @@ ALWAYS_INLINE double series_of(const double *c, int count, double x)
 }
 
 /* Far from resonance: the attitude of the turning axes, from where the side is counted. */
-static void far(const spin_up *f, const spin_up_side *side, dd t, dd omega, double a[2], double b[2])
+static void far(const spin_up *f, const spin_up_side *side, dd from_speed, dd t, dd omega, double a[2], double b[2])
 {
     static const dd quarter = {0x1.45f306dc9c883p-4, -0x1.6b01ec5417056p-58}; /* 1/(4 pi) */
     const dd s = dd_pair(f->sweep[2], f->sweep[3]), w = dd_pair(f->across[0], f->across[1]), w2 = dd_square(w);
     const dd from = dd_pair(side->sweep[0], side->sweep[1]);
-    const dd here2 = dd_add(dd_square(omega), w2), from2 = dd_add(dd_square(from), w2);
+    const dd here2 = dd_add(dd_square(omega), w2);
     const dd speed = dd_sqrt(here2), product = dd_mul(omega, from);
-    const dd speeds = dd_mul(speed, dd_sqrt(from2));
+    const dd speeds = dd_mul(speed, from_speed);
     const dd sum = product.hi >= 0.0
         ? dd_add(speeds, product)
         : dd_div(dd_mul(w2, dd_add(here2, dd_square(from))), dd_sub(speeds, product));
@@ -149,6 +149,11 @@ void symrot_spin_up_at(
 {
     const dd first = dd_pair(f->turn[0], f->turn[1]), second = dd_pair(f->turn[2], f->turn[3]);
     const dd start = dd_pair(f->sweep[0], f->sweep[1]), s = dd_pair(f->sweep[2], f->sweep[3]);
+    dd speeds[2];
+    for (int k = 0; k < 2; ++k) {
+        const dd w = dd_pair(f->across[0], f->across[1]), from = dd_pair(f->side[k].sweep[0], f->side[k].sweep[1]);
+        speeds[k] = dd_sqrt(dd_add(dd_square(from), dd_square(w)));
+    }
     for (ptrdiff_t i = 0; i < count; ++i) {
         const dd t = dd_of(times[i]*f->time_scale);
         double sine, cosine;
@@ -165,8 +170,9 @@ void symrot_spin_up_at(
         const double(*map)[4] = f->near_attitude;
         double a[2], b[2];
         if (f->wide != 0.0 || !(fabs(here.hi) < f->edge)) {
-            const spin_up_side *side = &f->side[f->wide == 0.0 && here.hi > 0.0];
-            far(f, side, t, here, a, b);
+            const int k = f->wide == 0.0 && here.hi > 0.0;
+            const spin_up_side *side = &f->side[k];
+            far(f, side, speeds[k], t, here, a, b);
             map = side->attitude;
         } else
             near(f, table, here, a, b);
