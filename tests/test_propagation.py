@@ -303,12 +303,13 @@ def torque(kind, **fields):
     })  # fmt: skip
 
 
-def spun_up(quantities):
-    """A scene of a symmetric body that turns across the axis it is driven about."""
+def spun_up(quantities, damped=True):
+    """A scene of a symmetric body that turns across the axis it is driven about, and damped or not."""
+    drag = [{"kind": "damping", "linear": [0.1, 0.1, 0.2]}] if damped else []
     return Scene.from_dict({
         "schema": 1, "title": "spin-up", "body": {"principal": [1, 1, 2]}, "span": {"t": [0, 5]},
         "initial": {"omega": [0.2, 1, 0.3]}, "output": {"quantities": quantities},
-        "torque": [{"kind": "constant_body", "torque": [0, 0, 0.5]}, {"kind": "damping", "linear": [0.1, 0.1, 0.2]}],
+        "torque": [{"kind": "constant_body", "torque": [0, 0, 0.5]}, *drag],
     })  # fmt: skip
 
 
@@ -330,6 +331,7 @@ CHOICES = {
                                           parameters={"k": 2})),
     "spun up": ("exact", lambda: spun_up(["omega", "energy"])),
     "spun up, attitude asked for": ("taylor", lambda: spun_up(["omega", "quaternion"])),
+    "spun up without damping, attitude asked for": ("exact", lambda: spun_up(["omega", "quaternion"], damped=False)),
     "drag at rest": ("dop853", lambda: torque("damping", quadratic=0.1)),
     "a size": ("dop853", lambda: torque("expression", torque=["0", "0", "-abs(omega_3)"])),
     "a root": ("dop853", lambda: torque("expression", torque=["0", "0", "sqrt(omega_1**2 + omega_2**2)"])),

@@ -2,10 +2,8 @@
 
 About a principal axis that nothing else disturbs this is the whole motion. In a symmetric body that also turns across
 its axis, the transverse angular velocity follows by a turn through ``(C - A)/A`` of the angle about the axis, and
-decays by its own damping. Its attitude then takes parabolic cylinder functions of complex order (the equation of a
-two-level system swept linearly: Zener, Proc. R. Soc. A 137 (1932) 696). No one series of them holds in double
-precision for all orders and times: mpmath takes 0.4 ms to 3 s for a value, while Taylor steps follow 20 s of such a
-motion to 6e-16 in 70 us. The attitude is left to them.
+decays by its own damping. Its attitude then takes parabolic cylinder functions, see :mod:`.spin_up`; with damping it
+has no closed form here.
 
 Angles are carried in turns, as pairs of doubles: errors of the attitude stay at a few 1e-16 however many turns have
 passed, with damping or without. C does it where there is a compiler (:file:`axial_at.c`), and hands back the samples
@@ -80,7 +78,8 @@ class AxialMotion:
         """
         if quaternion and not self.has_attitude:
             raise InputError(
-                "the attitude of a body driven about its axis has no closed form here while it turns across it too"
+                "the attitude of a body that is driven about its axis and turns across it too has another closed form, "
+                "that of symrot.closed_form.spin_up, and none with damping"
             )
         times = times_of(t)
         if self._loops is None:
