@@ -28,7 +28,7 @@ from symrot.symbols import constant
 
 SLICE = ("quaternion_dcm", "quaternion_of_dcm", "euler_zyx_body_rates", "euler_zxz_of_quaternion", "mrp_shadow",
          "rotation_vector_body_rates", "rotation_vector_of_quaternion", "torque_gravity", "gravity_gradient_satellite",
-         "heavy_top_loops")  # fmt: skip
+         "heavy_top_loops", "rigid_body_principal")  # fmt: skip
 RECHECK = Path(recheck.__file__)
 
 
@@ -179,6 +179,16 @@ def test_a_header_with_a_macro_is_refused(dcm):
         assert old in header
         with pytest.raises(CertificateError, match=r"quaternion_dcm\.h"):
             check_header(header.replace(old, new, 1), source, "quaternion_dcm")
+
+
+def test_the_span_of_a_batch_in_parts_is_a_number_that_headers_may_set():
+    kernel = emit("rigid_body_tensor")
+    source, header = kernel.source, kernel.header
+    check_header(header, source, "rigid_body_tensor")
+    assert "#define SYMROT_SPAN 2048" in header
+    for other in ("0", "2048*n", "2048 ;"):
+        with pytest.raises(CertificateError, match=r"rigid_body_tensor\.h"):
+            check_header(header.replace("SYMROT_SPAN 2048", f"SYMROT_SPAN {other}"), source, "rigid_body_tensor")
 
 
 def test_a_certificate_of_another_file_is_refused(kernels, dcm):

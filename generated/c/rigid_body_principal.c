@@ -84,34 +84,42 @@ void rigid_body_principal_batch(
     const double *SYMROT_RESTRICT q, const double *SYMROT_RESTRICT torque, double *SYMROT_RESTRICT domega,
     double *SYMROT_RESTRICT dq)
 {
-    SYMROT_INDEPENDENT
-    for (size_t k = 0; k < n; ++k) {
-        const double A = inertia[0*n + k];
-        const double B = inertia[1*n + k];
-        const double C = inertia[2*n + k];
-        const double omega_1 = omega[0*n + k];
-        const double omega_2 = omega[1*n + k];
-        const double omega_3 = omega[2*n + k];
-        const double tau_1 = torque[0*n + k];
-        const double tau_2 = torque[1*n + k];
-        const double tau_3 = torque[2*n + k];
+    for (size_t start = 0; start < n; start += SYMROT_SPAN) {
+        const size_t end = n - start < SYMROT_SPAN ? n : start + SYMROT_SPAN;
+        SYMROT_INDEPENDENT
+        for (size_t k = start; k < end; ++k) {
+            const double A = inertia[0*n + k];
+            const double B = inertia[1*n + k];
+            const double C = inertia[2*n + k];
+            const double omega_1 = omega[0*n + k];
+            const double omega_2 = omega[1*n + k];
+            const double omega_3 = omega[2*n + k];
+            const double tau_1 = torque[0*n + k];
+            const double tau_2 = torque[1*n + k];
+            const double tau_3 = torque[2*n + k];
 
-        domega[0*n + k] = (tau_1 + (B - C)*omega_2*omega_3)/A;
-        domega[1*n + k] = (tau_2 + (C - A)*omega_1*omega_3)/B;
-        domega[2*n + k] = (tau_3 + (A - B)*omega_1*omega_2)/C;
+            domega[0*n + k] = (tau_1 + (B - C)*omega_2*omega_3)/A;
+            domega[1*n + k] = (tau_2 + (C - A)*omega_1*omega_3)/B;
+            domega[2*n + k] = (tau_3 + (A - B)*omega_1*omega_2)/C;
+        }
+        SYMROT_INDEPENDENT
+        for (size_t k = start; k < end; ++k) {
+            const double omega_1 = omega[0*n + k];
+            const double omega_2 = omega[1*n + k];
+            const double omega_3 = omega[2*n + k];
+            const double q0 = q[0*n + k];
+            const double q1 = q[1*n + k];
+            const double q2 = q[2*n + k];
+            const double q3 = q[3*n + k];
+            const double half_1 = 0.5*omega_1;
+            const double half_2 = 0.5*omega_2;
+            const double half_3 = 0.5*omega_3;
 
-        const double q0 = q[0*n + k];
-        const double q1 = q[1*n + k];
-        const double q2 = q[2*n + k];
-        const double q3 = q[3*n + k];
-        const double half_1 = 0.5*omega_1;
-        const double half_2 = 0.5*omega_2;
-        const double half_3 = 0.5*omega_3;
-
-        dq[0*n + k] = -(half_1*q1 + half_2*q2 + half_3*q3);
-        dq[1*n + k] = half_1*q0 + half_3*q2 - half_2*q3;
-        dq[2*n + k] = half_1*q3 + half_2*q0 - half_3*q1;
-        dq[3*n + k] = half_2*q1 + half_3*q0 - half_1*q2;
+            dq[0*n + k] = -(half_1*q1 + half_2*q2 + half_3*q3);
+            dq[1*n + k] = half_1*q0 + half_3*q2 - half_2*q3;
+            dq[2*n + k] = half_1*q3 + half_2*q0 - half_3*q1;
+            dq[3*n + k] = half_2*q1 + half_3*q0 - half_1*q2;
+        }
     }
 }
 
@@ -152,33 +160,41 @@ void rigid_body_principalf_batch(
     const float *SYMROT_RESTRICT q, const float *SYMROT_RESTRICT torque, float *SYMROT_RESTRICT domega,
     float *SYMROT_RESTRICT dq)
 {
-    SYMROT_INDEPENDENT
-    for (size_t k = 0; k < n; ++k) {
-        const float A = inertia[0*n + k];
-        const float B = inertia[1*n + k];
-        const float C = inertia[2*n + k];
-        const float omega_1 = omega[0*n + k];
-        const float omega_2 = omega[1*n + k];
-        const float omega_3 = omega[2*n + k];
-        const float tau_1 = torque[0*n + k];
-        const float tau_2 = torque[1*n + k];
-        const float tau_3 = torque[2*n + k];
+    for (size_t start = 0; start < n; start += SYMROT_SPAN) {
+        const size_t end = n - start < SYMROT_SPAN ? n : start + SYMROT_SPAN;
+        SYMROT_INDEPENDENT
+        for (size_t k = start; k < end; ++k) {
+            const float A = inertia[0*n + k];
+            const float B = inertia[1*n + k];
+            const float C = inertia[2*n + k];
+            const float omega_1 = omega[0*n + k];
+            const float omega_2 = omega[1*n + k];
+            const float omega_3 = omega[2*n + k];
+            const float tau_1 = torque[0*n + k];
+            const float tau_2 = torque[1*n + k];
+            const float tau_3 = torque[2*n + k];
 
-        domega[0*n + k] = (tau_1 + (B - C)*omega_2*omega_3)/A;
-        domega[1*n + k] = (tau_2 + (C - A)*omega_1*omega_3)/B;
-        domega[2*n + k] = (tau_3 + (A - B)*omega_1*omega_2)/C;
+            domega[0*n + k] = (tau_1 + (B - C)*omega_2*omega_3)/A;
+            domega[1*n + k] = (tau_2 + (C - A)*omega_1*omega_3)/B;
+            domega[2*n + k] = (tau_3 + (A - B)*omega_1*omega_2)/C;
+        }
+        SYMROT_INDEPENDENT
+        for (size_t k = start; k < end; ++k) {
+            const float omega_1 = omega[0*n + k];
+            const float omega_2 = omega[1*n + k];
+            const float omega_3 = omega[2*n + k];
+            const float q0 = q[0*n + k];
+            const float q1 = q[1*n + k];
+            const float q2 = q[2*n + k];
+            const float q3 = q[3*n + k];
+            const float half_1 = 0.5f*omega_1;
+            const float half_2 = 0.5f*omega_2;
+            const float half_3 = 0.5f*omega_3;
 
-        const float q0 = q[0*n + k];
-        const float q1 = q[1*n + k];
-        const float q2 = q[2*n + k];
-        const float q3 = q[3*n + k];
-        const float half_1 = 0.5f*omega_1;
-        const float half_2 = 0.5f*omega_2;
-        const float half_3 = 0.5f*omega_3;
-
-        dq[0*n + k] = -(half_1*q1 + half_2*q2 + half_3*q3);
-        dq[1*n + k] = half_1*q0 + half_3*q2 - half_2*q3;
-        dq[2*n + k] = half_1*q3 + half_2*q0 - half_3*q1;
-        dq[3*n + k] = half_2*q1 + half_3*q0 - half_1*q2;
+            dq[0*n + k] = -(half_1*q1 + half_2*q2 + half_3*q3);
+            dq[1*n + k] = half_1*q0 + half_3*q2 - half_2*q3;
+            dq[2*n + k] = half_1*q3 + half_2*q0 - half_3*q1;
+            dq[3*n + k] = half_2*q1 + half_3*q0 - half_1*q2;
+        }
     }
 }

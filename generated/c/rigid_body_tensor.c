@@ -110,51 +110,59 @@ void rigid_body_tensor_batch(
     const double *SYMROT_RESTRICT q, const double *SYMROT_RESTRICT torque, double *SYMROT_RESTRICT domega,
     double *SYMROT_RESTRICT dq)
 {
-    SYMROT_INDEPENDENT
-    for (size_t k = 0; k < n; ++k) {
-        const double I_xx = inertia[0*n + k];
-        const double I_yy = inertia[1*n + k];
-        const double I_zz = inertia[2*n + k];
-        const double I_xy = inertia[3*n + k];
-        const double I_xz = inertia[4*n + k];
-        const double I_yz = inertia[5*n + k];
-        const double omega_1 = omega[0*n + k];
-        const double omega_2 = omega[1*n + k];
-        const double omega_3 = omega[2*n + k];
-        const double tau_1 = torque[0*n + k];
-        const double tau_2 = torque[1*n + k];
-        const double tau_3 = torque[2*n + k];
-        const double cofactor_1 = I_yy*I_zz - I_yz*I_yz;
-        const double L_2 = omega_1*I_xy + omega_2*I_yy + omega_3*I_yz;
-        const double L_3 = omega_1*I_xz + omega_2*I_yz + omega_3*I_zz;
-        const double cofactor_2 = I_xz*I_yz - I_xy*I_zz;
-        const double cofactor_3 = I_xy*I_yz - I_xz*I_yy;
-        const double determinant = I_xx*cofactor_1 + I_xy*cofactor_2 + I_xz*cofactor_3;
-        const double x6 = 1.0/determinant;
-        const double M_1 = (tau_1 + omega_3*L_2 - omega_2*L_3)*x6;
-        const double L_1 = I_xx*omega_1 + I_xy*omega_2 + I_xz*omega_3;
-        const double M_2 = (tau_2 + omega_1*L_3 - omega_3*L_1)*x6;
-        const double M_3 = (tau_3 + omega_2*L_1 - omega_1*L_2)*x6;
-        const double cofactor_4 = I_xx*I_zz - I_xz*I_xz;
-        const double cofactor_5 = I_xy*I_xz - I_xx*I_yz;
-        const double cofactor_6 = I_xx*I_yy - I_xy*I_xy;
+    for (size_t start = 0; start < n; start += SYMROT_SPAN) {
+        const size_t end = n - start < SYMROT_SPAN ? n : start + SYMROT_SPAN;
+        SYMROT_INDEPENDENT
+        for (size_t k = start; k < end; ++k) {
+            const double I_xx = inertia[0*n + k];
+            const double I_yy = inertia[1*n + k];
+            const double I_zz = inertia[2*n + k];
+            const double I_xy = inertia[3*n + k];
+            const double I_xz = inertia[4*n + k];
+            const double I_yz = inertia[5*n + k];
+            const double omega_1 = omega[0*n + k];
+            const double omega_2 = omega[1*n + k];
+            const double omega_3 = omega[2*n + k];
+            const double tau_1 = torque[0*n + k];
+            const double tau_2 = torque[1*n + k];
+            const double tau_3 = torque[2*n + k];
+            const double cofactor_1 = I_yy*I_zz - I_yz*I_yz;
+            const double L_2 = omega_1*I_xy + omega_2*I_yy + omega_3*I_yz;
+            const double L_3 = omega_1*I_xz + omega_2*I_yz + omega_3*I_zz;
+            const double cofactor_2 = I_xz*I_yz - I_xy*I_zz;
+            const double cofactor_3 = I_xy*I_yz - I_xz*I_yy;
+            const double determinant = I_xx*cofactor_1 + I_xy*cofactor_2 + I_xz*cofactor_3;
+            const double x6 = 1.0/determinant;
+            const double M_1 = (tau_1 + omega_3*L_2 - omega_2*L_3)*x6;
+            const double L_1 = I_xx*omega_1 + I_xy*omega_2 + I_xz*omega_3;
+            const double M_2 = (tau_2 + omega_1*L_3 - omega_3*L_1)*x6;
+            const double M_3 = (tau_3 + omega_2*L_1 - omega_1*L_2)*x6;
+            const double cofactor_4 = I_xx*I_zz - I_xz*I_xz;
+            const double cofactor_5 = I_xy*I_xz - I_xx*I_yz;
+            const double cofactor_6 = I_xx*I_yy - I_xy*I_xy;
 
-        domega[0*n + k] = cofactor_1*M_1 + cofactor_2*M_2 + cofactor_3*M_3;
-        domega[1*n + k] = cofactor_2*M_1 + cofactor_4*M_2 + cofactor_5*M_3;
-        domega[2*n + k] = cofactor_3*M_1 + cofactor_5*M_2 + cofactor_6*M_3;
+            domega[0*n + k] = cofactor_1*M_1 + cofactor_2*M_2 + cofactor_3*M_3;
+            domega[1*n + k] = cofactor_2*M_1 + cofactor_4*M_2 + cofactor_5*M_3;
+            domega[2*n + k] = cofactor_3*M_1 + cofactor_5*M_2 + cofactor_6*M_3;
+        }
+        SYMROT_INDEPENDENT
+        for (size_t k = start; k < end; ++k) {
+            const double omega_1 = omega[0*n + k];
+            const double omega_2 = omega[1*n + k];
+            const double omega_3 = omega[2*n + k];
+            const double q0 = q[0*n + k];
+            const double q1 = q[1*n + k];
+            const double q2 = q[2*n + k];
+            const double q3 = q[3*n + k];
+            const double half_1 = 0.5*omega_1;
+            const double half_2 = 0.5*omega_2;
+            const double half_3 = 0.5*omega_3;
 
-        const double q0 = q[0*n + k];
-        const double q1 = q[1*n + k];
-        const double q2 = q[2*n + k];
-        const double q3 = q[3*n + k];
-        const double half_1 = 0.5*omega_1;
-        const double half_2 = 0.5*omega_2;
-        const double half_3 = 0.5*omega_3;
-
-        dq[0*n + k] = -(half_1*q1 + half_2*q2 + half_3*q3);
-        dq[1*n + k] = half_1*q0 + half_3*q2 - half_2*q3;
-        dq[2*n + k] = half_1*q3 + half_2*q0 - half_3*q1;
-        dq[3*n + k] = half_2*q1 + half_3*q0 - half_1*q2;
+            dq[0*n + k] = -(half_1*q1 + half_2*q2 + half_3*q3);
+            dq[1*n + k] = half_1*q0 + half_3*q2 - half_2*q3;
+            dq[2*n + k] = half_1*q3 + half_2*q0 - half_3*q1;
+            dq[3*n + k] = half_2*q1 + half_3*q0 - half_1*q2;
+        }
     }
 }
 
@@ -212,50 +220,58 @@ void rigid_body_tensorf_batch(
     const float *SYMROT_RESTRICT q, const float *SYMROT_RESTRICT torque, float *SYMROT_RESTRICT domega,
     float *SYMROT_RESTRICT dq)
 {
-    SYMROT_INDEPENDENT
-    for (size_t k = 0; k < n; ++k) {
-        const float I_xx = inertia[0*n + k];
-        const float I_yy = inertia[1*n + k];
-        const float I_zz = inertia[2*n + k];
-        const float I_xy = inertia[3*n + k];
-        const float I_xz = inertia[4*n + k];
-        const float I_yz = inertia[5*n + k];
-        const float omega_1 = omega[0*n + k];
-        const float omega_2 = omega[1*n + k];
-        const float omega_3 = omega[2*n + k];
-        const float tau_1 = torque[0*n + k];
-        const float tau_2 = torque[1*n + k];
-        const float tau_3 = torque[2*n + k];
-        const float cofactor_1 = I_yy*I_zz - I_yz*I_yz;
-        const float L_2 = omega_1*I_xy + omega_2*I_yy + omega_3*I_yz;
-        const float L_3 = omega_1*I_xz + omega_2*I_yz + omega_3*I_zz;
-        const float cofactor_2 = I_xz*I_yz - I_xy*I_zz;
-        const float cofactor_3 = I_xy*I_yz - I_xz*I_yy;
-        const float determinant = I_xx*cofactor_1 + I_xy*cofactor_2 + I_xz*cofactor_3;
-        const float x6 = 1.0f/determinant;
-        const float M_1 = (tau_1 + omega_3*L_2 - omega_2*L_3)*x6;
-        const float L_1 = I_xx*omega_1 + I_xy*omega_2 + I_xz*omega_3;
-        const float M_2 = (tau_2 + omega_1*L_3 - omega_3*L_1)*x6;
-        const float M_3 = (tau_3 + omega_2*L_1 - omega_1*L_2)*x6;
-        const float cofactor_4 = I_xx*I_zz - I_xz*I_xz;
-        const float cofactor_5 = I_xy*I_xz - I_xx*I_yz;
-        const float cofactor_6 = I_xx*I_yy - I_xy*I_xy;
+    for (size_t start = 0; start < n; start += SYMROT_SPAN) {
+        const size_t end = n - start < SYMROT_SPAN ? n : start + SYMROT_SPAN;
+        SYMROT_INDEPENDENT
+        for (size_t k = start; k < end; ++k) {
+            const float I_xx = inertia[0*n + k];
+            const float I_yy = inertia[1*n + k];
+            const float I_zz = inertia[2*n + k];
+            const float I_xy = inertia[3*n + k];
+            const float I_xz = inertia[4*n + k];
+            const float I_yz = inertia[5*n + k];
+            const float omega_1 = omega[0*n + k];
+            const float omega_2 = omega[1*n + k];
+            const float omega_3 = omega[2*n + k];
+            const float tau_1 = torque[0*n + k];
+            const float tau_2 = torque[1*n + k];
+            const float tau_3 = torque[2*n + k];
+            const float cofactor_1 = I_yy*I_zz - I_yz*I_yz;
+            const float L_2 = omega_1*I_xy + omega_2*I_yy + omega_3*I_yz;
+            const float L_3 = omega_1*I_xz + omega_2*I_yz + omega_3*I_zz;
+            const float cofactor_2 = I_xz*I_yz - I_xy*I_zz;
+            const float cofactor_3 = I_xy*I_yz - I_xz*I_yy;
+            const float determinant = I_xx*cofactor_1 + I_xy*cofactor_2 + I_xz*cofactor_3;
+            const float x6 = 1.0f/determinant;
+            const float M_1 = (tau_1 + omega_3*L_2 - omega_2*L_3)*x6;
+            const float L_1 = I_xx*omega_1 + I_xy*omega_2 + I_xz*omega_3;
+            const float M_2 = (tau_2 + omega_1*L_3 - omega_3*L_1)*x6;
+            const float M_3 = (tau_3 + omega_2*L_1 - omega_1*L_2)*x6;
+            const float cofactor_4 = I_xx*I_zz - I_xz*I_xz;
+            const float cofactor_5 = I_xy*I_xz - I_xx*I_yz;
+            const float cofactor_6 = I_xx*I_yy - I_xy*I_xy;
 
-        domega[0*n + k] = cofactor_1*M_1 + cofactor_2*M_2 + cofactor_3*M_3;
-        domega[1*n + k] = cofactor_2*M_1 + cofactor_4*M_2 + cofactor_5*M_3;
-        domega[2*n + k] = cofactor_3*M_1 + cofactor_5*M_2 + cofactor_6*M_3;
+            domega[0*n + k] = cofactor_1*M_1 + cofactor_2*M_2 + cofactor_3*M_3;
+            domega[1*n + k] = cofactor_2*M_1 + cofactor_4*M_2 + cofactor_5*M_3;
+            domega[2*n + k] = cofactor_3*M_1 + cofactor_5*M_2 + cofactor_6*M_3;
+        }
+        SYMROT_INDEPENDENT
+        for (size_t k = start; k < end; ++k) {
+            const float omega_1 = omega[0*n + k];
+            const float omega_2 = omega[1*n + k];
+            const float omega_3 = omega[2*n + k];
+            const float q0 = q[0*n + k];
+            const float q1 = q[1*n + k];
+            const float q2 = q[2*n + k];
+            const float q3 = q[3*n + k];
+            const float half_1 = 0.5f*omega_1;
+            const float half_2 = 0.5f*omega_2;
+            const float half_3 = 0.5f*omega_3;
 
-        const float q0 = q[0*n + k];
-        const float q1 = q[1*n + k];
-        const float q2 = q[2*n + k];
-        const float q3 = q[3*n + k];
-        const float half_1 = 0.5f*omega_1;
-        const float half_2 = 0.5f*omega_2;
-        const float half_3 = 0.5f*omega_3;
-
-        dq[0*n + k] = -(half_1*q1 + half_2*q2 + half_3*q3);
-        dq[1*n + k] = half_1*q0 + half_3*q2 - half_2*q3;
-        dq[2*n + k] = half_1*q3 + half_2*q0 - half_3*q1;
-        dq[3*n + k] = half_2*q1 + half_3*q0 - half_1*q2;
+            dq[0*n + k] = -(half_1*q1 + half_2*q2 + half_3*q3);
+            dq[1*n + k] = half_1*q0 + half_3*q2 - half_2*q3;
+            dq[2*n + k] = half_1*q3 + half_2*q0 - half_3*q1;
+            dq[3*n + k] = half_2*q1 + half_3*q0 - half_1*q2;
+        }
     }
 }

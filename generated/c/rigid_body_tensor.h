@@ -77,6 +77,10 @@
 #endif
 #endif
 
+#ifndef SYMROT_SPAN /* samples that the loops of a batch take in turn */
+#define SYMROT_SPAN 2048
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif

@@ -34,6 +34,11 @@ _INDEPENDENT = """
 #endif
 #endif
 """
+_SPAN = """
+#ifndef SYMROT_SPAN
+#define SYMROT_SPAN 2048
+#endif
+"""
 _OPEN = """
 #ifdef __cplusplus
 extern "C" {
@@ -66,10 +71,10 @@ def check_header(header: str, source: str, name: str) -> None:
         raise CertificateError(f"{name}.h: expected no backslash, trigraph or control character")
     lines = [line.strip() for line in _COMMENT.sub(" ", header).split("\n")]
     lines = [line for line in lines if line]
-    allowed = _lines(_TOP.format(guard=f"SYMROT_{name.upper()}_H"))
-    independent = _lines(_INDEPENDENT)
-    top = allowed + (independent if lines[len(allowed) : len(allowed) + 1] == independent[:1] else []) + _lines(_OPEN)
-    end = _lines(_END)
+    top, end = _lines(_TOP.format(guard=f"SYMROT_{name.upper()}_H")), _lines(_END)
+    for optional in map(_lines, (_INDEPENDENT, _SPAN)):
+        top += optional if lines[len(top) : len(top) + 1] == optional[:1] else []
+    top += _lines(_OPEN)
     for got, wanted in zip(lines, top, strict=False):
         if got != wanted:
             raise CertificateError(f"{name}.h: expected the line {wanted!r}, got {got[:80]!r}")

@@ -24,13 +24,16 @@ HEAD = re.compile(r"(static inline |)(void|double|float) (\w+)\( ?([^()]*)\) \{(
 STATEMENT = re.compile(r" (?:\(void\)\w+|const (\w+) (\w+) = ([^=]+)|(\w+\[[^]=]+\]) = ([^=]+)|return (.+))", re.A)
 CHOICE = re.compile(r"([^?:<>=]+) (<|>=|==) ([^?:<>=]+) \? ([^?:<>=]+) : ([^?:<>=]+)")
 NUMBER = re.compile(r"(?<![\w.])(\d+\.\d*(?:e[-+]?\d{1,3})?f?|\d+e[-+]?\d{1,3}f?)(?![\w.])")
-LOOP, BLOCKS = (  # a batch: one loop; blocks, each done again if an angle is beyond the range of symrot_math.h
+LOOP, BLOCKS, PARTS = (  # a batch: one loop; blocks, done again for angles beyond a range; several loops over a span
     re.compile(r"(?: \(void\)\w+;)*" + re.escape(text).replace("@", "([^{}]*)"))
     for text in (
         " SYMROT_INDEPENDENT for (size_t k = 0; k < n; ++k) {@} ",
         " for (size_t start = 0; start < n; start += SYMROT_BLOCK) { const size_t end = n - start < SYMROT_BLOCK ? n : "
         "start + SYMROT_BLOCK; uint@_t beyond = 0; SYMROT_INDEPENDENT for (size_t k = start; k < end; ++k) {@ "
         "beyond += @; } const size_t again = beyond == 0 ? start : end; for (size_t k = start; k < again; ++k) {@} } ",
+        " for (size_t start = 0; start < n; start += SYMROT_SPAN) { const size_t end = n - start < SYMROT_SPAN ? n : "
+        "start + SYMROT_SPAN; SYMROT_INDEPENDENT for (size_t k = start; k < end; ++k) {@} SYMROT_INDEPENDENT for "
+        "(size_t k = start; k < end; ++k) {@} } ",
     )
 )
 OPERATORS = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv}
@@ -129,7 +132,7 @@ class Reader:
         return self.functions[name, *values]
 
     def run(self, body, places, targets=()):
-        """Return what statements of C assign to the targets, or what they return."""
+        """Return what statements of C assign to targets, by target, or what they return."""
         self.names, found, statements = dict(places), {}, body.split(";")
         need(not statements.pop().strip(), f"no statement: {body[-60:]!r}")
         for place, statement in enumerate(statements, 1):
@@ -145,7 +148,7 @@ class Reader:
                 target = ast.unparse(self.parsed(target))
                 need(target in targets and target not in found, f"{target} is assigned")
                 found[target] = self.read(assigned)
-        return [need(target in found, f"{target} is not assigned") and found[target] for target in targets]
+        return found
 
 
 class Kernel:
@@ -207,19 +210,22 @@ class Kernel:
             return place if base == "p" else f"{base}[{index[:-1]} * n + k]" if index else f"{base}[k]"
 
         batch = {of_sample(place): value for place, value in self.inputs.items()}
-        self.compare(self.found[self.name][3], self.inputs, self.outputs)
-        if loop := LOOP.fullmatch(loops):
-            return self.compare(loop[1], batch, map(of_sample, self.outputs))
+        self.compare([self.found[self.name][3]], self.inputs, self.outputs)
+        if loop := LOOP.fullmatch(loops) or PARTS.fullmatch(loops):
+            return self.compare(loop.groups(), batch, map(of_sample, self.outputs))
         bits, first, far, again = need(BLOCKS.fullmatch(loops), f"{self.name}_batch is no loop").groups()
         asked = re.findall(rf"symrot_far{self.end}\(((?:[^()]|\([^()]*\))*)\)", far)
         holds = far == " + ".join(f"symrot_far{self.end}({each})" for each in asked)
         need(holds and bits == {"double": "64", "float": "32"}[self.real], f"{far} asks for no range")
-        self.compare(first, batch, map(of_sample, self.outputs), asked)
-        self.compare(again, batch, map(of_sample, self.outputs))
+        self.compare([first], batch, map(of_sample, self.outputs), asked)
+        self.compare([again], batch, map(of_sample, self.outputs))
 
-    def compare(self, body, places, targets, near=()):
-        for place, got, wanted in zip(self.outputs, self.run(body, places, [*targets], near), self.outputs.values()):
-            need(got == wanted, f"{place} of {self.name} is not its formula")
+    def compare(self, bodies, places, targets, near=()):
+        targets, got = [*targets], {}
+        for body in bodies:
+            got |= self.run(body, places, [target for target in targets if target not in got], near)
+        for target, (place, wanted) in zip(targets, self.outputs.items()):
+            need(target in got and got[target] == wanted, f"{place} of {self.name} is not its formula")
 
     def check_own(self, function, bare):
         """Check a function of the file: it is what formulas mean by its name, a series up to a bound that is proven."""
