@@ -300,7 +300,7 @@ def _far(d: Derivation) -> None:
     spin = r * third + tilt * second + (second * turning[first] - first * turning[second]) / (1 + third)
     d.given(
         r"In axes turned about the second one until the third lies along $(\kappa, 0, x)$ the body turns at $(0, "
-        r"\dot\vartheta, r)$, $\dot\vartheta = -\kappa/r^2$, and $n$ is a vector $m$ near the third axis. The axes "
+        r"\dot\phi, r)$, $\dot\phi = -\kappa/r^2$, and $n$ is a vector $m$ near the third axis. The axes "
         r"turned on by the shortest way until the third lies along $m$ turn about it alone, at the rate $m \cdot "
         r"\omega + (m_2 \dot m_1 - m_1 \dot m_2)/(1 + m_3)$."
     )
@@ -312,5 +312,5 @@ def _far(d: Derivation) -> None:
         because="$m$ has length 1 and is at rest in space",
         relations=[squares - 1],
         named=r"m \cdot \omega + \frac{m_2 \dot m_1 - m_1 \dot m_2}{1 + m_3}",
-        shown=r"r + \frac{\dot\vartheta\,m_2}{1 + m_3}",
+        shown=r"r + \frac{\dot\phi\,m_2}{1 + m_3}",
     )
