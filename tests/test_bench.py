@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from symrot.bench import command, skip, suite
+from symrot.bench import command, kernels, skip, suite
 from symrot.bench import reference as reference_module
 from symrot.bench.contestants import CONTESTANTS, chosen
 from symrot.bench.peers import scalar_kernel
@@ -462,3 +462,12 @@ def test_every_study_that_is_listed_is_there():
     for name in command.STUDIES:
         assert find_spec(f"symrot.bench.{name}"), name
     assert {path.stem for path in Path(command.__file__).parent.glob("*.py")} > set(command.STUDIES)
+
+
+@pytest.mark.parametrize("name", ["inertia_box", "nosuch"])
+def test_a_kernel_without_a_textbook_formula_is_refused_in_a_sentence(name, capsys):
+    with pytest.raises(SystemExit) as caught:
+        kernels.main(["--kernels", name])
+    assert caught.value.code == 2
+    assert "expected a kernel with a textbook formula (quaternion_dcm, " in (said := capsys.readouterr().err)
+    assert said.endswith(f"got {name!r}\n")

@@ -7,7 +7,7 @@ compiled with the flags of symrot's kernels; a tool that is not installed is lef
 import re
 from collections import Counter
 from collections.abc import Callable, Sequence
-from functools import reduce
+from functools import partial, reduce
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -20,33 +20,70 @@ from symrot.certify.readback import read_kernel
 from symrot.codegen.c_source import c_function
 from symrot.codegen.library_kernels import kernel_program
 from symrot.codegen.lower import to_node
+from symrot.conventions import INTRINSIC_SEQUENCES
 from symrot.dynamics.equations import angular_acceleration, inverse
+from symrot.errors import InputError
 from symrot.expression import Node, children
 from symrot.kernel import Program, Signature
 from symrot.kernels.dynamics import TENSOR
 from symrot.kinematics.euler import rate_jacobian
 from symrot.kinematics.quaternion import dcm_of, quaternion_rates
 
-__all__ = ["PEERS_IN_C", "by_hand", "casadi_function", "counted", "input_names", "textbook", "textbook_program"]
+__all__ = [
+    "PEERS_IN_C",
+    "TEXTBOOK",
+    "by_hand",
+    "casadi_function",
+    "counted",
+    "input_names",
+    "textbook",
+    "textbook_program",
+]
 
 BY_HAND = Path(__file__).with_name("kernels_by_hand.c")
 _COUNTED = {"mul": "mul", "add": "add", "sub": "add", "div": "div", "sqrt": "sqrt"}
 
 
-def textbook(name: str) -> list[sympy.Expr]:
-    """Return the formulas of a kernel as a textbook has them, in the order of its outputs."""
+def _euler_rates(sequence: str) -> list[sympy.Expr]:
+    return list(rate_jacobian(sequence).inverse * Matrix(symbols.omega_b))
+
+
+def _quaternion_rates() -> list[sympy.Expr]:
+    return list(quaternion_rates("body") * Matrix(symbols.omega_b))
+
+
+def _rigid_body() -> list[sympy.Expr]:
     omega = Matrix(symbols.omega_b)
-    if name == "quaternion_dcm":
-        return list(dcm_of())
-    if name.startswith("euler_"):
-        return list(rate_jacobian(name.split("_")[1].upper()).inverse * omega)
-    rates = list(quaternion_rates("body") * omega)
-    if name == "rigid_body_tensor":
-        moment = Matrix(symbols.torque_b) - omega.cross(TENSOR * omega)
-        return [*(inverse(TENSOR) * moment), *rates]
-    down_b = -dcm_of().T.col(2)
-    weight = symbols.W * Matrix(symbols.center_of_mass).cross(down_b)
-    return [*angular_acceleration(sympy.diag(*symbols.principal), omega, weight), *rates]
+    moment = Matrix(symbols.torque_b) - omega.cross(TENSOR * omega)
+    return [*(inverse(TENSOR) * moment), *_quaternion_rates()]
+
+
+def _heavy_top() -> list[sympy.Expr]:
+    weight = symbols.W * Matrix(symbols.center_of_mass).cross(-dcm_of().T.col(2))
+    alpha = angular_acceleration(sympy.diag(*symbols.principal), Matrix(symbols.omega_b), weight)
+    return [*alpha, *_quaternion_rates()]
+
+
+TEXTBOOK: dict[str, Callable[[], list[sympy.Expr]]] = {
+    "quaternion_dcm": lambda: list(dcm_of()),
+    **{f"euler_{sequence.lower()}_body_rates": partial(_euler_rates, sequence) for sequence in INTRINSIC_SEQUENCES},
+    "rigid_body_tensor": _rigid_body,
+    "heavy_top": _heavy_top,
+}
+"""The kernels that have a formula to compare with, each with its formula as a textbook has it."""
+
+
+def textbook(name: str) -> list[sympy.Expr]:
+    """Return the formulas of a kernel as a textbook has them, in the order of its outputs.
+
+    Raises
+    ------
+    InputError
+        If the kernel is none of :data:`TEXTBOOK`.
+    """
+    if name not in TEXTBOOK:
+        raise InputError(f"expected a kernel with a textbook formula ({', '.join(TEXTBOOK)}), got {name!r}")
+    return TEXTBOOK[name]()
 
 
 def input_names(name: str) -> list[str]:

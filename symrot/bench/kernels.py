@@ -22,11 +22,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symrot.bench.kernel_heyoka import LANES, heyoka_code
-from symrot.bench.kernel_peers import PEERS_IN_C, casadi_function, counted
+from symrot.bench.kernel_peers import PEERS_IN_C, casadi_function, counted, textbook
 from symrot.codegen import library
 from symrot.codegen.c_source import MATH_HEADER
 from symrot.codegen.library_kernels import kernel_program
 from symrot.codegen.math_header import math_header
+from symrot.errors import InputError
 from symrot.interface import emit
 from symrot.kernel import Argument, Signature
 from symrot.kernels.library import definition
@@ -373,10 +374,17 @@ def main(arguments: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(prog="python -m symrot.bench.kernels", description=(__doc__ or "").split("\n")[0])
     parser.add_argument("--rounds", type=int, default=31)
     parser.add_argument("--many", type=int, default=MANY, help="samples of the large batch; 0 leaves it out")
-    parser.add_argument("--kernels", nargs="*", help="kernels to compare, in the place of those of the table")
+    parser.add_argument(
+        "--kernels", nargs="+", metavar="NAME", help="kernels to compare, in the place of those of the table"
+    )
     options = parser.parse_args(arguments)
     rates = [f"euler_{sequence}_body_rates" for sequence in (*PROPER, *TAIT_BRYAN)]
     names = options.kernels or ["quaternion_dcm", *rates, "rigid_body_tensor", "heavy_top"]
+    try:
+        for name in names:
+            textbook(name)
+    except InputError as error:
+        parser.error(f"--kernels: {error}")
     print(f"ns per sample: one at a time, {CACHED} in a batch, {options.many} in a batch; {' '.join(FLAGS[1:6])}")
     absent: set[str] = set()
     cells, over = 0, []
