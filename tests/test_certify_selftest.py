@@ -184,4 +184,4 @@ def test_a_library_that_changed_this_process_is_found_out():
 def test_without_a_compiler_one_sentence_says_so(monkeypatch, capsys):
     monkeypatch.setenv("CC", "no_such_compiler")
     assert cli.main(["selftest"]) == 2
-    assert "no_such_compiler" in capsys.readouterr().err
+    assert capsys.readouterr().err.endswith("CC='no_such_compiler' names no program; set CC to one\n")

@@ -14,7 +14,9 @@ from symrot.closed_form.choose import exact_form
 from symrot.errors import InputError
 from symrot.kinematics import conversions
 from symrot.planner import Plan, make_plan
-from symrot.propagation.propagator import Choice, Motion, propagate, propagator
+from symrot.propagation.method import Choice
+from symrot.propagation.motion import Motion
+from symrot.propagation.propagator import propagate, propagator
 from symrot.scene import Scene, load_scene
 from symrot.scene_file import names_with_kernels
 from tests.reference import taylor

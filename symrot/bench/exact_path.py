@@ -16,7 +16,7 @@ from symrot import number
 from symrot.codegen.recurrences import coefficients, recurrences
 from symrot.errors import InputError
 from symrot.expression import evaluate
-from symrot.propagation.propagator import Motion
+from symrot.propagation.motion import Motion
 from symrot.scene_kernel import EXACT_FUNCTIONS
 
 __all__ = ["ExactPath"]

@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 from symrot.bench.exact_path import ExactPath
 from symrot.closed_form.choose import exact_form
 from symrot.codegen import library
-from symrot.propagation.propagator import Motion, propagator
+from symrot.propagation.motion import Motion
+from symrot.propagation.propagator import propagator
 from symrot.propagation.smoothness import roughness
 from symrot.propagation.stepping import Stats
 from symrot.propagation.trajectory import Trajectory

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from symrot.errors import InputError
 from symrot.planner import Plan, make_plan
 from symrot.propagation.kernels import scene_kernel
-from symrot.propagation.propagator import Choice, Motion
+from symrot.propagation.method import Choice
+from symrot.propagation.motion import Motion
 from symrot.scene import Scene
 from symrot.scene_kernel import SceneKernel, bind
 

@@ -22,7 +22,9 @@ from symrot.codegen import library
 from symrot.dynamics.torque_kinds import TORQUE_KINDS
 from symrot.errors import InputError
 from symrot.planner import Plan, general_structure, make_plan
-from symrot.propagation.propagator import Choice, Motion, propagator
+from symrot.propagation.method import Choice
+from symrot.propagation.motion import Motion
+from symrot.propagation.propagator import propagator
 from symrot.scene import Scene, Torque, load_scene
 from symrot.scene_file import read_toml
 

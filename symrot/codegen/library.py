@@ -81,7 +81,7 @@ def compiler() -> Compiler:
         if path is not None:
             return Compiler((path, *command[1:]), _identity(path, command[1:]))
     wanted = f"CC={chosen!r} names no program" if chosen else f"none of {', '.join(COMPILERS)} is on the path"
-    raise CompilerError(f"a C compiler is needed: {wanted}; set CC to one, or use method 'scipy'")
+    raise CompilerError(f"a C compiler is needed: {wanted}; set CC to one")
 
 
 def missing() -> str:

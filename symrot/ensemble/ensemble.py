@@ -112,7 +112,7 @@ def propagate_ensemble(
     t : array, shape (m,) or (n, m), optional
         Sample times, s, of all or of each, in any order, before or after the initial time; default: the scene's own.
     method : str
-        ``auto``, or one of :data:`symrot.propagation.propagator.METHODS` for all.
+        ``auto``, or one of :data:`symrot.propagation.method.METHODS` for all.
     tolerance : float, optional
         Error of each trajectory to aim for; default: the scene's own.
     workers : int

@@ -13,7 +13,7 @@ from symrot.errors import InputError, PropagationError
 from symrot.planner import Plan
 from symrot.propagation import dop853, taylor
 from symrot.propagation.kernels import compiled, error_blocks, kernel_key, missing_compiler, scene_kernel
-from symrot.propagation.propagator import METHODS, choose_method
+from symrot.propagation.method import METHODS, choose_method
 from symrot.propagation.stepping import Floats
 from symrot.propagation.trajectory import ARRAY_FUNCTIONS
 from symrot.scene_kernel import SceneKernel, bind

@@ -22,7 +22,9 @@ from symrot.errors import InputError, PropagationError
 from symrot.planner import Plan, make_plan
 from symrot.propagation import dop853
 from symrot.propagation.kernels import error_blocks, scene_kernel
-from symrot.propagation.propagator import DRIVEN, Motion, Propagator
+from symrot.propagation.method import DRIVEN
+from symrot.propagation.motion import Motion
+from symrot.propagation.propagator import Propagator
 from symrot.propagation.stepping import Recording, Stats, Task
 from symrot.scene import Initial, Scene
 from symrot.scene_kernel import SceneKernel

@@ -25,7 +25,9 @@ from symrot.kinematics import conversions
 from symrot.planner import Plan
 from symrot.propagation import dop853, taylor
 from symrot.propagation.kernels import ATTITUDE_SCALE, RATE_SCALE, kernel_key
-from symrot.propagation.propagator import Choice, Motion, Propagator
+from symrot.propagation.method import Choice
+from symrot.propagation.motion import Motion
+from symrot.propagation.propagator import Propagator
 from symrot.propagation.smoothness import roughness
 from symrot.propagation.stepping import Stats, Task, both_sides
 from symrot.propagation.trajectory import Trajectory

@@ -24,7 +24,7 @@ from symrot.propagation.stepping import Stats, both_sides
 from symrot.scene_kernel import bind
 
 if TYPE_CHECKING:
-    from symrot.propagation.propagator import Motion
+    from symrot.propagation.motion import Motion
 
 __all__ = ["Eventful", "follow"]
 

@@ -13,7 +13,7 @@ from symrot.propagation.dop853 import Stats
 
 if TYPE_CHECKING:
     from symrot.propagation.eventful import Eventful
-    from symrot.propagation.propagator import Motion
+    from symrot.propagation.motion import Motion
 
 __all__ = ["Invariant", "Trajectory"]
 

@@ -49,7 +49,7 @@ def _others(plan: Plan) -> list[dict[str, Any]]:
     from symrot.closed_form.choose import exact_form
     from symrot.codegen import library
     from symrot.propagation.kernels import kernel_key
-    from symrot.propagation.propagator import choose_method
+    from symrot.propagation.method import choose_method
 
     choice, asked = choose_method(plan), plan.scene.output.quantities
     missing = [name for name in QUANTITIES if name not in asked]

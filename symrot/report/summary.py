@@ -106,7 +106,7 @@ def _steps(cost: dict[str, Any], exact: bool) -> str:
 
 def _settings(found: dict[str, Any]) -> list[tuple[str, str]]:
     span, method = found["span"], found["method"]
-    from symrot.propagation.propagator import METHODS  # here, since an error found earlier needs no NumPy
+    from symrot.propagation.method import METHODS  # here, since an error found earlier needs no NumPy
 
     meaning = METHODS[method["name"].partition(":")[0]]
     torques = ", ".join(kind.replace("_", " ") for kind in found["torques"]) or "none"

@@ -1,0 +1,91 @@
+"""Choose the method by which a motion is followed, and say why."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+from symrot.closed_form.choose import FORMS, exact_form
+from symrot.codegen import library
+from symrot.errors import CompilerError, InputError
+from symrot.planner import Plan
+from symrot.propagation.smoothness import roughness
+
+__all__ = ["DRIVEN", "METHODS", "Choice", "choose_method"]
+
+METHODS = {
+    "auto": "the first of the table that fits",
+    "constant": "every state keeps its value",
+    "exact": "closed form, at any time without stepping",
+    "taylor": "Taylor series stepped in C from the emitted recurrences",
+    "dop853": "Dormand-Prince 8(5,3), stepped in C around the emitted kernel",
+    "scipy": "SciPy around the emitted NumPy kernel",
+}
+"""Every method by name, with what it is; ``scipy`` stands for its DOP853, ``scipy:NAME`` for another of SciPy's."""
+
+
+class Choice(NamedTuple):
+    """A method and why it was taken."""
+
+    method: str
+    reason: str
+
+
+def _closed_form(plan: Plan) -> str:
+    form = exact_form(plan.scene)
+    return form.name if form else ""
+
+
+def _series(plan: Plan) -> str:
+    return "" if library.missing() or roughness(plan) else "the torque is smooth, and a C compiler is there"
+
+
+AUTO: tuple[tuple[str, Callable[[Plan], str]], ...] = (
+    ("constant", lambda plan: "" if plan.states else "the plan leaves no state to integrate"),
+    ("exact", _closed_form),
+    ("taylor", _series),
+    ("dop853", lambda plan: "" if library.missing() else f"{roughness(plan)}, and a C compiler is there"),
+    ("scipy", lambda plan: library.missing()),
+)
+"""What ``auto`` tries, in order: (method, condition); a condition returns the reason to take it, or nothing."""
+
+
+DRIVEN = Choice("dop853", "a torque that is no formula has no Taylor series")
+"""The method for such a torque, and why."""
+
+
+def choose_method(plan: Plan, method: str = "auto") -> Choice:
+    """Return the method for a plan.
+
+    Raises
+    ------
+    InputError
+        If there is no such method.
+    CompilerError
+        If the method asked for steps in C and there is no compiler.
+    """
+    if plan.scene.table is not None:
+        if method not in ("auto", "dop853"):
+            raise InputError(f"method: expected 'auto' or 'dop853' for a torque that is no formula, got {method!r}")
+        return DRIVEN
+    if method == "auto":
+        return next(Choice(name, reason) for name, condition in AUTO if (reason := condition(plan)))
+    if method == "exact":
+        form = exact_form(plan.scene)
+        if form is None:
+            raise InputError(
+                f"method: expected a motion with a closed form ({', '.join(form.name for form in FORMS)}) for 'exact', "
+                f"got the scene {plan.scene.name!r}"
+            )
+        return Choice(method, form.name)
+    name, colon, solver = method.partition(":")
+    if name == "scipy" and solver:
+        from symrot.propagation.fallback import method_name
+
+        method_name(solver)
+    elif name not in METHODS or colon or name == "constant":
+        listed = ", ".join(name for name in METHODS if name != "constant")
+        raise InputError(f"method: expected one of {listed} or scipy:NAME, got {method!r}")
+    if not plan.states:
+        return choose_method(plan)
+    if name in ("taylor", "dop853") and (reason := library.missing()):
+        raise CompilerError(f"method: {reason}, or use method 'scipy'")
+    return Choice(method, "asked for")

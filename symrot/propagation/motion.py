@@ -1,0 +1,219 @@
+"""A plan bound to numbers: the states at any times by the chosen method, and quantities of them."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import cached_property
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from symrot.closed_form.choose import Exact, Form, exact_form
+from symrot.planner import Plan, Row, general_structure
+from symrot.propagation import dop853, taylor
+from symrot.propagation.dop853 import Stats
+from symrot.propagation.invariants import invariant_parameters
+from symrot.propagation.kernels import compiled, error_blocks, scene_kernel, taylor_library
+from symrot.propagation.method import Choice
+from symrot.propagation.stepping import Task
+from symrot.propagation.trajectory import ARRAY_FUNCTIONS, Trajectory
+from symrot.scene_kernel import SceneKernel, bind
+
+__all__ = ["Motion", "unreduced"]
+
+Floats = NDArray[np.float64]
+
+UNREDUCED: dict[str, Any] = {
+    "planar": None,
+    "initial_quaternion": None,
+    "constant": {},
+}  # what an exact motion returns: all of it
+
+
+def unreduced(plan: Plan, form: Form) -> Plan:
+    """Return the plan of a motion in closed form, which has all its components and skips the stepping."""
+    rows, before = [], general_structure(plan.scene)
+    for row in plan.rows:
+        if all(row.structure[key] == before[key] for key in UNREDUCED):
+            rows.append(row)
+        before = row.structure
+    structure = plan.structure | UNREDUCED
+    why = f"the motion has a closed form: {form.name}"
+    return replace(plan, structure=structure, rows=(*rows, Row("stepping", True, why, form.derivation, structure)))
+
+
+class Motion:
+    """A plan with its kernel, bound to numbers."""
+
+    def __init__(self, plan: Plan, choice: Choice, tolerance: float) -> None:
+        self.plan, self.choice, self.tolerance = plan, choice, tolerance
+        self.library: Path | None = None
+        if choice.method == "exact":
+            form = exact_form(plan.scene)
+            assert form is not None
+            form.begin()
+            self.plan = unreduced(plan, form)
+        elif choice.method == "dop853":
+            self.kernel, self.library = compiled(plan)
+        elif choice.method == "taylor":
+            self.kernel = scene_kernel(plan)
+            self.library = taylor_library(plan, self.kernel, tolerance)
+        self.start = float(plan.scene.span.start)
+
+    @cached_property
+    def kernel(self) -> SceneKernel:
+        """The derived kernels; of an exact motion, only when something other than omega and attitude is asked for."""
+        return scene_kernel(self.plan)
+
+    @cached_property
+    def rate_parameters(self) -> list[float]:
+        return bind(self.kernel.rate_parameters, self.plan.constants)
+
+    @cached_property
+    def stepping(self) -> Task:
+        """The motion as its stepper in C follows it: checked once, followed as often as asked."""
+        assert self.library is not None
+        if self.choice.method == "taylor":
+            start = (self.taylor_parameters, self.plan.initial_state, self.start)
+            return taylor.task(self.library, *start, self.tolerance)
+        return dop853.task(self.library, self.rate_parameters, self.plan.initial_state, self.start, self.tolerance)
+
+    @cached_property
+    def taylor_parameters(self) -> list[float]:
+        """Those of the rates, then those of the invariants."""
+        return [*self.rate_parameters, *invariant_parameters(self.kernel, self.plan)]
+
+    @cached_property
+    def _quantity_values(self) -> dict[str, float]:
+        names = [name for name, _ in self.kernel.quantity_parameters]
+        return dict(zip(names, bind(self.kernel.quantity_parameters, self.plan.constants), strict=True))
+
+    def evaluate(self, t: Floats, states: Floats, names: Sequence[str]) -> Floats:
+        """Return quantities of the kernel at states of shape (n, N), as an array of shape (n, len(names))."""
+        columns = [name.removesuffix(" of t") for name in names]
+        if set(columns) <= set(self.plan.states):  # what is asked for is what was integrated
+            return states[:, [self.plan.states.index(name) for name in columns]]
+        values: dict[str, Any] = {"t": t, **dict(zip(self.plan.states, states.T, strict=True)), **self._quantity_values}
+        found = self.kernel.quantities.evaluate(values, ARRAY_FUNCTIONS, float, names)
+        result = np.empty((len(t), len(names)))
+        for index, name in enumerate(names):
+            result[:, index] = found[name]
+        return result
+
+    @cached_property
+    def _initial(self) -> tuple[Floats, Floats]:
+        return np.array([self.start]), np.array([self.plan.initial_state]).reshape(1, -1)
+
+    def initial_quantity(self, name: str) -> float:
+        """Return a conserved quantity at the start."""
+        if name == "quaternion norm":
+            return 1.0
+        output = next(item.output for item in self.kernel.conserved if item.name == name)
+        return float(self.evaluate(*self._initial, [output])[0, 0])
+
+    def integrate(self, times: Floats, rise: bool = False) -> tuple[Floats, Stats]:
+        """Return the states at the times, shape (n, N), and what it cost; ``rise``: they are known to be in order."""
+        return INTEGRATORS[self.choice.method.partition(":")[0]](self, times, rise)
+
+    def follow(self, times: Floats, rise: bool = False) -> tuple[Floats | tuple[Floats, ...], Stats]:
+        """Return as :meth:`integrate`, but of an exact motion angular velocity and attitude in an array each."""
+        return _exact_parts(self, times, rise) if self.choice.method == "exact" else self.integrate(times, rise)
+
+    @cached_property
+    def rates(self) -> Callable[..., Any]:
+        """The emitted NumPy kernel as ``f(t, y, p)``."""
+        from symrot.codegen.numpy_kernel import load_numpy_kernel
+
+        function = load_numpy_kernel(self.kernel.rates)
+        return function if self.rate_parameters else lambda t, y, p: function(t, y)
+
+    @cached_property
+    def exact(self) -> Exact:
+        """The motion in closed form."""
+        form = exact_form(self.plan.scene)
+        assert form is not None
+        return form.motion(self.plan.scene)
+
+    def solution(self, trajectory: Trajectory) -> Callable[[ArrayLike], Floats]:
+        """Return omega and quaternion as a function of time over the trajectory's span."""
+        times = trajectory.t
+        span = (
+            (min(self.start, float(times.min())), max(self.start, float(times.max())))
+            if len(times)
+            else (self.start,) * 2
+        )
+        states = self._dense(span)
+        names = [f"omega_{i} of t" for i in (1, 2, 3)]
+        names += [f"q{i} of t" for i in range(4)] if trajectory.has_attitude else []
+
+        def at(t: ArrayLike) -> Floats:
+            wanted = np.asarray(t, dtype=float)
+            flat = np.atleast_1d(wanted).ravel()
+            found = self.evaluate(flat, states(flat), names).T
+            return found.reshape(len(names), *wanted.shape)
+
+        return at
+
+    def _dense(self, span: tuple[float, float]) -> Callable[[Floats], Floats]:
+        """Return the states as a function of time."""
+        if self.choice.method == "constant":
+            return lambda t: np.empty((len(t), 0))
+        if self.choice.method == "exact":
+            return lambda t: _exact(self, t)[0]
+        start = (self.rate_parameters, self.plan.initial_state, self.start)
+        if self.library is not None:
+            return self.stepping.again().record(span)
+        from symrot.propagation import fallback
+
+        return fallback.record(self.rates, *start, span, self.tolerance, **self.scipy_options)
+
+    @property
+    def scipy_options(self) -> dict[str, Any]:
+        """How the fallback judges errors, and by which of SciPy's methods it steps."""
+        blocks, scales = error_blocks(self.plan)
+        solver = self.choice.method.partition(":")[2]
+        return {"blocks": blocks, "scales": scales, **({"method": solver} if solver else {})}
+
+
+def _keep(motion: Motion, times: Floats, rise: bool) -> tuple[Floats, Stats]:
+    return np.empty((len(times), 0)), Stats(0, 0, 0, 0.0)
+
+
+def _stepped(motion: Motion, times: Floats, rise: bool) -> tuple[Floats, Stats]:
+    return motion.stepping.once(times, rise)
+
+
+def _exact_parts(motion: Motion, times: Floats, rise: bool) -> tuple[tuple[Floats, ...], Stats]:
+    attitude, exact = motion.plan.structure["attitude"], motion.exact
+    began, start = perf_counter(), motion.start
+    omega, quaternion = exact.evaluate(times - start if start else times, quaternion=attitude)
+    assert omega is not None
+    if not (rise and len(times) and times.item(0) > start):  # to the last bit, as every method has it
+        at_start = times == start
+        omega[at_start] = motion.plan.initial_state[:3]
+        if quaternion is not None:
+            quaternion[at_start] = motion.plan.initial_state[3:]
+    return (omega,) if quaternion is None else (omega, quaternion), Stats(0, 0, 0, perf_counter() - began)
+
+
+def _exact(motion: Motion, times: Floats, rise: bool = False) -> tuple[Floats, Stats]:
+    parts, stats = _exact_parts(motion, times, rise)
+    return np.concatenate(parts, axis=1), stats
+
+
+def _scipy(motion: Motion, times: Floats, rise: bool) -> tuple[Floats, Stats]:
+    from symrot.propagation import fallback
+
+    start = (motion.rate_parameters, motion.plan.initial_state, motion.start)
+    return fallback.integrate(motion.rates, *start, times, motion.tolerance, **motion.scipy_options)
+
+
+INTEGRATORS: dict[str, Callable[[Motion, Floats, bool], tuple[Floats, Stats]]] = {
+    "constant": _keep,
+    "exact": _exact,
+    "taylor": _stepped,
+    "dop853": _stepped,
+    "scipy": _scipy,
+}
