@@ -20,7 +20,8 @@ import symrot
 from symrot import symbols
 from symrot.codegen.banner import Description
 from symrot.codegen.c_source import c_header, c_source
-from symrot.codegen.lower import lower, to_node
+from symrot.codegen.formulas import to_node
+from symrot.codegen.lower import lower
 from symrot.codegen.numpy_kernel import load_numpy_kernel
 from symrot.codegen.scene_kernels import derive_scene_kernel, rates_program
 from symrot.dynamics.equations import equations_of_motion

@@ -18,8 +18,8 @@ from sympy import Matrix
 from symrot import symbols
 from symrot.certify.readback import read_kernel
 from symrot.codegen.c_source import c_function
+from symrot.codegen.formulas import to_node
 from symrot.codegen.library_kernels import kernel_program
-from symrot.codegen.lower import to_node
 from symrot.conventions import INTRINSIC_SEQUENCES
 from symrot.dynamics.equations import angular_acceleration, inverse
 from symrot.errors import InputError

@@ -3,14 +3,15 @@
 from collections.abc import Iterable, Iterator
 from fractions import Fraction
 
-from symrot.codegen.lower import to_node
+from symrot.codegen.formulas import to_node
 from symrot.expression import Node, children
 from symrot.kernel import Program
 from symrot.kernels.removable import FUNCTIONS, REMOVABLE, Removable
 
-__all__ = ["NEAR", "called", "own_function", "series", "turning_arguments"]
+__all__ = ["NEAR", "called", "own_function", "series", "turning_arguments", "without_branches"]
 
-NEAR = ("sinc", *REMOVABLE)  # own functions that take a sine or cosine of their argument
+TURNING = ("sinc", *REMOVABLE)  # own functions that take a sine or cosine of their argument
+NEAR = (*TURNING, "arc_ratio")  # own functions with a form for batches, without a branch
 
 Statement = tuple[str, Node]  # name of a temporary, formula
 ONE, ZERO = ("number", Fraction(1)), ("number", Fraction(0))
@@ -38,7 +39,12 @@ def _calls(program: Program) -> Iterator[tuple[str, tuple[Node, ...]]]:
 
 def turning_arguments(program: Program) -> list[Node]:
     """Return the angles of which a program takes a sine or cosine, itself or in a function of its own, once each."""
-    return list(dict.fromkeys(taken[0] for name, taken in _calls(program) if name in ("sin", "cos", *NEAR)))
+    return list(dict.fromkeys(taken[0] for name, taken in _calls(program) if name in ("sin", "cos", *TURNING)))
+
+
+def without_branches(program: Program) -> bool:
+    """Tell whether a program calls what batches take from ``symrot_math.h``."""
+    return any(name in ("sin", "cos", "atan2", *NEAR) for name, _ in _calls(program))
 
 
 def called(program: Program) -> list[str]:

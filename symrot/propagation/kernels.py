@@ -30,7 +30,7 @@ TAYLOR = tuple(
     for name in ("taylor.py", "taylor.h", "series.h", "taylor.c", "pairs.h", "projection.c", "invariants.py")
 )  # kept together with the recurrences
 MODULES = ("expression.py", "kernel.py", "scene_kernel.py", "symbols.py")
-DERIVING = ("codegen", "dynamics", "exact", "kinematics", *MODULES, *TAYLOR)
+DERIVING = ("codegen", "dynamics", "exact", "kernels", "kinematics", *MODULES, *TAYLOR)
 ATTITUDE_SCALE = 1.0  # a quaternion has unit norm; an error of an angle counts in rad
 RATE_SCALE = 0.0  # an error of omega counts relative to omega
 
