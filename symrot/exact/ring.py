@@ -16,9 +16,7 @@ from fractions import Fraction
 from typing import Any
 
 import sympy
-from sympy import Abs, Derivative, Expr, I, Integer, Rational, S, cos, pi, preorder_traversal, sin
-from sympy.core.function import AppliedUndef
-from sympy.matrices.expressions.matexpr import MatrixElement
+from sympy import Abs, Expr, I, Integer, Rational, S, cos, pi, preorder_traversal, sin
 from sympy.polys.domains import QQ, ZZ
 from sympy.polys.orderings import lex
 from sympy.polys.rings import PolyElement, PolyRing
@@ -34,7 +32,9 @@ from symrot.exact.angles import (
     linear_form,
 )
 from symrot.exact.constants import Number, cosine_number, root_number, vanishes
+from symrot.exact.functions import REWRITTEN, TRIGONOMETRIC, is_jet
 from symrot.exact.inverse import INVERSE, cosine_sine
+from symrot.exact.known_angles import halved, is_bound, parts_of, unbound
 from symrot.exact.radicands import Dependence, dependences, take_squares
 from symrot.exact.ratio import Ratio, Ratios, TooLarge
 from symrot.exact.relations import Relations, Rule, relate
@@ -47,27 +47,6 @@ MOST_MULTIPLES = 240
 
 MOST_NESTED_TERMS = 40
 """Of a radicand that holds roots itself: each further nesting multiplies the work."""
-
-REWRITTEN = {
-    sympy.sinh: lambda u: (sympy.exp(u) - sympy.exp(-u)) / 2,
-    sympy.cosh: lambda u: (sympy.exp(u) + sympy.exp(-u)) / 2,
-    sympy.tanh: lambda u: (sympy.exp(2 * u) - 1) / (sympy.exp(2 * u) + 1),
-    sympy.coth: lambda u: (sympy.exp(2 * u) + 1) / (sympy.exp(2 * u) - 1),
-    sympy.asinh: lambda u: sympy.log(u + sympy.sqrt(u**2 + 1)),
-    sympy.acosh: lambda u: sympy.log(u + sympy.sqrt(u - 1) * sympy.sqrt(u + 1)),
-    sympy.atanh: lambda u: (sympy.log(1 + u) - sympy.log(1 - u)) / 2,
-}
-"""Hyperbolic functions and their inverses, in exponentials and logarithms."""
-
-TRIGONOMETRIC = {
-    sympy.sin: ("sin", None),
-    sympy.cos: ("cos", None),
-    sympy.tan: ("sin", "cos"),
-    sympy.cot: ("cos", "sin"),
-    sympy.sec: (None, "cos"),
-    sympy.csc: (None, "sin"),
-}
-"""Function -> (above, below) in the sine and cosine of its argument; None is 1."""
 
 
 def as_zero(relation: Any) -> Expr:
@@ -123,7 +102,7 @@ class FormulaRing:
         self.leaves: dict[Expr, bool] = {}  # symbols, functions of time, other functions -> in scope?
         self._collect([*expressions, *relations, *domain])
 
-        self.bases = base_coefficients(map(_unbound, self.forms.values()))
+        self.bases = base_coefficients(map(unbound, self.forms.values()))
         self.fine = self._take_fine_constants()
         self.exponent_bases = base_coefficients(self.exponents.values())
         self.dependences: dict[Root, Dependence] = {}
@@ -192,8 +171,8 @@ class FormulaRing:
                 if form.half_turns:
                     stack.extend(constant_cosine_sine(form.half_turns))
                 for atom, coefficient in form.terms:
-                    if _is_bound(atom, coefficient):
-                        stack.extend(_parts_of(atom, coefficient))
+                    if is_bound(atom, coefficient):
+                        stack.extend(parts_of(atom, coefficient))
             elif isinstance(node, sympy.exp) and node.args[0].is_extended_real is not False:
                 self.exponents[node.args[0]] = linear_form(node.args[0], turns=False)
             elif type(node) in REWRITTEN:
@@ -202,7 +181,7 @@ class FormulaRing:
             elif node is S.Exp1:
                 self.exponents[Integer(1)] = linear_form(Integer(1))
             else:
-                self.leaves[node] = _is_jet(node)
+                self.leaves[node] = is_jet(node)
 
     def _radicand(self, base: Expr, index: int) -> Radicand:
         """Return a radicand in lowest terms, reduced by those hypotheses that hold no roots themselves."""
@@ -388,7 +367,7 @@ class FormulaRing:
         c0, s0 = map(self.ratio, constant_cosine_sine(form.half_turns))
         pairs = [(c0, s0)]
         for atom, coefficient in form.terms:
-            if _is_bound(atom, coefficient):
+            if is_bound(atom, coefficient):
                 pairs += self._known_angle(atom, coefficient)
                 continue
             if atom is pi and self.fine:
@@ -420,7 +399,7 @@ class FormulaRing:
 
     def _known_angle(self, atom: Expr, coefficient: Fraction) -> Iterator[tuple[Ratio, Ratio]]:
         """Yield the cosines and sines of angles that sum to a multiple of an inverse trigonometric function."""
-        for halvings, times in _split(coefficient):
+        for halvings, times in halved(coefficient):
             c, s = map(self.ratio, cosine_sine(atom, halvings))
             if times < 0:
                 s = self.ratios.multiply([self.ratios.number(-1), s])
@@ -461,51 +440,8 @@ class FormulaRing:
         return constant, above, below
 
 
-def _is_bound(atom: Expr, coefficient: Fraction) -> bool:
-    """Return whether the sine and cosine of a multiple of an atom are known: of inverse functions, whole and halved."""
-    return type(atom) in INVERSE and coefficient.denominator in (1, 2, 4, 8)
-
-
-def _unbound(form: LinearForm) -> LinearForm:
-    return LinearForm(tuple(term for term in form.terms if not _is_bound(*term)), form.half_turns)
-
-
-def _split(coefficient: Fraction) -> Iterator[tuple[int, int]]:
-    """Yield (number of halvings, how many such angles) that make up a multiple."""
-    left, halvings = coefficient, 0
-    while left:
-        times = int(left)
-        if times:
-            yield halvings, times
-        left, halvings = 2 * (left - times), halvings + 1
-
-
-def _parts_of(atom: Expr, coefficient: Fraction) -> list[Expr]:
-    """Return the cosines and sines by which those of a multiple of an inverse function are read."""
-    return [part for halvings, _ in _split(coefficient) for part in cosine_sine(atom, halvings)]
-
-
 def _occurring(poly: PolyElement) -> set[int]:
     return {number for mono in poly for number, power in enumerate(mono) if power}
-
-
-def _is_jet(node: Expr) -> bool:
-    """Return whether a leaf is free: a function of time, a derivative of one, a matrix entry.
-
-    Raises
-    ------
-    InputError
-        If it is no finite exact scalar at all.
-    """
-    if node.is_Float:
-        raise InputError(f"exact decision takes exact numbers, such as Rational(1, 2); got the float {node}")
-    if not isinstance(node, Expr) or not node.is_commutative or node is S.NaN or node.is_infinite:
-        raise InputError(f"exact decision takes finite scalar formulas, got {node}")
-    if any(part.is_Float for part in preorder_traversal(node)):
-        raise InputError(f"exact decision takes exact numbers, such as Rational(1, 2); got a float in {node}")
-    if isinstance(node, Derivative):
-        return isinstance(node.expr, AppliedUndef)
-    return isinstance(node, (AppliedUndef, MatrixElement))
 
 
 def _order(node: Expr) -> tuple[str, str]:

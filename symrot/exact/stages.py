@@ -14,9 +14,10 @@ from sympy.polys.rings import PolyElement
 
 from symrot.exact.angles import base_angle
 from symrot.exact.decide import flatten
+from symrot.exact.functions import TRIGONOMETRIC
 from symrot.exact.ratio import Ratio
 from symrot.exact.relations import Rule
-from symrot.exact.ring import TRIGONOMETRIC, FormulaRing, as_zero
+from symrot.exact.ring import FormulaRing, as_zero
 
 __all__ = ["Chain", "Link", "chains"]
 

@@ -1,0 +1,50 @@
+"""The functions that formulas are read through, and the leaves that are free."""
+
+import sympy
+from sympy import Derivative, Expr, S, preorder_traversal
+from sympy.core.function import AppliedUndef
+from sympy.matrices.expressions.matexpr import MatrixElement
+
+from symrot.errors import InputError
+
+__all__ = ["REWRITTEN", "TRIGONOMETRIC", "is_jet"]
+
+REWRITTEN = {
+    sympy.sinh: lambda u: (sympy.exp(u) - sympy.exp(-u)) / 2,
+    sympy.cosh: lambda u: (sympy.exp(u) + sympy.exp(-u)) / 2,
+    sympy.tanh: lambda u: (sympy.exp(2 * u) - 1) / (sympy.exp(2 * u) + 1),
+    sympy.coth: lambda u: (sympy.exp(2 * u) + 1) / (sympy.exp(2 * u) - 1),
+    sympy.asinh: lambda u: sympy.log(u + sympy.sqrt(u**2 + 1)),
+    sympy.acosh: lambda u: sympy.log(u + sympy.sqrt(u - 1) * sympy.sqrt(u + 1)),
+    sympy.atanh: lambda u: (sympy.log(1 + u) - sympy.log(1 - u)) / 2,
+}
+"""Hyperbolic functions and their inverses, in exponentials and logarithms."""
+
+TRIGONOMETRIC = {
+    sympy.sin: ("sin", None),
+    sympy.cos: ("cos", None),
+    sympy.tan: ("sin", "cos"),
+    sympy.cot: ("cos", "sin"),
+    sympy.sec: (None, "cos"),
+    sympy.csc: (None, "sin"),
+}
+"""Function -> (above, below) in the sine and cosine of its argument; None is 1."""
+
+
+def is_jet(node: Expr) -> bool:
+    """Return whether a leaf is free: a function of time, a derivative of one, a matrix entry.
+
+    Raises
+    ------
+    InputError
+        If it is no finite exact scalar at all.
+    """
+    if node.is_Float:
+        raise InputError(f"exact decision takes exact numbers, such as Rational(1, 2); got the float {node}")
+    if not isinstance(node, Expr) or not node.is_commutative or node is S.NaN or node.is_infinite:
+        raise InputError(f"exact decision takes finite scalar formulas, got {node}")
+    if any(part.is_Float for part in preorder_traversal(node)):
+        raise InputError(f"exact decision takes exact numbers, such as Rational(1, 2); got a float in {node}")
+    if isinstance(node, Derivative):
+        return isinstance(node.expr, AppliedUndef)
+    return isinstance(node, (AppliedUndef, MatrixElement))
