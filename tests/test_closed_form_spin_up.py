@@ -155,6 +155,38 @@ def test_a_sample_does_not_depend_on_its_neighbours():
     assert motion.evaluate([])[1].shape == (0, 4) and motion.evaluate(1.0, quaternion=False)[1] is None
 
 
+def test_the_edge_of_resonance_belongs_to_one_side(monkeypatch):
+    """Where doubles cannot tell on which side |x| = 10 a sample or a start is; 9.9999.. rounds to the last piece."""
+    draw, cases = random.Random(3), []
+    for x0 in (10.0, -10.0, 0.0, 10.5):
+        for to in (10.0, -10.0, *(10.0 * (1 + k * 2.0**-53) for k in range(-4, 5)), -11.0):
+            *given, unit = at(draw.uniform(0.1, 3), x0, draw.choice((-1, 1)) * 10 ** draw.uniform(-3, 3))
+            cases.append((given, np.array([(to - x0) * unit])))
+    found = [spin_up.motion(*given).evaluate(times)[1] for given, times in cases]
+    for (given, times), q in zip(cases, found, strict=True):
+        assert np.abs(q - by_integers(spin_up.motion(*given), times)[1]).max() <= BAR
+    for (given, times), q in list(zip(cases, found, strict=True))[::7]:
+        assert np.abs(q - without_compiler(given, monkeypatch).evaluate(times)[1]).max() <= BAR
+
+
+@pytest.mark.parametrize("across", [1e-170, 5e-324, 1e-100])
+def test_what_hardly_wobbles_spins(across):
+    """kappa^2 is no double."""
+    w, q = spin_up.motion((1, 1, 2), 2, 0.5, (across, 0, 1.0)).evaluate([0.0, 3.0])
+    half = 0.5 * (3.0 + 0.125 * 9)
+    assert np.abs(q - [[1, 0, 0, 0], [np.cos(half), 0, 0, np.sin(half)]]).max() < BAR and w[1, 2] == 1.75
+
+
+def test_what_leaves_the_doubles():
+    """Times whose squares are none take integers; angular velocities that are none are refused."""
+    given = (1.0, 1.0, 2.0), 2, 1.0, (1.0, 0.0, 1.0)
+    times = np.array([1e200, 1e300, -1e300])
+    (w, q), motion = spin_up.motion(*given).evaluate(times), spin_up.motion(*given)
+    assert all(np.array_equal(a, b) for a, b in zip((w, q), by_integers(motion, times), strict=True))
+    with pytest.raises(InputError, match="angular velocity is a finite number"):
+        spin_up.motion((1.0, 1.0, 2.0), 2, 1e100, (1.0, 0.0, 1.0)).evaluate([1.0, 1e300])
+
+
 def test_the_series_alone_would_not_do_near_resonance(monkeypatch):
     """Were it taken for a smaller kappa, its terms would grow before they are small."""
     *given, unit = at(5.0, -12.0)

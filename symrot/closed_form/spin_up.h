@@ -17,7 +17,7 @@
 
 #include <stddef.h>
 
-enum { SPIN_UP_SERIES = 13, SPIN_UP_TAYLOR = 20, SPIN_UP_PIECES = 4 };
+enum { SPIN_UP_SERIES = 13, SPIN_UP_TAYLOR = 20, SPIN_UP_PIECES = 4, SPIN_UP_COUNT = 10*SPIN_UP_PIECES };
 
 /* One side of resonance: counted from the start of the motion or from where it leaves the neighbourhood of resonance. */
 typedef struct {

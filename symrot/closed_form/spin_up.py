@@ -11,6 +11,7 @@ turns have passed. A sample costs the same at any time; those beyond 1e13 rad ta
 The formulas are in :file:`spin_up.h`. Proof: ``derivations/driven_rotation.md``.
 """
 
+import math
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 from functools import cached_property
@@ -29,6 +30,10 @@ from symrot.closed_form.spin_up_series import NEAR, series
 from symrot.errors import InputError
 
 __all__ = ["SpinUp", "motion"]
+
+_DOUBT = 1e-14  # of a place: nearer to the edge of a side than this, it could be on either
+
+_MOST = Fraction(10) ** 300
 
 _PHASE = 1e13  # rad, from here on pairs of doubles would not do
 
@@ -81,8 +86,8 @@ class SpinUp:
         scale = _scale(start, width, self._root)
         self._scale, self._start = scale, rounded(start / scale)
         self._turn = rounded(lag * sign * rates[axis] / scale), rounded(lag * abs(torque) / (2 * own * scale * scale))
-        kappa2 = float(min(width * width / s, Fraction(10) ** 300)) if s else float("inf")
-        self._sweep = Sweep(rounded(width / scale), rounded(s / scale**2), series(kappa2, 1.0 / kappa2))
+        kappa2, inverse = (float(min(x / y, _MOST)) if y else math.inf for x, y in ((width**2, s), (s, width**2)))
+        self._sweep = Sweep(rounded(width / scale), rounded(s / scale**2), series(kappa2, inverse))
         self._edge = Fraction(0) if self._sweep.series.wide else rounded(Fraction(NEAR) * self._root / scale)
         self._axes = self._body_axes(axis, sign, first / width, second / width)
         self._given = product(fixed(frames.unit(attitude)), self._axes)
@@ -178,15 +183,20 @@ class SpinUp:
         if not len(times):
             return rates, attitudes
         first, last = min(0.0, float(times.min())), max(0.0, float(times.max()))
-        start, s = float(self._start), float(self._sweep.s)
-        scale, edge = float(self._scale), float(self._edge)
-        far = self._sweep.series.wide or start + s * last * scale <= -edge or start + s * first * scale >= edge
-        self._fill(quaternion and not far)(times, rates, attitudes)
-        if self._phase(max(last, -first)) > _PHASE:
+        self._fill(quaternion and not self._far(first, last))(times, rates, attitudes)
+        if not self._phase(max(last, -first)) <= _PHASE:  # NaN: more than doubles hold
+            self._check(first, last)
             for i, time in enumerate(times.tolist()):
-                if self._phase(abs(time)) > _PHASE:
+                if not self._phase(abs(time)) <= _PHASE:
                     self._put(i, time, rates, attitudes)
         return rates, attitudes
+
+    def _far(self, first: float, last: float) -> bool:
+        """Return whether all times between two are surely on one side of resonance, however doubles round."""
+        start, s, scale = float(self._start), float(self._sweep.s), float(self._scale)
+        ends, edge = (start + s * first * scale, start + s * last * scale), float(self._edge)
+        edge += _DOUBT * (edge + max(map(abs, (start, *ends))))
+        return self._sweep.series.wide or ends[1] <= -edge or ends[0] >= edge
 
     def _phase(self, time: float) -> float:
         """Return more rad than either phase of a motion has at a time."""
@@ -194,6 +204,12 @@ class SpinUp:
         sweep = abs(float(self._start)) + float(self._sweep.across) + abs(first)
         scaled = time * float(self._scale)
         return scaled * (sweep + (float(self._sweep.s) + abs(second)) * scaled)
+
+    def _check(self, first: float, last: float) -> None:
+        """Refuse times at which the angular velocity would be no double."""
+        for time in (first, last):
+            if abs(self._spin[0] + self._spin[1] * Fraction(time) * self._scale) >= number.LARGEST:
+                raise InputError(f"expected times at which the angular velocity is a finite number, got {time:.6g} s")
 
     def _put(self, i: int, time: float, rates: Floats | None, attitudes: Floats | None) -> None:
         """Write one sample by integers."""

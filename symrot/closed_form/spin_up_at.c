@@ -57,7 +57,7 @@ ALWAYS_INLINE dd asinh_ratio(dd z, dd root)
     int octave;
     const double part = frexp(w.hi, &octave);
     const dd f = dd_scale(w, ldexp(1.0, -octave));
-    const int i = (int)(32.0*part);
+    const int i = part < 1.0 ? (int)(32.0*part) : 16; /* what left the doubles is written by integers, from Python */
     const dd middle = dd_of((i + 0.5)/32.0);
     const dd r = dd_div(dd_sub(f, middle), dd_add(f, middle));
     const dd log = dd_add(dd_mul(dd_of(octave), ln2), LOGARITHMS[i - 16]);
@@ -120,7 +120,7 @@ static void near(const spin_up *f, const double *table, dd omega, double a[2], d
 {
     const double sign = omega.hi < 0.0 ? -1.0 : 1.0;
     const dd x = dd_scale(dd_mul(omega, dd_pair(f->inverse[0], f->inverse[1])), sign);
-    const double piece = floor(x.hi*SPIN_UP_PIECES);
+    const double piece = fmin(floor(x.hi*SPIN_UP_PIECES), SPIN_UP_COUNT - 1); /* the edge itself is in the last one */
     const double rest = (x.hi - (piece + 0.5)/SPIN_UP_PIECES) + x.lo;
     const double *at = table + 4*SPIN_UP_TAYLOR*(ptrdiff_t)piece;
     double q[4];

@@ -155,7 +155,7 @@ class SpinUp:
         assert self._table is not None
         sign = np.where(omega[0] < 0.0, -1.0, 1.0)
         high, low = dd.multiply((sign * omega[0], sign * omega[1]), self._inverse)
-        piece = np.floor(high * PIECES)
+        piece = np.minimum(np.floor(high * PIECES), len(self._table) - 1)  # the edge itself is in the last one
         rest = (high - (piece + 0.5) / PIECES) + low
         terms = self._table[piece.astype(np.int64)]
         q = terms[:, -1]
