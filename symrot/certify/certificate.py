@@ -17,7 +17,8 @@ from sympy import Expr, Symbol
 from symrot.certify.coq_library import coq_section
 from symrot.certify.equality import Equality, prove_equal
 from symrot.certify.flags import flags_section
-from symrot.certify.laws import CaseProof, LawProof, prove_law
+from symrot.certify.law_proof import CaseProof
+from symrot.certify.laws import LawProof, prove_law
 from symrot.certify.readback import read_batch, read_kernel
 from symrot.certify.rounded import Meant
 from symrot.codegen import library
@@ -108,12 +109,15 @@ def certificate_text(subject: Subject) -> str:
     return printed(stated | json.loads(kept))
 
 
+PROVERS = ("certificate", "equality", "law_proof", "laws", "operations", "readback", "rounded", "../kernels/removable")
+"""The programs that find proofs: another one of them, other proofs."""
+
+
 @cache
 def _method() -> str:
     """Return the SHA-256 of the programs that prove."""
     here = Path(__file__).parent
-    names = ("certificate", "equality", "laws", "operations", "readback", "rounded", "../kernels/removable")
-    return sha256(b"".join((here / f"{name}.py").read_bytes() for name in names)).hexdigest()
+    return sha256(b"".join((here / f"{name}.py").read_bytes() for name in PROVERS)).hexdigest()
 
 
 def statement(subject: Subject) -> Data:
