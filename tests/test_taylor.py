@@ -24,8 +24,8 @@ from symrot.propagation.kernels import error_blocks, scene_kernel
 from symrot.propagation.stepping import Task
 from symrot.scene import load_scene
 from symrot.scene_kernel import bind
-from tests.test_dop853 import MOTIONS, TIMES, error, parameters, state
-from tests.test_dop853 import taylor as reference
+from tests.reference.tops import MOTIONS, TIMES, error, parameters, state
+from tests.reference.tops import taylor as reference
 from tests.test_recurrences import FUNCTION_SYSTEMS, START, SYSTEMS, program
 
 MATH = {name: getattr(math, name) for name in FUNCTIONS if name != "abs"}

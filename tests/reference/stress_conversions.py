@@ -7,7 +7,7 @@ from scipy.spatial.transform import Rotation
 from symrot.conventions import SEQUENCES
 from symrot.kinematics import conversions as cv
 from symrot.kinematics.rates import angular_velocity, quaternion_rate
-from tests import test_conversions as exact
+from tests.reference import quaternions as exact
 from tests.reference.figures import Figure, body, propagated
 
 BAR = 4e-16  # of a rotation: a unit quaternion in doubles is known to 1.1e-16 per component
