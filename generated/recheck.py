@@ -117,7 +117,7 @@ class Reader:
                 return self.call(CHOICES[type(sign)], *map(self.value, (left, right, body, other)))
             case ast.Call(func=ast.Name(id=name), args=[first, *others], keywords=[]):
                 values = [self.value(first), *map(self.value, others)]
-                if re.match("symrot_(?:(sin|cos)f?$|near_)", name):
+                if re.match("symrot_(?:(sin|cos)f?$|near_(?!arc_))", name):
                     self.near.add(values[0])
                 return self.call(self.calls[name] if self.real else name, *values)
         raise ValueError(f"no formula of kernels: {ast.unparse(node)[:60]}")
@@ -160,7 +160,7 @@ class Kernel:
         self.end = end = {"double": "", "float": "f"}[self.real]
         own = [f for f in found if found[f][:2] == ("static inline ", self.real)]
         self.own = {f: f.removeprefix("symrot_").removeprefix("near_").removesuffix(end) for f in own}
-        ranged = ("sin", "cos", "select_lt", "select_eq") if "symrot_math.h" in data["files"] else ()
+        ranged = ("sin", "cos", "atan2", "select_lt", "select_eq") if "symrot_math.h" in data["files"] else ()
         self.calls = {f + end: f for f in MATH} | {f"fabs{end}": "Abs"} | {f"symrot_{f}{end}": f for f in ranged}
         self.calls |= self.own
         inputs = {place: self.spec["parameters"].get(symbol, symbol) for place, symbol, _ in data["inputs"]}

@@ -43,9 +43,10 @@ def test_a_program_of_ones_own_builds_and_runs(compiler, language, tmp_path):
 
 @needs_cc
 @pytest.mark.parametrize("name", ["euler_zxz_body_rates", "euler_zyx_dcm", "rotation_vector_body_jacobian", "rotation_vector_space_rates",
-                                  "rotation_vector_dcm", "heavy_top", "rigid_body_tensor", "quaternion_dcm"])  # fmt: skip
+                                  "rotation_vector_dcm", "rotation_vector_of_quaternion", "euler_zyx_of_quaternion",
+                                  "euler_zxz_of_quaternion", "heavy_top", "rigid_body_tensor", "quaternion_dcm"])  # fmt: skip
 def test_compilers_vectorise_batches(name, tmp_path):
-    """The loop of double and that of float, sine and cosine included."""
+    """The loop of double and that of float; sine, cosine and arc tangent included."""
     told = {"gcc": ["-O3", "-fopt-info-vec-optimized"], "clang": ["-O2", "-Rpass=loop-vectorize"]}
     for compiler in COMPILERS:
         found = compiled(compiler, "-std=c99", "-fno-math-errno", *told[compiler], "-c", KERNELS / f"{name}.c", "-o",
@@ -100,15 +101,30 @@ def test_sine_and_cosine_campaign(flags, tmp_path):
 
 @needs_cc
 def test_what_kernels_call_is_within_its_stated_error():
-    """One sample and batch, double and float: 4 units in the last place at removable singularities, 1 for sines."""
+    """One sample and batch, double and float: 4 units in the last place at removable singularities, else 1."""
     found = list(ulps.measured(500, ("fused",)))
-    both, one, batch = ({"one", "batch"}, {"one"}, {"batch"})
-    stated = {"sinc": both, "sine_gap": both, "tangent_gap": both, "tangent_gap >pi": both, "arc_ratio": one,
-              "sin": batch, "cos": batch}  # fmt: skip
+    both, batch = ({"one", "batch"}, {"batch"})
+    stated = {"sinc": both, "sine_gap": both, "tangent_gap": both, "tangent_gap >pi": both, "arc_ratio": both,
+              "sin": batch, "cos": batch, "atan2": batch}  # fmt: skip
     assert {(row.name, row.real, row.form) for row in found} == {
         (name, real, form) for name, forms in stated.items() for real in ("double", "float") for form in forms
     }
-    assert [row for row in found if not row.ulp <= (1 if row.name in ("sin", "cos") else 4)] == []
+    assert [row for row in found if not row.ulp <= (1 if row.name in ("sin", "cos", "atan2") else 4)] == []
+
+
+@needs_cc
+def test_arc_tangents_at_zeros_and_beyond_numbers():
+    """Zeros of either sign as in C, the axes and diagonals to the last bit; NaN of what is no number."""
+    (function,) = (each for each in ulps.FUNCTIONS if each.name == "atan2")
+    loaded = ctypes.CDLL(str(ulps.library.build(ulps._text(function), "ulps", ulps.FLAGS)))
+    sides = (0.0, -0.0, 1.0, -1.0, 3.0, -3.0)
+    given = np.array([(y, x) for y in sides for x in sides if abs(y) == abs(x) or not y * x]).T
+    for real, kind in ((ulps.DOUBLE, np.float64), (ulps.FLOAT, np.float32)):
+        found = np.array(ulps._called(loaded, f"batch{real.suffix}", given, real))
+        wanted = np.arctan2(*given.astype(kind)).astype(float)
+        assert np.array_equal(found, wanted) and np.array_equal(np.signbit(found), np.signbit(wanted))
+        odd = np.array([(np.nan, 1), (1, np.nan), (np.inf, 1), (1, -np.inf), (np.inf, np.inf), (0, np.nan)]).T
+        assert np.isnan(ulps._called(loaded, f"batch{real.suffix}", odd, real)).all()
 
 
 @needs_cc

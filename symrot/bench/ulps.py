@@ -4,8 +4,9 @@
 
 Each function is taken from emitted C, compiled without and with fused operations, in double and in float, as one
 sample calls it (``one``, with the C library) and as a batch does (``batch``, without a branch, angles within the range
-of ``symrot_math.h``); the reference is mpmath at 60 digits. Points: every scale from the least normal number to the
-reach below, both sides of the place where a series takes over, neighbours of multiples of pi/2.
+of ``symrot_math.h``, all numbers for arc tangents); the reference is mpmath at 60 digits. Points: every scale from the
+least normal number to the reach below, both sides of the place where a series takes over, neighbours of multiples of
+pi/2.
 
 Reach: for one sample every finite number; for a batch the range of ``symrot_math.h``, beyond which it calls what one
 sample calls; tangent_gap in ulp up to pi, before its first zero, and beyond it in units of 2^-53/x^2 (float: 2^-24):
@@ -92,6 +93,12 @@ def _sin(x: Any) -> Any:
     return mpmath.sin(x)
 
 
+def _atan2(y: Any, x: Any) -> Any:
+    import mpmath
+
+    return mpmath.atan2(y, x)
+
+
 def _cos(x: Any) -> Any:
     import mpmath
 
@@ -104,7 +111,8 @@ FUNCTIONS = (
     Function("sine_gap", lambda x: _series("sine_gap", x), "rotation_vector_body_jacobian"),
     Function("tangent_gap", lambda x: _series("tangent_gap", x), "rotation_vector_body_rates", reach=pi),
     Function("tangent_gap", lambda x: _series("tangent_gap", x), "rotation_vector_body_rates", beyond=pi),
-    Function("arc_ratio", _arc_ratio, "rotation_vector_of_quaternion", (("one", "symrot_"),)),
+    Function("arc_ratio", _arc_ratio, "rotation_vector_of_quaternion"),
+    Function("atan2", _atan2, "rotation_vector_of_quaternion", _BATCH),
     Function("sin", _sin, "rotation_vector_quaternion", _BATCH),
     Function("cos", _cos, "rotation_vector_quaternion", _BATCH),
 )
@@ -117,6 +125,8 @@ def _points(function: Function, real: Real, form: str, count: int) -> Floats:
     reach = min(function.reach, REACH[real.precision] if form == "one" else far)
     kind = np.float32 if real.suffix else np.float64
     sizes = np.exp(draw.uniform(np.log(LEAST[real.precision]), np.log(reach), count // 4))
+    if function.name == "atan2":
+        return _directions(real, count, kind)
     if function.name == "arc_ratio":
         angles = np.concatenate([[0.0], sizes[sizes < pi], draw.uniform(0, pi, count - len(sizes))])
         return np.array([np.sin(angles), np.cos(angles)]).astype(kind).astype(float)
@@ -130,6 +140,21 @@ def _points(function: Function, real: Real, form: str, count: int) -> Floats:
     return kept
 
 
+def _directions(real: Real, count: int, kind: Any) -> Floats:
+    """Return y and x: every angle, every size and ratio that there is, and the neighbours of y = x/2, x and 2 x."""
+    draw, third = np.random.default_rng(4), count // 3
+    low, high = np.log(LEAST[real.precision]), np.log(REACH[real.precision])
+    angles = draw.uniform(-pi, pi, third)
+    around = [np.stack([sizes, sizes]) for sizes in np.exp(draw.uniform(-3, 3, (2, third // 2)))]
+    around[0][0] *= 0.5 + draw.integers(-9, 10, third // 2) * float(np.finfo(kind).eps)
+    around[1][0] *= 1 + draw.integers(-9, 10, third // 2) * float(np.finfo(kind).eps)
+    spread = np.exp(draw.uniform(low, high, (2, third)))
+    found = np.concatenate([[np.sin(angles), np.cos(angles)], spread, *around, around[0][::-1]], axis=1)
+    signs = draw.choice([-1.0, 1.0], found.shape)
+    few = np.array(list(product((0.0, 1.0, -1.0, float(np.finfo(kind).max), LEAST[real.precision]), repeat=2))).T
+    return np.concatenate([found * signs, few[:, few[1] >= 0]], axis=1).astype(kind).astype(float)
+
+
 def _text(function: Function) -> str:
     """Return emitted C that has a function, and for each of its forms a loop over arrays."""
     emitted = emit(function.kernel)
@@ -137,7 +162,7 @@ def _text(function: Function) -> str:
     text = math_header() + source.replace(f'#include "{function.kernel}.h"', emitted.header)
     for real in (DOUBLE, FLOAT):
         for form, prefix in function.forms:
-            taken = ", ".join(f"x[{i}*n + k]" for i in range(1 + (function.name == "arc_ratio")))
+            taken = ", ".join(f"x[{i}*n + k]" for i in range(2 if function.name in ("arc_ratio", "atan2") else 1))
             text += (
                 f"\nvoid {form}{real.suffix}(size_t n, const {real.type} *x, {real.type} *y)\n{{\n"
                 "    for (size_t k = 0; k < n; ++k)\n"

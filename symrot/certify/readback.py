@@ -22,6 +22,7 @@ LIBRARY: dict[str, int] = {  # functions of <math.h> that kernels call, without 
 }  # fmt: skip
 ROUNDED = {"sqrt": ("sqrt", 1), "fabs": ("abs", 1), "copysign": ("copysign", 2)}  # exact, or rounded correctly
 NEAR = {"symrot_sin": "sin", "symrot_cos": "cos"}  # of symrot_math.h, in batches: assumed to its stated error
+ARC = {"symrot_atan2": "atan2"}  # the same, for all numbers
 SELECT = {"symrot_select_lt": "<", "symrot_select_eq": "=="}  # of symrot_math.h: choices without a branch
 SPAN = "SYMROT_SPAN"  # samples that several loops of a batch take in turn
 DEEPEST = 200  # nested levels of an expression
@@ -215,8 +216,8 @@ class _Scope:
 class _Reader:
     """Reads the body of one function into a graph, the functions it calls in their place."""
 
-    def __init__(self, functions: Mapping[str, Function], where: str, real: str) -> None:
-        self.functions, self.where, self.real = functions, where, real
+    def __init__(self, functions: Mapping[str, Function], where: str, real: str, batch: bool = False) -> None:
+        self.functions, self.where, self.real, self.batch = functions, where, real, batch
         self.builder = Builder()
         self.inputs: dict[str, int] = {}  # place -> its node
         self.calls: list[str] = []
@@ -374,7 +375,9 @@ class _Reader:
         if self.turning is not None and bare in NEAR and len(taken) == 1:
             self.turning.add(taken[0])
             return self.builder.add("call", NEAR[bare], tuple(taken))
-        if self.turning is not None and bare in SELECT and len(taken) == 4:
+        if self.batch and bare in ARC and len(taken) == 2:
+            return self.builder.add("call", ARC[bare], tuple(taken))
+        if self.batch and bare in SELECT and len(taken) == 4:
             return self.builder.add("select", SELECT[bare], *taken)
         if LIBRARY.get(bare) != len(taken):
             raise cursor.fail(f"a function of <math.h> that kernels use instead of {name}, before")
@@ -470,9 +473,10 @@ def read_batch(text: str, name: str, where: str = "kernel") -> Operations:
 
     Notes
     -----
-    ``symrot_sin`` and ``symrot_cos`` are read as sine and cosine: that ``symrot_math.h`` computes them to its stated
-    error is an assumption. They are accepted where each angle is asked whether it is in their range, and the block is
-    computed again by the same operations with the C library where one is not.
+    ``symrot_sin``, ``symrot_cos`` and ``symrot_atan2`` are read as sine, cosine and arc tangent: that
+    ``symrot_math.h`` computes them to its stated error is an assumption. The first two are accepted where each angle is
+    asked whether it is in their range, and the block is computed again by the same operations with the C library where
+    one is not.
     """
     functions = functions_of(text, where)
     function = _defined(functions, name, where)
@@ -480,7 +484,7 @@ def read_batch(text: str, name: str, where: str = "kernel") -> Operations:
     counts = [p.name for p in function.parameters if p.type == "size_t"]
     if len(counts) != 1:
         raise CertificateError(f"{where}, line {function.line}: expected one number of samples for {name}")
-    reader, scope = _Reader(functions, where, real), _Scope(count=counts[0])
+    reader, scope = _Reader(functions, where, real, batch=True), _Scope(count=counts[0])
     scope.arrays = {p.name: p for p in function.parameters if p.type != "size_t"}
     cursor = _Cursor(function.body, where)
     while cursor.peek() == "(":

@@ -8,7 +8,7 @@ from struct import pack, unpack
 from textwrap import wrap
 
 from symrot.codegen.banner import WIDTH, Description, banner
-from symrot.codegen.own_functions import NEAR, called, own_function, turning_arguments
+from symrot.codegen.own_functions import NEAR, called, own_function, turning_arguments, without_branches
 from symrot.expression import FUNCTIONS, Node, names, rename, text
 from symrot.kernel import Argument, Program
 from symrot.kernels.removable import FUNCTIONS as OWN_FUNCTIONS
@@ -46,7 +46,7 @@ class Real:
     def near_functions(self) -> dict[str, str]:
         """Return their names in a batch, where angles are in the range of ``symrot_math.h``."""
         own = {name: f"symrot_near_{name}{self.suffix}" for name in NEAR}
-        return self.functions | own | {name: f"symrot_{name}{self.suffix}" for name in ("sin", "cos")}
+        return self.functions | own | {name: f"symrot_{name}{self.suffix}" for name in ("sin", "cos", "atan2")}
 
     @property
     def bits(self) -> str:
@@ -230,7 +230,7 @@ def _batch(program: Program, real: Real, near: bool) -> list[str]:
             "}",
         ]
     if not angles:
-        return [*head, *_loop(of_sample, real, ("0", "n"), loaded, "    ", INDEPENDENT), "}"]
+        return [*head, *_loop(of_sample, real, ("0", "n"), loaded, "    ", INDEPENDENT, near), "}"]
     far = " + ".join(f"symrot_far{real.suffix}({c_expression(angle, real, True)})" for angle in angles)
     return [
         *head,
@@ -363,7 +363,7 @@ def c_source(program: Program, description: Description, reals: Sequence[Real] =
         Whether batches take sine and cosine from ``symrot_math.h``, which compilers vectorise, with those of the C
         library for blocks with an angle out of its range.
     """
-    near = near and bool(turning_arguments(program))
+    near = near and without_branches(program)
     lines = [*banner(program, description, "/*", " *", " */"), *_includes(program, near)]
     lines += [f'#include "{program.signature.name}.h"', ""]
     for real in reals:
