@@ -1,0 +1,15 @@
+"""What some tests need of the machine: compilers, objdump, a processor."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from symrot.certify.disassembly import missing
+
+HERE = [name for name in ("gcc", "clang") if shutil.which(name)]
+PROCESSOR = Path("/proc/cpuinfo").read_text() if Path("/proc/cpuinfo").exists() else ""
+needs_objdump = pytest.mark.skipif(bool(missing()) or "gcc" not in HERE, reason="needs gcc and objdump")
+needs_avx2 = pytest.mark.skipif(
+    not {"avx2", "fma"} <= set(PROCESSOR.split()), reason="needs a processor with AVX2, FMA"
+)
