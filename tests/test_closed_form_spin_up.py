@@ -100,7 +100,7 @@ def extremes(count, seed=7):
 def by_integers(motion, times):
     rates, attitudes = np.empty((len(times), 3)), np.empty((len(times), 4))
     for i, t in enumerate(times.tolist()):
-        motion._put(i, t, rates, attitudes)
+        motion.integers.put(i, t, rates, attitudes)
     return rates, attitudes
 
 

@@ -6,41 +6,50 @@
  *     omega = W (e1 cos chi + e2 sin chi) + w3 e3,  w3 linear in time,  chi = (C - A)/A times the integral of w3.
  * In axes that turn with the transverse part the body turns at (W, 0, Omega), Omega = (C/A) w3, which sweeps at the rate
  * s = M/A. With a = q0 + i q3, b = q1 + i q2 for their attitude: 2 a' = i Omega a - W b, 2 b' = W a - i Omega b.
- * Far from Omega = 0, |Omega| >= 10 sqrt(s), or everywhere if W >= 9 sqrt(s):
+ * Far from Omega = 0, |Omega| >= 10 sqrt(s), or everywhere if W >= 9 sqrt(s), with S = sqrt(Omega^2 + W^2):
  *     attitude = exp(e3 (P + delta)/2) (turn that takes e3 to m)^-1 exp(-e2 theta/2),  tan theta = W/Omega,
- *     P = integral of sqrt(Omega^2 + W^2),  m and delta as polynomials in y = Y/(Omega^2 + W^2).
+ *     P = integral of S = (Omega S + W^2 asinh(Omega/W))/(2 s),  m and delta as polynomials in y = Y/S^2.
+ * A torque so weak that P loses digits at the start, S^2 > 1e15 s, has P from there on as a series in h = s t/S(0):
+ * |h| < 1/90 for the 1e13 rad that pairs of doubles count.
  * Elsewhere Taylor's polynomials of (a, b) about even places in x = Omega/sqrt(s).
- * Compile with -ffp-contract=off.
+ *
+ * symrot_spin_up_prepare (spin_up.c) finds the constants, once; symrot_spin_up_at (spin_up_at.c) takes the samples.
+ * No allocation, no globals, no input or output. Compile with -ffp-contract=off.
  */
 #ifndef SYMROT_SPIN_UP_H
 #define SYMROT_SPIN_UP_H
 
 #include <stddef.h>
 
-enum { SPIN_UP_SERIES = 13, SPIN_UP_TAYLOR = 20, SPIN_UP_PIECES = 4, SPIN_UP_COUNT = 10*SPIN_UP_PIECES };
+enum { SPIN_UP_SERIES = 13, SPIN_UP_TAYLOR = 20, SPIN_UP_PIECES = 4, SPIN_UP_WEAK = 16 };
 
-/* One side of resonance: counted from the start of the motion or from where it leaves the neighbourhood of resonance. */
+/* Where a sample is: far before resonance, near it, far beyond. */
+enum { SPIN_UP_BEFORE, SPIN_UP_NEAR, SPIN_UP_BEYOND };
+
+/* P/(4 pi), half of P in turns. */
 typedef struct {
-    double time[2], sweep[2]; /* there: the time, and Omega, each as hi, lo */
-    double delta;             /* there, rad */
-    double attitude[4][4];    /* from q0, q1, q2, q3 of the formula to those of the body */
-} spin_up_side;
+    double weak;                 /* 1: by the series, and a sample is never near */
+    double product[2], share[2]; /* 1/(8 pi s), W^2/(8 pi s); of the series s/S(0), S(0)/(4 pi) */
+    double logarithm[2];         /* log W */
+    double series[SPIN_UP_WEAK][2];
+} spin_up_phase;
 
+/* Everything is a double, so that other languages see one array. */
 typedef struct {
     double time_scale; /* a power of two; times are multiplied by it, rates divided */
     double edge;       /* |Omega| from which a sample is far */
-    double wide;       /* 1: all are, and the first side holds for both */
-    double turn[4];    /* chi/2 in turns: of the time, and of its square */
+    double whole;      /* 1: all are, and share one attitude, that of SPIN_UP_BEYOND */
     double sweep[4];   /* Omega at time 0, s */
     double across[2];  /* W */
+    double turn[4];    /* chi/2 in turns: of the time, and of its square */
     double inverse[2]; /* 1/sqrt(s) */
     double unit;       /* Y */
     double g[SPIN_UP_SERIES], c[SPIN_UP_SERIES], e[SPIN_UP_SERIES];
-    double rates[3][2]; /* from cos chi, sin chi to omega, rad/s */
-    double axial[3];    /* from w3 to omega: which axis of the body it is about */
-    double spin[4];     /* w3 at time 0, and its growth */
-    spin_up_side side[2];
-    double near_attitude[4][4];
+    spin_up_phase phase;
+    double rates[3][2];       /* from cos chi, sin chi to omega, rad/s */
+    double axial[3];          /* from w3 to omega: which axis of the body it is about */
+    double spin[4];           /* w3 at time 0, and its growth */
+    double attitude[3][4][4]; /* from q0, q1, q2, q3 of each place to those of the body */
 } spin_up;
 
 #endif

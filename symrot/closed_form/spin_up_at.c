@@ -1,145 +1,210 @@
 /* A symmetric body under a constant torque about its axis at any time, from its constants. The formulas: spin_up.h. */
 #include "spin_up.h"
-#include "circular.h"
-#include "double_double.h"
+#include "spin_up_phase.h"
+#include "stages.h"
 
-/* log((i + 1/2)/32) for i from 16 to 31. */
-static const dd LOGARITHMS[] = {
-    {-0x1.5322e26867857p-1, -0x1.988ba4aea614dp-56},
-    {-0x1.35028ad9d8c86p-1, 0x1.f01ab6065515cp-56},
-    {-0x1.188ee40f23ca6p-1, -0x1.89df1568ca0b0p-55},
-    {-0x1.fb358af7a4884p-2, -0x1.7e8f05924d259p-57},
-    {-0x1.c7ff9c74554c9p-2, -0x1.223eadb651b4ap-57},
-    {-0x1.973a3431356aep-2, 0x1.89d2816cf838fp-57},
-    {-0x1.68ac83e9c6a14p-2, -0x1.a64eadd740178p-58},
-    {-0x1.3c25277333184p-2, 0x1.2ad27e50a8ec6p-56},
-    {-0x1.1178e8227e47cp-2, 0x1.0e63a5f01c691p-57},
-    {-0x1.d1037f2655e7bp-3, -0x1.60629242471a2p-57},
-    {-0x1.823c16551a3c2p-3, 0x1.1232ce70be781p-57},
-    {-0x1.365fcb0159016p-3, -0x1.7d411a5b944adp-58},
-    {-0x1.da727638446a2p-4, -0x1.401fa71733019p-58},
-    {-0x1.4d3115d207eacp-4, -0x1.769f42c7842ccp-58},
-    {-0x1.894aa149fb343p-5, -0x1.a8be97660a23dp-60},
-    {-0x1.0205658935847p-6, -0x1.27c8e8416e71fp-60},
-};
+typedef struct {
+    const double *table; /* NULL where no sample is near resonance */
+    double t[BLOCK], sine[BLOCK], cosine[BLOCK];  /* of chi/2 */
+    double omega[BLOCK], omega_low[BLOCK], speed[BLOCK], speed_low[BLOCK];
+    double turns[BLOCK], turns_low[BLOCK], turned[BLOCK], along[BLOCK]; /* of half the phase */
+    double far[4][BLOCK], near[4][BLOCK];
+} block;
 
-static const dd THIRD = {0x1.5555555555555p-2, 0x1.5555555555555p-56},
-    FIFTH = {0x1.999999999999ap-3, -0x1.999999999999ap-57},
-    SEVENTH = {0x1.2492492492492p-3, 0x1.2492492492492p-57},
-    NINTH = {0x1.c71c71c71c71cp-4, 0x1.c71c71c71c71cp-58}; /* 1/3 .. 1/9 */
-
-/* atanh(x)/x for |x| <= 1/60. */
-ALWAYS_INLINE dd atanh_small(dd x)
+/* A phase in turns, less whole ones and with something small more: its sine and cosine. */
+ALWAYS_INLINE void circle(dd turns, double more, double *sine, double *cosine)
 {
-    const dd square = dd_square(x);
-    double tail = 1.0/19.0;
-    tail = tail*square.hi + 1.0/17.0;
-    tail = tail*square.hi + 1.0/15.0;
-    tail = tail*square.hi + 1.0/13.0;
-    tail = tail*square.hi + 1.0/11.0;
-    dd sum = dd_add(dd_mul(square, dd_of(tail)), NINTH);
-    sum = dd_add(dd_mul(sum, square), SEVENTH);
-    sum = dd_add(dd_mul(sum, square), FIFTH);
-    sum = dd_add(dd_mul(sum, square), THIRD);
-    return dd_add(dd_mul(sum, square), dd_of(1.0));
-}
-
-/* asinh(z)/z from z and root = sqrt(1 + z^2). */
-ALWAYS_INLINE dd asinh_ratio(dd z, dd root)
-{
-    static const dd ln2 = DD_LN2;
-    const dd above = dd_add(root, dd_of(1.0));
-    if (fabs(z.hi) <= 0x1p-5) {
-        const dd tau = dd_div(z, above);
-        return dd_div(dd_scale(atanh_small(tau), 2.0), above);
-    }
-    const dd size = dd_abs(z), w = dd_add(size, root);
-    int octave;
-    const double part = frexp(w.hi, &octave);
-    const dd f = dd_scale(w, ldexp(1.0, -octave));
-    const int i = part < 1.0 ? (int)(32.0*part) : 16; /* what left the doubles is written by integers, from Python */
-    const dd middle = dd_of((i + 0.5)/32.0);
-    const dd r = dd_div(dd_sub(f, middle), dd_add(f, middle));
-    const dd log = dd_add(dd_mul(dd_of(octave), ln2), LOGARITHMS[i - 16]);
-    return dd_div(dd_add(log, dd_scale(dd_mul(atanh_small(r), r), 2.0)), size);
-}
-
-/* A phase in turns, less whole ones: its sine and cosine. */
-ALWAYS_INLINE void circle(dd turns, double *sine, double *cosine)
-{
-    const double whole = turns.hi - rint(turns.hi), small = turns.lo - rint(turns.lo);
+    const double whole = turns.hi - rint(turns.hi), small = (turns.lo - rint(turns.lo)) + more;
     const double quarters = rint(4.0*(whole + small));
     sincos_quarters((whole - 0.25*quarters) + small, quarters, sine, cosine);
 }
 
-ALWAYS_INLINE double series_of(const double *c, int count, double x)
+/* chi/2 */
+STAGE transverse(const spin_up *restrict f, ptrdiff_t n, block *restrict b)
 {
-    double sum = c[count - 1];
-    for (int n = count - 2; n >= 0; --n)
-        sum = MUL_ADD(sum, x, c[n]);
-    return sum;
+    const dd first = dd_pair(f->turn[0], f->turn[1]), second = dd_pair(f->turn[2], f->turn[3]);
+    EACH (i, n) {
+        const double t = b->t[i];
+        const dd mean = linear(first, second, t);
+        const double p = mean.hi*t;
+        circle(dd_pair(p, MUL_ADD(mean.lo, t, product_error(mean.hi, t, p))), 0.0, &b->sine[i], &b->cosine[i]);
+    }
 }
 
-/* Far from resonance: the attitude of the turning axes, from where the side is counted. */
-static void far(const spin_up *f, const spin_up_side *side, dd from_speed, dd t, dd omega, double a[2], double b[2])
+STAGE rates(const spin_up *restrict f, ptrdiff_t n, const block *restrict b, double *restrict omega)
 {
-    static const dd quarter = {0x1.45f306dc9c883p-4, -0x1.6b01ec5417056p-58}; /* 1/(4 pi) */
-    const dd s = dd_pair(f->sweep[2], f->sweep[3]), w = dd_pair(f->across[0], f->across[1]), w2 = dd_square(w);
-    const dd from = dd_pair(side->sweep[0], side->sweep[1]);
-    const dd here2 = dd_add(dd_square(omega), w2);
-    const dd speed = dd_sqrt(here2), product = dd_mul(omega, from);
-    const dd speeds = dd_mul(speed, from_speed);
-    const dd sum = product.hi >= 0.0
-        ? dd_add(speeds, product)
-        : dd_div(dd_mul(w2, dd_add(here2, dd_square(from))), dd_sub(speeds, product));
-    const dd middle = dd_sqrt(dd_scale(dd_add(w2, sum), 0.5));
-    const dd time = dd_sub(t, dd_pair(side->time[0], side->time[1]));
-    const dd half = dd_scale(dd_div(time, middle), 0.5), z = dd_mul(s, half);
-    const dd root = dd_sqrt(dd_add(dd_of(1.0), dd_square(z)));
-    const dd angle = dd_mul(half, dd_add(dd_mul(root, sum), dd_mul(w2, asinh_ratio(z, root))));
-
-    const double r = 1.0/speed.hi, sine = w.hi*r, cosine = omega.hi*r, y = f->unit*r*r;
-    const double m1 = sine*cosine*(y*y)*series_of(f->g, SPIN_UP_SERIES, y);
-    const double m2 = sine*y*series_of(f->c, SPIN_UP_SERIES, y);
-    const double delta = cosine*series_of(f->e, SPIN_UP_SERIES, y) - side->delta;
-    double turned, along;
-    circle(dd_add(dd_mul(angle, quarter), dd_of(delta*quarter.hi)), &turned, &along);
-    const double across2 = m1*m1 + m2*m2, m3 = 1.0 + sqrt(1.0 - across2), norm = 1.0/sqrt(m3*m3 + across2);
-    const double n0 = m3*norm, n1 = m1*norm, n2 = m2*norm;
-    const double larger = sqrt(0.5 + 0.5*fabs(cosine)), smaller = 0.5*sine/larger;
-    const double c = cosine >= 0.0 ? larger : smaller, d = cosine >= 0.0 ? smaller : larger;
-    const double a0 = n0*c - n1*d, a1 = -n2*d, b0 = n2*c, b1 = -(n0*d + n1*c);
-    a[0] = along*a0 - turned*a1;
-    a[1] = along*a1 + turned*a0;
-    b[0] = along*b0 - turned*b1;
-    b[1] = along*b1 + turned*b0;
+    const dd spin = dd_pair(f->spin[0], f->spin[1]), growth = dd_pair(f->spin[2], f->spin[3]);
+    EACH (i, n) {
+        const double s = b->sine[i], c = b->cosine[i], x = (c - s)*(c + s), y = 2.0*s*c;
+        const double w = linear(spin, growth, b->t[i]).hi;
+        omega[3*i] = MUL_ADD(f->rates[0][0], x, MUL_ADD(f->rates[0][1], y, f->axial[0]*w));
+        omega[3*i + 1] = MUL_ADD(f->rates[1][0], x, MUL_ADD(f->rates[1][1], y, f->axial[1]*w));
+        omega[3*i + 2] = MUL_ADD(f->rates[2][0], x, MUL_ADD(f->rates[2][1], y, f->axial[2]*w));
+    }
 }
 
-/* Near resonance: the same from x = 0, by Taylor's polynomials. */
-static void near(const spin_up *f, const double *table, dd omega, double a[2], double b[2])
+/* Omega, in double-double arithmetic, and how far they reach. */
+STAGE places(const double sweep[4], ptrdiff_t n, block *restrict b)
 {
-    const double sign = omega.hi < 0.0 ? -1.0 : 1.0;
-    const dd x = dd_scale(dd_mul(omega, dd_pair(f->inverse[0], f->inverse[1])), sign);
-    const double piece = fmin(floor(x.hi*SPIN_UP_PIECES), SPIN_UP_COUNT - 1); /* the edge itself is in the last one */
-    const double rest = (x.hi - (piece + 0.5)/SPIN_UP_PIECES) + x.lo;
-    const double *at = table + 4*SPIN_UP_TAYLOR*(ptrdiff_t)piece;
-    double q[4];
-    for (int k = 0; k < 4; ++k)
-        q[k] = at[4*(SPIN_UP_TAYLOR - 1) + k];
-    for (int n = SPIN_UP_TAYLOR - 2; n >= 0; --n)
+    const dd start = dd_pair(sweep[0], sweep[1]), s = dd_pair(sweep[2], sweep[3]);
+    EACH (i, n) {
+        const dd omega = linear(start, s, b->t[i]);
+        b->omega[i] = omega.hi;
+        b->omega_low[i] = omega.lo;
+    }
+}
+
+/* S */
+STAGE speeds(const double across[2], ptrdiff_t n, block *restrict b)
+{
+    const dd square = dd_square(dd_pair(across[0], across[1]));
+    EACH (i, n) {
+        const dd speed = rooted(added(dd_square(dd_pair(b->omega[i], b->omega_low[i])), square));
+        b->speed[i] = speed.hi;
+        b->speed_low[i] = speed.lo;
+    }
+}
+
+STAGE swept(const spin_up_phase *restrict p, ptrdiff_t n, block *restrict b)
+{
+    EACH (i, n) {
+        const dd turns =
+            swept_turns(p, dd_pair(b->omega[i], b->omega_low[i]), dd_pair(b->speed[i], b->speed_low[i]));
+        b->turns[i] = turns.hi;
+        b->turns_low[i] = turns.lo;
+    }
+}
+
+/* The same from the start on, under a weak torque. */
+STAGE weakly_swept(const spin_up_phase *restrict p, ptrdiff_t n, block *restrict b)
+{
+    const dd zero = dd_of(0.0), relative = dd_pair(p->product[0], p->product[1]);
+    const dd rate = dd_pair(p->share[0], p->share[1]);
+    EACH (i, n) {
+        const double t = b->t[i];
+        const dd h = linear(zero, relative, t);
+        double tail = p->series[15][0];
+        tail = MUL_ADD(tail, h.hi, p->series[14][0]);
+        tail = MUL_ADD(tail, h.hi, p->series[13][0]);
+        tail = MUL_ADD(tail, h.hi, p->series[12][0]);
+        tail = MUL_ADD(tail, h.hi, p->series[11][0]);
+        tail = MUL_ADD(tail, h.hi, p->series[10][0]);
+        tail = MUL_ADD(tail, h.hi, p->series[9][0]);
+        dd sum = added(dd_pair(p->series[8][0], p->series[8][1]), dd_pair(tail*h.hi, 0.0));
+        sum = added(dd_pair(p->series[7][0], p->series[7][1]), dd_mul(sum, h));
+        sum = added(dd_pair(p->series[6][0], p->series[6][1]), dd_mul(sum, h));
+        sum = added(dd_pair(p->series[5][0], p->series[5][1]), dd_mul(sum, h));
+        sum = added(dd_pair(p->series[4][0], p->series[4][1]), dd_mul(sum, h));
+        sum = added(dd_pair(p->series[3][0], p->series[3][1]), dd_mul(sum, h));
+        sum = added(dd_pair(p->series[2][0], p->series[2][1]), dd_mul(sum, h));
+        sum = added(dd_pair(p->series[1][0], p->series[1][1]), dd_mul(sum, h));
+        sum = added(dd_pair(p->series[0][0], p->series[0][1]), dd_mul(sum, h));
+        const dd turns = dd_mul(dd_mul(sum, rate), dd_of(t));
+        b->turns[i] = turns.hi;
+        b->turns_low[i] = turns.lo;
+    }
+}
+
+/* Far from resonance: the attitude of the turning axes, and from it that of the body in e1, e2, e3. */
+STAGE far(const spin_up *restrict f, ptrdiff_t n, block *restrict b)
+{
+    EACH (i, n) {
+        const double r = 1.0/b->speed[i], sine = f->across[0]*r, cosine = b->omega[i]*r, y = f->unit*r*r;
+        const double m1 = sine*cosine*(y*y)*series_of(f->g, y), m2 = sine*y*series_of(f->c, y);
+        double turned, along;
+        circle(dd_pair(b->turns[i], b->turns_low[i]), cosine*series_of(f->e, y)*SPIN_UP_QUARTER.hi, &turned, &along);
+        const double across2 = MUL_ADD(m1, m1, m2*m2), m3 = 1.0 + sqrt(1.0 - across2);
+        const double norm = 1.0/sqrt(MUL_ADD(m3, m3, across2)), n0 = m3*norm, n1 = m1*norm, n2 = m2*norm;
+        const double larger = sqrt(0.5 + 0.5*fabs(cosine)), smaller = 0.5*sine/larger;
+        const double c = cosine >= 0.0 ? larger : smaller, d = cosine >= 0.0 ? smaller : larger;
+        const double a0 = MUL_ADD(n0, c, -n1*d), a1 = -n2*d, b0 = n2*c, b1 = -MUL_ADD(n0, d, n1*c);
+        const double plus = b->sine[i], even = b->cosine[i];
+        const double less0 = MUL_ADD(along, even, turned*plus), less1 = MUL_ADD(turned, even, -along*plus);
+        const double more0 = MUL_ADD(along, even, -turned*plus), more1 = MUL_ADD(turned, even, along*plus);
+        b->far[0][i] = MUL_ADD(less0, a0, -less1*a1);
+        b->far[3][i] = MUL_ADD(less0, a1, less1*a0);
+        b->far[1][i] = MUL_ADD(more0, b0, -more1*b1);
+        b->far[2][i] = MUL_ADD(more0, b1, more1*b0);
+    }
+}
+
+/* Near resonance: the same from x = 0, by Taylor's polynomials, a sample at a time: four components fill a register. */
+STAGE near(const spin_up *restrict f, ptrdiff_t n, block *restrict b)
+{
+    const dd inverse = dd_pair(f->inverse[0], f->inverse[1]);
+    const double last = f->inverse[0]*f->edge*SPIN_UP_PIECES - 0.5; /* the middle of the last piece */
+    for (ptrdiff_t i = 0; i < n; ++i) {
+        const double sign = b->omega[i] < 0.0 ? -1.0 : 1.0;
+        const dd x = dd_scale(dd_mul(dd_pair(b->omega[i], b->omega_low[i]), inverse), sign);
+        const double place = x.hi*SPIN_UP_PIECES, piece = place < last ? floor(place) : floor(last);
+        const double rest = (x.hi - (piece + 0.5)/SPIN_UP_PIECES) + x.lo;
+        const double *at = b->table + 4*SPIN_UP_TAYLOR*(ptrdiff_t)piece;
+        double q[4];
         for (int k = 0; k < 4; ++k)
-            q[k] = MUL_ADD(q[k], rest, at[4*n + k]);
-    a[0] = q[0];
-    a[1] = q[3];
-    b[0] = sign*q[1];
-    b[1] = sign*q[2];
+            q[k] = at[4*(SPIN_UP_TAYLOR - 1) + k];
+        for (int m = SPIN_UP_TAYLOR - 2; m >= 0; --m)
+            for (int k = 0; k < 4; ++k)
+                q[k] = MUL_ADD(q[k], rest, at[4*m + k]);
+        const double s = b->sine[i], c = b->cosine[i];
+        b->near[0][i] = MUL_ADD(q[0], c, q[3]*s);
+        b->near[3][i] = MUL_ADD(q[3], c, -q[0]*s);
+        b->near[1][i] = sign*MUL_ADD(q[1], c, -q[2]*s);
+        b->near[2][i] = sign*MUL_ADD(q[2], c, q[1]*s);
+    }
+}
+
+static void all_far(const spin_up *f, ptrdiff_t n, block *b)
+{
+    speeds(f->across, n, b);
+    if (f->phase.weak != 0.0)
+        weakly_swept(&f->phase, n, b);
+    else
+        swept(&f->phase, n, b);
+    far(f, n, b);
+}
+
+static int place_of(const spin_up *f, const block *b, ptrdiff_t i)
+{
+    if (f->whole != 0.0 || b->omega[i] >= f->edge)
+        return SPIN_UP_BEYOND;
+    return b->omega[i] <= -f->edge || b->table == NULL ? SPIN_UP_BEFORE : SPIN_UP_NEAR;
+}
+
+/* Runs of samples in one place, each through its own map. */
+static void attitudes(const spin_up *f, ptrdiff_t n, block *b, double *q)
+{
+    int found[3] = {0, 0, 0};
+    for (ptrdiff_t i = 0; i < n; ++i)
+        found[place_of(f, b, i)] = 1;
+    if (found[SPIN_UP_BEFORE] || found[SPIN_UP_BEYOND])
+        all_far(f, n, b);
+    if (found[SPIN_UP_NEAR])
+        near(f, n, b);
+    for (ptrdiff_t i = 0, next; i < n; i = next) {
+        const int place = place_of(f, b, i);
+        for (next = i + 1; next < n && place_of(f, b, next) == place;)
+            ++next;
+        double(*x)[BLOCK] = place == SPIN_UP_NEAR ? b->near : b->far;
+        put_quaternion(f->attitude[place], next - i, x[0] + i, x[1] + i, x[2] + i, x[3] + i, q + 4*i);
+    }
+}
+
+static void motion(const spin_up *f, ptrdiff_t n, block *b, double *omega, double *q)
+{
+    transverse(f, n, b);
+    if (omega != NULL)
+        rates(f, n, b, omega);
+    if (q != NULL) {
+        places(f->sweep, n, b);
+        attitudes(f, n, b, q);
+    }
 }
 
 /*
  * The motion at times counted from that of the initial state.
  *
  * in   f           the constants
- * in   table       Taylor's polynomials, 40 times 20 times 4 numbers; not read unless a sample is near resonance
+ * in   table       Taylor's polynomials, 40 times 20 times 4 numbers; NULL where no sample is near resonance
  * in   times       s
  * out  omega       rad/s, 3 of each sample, or NULL
  * out  quaternion  1, 4 of each sample, or NULL
@@ -147,45 +212,7 @@ static void near(const spin_up *f, const double *table, dd omega, double a[2], d
 void symrot_spin_up_at(
     const spin_up *f, const double *table, ptrdiff_t count, const double *times, double *omega, double *quaternion)
 {
-    const dd first = dd_pair(f->turn[0], f->turn[1]), second = dd_pair(f->turn[2], f->turn[3]);
-    const dd start = dd_pair(f->sweep[0], f->sweep[1]), s = dd_pair(f->sweep[2], f->sweep[3]);
-    dd speeds[2];
-    for (int k = 0; k < 2; ++k) {
-        const dd w = dd_pair(f->across[0], f->across[1]), from = dd_pair(f->side[k].sweep[0], f->side[k].sweep[1]);
-        speeds[k] = dd_sqrt(dd_add(dd_square(from), dd_square(w)));
-    }
-    for (ptrdiff_t i = 0; i < count; ++i) {
-        const dd t = dd_of(times[i]*f->time_scale);
-        double sine, cosine;
-        circle(dd_mul(t, dd_add(first, dd_mul(t, second))), &sine, &cosine);
-        if (omega != NULL) {
-            const double c = (cosine - sine)*(cosine + sine), d = 2.0*sine*cosine;
-            const dd w3 = dd_add(dd_pair(f->spin[0], f->spin[1]), dd_mul(t, dd_pair(f->spin[2], f->spin[3])));
-            for (int k = 0; k < 3; ++k)
-                omega[3*i + k] = MUL_ADD(f->rates[k][0], c, MUL_ADD(f->rates[k][1], d, f->axial[k]*w3.hi));
-        }
-        if (quaternion == NULL)
-            continue;
-        const dd here = dd_add(start, dd_mul(s, t));
-        const double(*map)[4] = f->near_attitude;
-        double a[2], b[2];
-        if (f->wide != 0.0 || !(fabs(here.hi) < f->edge)) {
-            const int k = f->wide == 0.0 && here.hi > 0.0;
-            const spin_up_side *side = &f->side[k];
-            far(f, side, speeds[k], t, here, a, b);
-            map = side->attitude;
-        } else
-            near(f, table, here, a, b);
-        const double q0 = a[0]*cosine + a[1]*sine, q3 = a[1]*cosine - a[0]*sine;
-        const double q1 = b[0]*cosine - b[1]*sine, q2 = b[1]*cosine + b[0]*sine;
-        for (int k = 0; k < 4; ++k)
-            quaternion[4*i + k] =
-                MUL_ADD(map[k][0], q0, map[k][1]*q1) + MUL_ADD(map[k][2], q2, map[k][3]*q3);
-    }
-}
-
-/* The length of the constants in doubles, for callers that lay them out themselves. */
-ptrdiff_t symrot_spin_up_length(void)
-{
-    return (ptrdiff_t)(sizeof(spin_up)/sizeof(double));
+    block b;
+    b.table = table;
+    IN_BLOCKS(b, motion)
 }

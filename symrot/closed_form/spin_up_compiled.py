@@ -1,30 +1,30 @@
-"""The compiled loops of :mod:`.spin_up`: :file:`spin_up.c` for the table near resonance, :file:`spin_up_at.c`."""
+"""The compiled constants and loops of :mod:`.spin_up`: :file:`spin_up.c`, :file:`spin_up_at.c`."""
 
 import ctypes
+import math
 from collections.abc import Callable
-from fractions import Fraction
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from symrot.closed_form import spin_up_series
 from symrot.closed_form.library import Floats, address, load
-from symrot.closed_form.pairs import pair
-from symrot.closed_form.spin_up_exact import FIXED, Quaternion
 from symrot.closed_form.spin_up_near import DEGREE, PIECES
-from symrot.closed_form.spin_up_series import NEAR
+from symrot.closed_form.spin_up_span import Span
 from symrot.codegen import library
 from symrot.errors import CompilerError
 
-__all__ = ["CompiledNear", "available", "loops"]
+__all__ = ["Compiled", "available"]
 
-_COUNT = int(NEAR) * PIECES
+_PLACES = 9  # of the numbers in spin_up.h before those of chi
 
 
 class _Functions(NamedTuple):
-    record: Any
+    prepare: Any
     evaluate: Any
-    near: Any
-    further: Any
+    record: Any
+    numbers: Any
+    limits: Any
 
 
 _bound: list[_Functions] = []
@@ -37,52 +37,57 @@ def available() -> bool:
 
 def _functions() -> _Functions:
     if not _bound:
-        table, samples = load("spin_up")
-        if not table.symrot_spin_up_sound():
-            raise CompilerError("the C compiler breaks error-free arithmetic: it must round every operation as written")
-        length, evaluate = samples.symrot_spin_up_length, samples.symrot_spin_up_at
-        near, further = table.symrot_spin_up_near, table.symrot_spin_up_from
-        pointer, size = ctypes.c_void_p, ctypes.c_ssize_t
-        length.restype = size
-        evaluate.restype = near.restype = further.restype = None
+        constants, samples = load("spin_up")
+        prepare, length = constants.symrot_spin_up_prepare, constants.symrot_spin_up_length
+        evaluate, pointer, size = samples.symrot_spin_up_at, ctypes.c_void_p, ctypes.c_ssize_t
+        length.restype, prepare.restype, evaluate.restype = size, ctypes.c_int, None
+        prepare.argtypes = (ctypes.c_int, pointer, pointer, pointer, pointer)
         evaluate.argtypes = (pointer, pointer, size, pointer, pointer, pointer)
-        near.argtypes, further.argtypes = (
-            (pointer, size, pointer, pointer),
-            (pointer, ctypes.c_double, pointer, pointer),
-        )
-        _bound.append(_Functions(ctypes.c_double * length(), evaluate, near, further))
+        double = ctypes.c_double
+        _bound.append(_Functions(prepare, evaluate, double * length(), double * 20, double * 2))
     return _bound[0]
 
 
-class CompiledNear:
-    """As :class:`.Near`, in pairs of doubles: to 1e-29."""
+class Compiled:
+    """The constants of one motion, found by C, and its loops over samples.
 
-    def __init__(self, kappa: Fraction) -> None:
-        self._kappa = np.array(pair(kappa))
-        self._table, self._middles = np.empty((_COUNT, DEGREE + 1, 4)), np.empty((_COUNT, 4, 2))
-        _functions().near(address(self._kappa), _COUNT, address(self._table), address(self._middles))
+    Parameters
+    ----------
+    axis : 0, 1 or 2
+    numbers : 20 floats
+        What ``symrot_spin_up_prepare`` takes.
 
-    def quaternion(self, x: Fraction) -> Quaternion:
-        """Return the attitude at one x."""
-        piece = min(int(abs(x) * PIECES), _COUNT - 1)
-        place, attitude = Fraction(2 * piece + 1, 2 * PIECES), self._middles[piece].copy()
-        distance = np.array(pair(abs(x) - place))
-        _functions().further(address(self._kappa), float(place), address(distance), address(attitude))
-        q0, q1, q2, q3 = (int(high * 2.0**FIXED) + int(low * 2.0**FIXED) for high, low in attitude.tolist())
-        sign = -1 if x < 0 else 1
-        return q0, sign * q1, sign * q2, q3
+    Raises
+    ------
+    CompilerError
+        If the C compiler refuses the source, or breaks error-free arithmetic.
+    """
 
-    def table(self) -> Floats:
-        """Return the coefficients, by piece, power of the distance from its middle, and component of the quaternion."""
-        return self._table
+    def __init__(self, axis: int, numbers: list[float]) -> None:
+        functions = _functions()
+        self._axis, self._numbers = axis, functions.numbers(*numbers)
+        self._limits = functions.limits(spin_up_series.NEAR, spin_up_series.WIDE)
+        self._table: Floats | None = None
+        self._constants = functions.record()
+        self._place = ctypes.addressof(self._constants)
+        self._evaluate = functions.evaluate
+        self._prepare()
+        scale, edge, whole, start, _, s, _, across, _, turn, _, growth = self._constants[: _PLACES + 3]
+        self.span = Span(scale, edge, start, s, across, bool(whole), turn * (4.0 * math.pi), growth * (4.0 * math.pi))
 
+    def _prepare(self) -> None:
+        status = _functions().prepare(self._axis, self._numbers, self._limits, address(self._table), self._place)
+        if status:
+            raise CompilerError("the C compiler breaks error-free arithmetic: it must round every operation as written")
 
-def loops(constants: list[float], table: Floats | None) -> Callable[..., None]:
-    """Return the loops over samples, with their constants."""
-    functions = _functions()
-    kept = functions.record(*constants)
+    def fill(self, near: bool) -> Callable[..., None]:
+        """Return the loops over samples; those over samples far from resonance only, or over all."""
+        if near and self._table is None:
+            self._table = np.empty((int(spin_up_series.NEAR) * PIECES, DEGREE + 1, 4))
+            self._prepare()
+        return self._loops
 
-    def fill(times: Floats, omega: Floats | None, quaternion: Floats | None) -> None:
-        functions.evaluate(kept, address(table), len(times), address(times), address(omega), address(quaternion))
-
-    return fill
+    def _loops(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> None:
+        self._evaluate(
+            self._place, address(self._table), len(times), address(times), address(omega), address(quaternion)
+        )

@@ -71,7 +71,7 @@ def _circle(turns: dd.Pair) -> tuple[Floats, Floats]:
 
 
 class SpinUp:
-    """One motion, from the constants that C takes and the table near resonance, if it is needed."""
+    """One motion, from its constants, which integers find, and the table near resonance, if it is needed."""
 
     def __init__(self, constants: Sequence[float], table: Floats | None) -> None:
         values = iter(constants)

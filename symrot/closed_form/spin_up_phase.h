@@ -1,0 +1,130 @@
+/* The phase of a body far from resonance, for its constants and for its samples. The formulas: spin_up.h. */
+#ifndef SYMROT_SPIN_UP_PHASE_H
+#define SYMROT_SPIN_UP_PHASE_H
+
+#include "circular.h"
+#include "double_double.h"
+#include "spin_up.h"
+
+/* log(1 + (i + 1/2)/32) for i from 0 to 31, as high and low. */
+static const double LOG_HIGH[] = {
+    0x1.fc0a8b0fc03e4p-7, 0x1.77458f632dcfcp-5, 0x1.341d7961bd1d1p-4, 0x1.a926d3a4ad563p-4,
+    0x1.0d77e7cd08e59p-3, 0x1.44d2b6ccb7d1ep-3, 0x1.7ab890210d909p-3, 0x1.af3c94e80bff3p-3,
+    0x1.e27076e2af2e6p-3, 0x1.0a324e27390e3p-2, 0x1.22941fbcf7966p-2, 0x1.3a64c556945eap-2,
+    0x1.51aad872df82dp-2, 0x1.686c81e9b14afp-2, 0x1.7eaf83b82afc3p-2, 0x1.947941c2116fbp-2,
+    0x1.a9cec9a9a084ap-2, 0x1.beb4d9da71b7cp-2, 0x1.d32fe7e00ebd5p-2, 0x1.e744261d68788p-2,
+    0x1.faf588f78f31fp-2, 0x1.0723e5c1cdf40p-1, 0x1.109f39e2d4c97p-1, 0x1.19ee6b467c96fp-1,
+    0x1.23130d7bebf43p-1, 0x1.2c0e9ed448e8cp-1, 0x1.34e289d9ce1d3p-1, 0x1.3d9026a7156fbp-1,
+    0x1.4618bc21c5ec2p-1, 0x1.4e7d811b75bb1p-1, 0x1.56bf9d5b3f399p-1, 0x1.5ee02a9241675p-1,
+};
+static const double LOG_LOW[] = {
+    -0x1.83092c59642a1p-62, 0x1.18d3ca87b9296p-59, -0x1.b599f227becbbp-58, 0x1.942f48aa70ea9p-58,
+    0x1.9a5dc5e9030acp-57, 0x1.9f4f6543e1f88p-57, 0x1.be36b2d6a0608p-59, -0x1.398cff3641985p-58,
+    -0x1.61578001e0162p-59, 0x1.7dcfde8061c03p-56, -0x1.76f5eb09628afp-56, -0x1.c68651945f97cp-57,
+    0x1.3927ac19f55e3p-59, -0x1.ddea0f7f58e3dp-57, 0x1.92ce979ed2950p-56, -0x1.16cc8bae0bbe4p-56,
+    -0x1.cadec02b436afp-56, -0x1.0f3c590a887cap-59, 0x1.877b232fafa37p-56, -0x1.c825c90c344b9p-58,
+    -0x1.328260d8abca0p-57, 0x1.395e58e2445bbp-55, -0x1.0e09b27a4373ap-60, -0x1.9d1a11443f10cp-56,
+    -0x1.f48725e374d6ep-55, -0x1.1a158f3917586p-55, 0x1.6eb92d885ce4fp-57, -0x1.6fef670bd4b62p-55,
+    0x1.f42decdeccf1dp-55, -0x1.8d3d9ea6e9ea9p-55, 0x1.0471885cd8ff3p-55, 0x1.c358257f49082p-55,
+};
+
+/* 1/3, 1/5, 1/7 */
+static const dd THIRD = {0x1.5555555555555p-2, 0x1.5555555555555p-56},
+    FIFTH = {0x1.999999999999ap-3, -0x1.999999999999ap-57}, SEVENTH = {0x1.2492492492492p-3, 0x1.2492492492492p-57};
+
+/* 1/(4 pi) */
+static const dd SPIN_UP_QUARTER = {0x1.45f306dc9c883p-4, -0x1.6b01ec5417056p-58};
+
+/* a + b, to 2^-104 of the larger of them: in half the operations of dd_add. */
+ALWAYS_INLINE dd added(dd a, dd b)
+{
+    const dd s = two_sum(a.hi, b.hi);
+    return quick_two_sum(s.hi, s.lo + (a.lo + b.lo));
+}
+
+/* The same for |a| >= |b|. */
+ALWAYS_INLINE dd added_less(dd a, dd b)
+{
+    const dd s = quick_two_sum(a.hi, b.hi);
+    return quick_two_sum(s.hi, s.lo + (a.lo + b.lo));
+}
+
+/* a + b t */
+ALWAYS_INLINE dd linear(dd a, dd b, double t)
+{
+    const double p = b.hi*t;
+    return added(a, dd_pair(p, MUL_ADD(b.lo, t, product_error(b.hi, t, p))));
+}
+
+/* The square root of what is positive, to 2^-104. */
+ALWAYS_INLINE dd rooted(dd a)
+{
+    const double root = sqrt(a.hi), square = root*root;
+    const double rest = ((a.hi - square) - product_error(root, root, square)) + a.lo;
+    return quick_two_sum(root, rest/(2.0*root));
+}
+
+/* log(a) of a normal number, to 2^-102 or that much of itself: log(2^n c) + 2 atanh(r), |r| <= 1/128. */
+ALWAYS_INLINE dd logarithm(dd a)
+{
+    static const dd ln2 = DD_LN2;
+    union {
+        double number;
+        uint64_t bits;
+    } size, part, down;
+    size.number = a.hi;
+    const uint64_t exponent = size.bits >> 52, i = size.bits >> 47 & 31;
+    part.bits = (size.bits & 0xfffffffffffffu) | (uint64_t)1023 << 52;
+    down.bits = (2046 - exponent) << 52;
+    size.bits = exponent | (uint64_t)1075 << 52;
+    const double n = size.number - (0x1p+52 + 1023.0), low = a.lo*down.number;
+    size.bits = (part.bits & ~(((uint64_t)1 << 47) - 1)) | (uint64_t)1 << 46;
+    const double c = size.number;
+    /* r = (f - c)/(f + c): the difference is exact */
+    const dd below = quick_two_sum(part.number + c, (c - ((part.number + c) - part.number)) + low);
+    const double above = part.number - c, first = (above + low)/below.hi, lost = first*below.hi;
+    const double rest = ((above - lost) - product_error(first, below.hi, lost)) + MUL_ADD(-first, below.lo, low);
+    const dd r = quick_two_sum(first, rest/below.hi), square = dd_square(r);
+    double tail = 1.0/15.0;
+    tail = MUL_ADD(tail, square.hi, 1.0/13.0);
+    tail = MUL_ADD(tail, square.hi, 1.0/11.0);
+    tail = MUL_ADD(tail, square.hi, 1.0/9.0);
+    dd sum = added_less(SEVENTH, dd_pair(tail*square.hi, 0.0));
+    sum = added_less(FIFTH, dd_mul(sum, square));
+    sum = added_less(THIRD, dd_mul(sum, square));
+    sum = dd_mul(dd_mul(sum, square), r);
+    const dd atanh2 = dd_scale(added_less(r, sum), 2.0);
+    const double octaves = n*ln2.hi;
+    const dd whole = dd_pair(octaves, MUL_ADD(n, ln2.lo, product_error(n, ln2.hi, octaves)));
+    return added(added(whole, dd_pair(LOG_HIGH[i], LOG_LOW[i])), atanh2);
+}
+
+/* P/(4 pi) from Omega and S, but for a constant. */
+ALWAYS_INLINE dd swept_turns(const spin_up_phase *p, dd omega, dd speed)
+{
+    const double sign = omega.hi < 0.0 ? -1.0 : 1.0;
+    const dd log = logarithm(added(dd_scale(omega, sign), speed));
+    const dd asinh = dd_scale(added(log, dd_pair(-p->logarithm[0], -p->logarithm[1])), sign);
+    const dd even = dd_mul(dd_mul(omega, speed), dd_pair(p->product[0], p->product[1]));
+    return added(even, dd_mul(asinh, dd_pair(p->share[0], p->share[1])));
+}
+
+/* c[0] + c[1] x + .. + c[12] x^12 */
+ALWAYS_INLINE double series_of(const double c[SPIN_UP_SERIES], double x)
+{
+    double sum = c[12];
+    sum = MUL_ADD(sum, x, c[11]);
+    sum = MUL_ADD(sum, x, c[10]);
+    sum = MUL_ADD(sum, x, c[9]);
+    sum = MUL_ADD(sum, x, c[8]);
+    sum = MUL_ADD(sum, x, c[7]);
+    sum = MUL_ADD(sum, x, c[6]);
+    sum = MUL_ADD(sum, x, c[5]);
+    sum = MUL_ADD(sum, x, c[4]);
+    sum = MUL_ADD(sum, x, c[3]);
+    sum = MUL_ADD(sum, x, c[2]);
+    sum = MUL_ADD(sum, x, c[1]);
+    return MUL_ADD(sum, x, c[0]);
+}
+
+#endif

@@ -1,0 +1,99 @@
+/*
+ * The asymptotic series of spin_up_series.py, where they are explained: m and delta as polynomials in y = Y/S^2.
+ */
+#ifndef SYMROT_SPIN_UP_SERIES_H
+#define SYMROT_SPIN_UP_SERIES_H
+
+#include "double_double.h"
+#include "spin_up.h"
+
+enum {
+    NODES = SPIN_UP_SERIES,
+    ORDERS = 14, /* powers of v^2 */
+    POWERS = 3*ORDERS + 1,
+    FROM_INFINITY = 32 /* terms, powers of kappa^2 v <= 0.2 */
+};
+
+/* The polynomial through values at the nodes: divided differences, then powers (Bjorck & Pereyra 1970). */
+static void through(const double y[NODES], double values[NODES])
+{
+    for (int k = 0; k < NODES - 1; ++k)
+        for (int i = NODES - 1; i > k; --i)
+            values[i] = (values[i] - values[i - 1])/(y[i] - y[i - k - 1]);
+    for (int k = NODES - 2; k >= 0; --k)
+        for (int i = k; i < NODES - 1; ++i)
+            values[i] -= values[i + 1]*y[k];
+}
+
+static double polynomial_of(const double *c, int count, double y)
+{
+    double sum = 0.0;
+    for (int n = count - 1; n >= 0; --n)
+        sum = sum*y + c[n];
+    return sum;
+}
+
+/* The coefficients of a by the power of y; share is kappa^2 over the squared radius at y = 1, v one over that. */
+static void first_series(double share, double v, double a[POWERS])
+{
+    double order[POWERS + 1] = {1.0}, next[POWERS + 1];
+    for (int j = 0; j < POWERS; ++j)
+        a[j] = j == 0;
+    for (int n = 0; n < ORDERS; ++n) {
+        for (int j = 0; j <= POWERS; ++j)
+            next[j] = 0.0;
+        for (int j = 2*n + 2; j <= 3*n + 2; ++j) {
+            const double gap = (2*j - 1)*(2*j - 3)*v*v*order[j - 2]; /* b_j - a_j */
+            next[j] -= gap;
+            next[j + 1] += share*(2*j + 1)*gap/(2*j + 2);
+        }
+        for (int j = 0; j < POWERS; ++j) {
+            order[j] = next[j];
+            a[j] += next[j];
+        }
+    }
+}
+
+/* delta from the coefficients of h, delta' = kappa^2 v^(5/2) h, at the nodes: from x = 0, or from infinity. */
+static void angles(double share, double v, const double h[NODES], const double y[NODES], double values[NODES])
+{
+    double e[FROM_INFINITY + 1] = {0.0};
+    int count = FROM_INFINITY;
+    if (share >= 0.2) {
+        count = NODES + 2;
+        for (int j = NODES; j >= 0; --j)
+            e[j] = ((j ? v*h[j - 1] : 0.0) + 2*(j + 1)*e[j + 1]/share)/(1 + 2*j);
+    } else
+        for (int j = 0; j < FROM_INFINITY - 1; ++j)
+            e[j + 1] = share*((1 + 2*j)*e[j] - (j > 0 && j <= NODES ? v*h[j - 1] : 0.0))/(2*j + 2);
+    for (int i = 0; i < NODES; ++i)
+        values[i] = polynomial_of(e, count, y[i]);
+}
+
+static void asymptotic(double share, double v, spin_up *f)
+{
+    static const dd pi = DD_PI;
+    double a[POWERS], g[POWERS], c[POWERS], y[NODES], h[NODES];
+    first_series(share, v, a);
+    for (int j = 0; j < POWERS; ++j) {
+        c[j] = -(2*j + 1)*a[j];
+        g[j] = (2*j + 3)*c[j];
+    }
+    for (int i = 0; i < NODES; ++i) {
+        y[i] = 0.5 - 0.5*cos(pi.hi*(i + 0.5)/NODES);
+        f->g[i] = polynomial_of(g, POWERS, y[i]);
+        f->c[i] = polynomial_of(c, POWERS, y[i]);
+        const double square = v*y[i]*v*y[i], part = share*y[i];
+        const double first2 = part*(1.0 - part)*square*square*f->g[i]*f->g[i], second2 = part*square*f->c[i]*f->c[i];
+        h[i] = -f->c[i]/(1.0 + sqrt(1.0 - first2 - second2));
+        f->g[i] *= v*v;
+        f->c[i] *= v;
+    }
+    through(y, h);
+    angles(share, v, h, y, f->e);
+    through(y, f->g);
+    through(y, f->c);
+    through(y, f->e);
+}
+
+#endif
