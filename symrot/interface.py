@@ -37,6 +37,7 @@ class Emitted(_Texts):
 
     @cached_property
     def certificate(self) -> str:
+        """The text of the certificate; raises CertificateError where a proof fails."""
         from symrot.certify.certificate import certificate_text, with_slots
         from symrot.certify.rounding_words import library_section
 

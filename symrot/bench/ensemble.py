@@ -14,7 +14,6 @@ least as good.
 """
 
 import argparse
-import gc
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from time import process_time
@@ -22,7 +21,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from symrot.bench.taylor import DECADES, MOTIONS, Floats, Run, best_of, reference
+from symrot.bench.taylor import DECADES, MOTIONS, Floats, Run, best_of, raced, reference
 from symrot.bench.taylor import _Problem as Problem
 from symrot.codegen import library
 from symrot.ensemble import lanes
@@ -171,26 +170,10 @@ def _heyoka(start: Start, tolerances: Sequence[float], many: bool) -> list[Task]
     return tasks
 
 
-def _raced(start: Start, tasks: Sequence[Task], rounds: int) -> list[Run]:
-    runs = []
-    for name, tolerance, task in tasks:
-        steps, states = task()
-        runs.append(Run(name, tolerance, steps, start.error(states), []))
-    gc.disable()
-    for _ in range(rounds):
-        for (_, _, task), run in zip(tasks, runs, strict=True):
-            task()  # not counted: it finds the caches as its neighbour left them
-            began = process_time()
-            task()
-            run.seconds.append(process_time() - began)
-    gc.enable()
-    return runs
-
-
 def measure(start: Start, rounds: int, many: bool = False) -> list[Run]:
     """Return the runs of all contestants."""
     ours, theirs = ([10.0 ** (-k / 2) for k in range(first, last)] for first, last in ((2, 29), (6, 33)))
-    return _raced(start, [*_ours(start, ours), *_heyoka(start, theirs, many)], rounds)
+    return raced([*_ours(start, ours), *_heyoka(start, theirs, many)], start.error, rounds, process_time)
 
 
 # ------------------------------------------------------------------------------------------------ tables
@@ -221,13 +204,13 @@ def _print_widths(start: Start, rounds: int) -> None:
     tasks = [
         (f"{width} lanes", *task[1:]) for width in WIDTHS for task in _ours(start, [1e-12], [20], width)
     ]  # fmt: skip
-    runs = _raced(start, tasks, rounds)
+    runs = raced(tasks, start.error, rounds, process_time)
     said = [f"{run.name} {min(run.seconds) / run.steps * 1e9:.0f} ns" for run in runs]
     print(f"  order 20, per trajectory and step: {', '.join(said)}")
 
 
 def _print_orders(start: Start, rounds: int) -> None:
-    runs = _raced(start, _ours(start, [10.0 ** (-k / 2) for k in range(2, 29)], ORDERS), rounds)
+    runs = raced(_ours(start, [10.0 ** (-k / 2) for k in range(2, 29)], ORDERS), start.error, rounds, process_time)
     print(f"{'  error <=':10}" + "".join(f"{order:>14}" for order in ORDERS) + "   us per trajectory (tolerance)")
     for decade in DECADES:
         found = [best_of(runs, decade, [f"{order}"]) for order in ORDERS]

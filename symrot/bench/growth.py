@@ -65,6 +65,7 @@ class Track:
 
     @staticmethod
     def rough(scene: Scene) -> str:
+        """Return why a motion has no Taylor series, or an empty text."""
         return roughness(propagator(scene, "scipy").plan)
 
     def trajectory(self, states: Floats, motion: Motion | None = None) -> Trajectory:
@@ -87,6 +88,7 @@ class Track:
         return Curve(method, attitude, rates, invariants)
 
     def turns(self, t: float) -> float:
+        """Return the revolutions in t s at the initial angular speed."""
         return self.speed * t / (2.0 * math.pi)
 
 

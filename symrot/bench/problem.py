@@ -48,6 +48,7 @@ class Problem:
 
     @cached_property
     def kernel(self) -> SceneKernel:
+        """The derived kernels."""
         return scene_kernel(self.plan)
 
     @cached_property

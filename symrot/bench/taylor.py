@@ -19,6 +19,7 @@ import math
 import tomllib
 from collections.abc import Callable, Iterable, Sequence
 from fractions import Fraction
+from functools import partial
 from pathlib import Path
 from time import perf_counter
 from typing import Any, NamedTuple
@@ -266,21 +267,25 @@ def _contestants(problem: _Problem, settings: bool) -> list[tuple[str, float, Ta
 def measure(name: str, rounds: int = 9, settings: bool = False, scale: float = 1.0) -> list[Run]:
     """Return the runs of all contestants on one motion; ``scale`` shortens its span."""
     problem, exact = _Problem(name, scale), reference(name, scale)
-    return _raced(problem, exact, _contestants(problem, settings), rounds)
+    return raced(_contestants(problem, settings), partial(problem.error, exact=exact), rounds)
 
 
-def _raced(problem: _Problem, exact: Floats, tasks: Sequence[tuple[str, float, Task]], rounds: int) -> list[Run]:
+def raced(
+    tasks: Sequence[tuple[str, float, Callable[[], tuple[int, Any]]]], error: Callable[[Any], float], rounds: int,
+    clock: Callable[[], float] = perf_counter,
+) -> list[Run]:  # fmt: skip
+    """Return the runs of contestants, each (name, tolerance, task), that take turns; seconds are those of ``clock``."""
     runs = []
     for name, tolerance, task in tasks:
-        steps, state = task()
-        runs.append(Run(name, tolerance, steps, problem.error(state, exact), []))
+        steps, states = task()
+        runs.append(Run(name, tolerance, steps, error(states), []))
     gc.disable()
     for _ in range(rounds):
         for (_, _, task), run in zip(tasks, runs, strict=True):
             task()  # not counted: it finds the caches as its neighbour left them
-            began = perf_counter()
+            began = clock()
             task()
-            run.seconds.append(perf_counter() - began)
+            run.seconds.append(clock() - began)
     gc.enable()
     return runs
 
@@ -343,7 +348,7 @@ def _print_orders(name: str, rounds: int) -> None:
         (order, 10.0**-k, _stepper(taylor.task, path, problem.taylor_p, problem, 10.0**-k))
         for k in range(2, 15) for order, path in paths.items()
     ]  # fmt: skip
-    runs = _raced(problem, exact, tasks, rounds)
+    runs = raced(tasks, partial(problem.error, exact=exact), rounds)
     print(f"\n{name}: ms for an error, by order of the series")
     print(f"{'  error <=':10}" + "".join(f"{order:>10}" for order in paths))
     for decade in DECADES:

@@ -112,6 +112,7 @@ class Attempt:
     # --- fractions ----------------------------------------------------------------------------------------------------
 
     def lowest(self, above: PolyElement, below: PolyElement) -> Quotient:
+        """Return a fraction in lowest terms, the denominator led by 1."""
         if not below:
             raise CertificateError(f"{self.name}: expected a law that is defined somewhere, got a division by zero")
         if not below.is_ground:
@@ -120,18 +121,22 @@ class Attempt:
         return (above, below) if lead == 1 else (above.quo_ground(lead), below.quo_ground(lead))
 
     def add(self, a: Quotient, b: Quotient) -> Quotient:
+        """Return a + b."""
         if a[1] == b[1]:
             return self.lowest(a[0] + b[0], a[1])
         return self.lowest(a[0] * b[1] + b[0] * a[1], a[1] * b[1])
 
     def multiply(self, a: Quotient, b: Quotient) -> Quotient:
+        """Return a b."""
         return self.lowest(a[0] * b[0], a[1] * b[1])
 
     def power(self, a: Quotient, exponent: int) -> Quotient:
+        """Return a power, also a negative one."""
         above, below = a if exponent > 0 else (a[1], a[0])
         return self.lowest(above ** abs(exponent), below ** abs(exponent))
 
     def number(self, value: Fraction | int) -> Quotient:
+        """Return a rational number as a fraction of the ring."""
         value = Fraction(value)
         return self.ring.ground_new(QQ(value.numerator, value.denominator)), self.ring.one
 
@@ -187,6 +192,7 @@ class Attempt:
         return self.decided[left, right] == ">="
 
     def generator(self, meaning: str) -> PolyElement:
+        """Return a new generator, and write down what it stands for; ``Full`` where the ring has none left."""
         if self.made == self.pool:
             raise Full
         self.made += 1
@@ -210,6 +216,7 @@ class Attempt:
         return self.roots[square]
 
     def radical(self, inside: PolyElement) -> PolyElement:
+        """Return the square root of a polynomial: a polynomial where it is a perfect square, else a generator."""
         if inside not in self.radicals:
             found = self.perfect(inside)
             if found is None:

@@ -29,6 +29,7 @@ def _source(state: State, instruction: Instruction, operand: object, size: int, 
 
 
 def vector(state: State, instruction: Instruction) -> None:
+    """Follow an instruction on vector registers; raises NotUnderstood for one that is in no table."""
     is_vex = instruction.mnemonic.startswith("v")
     bare = instruction.mnemonic[1:] if is_vex else instruction.mnemonic
     move = MOVES.get(bare)

@@ -112,6 +112,7 @@ class State:
         return [term] if terms.width(term) == 32 else [terms.word(term, 0), terms.word(term, 1)]
 
     def zeros(self, count: int) -> Words:
+        """Return words whose bits are all 0."""
         return [self.context.terms.bits(32, 0)] * count
 
     # --- registers ----------------------------------------------------------------------------------------------------

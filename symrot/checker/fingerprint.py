@@ -11,9 +11,10 @@ from hashlib import sha256
 
 import sympy
 from sympy import Expr, Rational, S
-from sympy.core.function import AppliedUndef
 
-__all__ = ["PRIME", "Outside", "Print", "atoms_of", "fingerprint", "values_at"]
+from symrot.checker.atoms import atoms_of
+
+__all__ = ["PRIME", "Outside", "Print", "fingerprint", "values_at"]
 
 PRIME = 2**61 - 1
 """Three modulo four: a circle without points at infinity, and roots by one power."""
@@ -28,20 +29,6 @@ Values = tuple[int, ...]
 
 class Outside(Exception):
     """A formula, or a point, at which there is no value."""
-
-
-def atoms_of(entries: Sequence[Expr]) -> list[Expr]:
-    """Return symbols, functions of time and their derivatives, in the order of their text."""
-    found: set[Expr] = set()
-    for entry in entries:
-        stack = [entry]
-        while stack:
-            node = stack.pop()
-            if node.is_Symbol or isinstance(node, AppliedUndef) or node.is_Derivative:
-                found.add(node)
-            else:
-                stack.extend(node.args)
-    return sorted(found, key=str)
 
 
 def values_at(entries: Sequence[Expr], point: Mapping[Expr, int]) -> Values:
@@ -173,7 +160,7 @@ def fingerprint(entries: Sequence[Expr]) -> Print:
     Outside
         For a formula without values here, or without symbols.
     """
-    held = atoms_of(entries)
+    held = sorted(atoms_of(entries), key=str)
     atoms = _active(entries, held)
     if not atoms:
         raise Outside

@@ -14,6 +14,7 @@ from sympy import sin as sine_of
 from sympy.core.function import AppliedUndef
 from sympy.polys.rings import PolyElement
 
+from symrot.checker.atoms import atoms_of
 from symrot.checker.constraints import Constraints, constraints_of, occurring
 from symrot.checker.emptiness import Emptiness, vanishes_on, why_empty
 from symrot.checker.real_points import ATTEMPTS, RealPoint, real_points, value_at
@@ -193,7 +194,7 @@ class Grounds:
         involved = occurring([*self.constraints.zeros, *self.constraints.products])
         if not involved <= leaves.keys():
             return None
-        others = sorted(_variables([left, right]) - set(leaves.values()), key=str)
+        others = sorted(atoms_of([left, right]) - set(leaves.values()), key=str)
         for point in self.points(attempts):
             values = {leaves[n]: point.number(value) for n, value in point.values.items() if n in leaves}
             values |= {name: OTHER_VALUES[n % len(OTHER_VALUES)] for n, name in enumerate(others)}
@@ -202,7 +203,7 @@ class Grounds:
             sides = left.xreplace(values), right.xreplace(values)
             held = [enclosure(side) for side in sides]
             if None not in held and 0 not in held[0] - held[1]:
-                used = _variables([left, right, *self.ring.hypotheses])
+                used = atoms_of([left, right, *self.ring.hypotheses])
                 shown = sorted(((name, value) for name, value in values.items() if name in used), key=str)
                 return Witness(tuple(shown), entry, *sides)
         return None
@@ -216,16 +217,3 @@ class Grounds:
             return False
         roots = [enclosure(found.base.xreplace(values)) for found in self.ring.radicals.values()]
         return all(held is not None and held.a >= 0 for held in roots)
-
-
-def _variables(formulas: Iterable[Expr]) -> set[Expr]:
-    """Return symbols, functions of time and their derivatives, the outermost of each."""
-    found: set[Expr] = set()
-    stack = list(formulas)
-    while stack:
-        node = stack.pop()
-        if node.is_Symbol or isinstance(node, AppliedUndef) or node.is_Derivative:
-            found.add(node)
-        else:
-            stack.extend(node.args)
-    return found

@@ -12,7 +12,7 @@ from typing import Any
 from symrot.checker.dual import Dual
 from symrot.checker.tree import Node, walk
 
-__all__ = ["ANGLES", "FUNCTIONS", "SYMBOLS", "RationalPoint", "Undefined", "random_point", "truth"]
+__all__ = ["ANGLES", "FUNCTIONS", "SYMBOLS", "RationalPoint", "Undefined", "multiple", "random_point", "truth"]
 
 ANGLES = ("a", "b", "c")
 SYMBOLS = ("x", "y", "z")
@@ -22,6 +22,21 @@ QUATERNIONS = (("p0", "p1", "p2", "p3"), ("q0", "q1", "q2", "q3"))
 
 class Undefined(Exception):
     """No value at this point."""
+
+
+def multiple(product: Node, times: Fraction) -> tuple[Node, Fraction]:
+    """Return the factor of a product that is no number, and ``times`` times all numbers; ``Undefined`` without one."""
+    rest = []
+    for factor in product.args:
+        if factor.kind == "number":
+            times *= factor.value
+        elif factor.kind == "inv" and factor.args[0].kind == "number":
+            times /= factor.args[0].value
+        else:
+            rest.append(factor)
+    if len(rest) != 1:
+        raise Undefined
+    return rest[0], times
 
 
 @dataclass
@@ -45,17 +60,8 @@ class RationalPoint:
         if node.kind == "neg":
             return self._turned(node.args[0], -times)
         if node.kind == "product":
-            rest = []
-            for factor in node.args:
-                if factor.kind == "number":
-                    times *= factor.value
-                elif factor.kind == "inv" and factor.args[0].kind == "number":
-                    times /= factor.args[0].value
-                else:
-                    rest.append(factor)
-            if len(rest) != 1:
-                raise Undefined
-            return self._turned(rest[0], times)
+            rest, times = multiple(node, times)
+            return self._turned(rest, times)
         if node == Node("name", "pi"):
             quarters = times * 2
             if quarters.denominator != 1:

@@ -11,7 +11,7 @@ from math import isqrt
 from random import Random
 from typing import Any
 
-from symrot.checker.judge import RationalPoint, Undefined, random_point
+from symrot.checker.judge import RationalPoint, Undefined, multiple, random_point
 from symrot.checker.tree import Node
 
 __all__ = ["EXPONENTS", "HYPOTHESES", "INVERSES", "WiderPoint", "truth_under", "wider_point"]
@@ -60,17 +60,8 @@ class WiderPoint(RationalPoint):
         if node.kind == "neg":
             return self._exponential(node.args[0], -times)
         if node.kind == "product":
-            rest = []
-            for factor in node.args:
-                if factor.kind == "number":
-                    times *= factor.value
-                elif factor.kind == "inv" and factor.args[0].kind == "number":
-                    times /= factor.args[0].value
-                else:
-                    rest.append(factor)
-            if len(rest) != 1:
-                raise Undefined
-            return self._exponential(rest[0], times)
+            rest, times = multiple(node, times)
+            return self._exponential(rest, times)
         halves = 2 * times
         if node.kind == "number" and node.value == 0:
             return Fraction(1)

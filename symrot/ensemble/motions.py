@@ -48,6 +48,7 @@ class Problem(NamedTuple):
     workers: int
 
     def times_of(self, i: int) -> Floats:
+        """Return the times of motion i, s, shape (m,)."""
         found: Floats = self.times if self.times.ndim == 1 else self.times[i]
         return found
 

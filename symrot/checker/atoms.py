@@ -1,0 +1,21 @@
+"""What formulas are about: symbols, functions of time and their derivatives."""
+
+from collections.abc import Iterable
+
+from sympy import Expr
+from sympy.core.function import AppliedUndef
+
+__all__ = ["atoms_of"]
+
+
+def atoms_of(formulas: Iterable[Expr]) -> set[Expr]:
+    """Return symbols, functions of time and their derivatives, the outermost of each."""
+    found: set[Expr] = set()
+    stack = list(formulas)
+    while stack:
+        node = stack.pop()
+        if node.is_Symbol or isinstance(node, AppliedUndef) or node.is_Derivative:
+            found.add(node)
+        else:
+            stack.extend(node.args)
+    return found
