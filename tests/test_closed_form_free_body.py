@@ -36,12 +36,7 @@ def errors(moments, omega, times, q0=Q0, in_periods=False, motion=None, digits=r
     assert np.isfinite(rates).all() and np.isfinite(attitudes).all()
     with mp.workdps(60):
         size = mp.sqrt(sum(reference.exactly(x) ** 2 for x in omega)) or 1
-        worst = [0.0, 0.0]
-        for time, rate, attitude in zip(times, rates.tolist(), attitudes.tolist(), strict=True):
-            w, q = expected(time)
-            apart = [max(abs(x - s * y) for x, y in zip(attitude, q, strict=True)) for s in (1, -1)]
-            worst[0] = max(worst[0], float(max(abs(x - y) for x, y in zip(rate, w, strict=True)) / size))
-            worst[1] = max(worst[1], float(min(apart)))
+        worst = reference.worst_errors(expected, times, rates, attitudes, size)
     LOG.info("omega %.1e, q %.1e", *worst)
     return worst
 

@@ -17,7 +17,7 @@ from symrot.errors import InputError
 from symrot.kinematics import conversions
 from tests.reference import heavy_top as reference
 from tests.reference import taylor
-from tests.reference.free_body import exactly
+from tests.reference.free_body import exactly, worst_errors
 
 BAR = 1e-15
 LOG = logging.getLogger(__name__)
@@ -73,12 +73,7 @@ def long_errors(omega, q0, times, c=F(1, 2), pull=F(1), in_periods=True):
     rates, attitudes = heavy_top.motion((1, 1, c), pull, (0, 0, 1), omega, q0).evaluate(times)
     with mp.workdps(60):
         size = max(mp.sqrt(sum(exactly(F(x)) ** 2 for x in omega)), mp.sqrt(exactly(F(pull))))
-        worst = [0.0, 0.0]
-        for time, rate, attitude in zip(times, rates.tolist(), attitudes.tolist(), strict=True):
-            w, q = expected(time)
-            apart = [max(abs(x - s * y) for x, y in zip(attitude, q, strict=True)) for s in (1, -1)]
-            worst[0] = max(worst[0], float(max(abs(x - y) for x, y in zip(rate, w, strict=True)) / size))
-            worst[1] = max(worst[1], float(min(apart)))
+        worst = worst_errors(expected, times, rates, attitudes, size)
     LOG.info("omega %.1e, q %.1e", *worst)
     return worst
 

@@ -2,13 +2,11 @@
 
 from sympy import Matrix, Symbol, cos, diff, sech, sin, tanh
 
-from symrot import symbols
 from symrot.catalogue._elliptic import CN, DN, MU, SN, W_VALUES, I, derivatives, imaginary, shifted, squares
 from symrot.catalogue._motion import rate
 from symrot.proof import Derivation
 
 SN_W, CN_W, DN_W = W_VALUES
-ZETA = symbols.zeta
 BELOW = 1 - MU * SN**2 * SN_W**2
 BOTH = [*squares(), *squares(fixed=True)]
 

@@ -29,6 +29,17 @@ def multiply(a, b):
     ]
 
 
+def worst_errors(motion, times, rates, attitudes, size):
+    """Return the largest errors of omega, over ``size``, and of q, up to its sign, against a motion at those times."""
+    worst = [0.0, 0.0]
+    for time, rate, attitude in zip(times, rates.tolist(), attitudes.tolist(), strict=True):
+        w, q = motion(time)
+        apart = [max(abs(x - s * y) for x, y in zip(attitude, q, strict=True)) for s in (1, -1)]
+        worst[0] = max(worst[0], float(max(abs(x - y) for x, y in zip(rate, w, strict=True)) / size))
+        worst[1] = max(worst[1], float(min(apart)))
+    return worst
+
+
 def conjugate(a):
     return [a[0], -a[1], -a[2], -a[3]]
 

@@ -3,6 +3,8 @@
 import numpy as np
 from mpmath import mp, mpf
 
+from tests.reference.free_body import multiply
+
 DIGITS = 50
 LOCKED = {True: (0.0, np.pi), False: (-np.pi / 2, np.pi / 2)}  # middle angles at lock, of proper sequences or not
 
@@ -10,18 +12,6 @@ LOCKED = {True: (0.0, np.pi), False: (-np.pi / 2, np.pi / 2)}  # middle angles a
 def is_proper(sequence):
     """Whether the first axis comes back as the third."""
     return sequence[0] == sequence[2]
-
-
-def exact_product(p, q):
-    """Hamilton product, written out independently of symrot."""
-    p0, p1, p2, p3 = p
-    q0, q1, q2, q3 = q
-    return [
-        p0 * q0 - p1 * q1 - p2 * q2 - p3 * q3,
-        p0 * q1 + p1 * q0 + p2 * q3 - p3 * q2,
-        p0 * q2 - p1 * q3 + p2 * q0 + p3 * q1,
-        p0 * q3 + p1 * q2 - p2 * q1 + p3 * q0,
-    ]
 
 
 def exact_euler(angles, sequence):
@@ -32,7 +22,7 @@ def exact_euler(angles, sequence):
         turn["XYZ".index(axis) + 1] = mp.sin(mpf(angle) / 2)
         turns.append(turn)
     first, second, third = turns if sequence.isupper() else turns[::-1]
-    return exact_product(exact_product(first, second), third)
+    return multiply(multiply(first, second), third)
 
 
 def exact_exponential(v):
