@@ -78,14 +78,14 @@ void euler_extrinsic_xyx_of_quaternion_batch(
         const double x1 = symrot_atan2(q3, q2);
         const double x2 = x0 - x1;
         const double x3 = -3.141592653589793;
-        const double x4 = symrot_select_ge(x2, x3, x2, x2 + 6.283185307179586);
-        const double x5 = symrot_select_ge(3.141592653589793, x2, x4, x2 - 6.283185307179586);
+        const double x4 = symrot_choose_ge(x2, x3, x2, x2 + 6.283185307179586);
+        const double x5 = symrot_choose_ge(3.141592653589793, x2, x4, x2 - 6.283185307179586);
         const double x6 = sqrt(q2*q2 + q3*q3);
         const double x7 = sqrt(q0*q0 + q1*q1);
         const double x8 = symrot_atan2(x6, x7);
         const double x9 = x0 + x1;
-        const double x10 = symrot_select_ge(x9, x3, x9, 6.283185307179586 + x9);
-        const double x11 = symrot_select_ge(3.141592653589793, x9, x10, x9 - 6.283185307179586);
+        const double x10 = symrot_choose_ge(x9, x3, x9, 6.283185307179586 + x9);
+        const double x11 = symrot_choose_ge(3.141592653589793, x9, x10, x9 - 6.283185307179586);
 
         angles[0*n + k] = x5;
         angles[1*n + k] = 2.0*x8;
@@ -130,14 +130,14 @@ void euler_extrinsic_xyx_of_quaternionf_batch(
         const float x1 = symrot_atan2f(q3, q2);
         const float x2 = x0 - x1;
         const float x3 = -3.1415927f;
-        const float x4 = symrot_select_gef(x2, x3, x2, x2 + 6.2831853f);
-        const float x5 = symrot_select_gef(3.1415927f, x2, x4, x2 - 6.2831853f);
+        const float x4 = symrot_choose_gef(x2, x3, x2, x2 + 6.2831853f);
+        const float x5 = symrot_choose_gef(3.1415927f, x2, x4, x2 - 6.2831853f);
         const float x6 = sqrtf(q2*q2 + q3*q3);
         const float x7 = sqrtf(q0*q0 + q1*q1);
         const float x8 = symrot_atan2f(x6, x7);
         const float x9 = x0 + x1;
-        const float x10 = symrot_select_gef(x9, x3, x9, 6.2831853f + x9);
-        const float x11 = symrot_select_gef(3.1415927f, x9, x10, x9 - 6.2831853f);
+        const float x10 = symrot_choose_gef(x9, x3, x9, 6.2831853f + x9);
+        const float x11 = symrot_choose_gef(3.1415927f, x9, x10, x9 - 6.2831853f);
 
         angles[0*n + k] = x5;
         angles[1*n + k] = 2.0f*x8;

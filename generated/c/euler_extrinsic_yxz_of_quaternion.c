@@ -88,14 +88,14 @@ void euler_extrinsic_yxz_of_quaternion_batch(
         const double x6 = x2 - x5;
         const double x7 = -x6;
         const double x8 = -3.141592653589793;
-        const double x9 = symrot_select_ge(x7, x8, x7, 6.283185307179586 - x6);
-        const double x10 = symrot_select_ge(3.141592653589793, x7, x9, -(x6 + 6.283185307179586));
+        const double x9 = symrot_choose_ge(x7, x8, x7, 6.283185307179586 - x6);
+        const double x10 = symrot_choose_ge(3.141592653589793, x7, x9, -(x6 + 6.283185307179586));
         const double x11 = sqrt(x1*x1 + x0*x0);
         const double x12 = sqrt(x4*x4 + x3*x3);
         const double x13 = symrot_atan2(4.0*(q0*q1 + q2*q3), 2.0*x11*x12);
         const double x14 = x2 + x5;
-        const double x15 = symrot_select_ge(x14, x8, x14, 6.283185307179586 + x14);
-        const double x16 = symrot_select_ge(3.141592653589793, x14, x15, x14 - 6.283185307179586);
+        const double x15 = symrot_choose_ge(x14, x8, x14, 6.283185307179586 + x14);
+        const double x16 = symrot_choose_ge(3.141592653589793, x14, x15, x14 - 6.283185307179586);
 
         angles[0*n + k] = x10;
         angles[1*n + k] = x13;
@@ -150,14 +150,14 @@ void euler_extrinsic_yxz_of_quaternionf_batch(
         const float x6 = x2 - x5;
         const float x7 = -x6;
         const float x8 = -3.1415927f;
-        const float x9 = symrot_select_gef(x7, x8, x7, 6.2831853f - x6);
-        const float x10 = symrot_select_gef(3.1415927f, x7, x9, -(x6 + 6.2831853f));
+        const float x9 = symrot_choose_gef(x7, x8, x7, 6.2831853f - x6);
+        const float x10 = symrot_choose_gef(3.1415927f, x7, x9, -(x6 + 6.2831853f));
         const float x11 = sqrtf(x1*x1 + x0*x0);
         const float x12 = sqrtf(x4*x4 + x3*x3);
         const float x13 = symrot_atan2f(4.0f*(q0*q1 + q2*q3), 2.0f*x11*x12);
         const float x14 = x2 + x5;
-        const float x15 = symrot_select_gef(x14, x8, x14, 6.2831853f + x14);
-        const float x16 = symrot_select_gef(3.1415927f, x14, x15, x14 - 6.2831853f);
+        const float x15 = symrot_choose_gef(x14, x8, x14, 6.2831853f + x14);
+        const float x16 = symrot_choose_gef(3.1415927f, x14, x15, x14 - 6.2831853f);
 
         angles[0*n + k] = x10;
         angles[1*n + k] = x13;

@@ -80,14 +80,14 @@ void euler_extrinsic_zyz_of_quaternion_batch(
         const double x2 = x0 - x1;
         const double x3 = -x2;
         const double x4 = -3.141592653589793;
-        const double x5 = symrot_select_ge(x3, x4, x3, 6.283185307179586 - x2);
-        const double x6 = symrot_select_ge(3.141592653589793, x3, x5, -(x2 + 6.283185307179586));
+        const double x5 = symrot_choose_ge(x3, x4, x3, 6.283185307179586 - x2);
+        const double x6 = symrot_choose_ge(3.141592653589793, x3, x5, -(x2 + 6.283185307179586));
         const double x7 = sqrt(q1*q1 + q2*q2);
         const double x8 = sqrt(q0*q0 + q3*q3);
         const double x9 = symrot_atan2(x7, x8);
         const double x10 = x0 + x1;
-        const double x11 = symrot_select_ge(x10, x4, x10, 6.283185307179586 + x10);
-        const double x12 = symrot_select_ge(3.141592653589793, x10, x11, x10 - 6.283185307179586);
+        const double x11 = symrot_choose_ge(x10, x4, x10, 6.283185307179586 + x10);
+        const double x12 = symrot_choose_ge(3.141592653589793, x10, x11, x10 - 6.283185307179586);
 
         angles[0*n + k] = x6;
         angles[1*n + k] = 2.0*x9;
@@ -134,14 +134,14 @@ void euler_extrinsic_zyz_of_quaternionf_batch(
         const float x2 = x0 - x1;
         const float x3 = -x2;
         const float x4 = -3.1415927f;
-        const float x5 = symrot_select_gef(x3, x4, x3, 6.2831853f - x2);
-        const float x6 = symrot_select_gef(3.1415927f, x3, x5, -(x2 + 6.2831853f));
+        const float x5 = symrot_choose_gef(x3, x4, x3, 6.2831853f - x2);
+        const float x6 = symrot_choose_gef(3.1415927f, x3, x5, -(x2 + 6.2831853f));
         const float x7 = sqrtf(q1*q1 + q2*q2);
         const float x8 = sqrtf(q0*q0 + q3*q3);
         const float x9 = symrot_atan2f(x7, x8);
         const float x10 = x0 + x1;
-        const float x11 = symrot_select_gef(x10, x4, x10, 6.2831853f + x10);
-        const float x12 = symrot_select_gef(3.1415927f, x10, x11, x10 - 6.2831853f);
+        const float x11 = symrot_choose_gef(x10, x4, x10, 6.2831853f + x10);
+        const float x12 = symrot_choose_gef(3.1415927f, x10, x11, x10 - 6.2831853f);
 
         angles[0*n + k] = x6;
         angles[1*n + k] = 2.0f*x9;

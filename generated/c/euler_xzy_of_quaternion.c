@@ -86,15 +86,15 @@ void euler_xzy_of_quaternion_batch(size_t n, const double *SYMROT_RESTRICT q, do
         const double x5 = symrot_atan2(x3, x4);
         const double x6 = x2 + x5;
         const double x7 = -3.141592653589793;
-        const double x8 = symrot_select_ge(x6, x7, x6, x6 + 6.283185307179586);
-        const double x9 = symrot_select_ge(3.141592653589793, x6, x8, x6 - 6.283185307179586);
+        const double x8 = symrot_choose_ge(x6, x7, x6, x6 + 6.283185307179586);
+        const double x9 = symrot_choose_ge(3.141592653589793, x6, x8, x6 - 6.283185307179586);
         const double x10 = sqrt(x4*x4 + x3*x3);
         const double x11 = sqrt(x1*x1 + x0*x0);
         const double x12 = symrot_atan2(4.0*(q0*q3 - q1*q2), 2.0*x10*x11);
         const double x13 = x2 - x5;
         const double x14 = -x13;
-        const double x15 = symrot_select_ge(x14, x7, x14, 6.283185307179586 - x13);
-        const double x16 = symrot_select_ge(3.141592653589793, x14, x15, -(6.283185307179586 + x13));
+        const double x15 = symrot_choose_ge(x14, x7, x14, 6.283185307179586 - x13);
+        const double x16 = symrot_choose_ge(3.141592653589793, x14, x15, -(6.283185307179586 + x13));
 
         angles[0*n + k] = x9;
         angles[1*n + k] = x12;
@@ -147,15 +147,15 @@ void euler_xzy_of_quaternionf_batch(size_t n, const float *SYMROT_RESTRICT q, fl
         const float x5 = symrot_atan2f(x3, x4);
         const float x6 = x2 + x5;
         const float x7 = -3.1415927f;
-        const float x8 = symrot_select_gef(x6, x7, x6, x6 + 6.2831853f);
-        const float x9 = symrot_select_gef(3.1415927f, x6, x8, x6 - 6.2831853f);
+        const float x8 = symrot_choose_gef(x6, x7, x6, x6 + 6.2831853f);
+        const float x9 = symrot_choose_gef(3.1415927f, x6, x8, x6 - 6.2831853f);
         const float x10 = sqrtf(x4*x4 + x3*x3);
         const float x11 = sqrtf(x1*x1 + x0*x0);
         const float x12 = symrot_atan2f(4.0f*(q0*q3 - q1*q2), 2.0f*x10*x11);
         const float x13 = x2 - x5;
         const float x14 = -x13;
-        const float x15 = symrot_select_gef(x14, x7, x14, 6.2831853f - x13);
-        const float x16 = symrot_select_gef(3.1415927f, x14, x15, -(6.2831853f + x13));
+        const float x15 = symrot_choose_gef(x14, x7, x14, 6.2831853f - x13);
+        const float x16 = symrot_choose_gef(3.1415927f, x14, x15, -(6.2831853f + x13));
 
         angles[0*n + k] = x9;
         angles[1*n + k] = x12;

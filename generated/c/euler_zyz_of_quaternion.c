@@ -78,15 +78,15 @@ void euler_zyz_of_quaternion_batch(size_t n, const double *SYMROT_RESTRICT q, do
         const double x1 = symrot_atan2(q3, q0);
         const double x2 = x0 + x1;
         const double x3 = -3.141592653589793;
-        const double x4 = symrot_select_ge(x2, x3, x2, x2 + 6.283185307179586);
-        const double x5 = symrot_select_ge(3.141592653589793, x2, x4, x2 - 6.283185307179586);
+        const double x4 = symrot_choose_ge(x2, x3, x2, x2 + 6.283185307179586);
+        const double x5 = symrot_choose_ge(3.141592653589793, x2, x4, x2 - 6.283185307179586);
         const double x6 = sqrt(q1*q1 + q2*q2);
         const double x7 = sqrt(q0*q0 + q3*q3);
         const double x8 = symrot_atan2(x6, x7);
         const double x9 = x0 - x1;
         const double x10 = -x9;
-        const double x11 = symrot_select_ge(x10, x3, x10, 6.283185307179586 - x9);
-        const double x12 = symrot_select_ge(3.141592653589793, x10, x11, -(6.283185307179586 + x9));
+        const double x11 = symrot_choose_ge(x10, x3, x10, 6.283185307179586 - x9);
+        const double x12 = symrot_choose_ge(3.141592653589793, x10, x11, -(6.283185307179586 + x9));
 
         angles[0*n + k] = x5;
         angles[1*n + k] = 2.0*x8;
@@ -131,15 +131,15 @@ void euler_zyz_of_quaternionf_batch(size_t n, const float *SYMROT_RESTRICT q, fl
         const float x1 = symrot_atan2f(q3, q0);
         const float x2 = x0 + x1;
         const float x3 = -3.1415927f;
-        const float x4 = symrot_select_gef(x2, x3, x2, x2 + 6.2831853f);
-        const float x5 = symrot_select_gef(3.1415927f, x2, x4, x2 - 6.2831853f);
+        const float x4 = symrot_choose_gef(x2, x3, x2, x2 + 6.2831853f);
+        const float x5 = symrot_choose_gef(3.1415927f, x2, x4, x2 - 6.2831853f);
         const float x6 = sqrtf(q1*q1 + q2*q2);
         const float x7 = sqrtf(q0*q0 + q3*q3);
         const float x8 = symrot_atan2f(x6, x7);
         const float x9 = x0 - x1;
         const float x10 = -x9;
-        const float x11 = symrot_select_gef(x10, x3, x10, 6.2831853f - x9);
-        const float x12 = symrot_select_gef(3.1415927f, x10, x11, -(6.2831853f + x9));
+        const float x11 = symrot_choose_gef(x10, x3, x10, 6.2831853f - x9);
+        const float x12 = symrot_choose_gef(3.1415927f, x10, x11, -(6.2831853f + x9));
 
         angles[0*n + k] = x5;
         angles[1*n + k] = 2.0f*x8;

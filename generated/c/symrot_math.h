@@ -41,22 +41,34 @@ SYMROT_INLINE double symrot_chosen(uint64_t condition, double x, double y)
     return symrot_of_bits((symrot_bits(x) & mask) | (symrot_bits(y) & ~mask));
 }
 
+/* 1 where a < b, else 0; for finite numbers: by bits, since not all vectors compare */
+SYMROT_INLINE uint64_t symrot_less(double a, double b) { return symrot_bits(a - b) >> 63; }
+
+/* 1 where a == b, else 0; for finite numbers: by bits, since not all vectors compare */
+SYMROT_INLINE uint64_t symrot_same(double a, double b) { return (symrot_bits(fabs(a - b)) - 1) >> 63; }
+
 /* a < b ? x : y, without a branch */
 SYMROT_INLINE double symrot_select_lt(double a, double b, double x, double y)
 {
-    return symrot_chosen((uint64_t)(a < b), x, y);
+    return symrot_chosen(symrot_less(a, b), x, y);
 }
 
 /* a == b ? x : y, without a branch */
 SYMROT_INLINE double symrot_select_eq(double a, double b, double x, double y)
 {
-    return symrot_chosen((uint64_t)(a == b), x, y);
+    return symrot_chosen(symrot_same(a, b), x, y);
+}
+
+/* a >= b ? x : y, without a branch */
+SYMROT_INLINE double symrot_choose_ge(double a, double b, double x, double y)
+{
+    return symrot_chosen(symrot_less(a, b), y, x);
 }
 
 /* 1 where |x| is beyond the range of symrot_sin and symrot_cos, else 0 */
 SYMROT_INLINE uint64_t symrot_far(double x)
 {
-    return (uint64_t)(fabs(x) > 131072.0);
+    return symrot_less(131072.0, fabs(x));
 }
 
 SYMROT_INLINE double symrot_sine_of_rest(double high, double low, double t)
@@ -108,9 +120,6 @@ SYMROT_INLINE double symrot_cos(double x)
     const double size = symrot_chosen(quarter & 1, sine, cosine);
     return symrot_of_bits(symrot_bits(size) ^ (((quarter + 1) & 2) << 62));
 }
-
-/* 1 where a < b, else 0; finite numbers */
-SYMROT_INLINE uint64_t symrot_less(double a, double b) { return symrot_bits(a - b) >> 63; }
 
 /* the angle of (x, y): atan2(y, x) */
 SYMROT_INLINE double symrot_atan2(double y, double x)
@@ -169,22 +178,34 @@ SYMROT_INLINE float symrot_chosenf(uint32_t condition, float x, float y)
     return symrot_of_bitsf((symrot_bitsf(x) & mask) | (symrot_bitsf(y) & ~mask));
 }
 
+/* 1 where a < b, else 0; for finite numbers: by bits, since not all vectors compare */
+SYMROT_INLINE uint32_t symrot_lessf(float a, float b) { return symrot_bitsf(a - b) >> 31; }
+
+/* 1 where a == b, else 0; for finite numbers: by bits, since not all vectors compare */
+SYMROT_INLINE uint32_t symrot_samef(float a, float b) { return (symrot_bitsf(fabsf(a - b)) - 1) >> 31; }
+
 /* a < b ? x : y, without a branch */
 SYMROT_INLINE float symrot_select_ltf(float a, float b, float x, float y)
 {
-    return symrot_chosenf((uint32_t)(a < b), x, y);
+    return symrot_chosenf(symrot_lessf(a, b), x, y);
 }
 
 /* a == b ? x : y, without a branch */
 SYMROT_INLINE float symrot_select_eqf(float a, float b, float x, float y)
 {
-    return symrot_chosenf((uint32_t)(a == b), x, y);
+    return symrot_chosenf(symrot_samef(a, b), x, y);
+}
+
+/* a >= b ? x : y, without a branch */
+SYMROT_INLINE float symrot_choose_gef(float a, float b, float x, float y)
+{
+    return symrot_chosenf(symrot_lessf(a, b), y, x);
 }
 
 /* 1 where |x| is beyond the range of symrot_sin and symrot_cos, else 0 */
 SYMROT_INLINE uint32_t symrot_farf(float x)
 {
-    return (uint32_t)(fabsf(x) > 4096.0f);
+    return symrot_lessf(4096.0f, fabsf(x));
 }
 
 SYMROT_INLINE float symrot_sine_of_restf(float high, float low, float t)
@@ -236,9 +257,6 @@ SYMROT_INLINE float symrot_cosf(float x)
     const float size = symrot_chosenf(quarter & 1, sine, cosine);
     return symrot_of_bitsf(symrot_bitsf(size) ^ (((quarter + 1) & 2) << 30));
 }
-
-/* 1 where a < b, else 0; finite numbers */
-SYMROT_INLINE uint32_t symrot_lessf(float a, float b) { return symrot_bitsf(a - b) >> 31; }
 
 /* the angle of (x, y): atan2(y, x) */
 SYMROT_INLINE float symrot_atan2f(float y, float x)

@@ -162,6 +162,7 @@ class Kernel:
         self.own = {f: f.removeprefix("symrot_").removeprefix("near_").removesuffix(end) for f in own}
         ranged = ("sin", "cos", "atan2", "select_lt", "select_eq") if "symrot_math.h" in data["files"] else ()
         self.calls = {f + end: f for f in MATH} | {f"fabs{end}": "Abs"} | {f"symrot_{f}{end}": f for f in ranged}
+        self.calls |= {f"symrot_choose_ge{end}": "select_ge"} if ranged else {}
         self.calls |= self.own
         inputs = {place: self.spec["parameters"].get(symbol, symbol) for place, symbol, _ in data["inputs"]}
         need({*self.spec["parameters"]} <= {symbol for _, symbol, _ in data["inputs"]}, "a parameter is no input")

@@ -46,7 +46,8 @@ class Real:
     def near_functions(self) -> dict[str, str]:
         """Return their names in a batch, where angles are in the range of ``symrot_math.h``."""
         own = {name: f"symrot_near_{name}{self.suffix}" for name in NEAR}
-        return self.functions | own | {name: f"symrot_{name}{self.suffix}" for name in ("sin", "cos", "atan2")}
+        shared = {"sin": "sin", "cos": "cos", "atan2": "atan2", "select_ge": "choose_ge"}
+        return self.functions | own | {name: f"symrot_{other}{self.suffix}" for name, other in shared.items()}
 
     @property
     def bits(self) -> str:

@@ -147,12 +147,24 @@ def _functions(real: Real) -> list[str]:
         "}",
         "",
     ]
-    for name, relation in (("lt", "<"), ("eq", "==")):
+    for name, relation, found in (
+        ("less", "<", f"symrot_bits{s}(a - b) >> {top + 1}"),
+        ("same", "==", f"(symrot_bits{s}(fabs{s}(a - b)) - 1) >> {top + 1}"),
+    ):
+        lines += [
+            f"/* 1 where a {relation} b, else 0; for finite numbers: by bits, since not all vectors compare */",
+            f"SYMROT_INLINE {bits} symrot_{name}{s}({kind} a, {kind} b) {{ return {found}; }}",
+            "",
+        ]
+    for name, relation, chosen in (
+        ("select_lt", "<", "less{s}(a, b), x, y"), ("select_eq", "==", "same{s}(a, b), x, y"),
+        ("choose_ge", ">=", "less{s}(a, b), y, x"),
+    ):  # fmt: skip
         lines += [
             f"/* a {relation} b ? x : y, without a branch */",
-            f"SYMROT_INLINE {kind} symrot_select_{name}{s}({kind} a, {kind} b, {kind} x, {kind} y)",
+            f"SYMROT_INLINE {kind} symrot_{name}{s}({kind} a, {kind} b, {kind} x, {kind} y)",
             "{",
-            f"    return symrot_chosen{s}(({bits})(a {relation} b), x, y);",
+            f"    return symrot_chosen{s}(symrot_{chosen.format(s=s)});",
             "}",
             "",
         ]
@@ -160,7 +172,7 @@ def _functions(real: Real) -> list[str]:
         "/* 1 where |x| is beyond the range of symrot_sin and symrot_cos, else 0 */",
         f"SYMROT_INLINE {bits} symrot_far{s}({kind} x)",
         "{",
-        f"    return ({bits})(fabs{s}(x) > {real.literal(Fraction(FAR[real.precision]))});",
+        f"    return symrot_less{s}({real.literal(Fraction(FAR[real.precision]))}, fabs{s}(x));",
         "}",
         "",
         f"SYMROT_INLINE {kind} symrot_sine_of_rest{s}({kind} high, {kind} low, {kind} t)",
@@ -205,9 +217,6 @@ def _arc(real: Real) -> list[str]:
 
     eighth = _leading(PI / 4, _DIGITS[real.precision] - 3)
     return [
-        "/* 1 where a < b, else 0; finite numbers */",
-        f"SYMROT_INLINE {bits} symrot_less{s}({kind} a, {kind} b) {{ return symrot_bits{s}(a - b) >> {sign}; }}",
-        "",
         "/* the angle of (x, y): atan2(y, x) */",
         f"SYMROT_INLINE {kind} symrot_atan2{s}({kind} y, {kind} x)",
         "{",

@@ -44,7 +44,7 @@ def turning_arguments(program: Program) -> list[Node]:
 
 def without_branches(program: Program) -> bool:
     """Tell whether a program calls what batches take from ``symrot_math.h``."""
-    return any(name in ("sin", "cos", "atan2", *NEAR) for name, _ in _calls(program))
+    return any(name in ("sin", "cos", "atan2", "select_ge", *NEAR) for name, _ in _calls(program))
 
 
 def called(program: Program) -> list[str]:
