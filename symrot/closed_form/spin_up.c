@@ -8,16 +8,15 @@
 #include "series.h"
 
 enum {
-    TERMS = 24, /* of a series near resonance: (r/2)^24/24!/8^24 < 1e-25 for r < 13.5 */
-    FINE = 12,  /* of them in double-double arithmetic: the 12th is below 1e-9 */
+    TERMS = 26, /* of a series near resonance, for a step of 1/4: (r/8)^26/26! < 1e-20 for r < 13.5 */
+    FINE = 10,  /* of them in double-double arithmetic: the 10th is below 1e-4 */
     LARGEST = 900
 };
 
 /* The body in e1, e2, e3, scaled. */
 typedef struct {
-    dd ratio, start, s, across, root;                 /* C/A, Omega at time 0, s, W, sqrt(s) */
-    dd axes[4], given[4];                             /* the turn from e1, e2, e3 to the body's axes; attitude of e1.. */
-    int place;                                        /* where the start is */
+    dd ratio, start, s, across, root; /* C/A, Omega at time 0, s, W, sqrt(s) */
+    dd axes[4], given[4];             /* the turn from e1, e2, e3 to the body's axes; their attitude at time 0 */
 } body;
 
 static int exponent_of(double x)
@@ -107,17 +106,17 @@ static void far_attitude(const spin_up *f, dd omega, dd turns, dd q[4])
 static void swept_attitude(const spin_up *f, dd omega, dd q[4])
 {
     const dd w = dd_pair(f->across[0], f->across[1]), speed = dd_sqrt(dd_add(dd_square(omega), dd_square(w)));
-    far_attitude(f, omega, f->phase.weak != 0.0 ? dd_of(0.0) : swept_turns(&f->phase, omega, speed), q);
+    far_attitude(f, omega, f->phase.way == SPIN_UP_WEAK ? dd_of(0.0) : swept_turns(&f->phase, omega, speed, 1), q);
 }
 
-/* The series of q0, q1, q2, q3 about a place from its first terms, from some term on in doubles. */
-static void grow(dd kappa, double place, dd q[TERMS][4])
+/* The series of q0, q1, q2, q3 about a place from its first terms, the last in doubles; halves: 1/(2 n). */
+static void grow(dd kappa, double place, const dd halves[FINE], dd q[TERMS][4])
 {
     static const int opposite[4] = {3, 2, 1, 0}, beside[4] = {1, 0, 3, 2};
     static const double swept_sign[4] = {-1.0, 1.0, -1.0, 1.0}, turned_sign[4] = {-1.0, 1.0, 1.0, -1.0};
     static const dd none[4];
     for (int n = 1; n < FINE; ++n) {
-        const dd *one = q[n - 1], *two = n > 1 ? q[n - 2] : none, inverse = dd_div(dd_of(0.5), dd_of(n));
+        const dd *one = q[n - 1], *two = n > 1 ? q[n - 2] : none, inverse = halves[n];
         for (int k = 0; k < 4; ++k) {
             const dd swept = linear(two[opposite[k]], one[opposite[k]], place), turned = dd_mul(kappa, one[beside[k]]);
             q[n][k] = dd_mul(inverse, added(dd_scale(swept, swept_sign[k]), dd_scale(turned, turned_sign[k])));
@@ -158,14 +157,16 @@ static void mirrored(double sign, dd q[4])
 static void near_table(dd kappa, int pieces, dd there, double *table, dd last[4], dd start[4])
 {
     const double half = 0.5/SPIN_UP_PIECES;
-    dd q[TERMS][4] = {{{1.0, 0.0}, {0.0, 0.0}, {0.0, 0.0}, {0.0, 0.0}}};
-    grow(kappa, 0.0, q);
+    dd q[TERMS][4] = {{{1.0, 0.0}, {0.0, 0.0}, {0.0, 0.0}, {0.0, 0.0}}}, halves[FINE];
+    for (int n = 1; n < FINE; ++n)
+        halves[n] = dd_div(dd_of(0.5), dd_of(n));
+    grow(kappa, 0.0, halves, q);
     sum(q, dd_of(half), last);
     for (int piece = 0; piece < pieces; ++piece) {
         const double middle = (2*piece + 1)*half;
         for (int i = 0; i < 4; ++i)
             q[0][i] = last[i];
-        grow(kappa, middle, q);
+        grow(kappa, middle, halves, q);
         for (int n = 0; n < SPIN_UP_TAYLOR; ++n)
             for (int i = 0; i < 4; ++i)
                 table[4*(SPIN_UP_TAYLOR*piece + n) + i] = q[n][i].hi;
@@ -207,13 +208,13 @@ static void prepare_weak(const body *own, dd speed, spin_up_phase *p)
 {
     const dd c = dd_div(own->start, speed);
     dd before = dd_of(0.0), now = dd_of(1.0);
-    for (int n = 0; n < SPIN_UP_WEAK; ++n) {
+    for (int n = 0; n < SPIN_UP_TERMS; ++n) {
         store(dd_div(now, dd_of(n + 1.0)), p->series[n]);
         const dd next = dd_add(dd_mul(dd_mul(c, now), dd_of(1.0 - 2.0*n)), dd_mul(before, dd_of(2.0 - n)));
         before = now;
         now = dd_div(next, dd_of(n + 1.0));
     }
-    p->weak = 1.0;
+    p->way = SPIN_UP_WEAK;
     store(dd_div(own->s, speed), p->product);
     store(dd_mul(speed, SPIN_UP_QUARTER), p->share);
 }
@@ -226,10 +227,10 @@ static void prepare_phase(const body *own, spin_up_phase *p)
         return;
     }
     const dd product = dd_div(dd_scale(SPIN_UP_QUARTER, 0.5), own->s);
-    p->weak = 0.0;
+    p->way = own->across.hi*own->across.hi <= 1e5*own->s.hi ? SPIN_UP_PLAIN : SPIN_UP_FINE;
     store(product, p->product);
     store(dd_mul(product, square), p->share);
-    store(own->across.hi > 0x1p-1000 ? logarithm(own->across) : dd_of(0.0), p->logarithm);
+    store(own->across.hi > 0x1p-1000 ? logarithm(own->across, 1) : dd_of(0.0), p->logarithm);
 }
 
 static void prepare_body(int axis, const double numbers[20], body *own, spin_up *f)
@@ -276,21 +277,32 @@ static void prepare_body(int axis, const double numbers[20], body *own, spin_up 
     store(dd_scale(shifted(dd_scale(growth, 2.0), scale), sign), f->spin + 2);
 }
 
+/* Until when neither phase can have so many rad. */
+static double longest_of(const spin_up *f, double most)
+{
+    const double rad = 1.0/SPIN_UP_QUARTER.hi;
+    const double even = fabs(f->sweep[0]) + f->across[0] + fabs(f->turn[0])*rad;
+    const double growing = f->sweep[2] + fabs(f->turn[2])*rad;
+    return 2.0*most/(even + sqrt(even*even + 4.0*growing*most));
+}
+
 /*
  * Find the constants of a motion.
  *
  * in   axis        0, 1, 2   of symmetry; the torque is about it
  * in   numbers[20]           each as hi, lo: moments across the axis and about it, kg m^2, the torque, N m, angular
- *                            velocity at time 0 along the axes axis + 1, axis + 2 (modulo 3) and axis, rad/s, not both of
- *                            the first zero, and the attitude at time 0, body to space, scalar first, of any norm
- * in   limits[2]             |x| from which the series hold, and kappa from which they hold everywhere
+ *                            velocity at time 0 along the axes axis + 1, axis + 2 (modulo 3) and axis, rad/s, not
+ *                            both of the first zero, and the attitude at time 0, body to space, scalar first, of any
+ *                            norm
+ * in   limits[3]             |x| from which the series hold, kappa from which they hold everywhere, and the rad that
+ *                            pairs of doubles count
  * out  table[]               4*limits[0] times 20 times 4 numbers: Taylor's polynomials; NULL where no sample is near
  *                            resonance or beyond it
  * out  f                     the constants
  *
  * Returns 0, or 2 where the compiler has broken error-free arithmetic.
  */
-int symrot_spin_up_prepare(int axis, const double numbers[20], const double limits[2], double *table, spin_up *f)
+int symrot_spin_up_prepare(int axis, const double numbers[20], const double limits[3], double *table, spin_up *f)
 {
     static const spin_up blank;
     body own;
@@ -307,11 +319,13 @@ int symrot_spin_up_prepare(int axis, const double numbers[20], const double limi
     asymptotic(wide ? 1.0 : kappa2/radius2, wide ? inverse : 1.0/radius2, f);
     f->unit = square + (wide ? 0.0 : limits[0]*limits[0]*own.s.hi);
     prepare_phase(&own, &f->phase);
-    f->whole = wide || f->phase.weak != 0.0;
+    f->whole = wide || f->phase.way == SPIN_UP_WEAK;
     f->edge = f->whole != 0.0 ? 0.0 : edge.hi;
+    f->longest = longest_of(f, limits[2]);
     dd here[4];
     const int side = f->whole != 0.0 || own.start.hi >= f->edge ? SPIN_UP_BEYOND
         : own.start.hi <= -f->edge ? SPIN_UP_BEFORE : SPIN_UP_NEAR;
+    f->start = side;
     if (side != SPIN_UP_NEAR) {
         swept_attitude(f, own.start, here);
         store_attitude(&own, own.given, here, f->attitude[side]);

@@ -21,24 +21,32 @@
 
 #include <stddef.h>
 
-enum { SPIN_UP_SERIES = 13, SPIN_UP_TAYLOR = 20, SPIN_UP_PIECES = 4, SPIN_UP_WEAK = 16 };
+enum { SPIN_UP_SERIES = 13, SPIN_UP_TAYLOR = 20, SPIN_UP_PIECES = 4, SPIN_UP_TERMS = 16 };
 
 /* Where a sample is: far before resonance, near it, far beyond. */
 enum { SPIN_UP_BEFORE, SPIN_UP_NEAR, SPIN_UP_BEYOND };
 
+/* What samples lack: Taylor's polynomials; digits, for more turns than pairs of doubles count. */
+enum { SPIN_UP_LACKING = 1, SPIN_UP_LOST = 2 };
+
+/* How P is found: by its formula, with more digits of the logarithm, or by the series. */
+enum { SPIN_UP_PLAIN, SPIN_UP_FINE, SPIN_UP_WEAK };
+
 /* P/(4 pi), half of P in turns. */
 typedef struct {
-    double weak;                 /* 1: by the series, and a sample is never near */
+    double way;                  /* under a weak torque a sample is never near */
     double product[2], share[2]; /* 1/(8 pi s), W^2/(8 pi s); of the series s/S(0), S(0)/(4 pi) */
     double logarithm[2];         /* log W */
-    double series[SPIN_UP_WEAK][2];
+    double series[SPIN_UP_TERMS][2];
 } spin_up_phase;
 
 /* Everything is a double, so that other languages see one array. */
 typedef struct {
     double time_scale; /* a power of two; times are multiplied by it, rates divided */
+    double longest;    /* the scaled time from which a phase may have more rad than pairs of doubles count */
     double edge;       /* |Omega| from which a sample is far */
     double whole;      /* 1: all are, and share one attitude, that of SPIN_UP_BEYOND */
+    double start;      /* where the start is; without Taylor's polynomials no attitude is known elsewhere */
     double sweep[4];   /* Omega at time 0, s */
     double across[2];  /* W */
     double turn[4];    /* chi/2 in turns: of the time, and of its square */

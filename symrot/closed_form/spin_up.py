@@ -30,8 +30,6 @@ if TYPE_CHECKING:
 
 __all__ = ["SpinUp", "motion"]
 
-_PHASE = 1e13  # rad, from here on pairs of doubles would not do
-
 
 class SpinUp:
     """One motion. Times are counted from that of the initial state.
@@ -89,12 +87,7 @@ class SpinUp:
         times = times_of(t)
         rates = np.empty((len(times), 3)) if omega else None
         attitudes = np.empty((len(times), 4)) if quaternion else None
-        if not len(times):
-            return rates, attitudes
-        first, last = min(0.0, float(times.min())), max(0.0, float(times.max()))
-        span = self._source.span
-        self._source.fill(quaternion and not span.far(first, last))(times, rates, attitudes)
-        if not span.phase(max(last, -first)) <= _PHASE:  # NaN: more than doubles hold
+        if len(times) and self._source.fill(times, rates, attitudes):
             self._by_integers(times, rates, attitudes)
         return rates, attitudes
 
@@ -104,7 +97,7 @@ class SpinUp:
             if not self.integers.finite(time):
                 raise InputError(f"expected times at which the angular velocity is a finite number, got {time:.6g} s")
         for i, time in enumerate(times.tolist()):
-            if not self._source.span.phase(abs(time)) <= _PHASE:
+            if abs(time) > self._source.longest:
                 self.integers.put(i, time, rates, attitudes)
 
 

@@ -4,7 +4,9 @@
 #include "stages.h"
 
 typedef struct {
-    const double *table; /* NULL where no sample is near resonance */
+    const double *table;
+    int lacking;  /* a table */
+    int64_t lost; /* not 0 where a time is too long */
     double t[BLOCK], sine[BLOCK], cosine[BLOCK];  /* of chi/2 */
     double omega[BLOCK], omega_low[BLOCK], speed[BLOCK], speed_low[BLOCK];
     double turns[BLOCK], turns_low[BLOCK], turned[BLOCK], along[BLOCK]; /* of half the phase */
@@ -23,12 +25,16 @@ ALWAYS_INLINE void circle(dd turns, double more, double *sine, double *cosine)
 STAGE transverse(const spin_up *restrict f, ptrdiff_t n, block *restrict b)
 {
     const dd first = dd_pair(f->turn[0], f->turn[1]), second = dd_pair(f->turn[2], f->turn[3]);
+    const double longest = f->longest;
+    int64_t lost = 0;
     EACH (i, n) {
         const double t = b->t[i];
+        lost |= fabs(t) <= longest ? 0 : 1;
         const dd mean = linear(first, second, t);
         const double p = mean.hi*t;
         circle(dd_pair(p, MUL_ADD(mean.lo, t, product_error(mean.hi, t, p))), 0.0, &b->sine[i], &b->cosine[i]);
     }
+    b->lost |= lost;
 }
 
 STAGE rates(const spin_up *restrict f, ptrdiff_t n, const block *restrict b, double *restrict omega)
@@ -65,14 +71,24 @@ STAGE speeds(const double across[2], ptrdiff_t n, block *restrict b)
     }
 }
 
-STAGE swept(const spin_up_phase *restrict p, ptrdiff_t n, block *restrict b)
+ALWAYS_INLINE void swept_by(const spin_up_phase *restrict p, int fine, ptrdiff_t n, block *restrict b)
 {
     EACH (i, n) {
-        const dd turns =
-            swept_turns(p, dd_pair(b->omega[i], b->omega_low[i]), dd_pair(b->speed[i], b->speed_low[i]));
+        const dd omega = dd_pair(b->omega[i], b->omega_low[i]), speed = dd_pair(b->speed[i], b->speed_low[i]);
+        const dd turns = swept_turns(p, omega, speed, fine);
         b->turns[i] = turns.hi;
         b->turns_low[i] = turns.lo;
     }
+}
+
+STAGE swept(const spin_up_phase *restrict p, ptrdiff_t n, block *restrict b)
+{
+    swept_by(p, 0, n, b);
+}
+
+STAGE swept_finely(const spin_up_phase *restrict p, ptrdiff_t n, block *restrict b)
+{
+    swept_by(p, 1, n, b);
 }
 
 /* The same from the start on, under a weak torque. */
@@ -128,38 +144,53 @@ STAGE far(const spin_up *restrict f, ptrdiff_t n, block *restrict b)
     }
 }
 
-/* Near resonance: the same from x = 0, by Taylor's polynomials, a sample at a time: four components fill a register. */
+/* Four components in one register, or two: vectors of GNU C, which every compiler that takes our flags has. */
+typedef double four __attribute__((vector_size(32), aligned(8), may_alias));
+
+/* Near resonance: the same from x = 0, by Taylor's polynomials, even and odd powers apart, a sample at a time. */
 STAGE near(const spin_up *restrict f, ptrdiff_t n, block *restrict b)
 {
     const dd inverse = dd_pair(f->inverse[0], f->inverse[1]);
     const double last = f->inverse[0]*f->edge*SPIN_UP_PIECES - 0.5; /* the middle of the last piece */
-    for (ptrdiff_t i = 0; i < n; ++i) {
+    double rests[BLOCK], pieces[BLOCK];
+    EACH (i, n) {
         const double sign = b->omega[i] < 0.0 ? -1.0 : 1.0;
         const dd x = dd_scale(dd_mul(dd_pair(b->omega[i], b->omega_low[i]), inverse), sign);
-        const double place = x.hi*SPIN_UP_PIECES, piece = place < last ? floor(place) : floor(last);
-        const double rest = (x.hi - (piece + 0.5)/SPIN_UP_PIECES) + x.lo;
-        const double *at = b->table + 4*SPIN_UP_TAYLOR*(ptrdiff_t)piece;
-        double q[4];
+        const double place = x.hi*SPIN_UP_PIECES;
+        pieces[i] = floor(place < last ? place : last);
+        rests[i] = (x.hi - (pieces[i] + 0.5)/SPIN_UP_PIECES) + x.lo;
+    }
+    for (ptrdiff_t i = 0; i < n; ++i) {
+        const four *at = (const four *)(b->table + 4*SPIN_UP_TAYLOR*(ptrdiff_t)pieces[i]);
+        const double rest = rests[i], square = rest*rest;
+        four even = at[SPIN_UP_TAYLOR - 2], odd = at[SPIN_UP_TAYLOR - 1];
+        for (int m = SPIN_UP_TAYLOR - 4; m >= 0; m -= 2) {
+            even = even*square + at[m];
+            odd = odd*square + at[m + 1];
+        }
+        const four q = even + odd*rest;
         for (int k = 0; k < 4; ++k)
-            q[k] = at[4*(SPIN_UP_TAYLOR - 1) + k];
-        for (int m = SPIN_UP_TAYLOR - 2; m >= 0; --m)
-            for (int k = 0; k < 4; ++k)
-                q[k] = MUL_ADD(q[k], rest, at[4*m + k]);
-        const double s = b->sine[i], c = b->cosine[i];
-        b->near[0][i] = MUL_ADD(q[0], c, q[3]*s);
-        b->near[3][i] = MUL_ADD(q[3], c, -q[0]*s);
-        b->near[1][i] = sign*MUL_ADD(q[1], c, -q[2]*s);
-        b->near[2][i] = sign*MUL_ADD(q[2], c, q[1]*s);
+            b->near[k][i] = q[k];
+    }
+    EACH (i, n) {
+        const double sign = b->omega[i] < 0.0 ? -1.0 : 1.0, s = b->sine[i], c = b->cosine[i];
+        const double q0 = b->near[0][i], q1 = sign*b->near[1][i], q2 = sign*b->near[2][i], q3 = b->near[3][i];
+        b->near[0][i] = MUL_ADD(q0, c, q3*s);
+        b->near[3][i] = MUL_ADD(q3, c, -q0*s);
+        b->near[1][i] = MUL_ADD(q1, c, -q2*s);
+        b->near[2][i] = MUL_ADD(q2, c, q1*s);
     }
 }
 
 static void all_far(const spin_up *f, ptrdiff_t n, block *b)
 {
     speeds(f->across, n, b);
-    if (f->phase.weak != 0.0)
-        weakly_swept(&f->phase, n, b);
-    else
+    if (f->phase.way == SPIN_UP_PLAIN)
         swept(&f->phase, n, b);
+    else if (f->phase.way == SPIN_UP_FINE)
+        swept_finely(&f->phase, n, b);
+    else
+        weakly_swept(&f->phase, n, b);
     far(f, n, b);
 }
 
@@ -167,15 +198,22 @@ static int place_of(const spin_up *f, const block *b, ptrdiff_t i)
 {
     if (f->whole != 0.0 || b->omega[i] >= f->edge)
         return SPIN_UP_BEYOND;
-    return b->omega[i] <= -f->edge || b->table == NULL ? SPIN_UP_BEFORE : SPIN_UP_NEAR;
+    return b->omega[i] <= -f->edge ? SPIN_UP_BEFORE : SPIN_UP_NEAR;
 }
 
 /* Runs of samples in one place, each through its own map. */
 static void attitudes(const spin_up *f, ptrdiff_t n, block *b, double *q)
 {
-    int found[3] = {0, 0, 0};
-    for (ptrdiff_t i = 0; i < n; ++i)
-        found[place_of(f, b, i)] = 1;
+    int found[3] = {0, 0, 0}, away = 0;
+    for (ptrdiff_t i = 0; i < n; ++i) {
+        const int place = place_of(f, b, i);
+        found[place] = 1;
+        away |= place != (int)f->start;
+    }
+    if (b->table == NULL && (away || found[SPIN_UP_NEAR])) {
+        b->lacking = 1;
+        return;
+    }
     if (found[SPIN_UP_BEFORE] || found[SPIN_UP_BEYOND])
         all_far(f, n, b);
     if (found[SPIN_UP_NEAR])
@@ -204,15 +242,22 @@ static void motion(const spin_up *f, ptrdiff_t n, block *b, double *omega, doubl
  * The motion at times counted from that of the initial state.
  *
  * in   f           the constants
- * in   table       Taylor's polynomials, 40 times 20 times 4 numbers; NULL where no sample is near resonance
+ * in   table       Taylor's polynomials, 40 times 20 times 4 numbers; NULL where all samples are far, on the side of
+ *                  the start
  * in   times       s
  * out  omega       rad/s, 3 of each sample, or NULL
  * out  quaternion  1, 4 of each sample, or NULL
+ *
+ * Returns 0, or SPIN_UP_LACKING where the table is needed and NULL, plus SPIN_UP_LOST where some samples have too many
+ * turns: what they are is not right.
  */
-void symrot_spin_up_at(
+int symrot_spin_up_at(
     const spin_up *f, const double *table, ptrdiff_t count, const double *times, double *omega, double *quaternion)
 {
     block b;
     b.table = table;
+    b.lacking = 0;
+    b.lost = 0;
     IN_BLOCKS(b, motion)
+    return (b.lacking ? SPIN_UP_LACKING : 0) + (b.lost != 0 ? SPIN_UP_LOST : 0);
 }

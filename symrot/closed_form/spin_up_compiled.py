@@ -1,8 +1,6 @@
 """The compiled constants and loops of :mod:`.spin_up`: :file:`spin_up.c`, :file:`spin_up_at.c`."""
 
 import ctypes
-import math
-from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,13 +8,13 @@ import numpy as np
 from symrot.closed_form import spin_up_series
 from symrot.closed_form.library import Floats, address, load
 from symrot.closed_form.spin_up_near import DEGREE, PIECES
-from symrot.closed_form.spin_up_span import Span
 from symrot.codegen import library
 from symrot.errors import CompilerError
 
 __all__ = ["Compiled", "available"]
 
-_PLACES = 9  # of the numbers in spin_up.h before those of chi
+_COUNT = int(spin_up_series.NEAR) * PIECES
+_LACKING, _LOST = 1, 2  # what samples lack, see spin_up.h
 
 
 class _Functions(NamedTuple):
@@ -40,16 +38,18 @@ def _functions() -> _Functions:
         constants, samples = load("spin_up")
         prepare, length = constants.symrot_spin_up_prepare, constants.symrot_spin_up_length
         evaluate, pointer, size = samples.symrot_spin_up_at, ctypes.c_void_p, ctypes.c_ssize_t
-        length.restype, prepare.restype, evaluate.restype = size, ctypes.c_int, None
+        length.restype, prepare.restype, evaluate.restype = size, ctypes.c_int, ctypes.c_int
         prepare.argtypes = (ctypes.c_int, pointer, pointer, pointer, pointer)
         evaluate.argtypes = (pointer, pointer, size, pointer, pointer, pointer)
         double = ctypes.c_double
-        _bound.append(_Functions(prepare, evaluate, double * length(), double * 20, double * 2))
+        _bound.append(_Functions(prepare, evaluate, double * length(), double * 20, double * 3))
     return _bound[0]
 
 
 class Compiled:
     """The constants of one motion, found by C, and its loops over samples.
+
+    ``longest`` is the time, s, from which on pairs of doubles may not count the turns.
 
     Parameters
     ----------
@@ -64,30 +64,27 @@ class Compiled:
     """
 
     def __init__(self, axis: int, numbers: list[float]) -> None:
+        self._axis, self._numbers = axis, numbers
+        self._evaluate = _functions().evaluate
+        self._known = constants, _, _ = self._prepared(None)
+        self.longest: float = constants[1] / constants[0]
+
+    def _prepared(self, table: Floats | None) -> tuple[Any, int, Floats | None]:
+        """Return the constants, where they are, and the table, which is filled if there is one."""
         functions = _functions()
-        self._axis, self._numbers = axis, functions.numbers(*numbers)
-        self._limits = functions.limits(spin_up_series.NEAR, spin_up_series.WIDE)
-        self._table: Floats | None = None
-        self._constants = functions.record()
-        self._place = ctypes.addressof(self._constants)
-        self._evaluate = functions.evaluate
-        self._prepare()
-        scale, edge, whole, start, _, s, _, across, _, turn, _, growth = self._constants[: _PLACES + 3]
-        self.span = Span(scale, edge, start, s, across, bool(whole), turn * (4.0 * math.pi), growth * (4.0 * math.pi))
-
-    def _prepare(self) -> None:
-        status = _functions().prepare(self._axis, self._numbers, self._limits, address(self._table), self._place)
-        if status:
+        constants = functions.record()
+        place = ctypes.addressof(constants)
+        limits = functions.limits(spin_up_series.NEAR, spin_up_series.WIDE, spin_up_series.MOST)
+        if functions.prepare(self._axis, functions.numbers(*self._numbers), limits, address(table), place):
             raise CompilerError("the C compiler breaks error-free arithmetic: it must round every operation as written")
+        return constants, place, table
 
-    def fill(self, near: bool) -> Callable[..., None]:
-        """Return the loops over samples; those over samples far from resonance only, or over all."""
-        if near and self._table is None:
-            self._table = np.empty((int(spin_up_series.NEAR) * PIECES, DEGREE + 1, 4))
-            self._prepare()
-        return self._loops
-
-    def _loops(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> None:
-        self._evaluate(
-            self._place, address(self._table), len(times), address(times), address(omega), address(quaternion)
-        )
+    def fill(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> bool:
+        """Write samples where an array is given; return whether some are beyond :attr:`longest`, which are wrong."""
+        given = len(times), address(times), address(omega), address(quaternion)
+        _, place, table = self._known
+        status: int = self._evaluate(place, address(table), *given)
+        if status & _LACKING:
+            self._known = _, place, table = self._prepared(np.empty((_COUNT, DEGREE + 1, 4)))
+            status = self._evaluate(place, address(table), *given)
+        return bool(status & _LOST)

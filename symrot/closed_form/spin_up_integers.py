@@ -19,12 +19,13 @@ from symrot.closed_form.pairs import pair
 from symrot.closed_form.portable.spin_up import SpinUp as Portable
 from symrot.closed_form.spin_up_exact import ONE, Quaternion, Sweep, about_third, conjugate, fixed, product, rounded
 from symrot.closed_form.spin_up_near import Near
-from symrot.closed_form.spin_up_series import NEAR, series
-from symrot.closed_form.spin_up_span import Span
+from symrot.closed_form.spin_up_series import MOST, NEAR, series
 
 __all__ = ["Integers"]
 
-_MOST = Fraction(10) ** 300
+_DOUBT = 1e-14  # of a place: nearer to the edge of a side than this, it could be on either
+
+_LARGEST = Fraction(10) ** 300
 
 
 def _scale(*values: Fraction) -> Fraction:
@@ -73,7 +74,7 @@ class Integers:
         scale = _scale(start, width, self._root)
         self._scale, self._start = scale, rounded(start / scale)
         self._turn = rounded(lag * sign * rates[axis] / scale), rounded(lag * abs(torque) / (2 * own * scale * scale))
-        kappa2, inverse = (float(min(x / y, _MOST)) if y else math.inf for x, y in ((width**2, s), (s, width**2)))
+        kappa2, inverse = (float(min(x / y, _LARGEST)) if y else math.inf for x, y in ((width**2, s), (s, width**2)))
         self._sweep = Sweep(rounded(width / scale), rounded(s / scale**2), series(kappa2, inverse))
         self._edge = Fraction(0) if self._sweep.series.wide else rounded(Fraction(NEAR) * self._root / scale)
         self._axes = self._body_axes(axis, sign, first / width, second / width)
@@ -148,24 +149,28 @@ class Integers:
         return values + (_map(product(self._given, self._resonance), back) if near else [0.0] * 16)
 
     @cached_property
-    def span(self) -> Span:
-        """Which times the motion is near resonance at, and how fast it turns."""
-        return Span(
-            scale=float(self._scale),
-            edge=float(self._edge),
-            start=float(self._start),
-            s=float(self._sweep.s),
-            across=float(self._sweep.across),
-            whole=self._sweep.series.wide,
-            turn=float(self._turn[0]),
-            growth=float(self._turn[1]),
-        )
+    def longest(self) -> float:
+        """The time, s, from which on pairs of doubles may not count the turns."""
+        values = self._start, self._sweep.across, self._turn[0], self._sweep.s, self._turn[1]
+        start, across, turn, s, growth = (abs(float(x)) for x in values)
+        even = start + across + turn
+        return 2.0 * MOST / (even + math.sqrt(even * even + 4.0 * (s + growth) * MOST)) / float(self._scale)
 
-    def fill(self, near: bool) -> Callable[..., None]:
-        """Return the loops over samples of NumPy; those over samples far from resonance only, or over all."""
+    def _far(self, first: float, last: float) -> bool:
+        """Return whether all times between two are surely on one side of resonance, however doubles round."""
+        start, s, scale = float(self._start), float(self._sweep.s), float(self._scale)
+        ends, edge = (start + s * first * scale, start + s * last * scale), float(self._edge)
+        edge += _DOUBT * (edge + max(map(abs, (start, *ends))))
+        return self._sweep.series.wide or ends[1] <= -edge or ends[0] >= edge
+
+    def fill(self, times: Floats, rates: Floats | None, attitudes: Floats | None) -> bool:
+        """Write samples by NumPy; return whether some are beyond :attr:`longest`, which are wrong."""
+        first, last = min(0.0, float(times.min())), max(0.0, float(times.max()))
+        near = attitudes is not None and not self._far(first, last)
         if near not in self._kinds:
             self._kinds[near] = Portable(self._constants(near), self._near.table() if near else None).evaluate
-        return self._kinds[near]
+        self._kinds[near](times, rates, attitudes)
+        return not max(last, -first) <= self.longest
 
     def finite(self, time: float) -> bool:
         """Return whether the angular velocity at a time is one of doubles."""

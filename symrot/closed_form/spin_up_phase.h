@@ -64,8 +64,28 @@ ALWAYS_INLINE dd rooted(dd a)
     return quick_two_sum(root, rest/(2.0*root));
 }
 
-/* log(a) of a normal number, to 2^-102 or that much of itself: log(2^n c) + 2 atanh(r), |r| <= 1/128. */
-ALWAYS_INLINE dd logarithm(dd a)
+/* atanh(r) - r for |r| <= 1/128: to 2^-74, or finely to 2^-102 of r. */
+ALWAYS_INLINE dd atanh_rest(dd r, int fine)
+{
+    const dd square = dd_square(r);
+    double tail = 1.0/15.0;
+    tail = MUL_ADD(tail, square.hi, 1.0/13.0);
+    tail = MUL_ADD(tail, square.hi, 1.0/11.0);
+    tail = MUL_ADD(tail, square.hi, 1.0/9.0);
+    if (!fine) {
+        tail = MUL_ADD(tail, square.hi, SEVENTH.hi);
+        tail = MUL_ADD(tail, square.hi, FIFTH.hi);
+        tail = MUL_ADD(tail, square.hi, THIRD.hi);
+        return dd_pair(tail*square.hi*r.hi, 0.0);
+    }
+    dd sum = added_less(SEVENTH, dd_pair(tail*square.hi, 0.0));
+    sum = added_less(FIFTH, dd_mul(sum, square));
+    sum = added_less(THIRD, dd_mul(sum, square));
+    return dd_mul(dd_mul(sum, square), r);
+}
+
+/* log(a) of a normal number, to 2^-74, or finely to 2^-102 of the larger of 1 and it: log(2^n c) + 2 atanh(r). */
+ALWAYS_INLINE dd logarithm(dd a, int fine)
 {
     static const dd ln2 = DD_LN2;
     union {
@@ -81,32 +101,26 @@ ALWAYS_INLINE dd logarithm(dd a)
     size.bits = (part.bits & ~(((uint64_t)1 << 47) - 1)) | (uint64_t)1 << 46;
     const double c = size.number;
     /* r = (f - c)/(f + c): the difference is exact */
-    const dd below = quick_two_sum(part.number + c, (c - ((part.number + c) - part.number)) + low);
-    const double above = part.number - c, first = (above + low)/below.hi, lost = first*below.hi;
-    const double rest = ((above - lost) - product_error(first, below.hi, lost)) + MUL_ADD(-first, below.lo, low);
-    const dd r = quick_two_sum(first, rest/below.hi), square = dd_square(r);
-    double tail = 1.0/15.0;
-    tail = MUL_ADD(tail, square.hi, 1.0/13.0);
-    tail = MUL_ADD(tail, square.hi, 1.0/11.0);
-    tail = MUL_ADD(tail, square.hi, 1.0/9.0);
-    dd sum = added_less(SEVENTH, dd_pair(tail*square.hi, 0.0));
-    sum = added_less(FIFTH, dd_mul(sum, square));
-    sum = added_less(THIRD, dd_mul(sum, square));
-    sum = dd_mul(dd_mul(sum, square), r);
-    const dd atanh2 = dd_scale(added_less(r, sum), 2.0);
-    const double octaves = n*ln2.hi;
-    const dd whole = dd_pair(octaves, MUL_ADD(n, ln2.lo, product_error(n, ln2.hi, octaves)));
-    return added(added(whole, dd_pair(LOG_HIGH[i], LOG_LOW[i])), atanh2);
+    const double above = part.number - c, below = part.number + c, below_low = (c - (below - part.number)) + low;
+    const double first = above/below, product = first*below;
+    const double rest = ((above - product) - product_error(first, below, product)) + MUL_ADD(-first, below_low, low);
+    const dd r = quick_two_sum(first, rest/below);
+    const dd atanh2 = dd_scale(added_less(r, atanh_rest(r, fine)), 2.0);
+    const double octaves = n*ln2.hi, lost = MUL_ADD(n, ln2.lo, product_error(n, ln2.hi, octaves));
+    const dd known = two_sum(octaves, LOG_HIGH[i]);
+    if (!fine)
+        return added(dd_pair(known.hi, known.lo + (lost + LOG_LOW[i])), atanh2);
+    return added(added(known, two_sum(lost, LOG_LOW[i])), atanh2);
 }
 
-/* P/(4 pi) from Omega and S, but for a constant. */
-ALWAYS_INLINE dd swept_turns(const spin_up_phase *p, dd omega, dd speed)
+/* P/(4 pi) from Omega and S, but for a constant; finely where kappa is large. */
+ALWAYS_INLINE dd swept_turns(const spin_up_phase *p, dd omega, dd speed, int fine)
 {
     const double sign = omega.hi < 0.0 ? -1.0 : 1.0;
-    const dd log = logarithm(added(dd_scale(omega, sign), speed));
-    const dd asinh = dd_scale(added(log, dd_pair(-p->logarithm[0], -p->logarithm[1])), sign);
+    const dd log = logarithm(added(dd_scale(omega, sign), speed), fine);
+    const dd asinh = added(log, dd_pair(-p->logarithm[0], -p->logarithm[1]));
     const dd even = dd_mul(dd_mul(omega, speed), dd_pair(p->product[0], p->product[1]));
-    return added(even, dd_mul(asinh, dd_pair(p->share[0], p->share[1])));
+    return added(even, dd_mul(asinh, dd_pair(sign*p->share[0], sign*p->share[1])));
 }
 
 /* c[0] + c[1] x + .. + c[12] x^12 */

@@ -24,13 +24,16 @@ import numpy as np
 
 from symrot.closed_form.library import Floats
 
-__all__ = ["DEGREE", "NEAR", "WIDE", "Series", "series"]
+__all__ = ["DEGREE", "MOST", "NEAR", "WIDE", "Series", "series"]
 
 NEAR = 10.0
 """From this x on the series holds for every kappa."""
 
 WIDE = 9.0
 """From this kappa on the series holds for every x."""
+
+MOST = 1e13
+"""rad, from here on pairs of doubles would not count a phase."""
 
 DEGREE = 12
 """Of the polynomials that stand for the series."""
