@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from symrot.codegen.c_source import c_expression
 from symrot.codegen.recurrences import Recurrences, Series, recurrences, split_sign
-from symrot.errors import InputError
+from symrot.codegen.taylor_source import checked_system
 from symrot.expression import Node, names, rename
 from symrot.kernel import Program
 
@@ -64,19 +64,11 @@ def lane_definitions(program: Program, edges: Sequence[int], scales: Sequence[fl
     InputError
         For an operation without a Taylor series, or an order or blocks that cannot be used.
     """
-    if order < 4 or order % 2:
-        raise InputError(f"order of the Taylor method: expected an even number from 4 on, got {order}")
-    system = recurrences(program)
-    count = len(system.states)
-    if [*edges[:1], *edges[-1:]] != [0, count] or list(edges) != sorted(set(edges)) or len(scales) != len(edges) - 1:
-        raise InputError(
-            f"blocks of {count} states rise from 0 to {count} and have one scale each; got blocks {list(edges)} and "
-            f"scales {list(scales)}"
-        )
+    system = checked_system(program, edges, scales, order)
     inverses = ", ".join(["0.0", *(f"1.0/{n}" for n in range(1, order + 1))])
     return "\n".join(
         (
-            f"#define SYMROT_STATES {count}",
+            f"#define SYMROT_STATES {len(system.states)}",
             f"#define SYMROT_PARAMETERS {len(system.parameters)}",
             f"#define SYMROT_ORDER {order}",
             f"#define SYMROT_BLOCKS {len(scales)}",

@@ -11,13 +11,13 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from symrot.codegen.c_source import c_expression
 from symrot.codegen.companions import with_companions
-from symrot.codegen.recurrences import recurrences
+from symrot.codegen.recurrences import Recurrences, recurrences
 from symrot.codegen.taylor_lanes import LANES, Address, Layout, Pack, Row, cost, lay_out
 from symrot.errors import InputError
 from symrot.expression import Node, children, names, rename
 from symrot.kernel import Program
 
-__all__ = ["ORDER", "jet_source", "taylor_definitions"]
+__all__ = ["ORDER", "checked_system", "jet_source", "taylor_definitions"]
 
 ORDER = 20  # by measurement: below errors of 1e-6, orders 16 to 24 lie within a tenth of each other
 COLUMNS_PER_LOOP = 4  # two sums each, so that sums and factors stay in 16 registers
@@ -42,20 +42,12 @@ def taylor_definitions(program: Program, edges: Sequence[int], scales: Sequence[
     InputError
         For an operation without a Taylor series, or an order or blocks that cannot be used.
     """
-    if order < 4 or order % 2:
-        raise InputError(f"order of the Taylor method: expected an even number from 4 on, got {order}")
-    system = recurrences(program)
-    count = len(system.states)
-    if [*edges[:1], *edges[-1:]] != [0, count] or list(edges) != sorted(set(edges)) or len(scales) != len(edges) - 1:
-        raise InputError(
-            f"blocks of {count} states rise from 0 to {count} and have one scale each; got blocks {list(edges)} and "
-            f"scales {list(scales)}"
-        )
+    system = checked_system(program, edges, scales, order)
     layout = min((lay_out(one, edges) for one in (system, with_companions(system))), key=cost)
     blocks = [next(b for b in range(len(scales)) if states[0] < edges[b + 1]) for states in layout.states]
     return "\n".join(
         (
-            f"#define SYMROT_STATES {count}",
+            f"#define SYMROT_STATES {len(system.states)}",
             f"#define SYMROT_PARAMETERS {len(system.parameters)}",
             f"#define SYMROT_ORDER {order}",
             f"#define SYMROT_ROWS {len(layout.states)}",
@@ -69,6 +61,20 @@ def taylor_definitions(program: Program, edges: Sequence[int], scales: Sequence[
             jet_source(layout, system.parameters),
         )
     )
+
+
+def checked_system(program: Program, edges: Sequence[int], scales: Sequence[float], order: int) -> Recurrences:
+    """Return the recurrences of a program; arguments and errors as :func:`taylor_definitions`."""
+    if order < 4 or order % 2:
+        raise InputError(f"order of the Taylor method: expected an even number from 4 on, got {order}")
+    system = recurrences(program)
+    count = len(system.states)
+    if [*edges[:1], *edges[-1:]] != [0, count] or list(edges) != sorted(set(edges)) or len(scales) != len(edges) - 1:
+        raise InputError(
+            f"blocks of {count} states rise from 0 to {count} and have one scale each; got blocks {list(edges)} and "
+            f"scales {list(scales)}"
+        )
+    return system
 
 
 def _table(items: Iterable[str]) -> str:
