@@ -109,7 +109,8 @@ def certificate_text(subject: Subject) -> str:
     return printed(stated | json.loads(kept))
 
 
-PROVERS = ("certificate", "equality", "law_proof", "laws", "operations", "readback", "rounded", "../kernels/removable")
+PROVERS = ("c_functions", "certificate", "equality", "law_proof", "laws", "operations", "readback", "rounded",
+           "../kernels/removable")  # fmt: skip
 """The programs that find proofs: another one of them, other proofs."""
 
 

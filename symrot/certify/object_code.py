@@ -14,12 +14,13 @@ from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 
+from symrot.certify.c_functions import Function, functions_of
 from symrot.certify.disassembly import Listing, listing
 from symrot.certify.object_code_machine import Finished, arguments, ways
 from symrot.certify.object_code_state import Array, Context, NotUnderstood
 from symrot.certify.object_code_terms import ANY, RELATION, Known, Outcomes, Pair, Terms, value_of
 from symrot.certify.operations import Operations, operands
-from symrot.certify.readback import Function, functions_of, read_kernel
+from symrot.certify.readback import read_kernel
 from symrot.errors import CertificateError
 
 __all__ = [

@@ -16,8 +16,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from random import Random
 
+from symrot.certify.c_functions import functions_of
 from symrot.certify.object_code_build import compile_object
-from symrot.certify.readback import functions_of
 from symrot.errors import CompilerError
 
 __all__ = ["KINDS", "Mutant", "mutants", "same_bits"]

@@ -5,16 +5,16 @@ minus, ``a < b ? x : y``; calls of the C library and of ``static inline`` functi
 output array assigned once; in a batch, one loop over samples. Nothing here is shared with the emitter.
 """
 
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from struct import pack, unpack
 
+from symrot.certify.c_functions import Cursor, Function, Parameter, Token, functions_of
 from symrot.certify.operations import RELATIONS, Builder, Operations
 from symrot.errors import CertificateError
 
-__all__ = ["LIBRARY", "Function", "functions_of", "read_batch", "read_kernel"]
+__all__ = ["LIBRARY", "read_batch", "read_kernel"]
 
 LIBRARY: dict[str, int] = {  # functions of <math.h> that kernels call, without the f of their float forms
     "sin": 1, "cos": 1, "tan": 1, "asin": 1, "acos": 1, "atan": 1, "atan2": 2, "exp": 1, "log": 1,
@@ -23,183 +23,13 @@ LIBRARY: dict[str, int] = {  # functions of <math.h> that kernels call, without 
 ROUNDED = {"sqrt": ("sqrt", 1), "fabs": ("abs", 1), "copysign": ("copysign", 2)}  # exact, or rounded correctly
 NEAR = {"symrot_sin": "sin", "symrot_cos": "cos"}  # of symrot_math.h, in batches: assumed to its stated error
 ARC = {"symrot_atan2": "atan2"}  # the same, for all numbers
-SELECT = {"symrot_select_lt": "<", "symrot_select_eq": "==", "symrot_choose_ge": ">="}  # of symrot_math.h: choices without a branch
+SELECT = {
+    "symrot_select_lt": "<",
+    "symrot_select_eq": "==",
+    "symrot_choose_ge": ">=",
+}  # of symrot_math.h: choices without a branch
 SPAN = "SYMROT_SPAN"  # samples that several loops of a batch take in turn
 DEEPEST = 200  # nested levels of an expression
-
-_TOKEN = re.compile(
-    r"(?P<space>\s+)|(?P<number>(?:0[xX][0-9a-fA-F]+\.?[0-9a-fA-F]*[pP][+-]?\d+|(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)f?)"
-    r"|(?P<name>[A-Za-z_]\w*)|(?P<mark>\+\+|<=|>=|==|!=|[-+*/()\[\]{},;=<>?:])",
-    re.ASCII,
-)
-_COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)
-_DIRECTIVE = re.compile(r'\s*#\s*(?:include\s*(?:<(?:math|stddef)\.h>|"\w+\.h")|pragma\s+STDC\s+FP_CONTRACT\s+OFF)\s*')
-
-
-@dataclass(frozen=True)
-class _Token:
-    kind: str
-    text: str
-    line: int
-
-
-@dataclass(frozen=True)
-class Parameter:
-    """A parameter of a C function: ``size`` is 0 for a scalar, -1 for a pointer without a size."""
-
-    name: str
-    type: str
-    size: int
-    is_const: bool
-
-
-@dataclass(frozen=True)
-class Function:
-    """A C function as tokens: what it takes and its body, read when it is called or asked for."""
-
-    name: str
-    returns: str
-    parameters: tuple[Parameter, ...]
-    body: tuple[_Token, ...]
-    line: int
-
-
-def _tokens(text: str, where: str) -> list[_Token]:
-    if "??" in text or "\\" in text:  # trigraphs, spliced lines: never emitted, and a reader may be led astray by them
-        raise CertificateError(f"{where}: expected C as symrot emits it, got a backslash or a trigraph")
-    bare = _COMMENT.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
-    lines = bare.split("\n")
-    for number, line in enumerate(lines, 1):
-        if "#" in line:
-            if not _DIRECTIVE.fullmatch(line):
-                raise CertificateError(
-                    f"{where}, line {number}: expected an #include that symrot emits, got {line.strip()!r}"
-                )
-            lines[number - 1] = ""
-    found: list[_Token] = []
-    for number, line in enumerate(lines, 1):
-        position = 0
-        while position < len(line):
-            match = _TOKEN.match(line, position)
-            if match is None:
-                raise CertificateError(
-                    f"{where}, line {number}: expected C of the emitted subset, got {line[position]!r}"
-                )
-            position = match.end()
-            if match.lastgroup != "space":
-                found.append(_Token(str(match.lastgroup), match[0], number))
-    return found
-
-
-class _Cursor:
-    """Tokens of one file or one body, taken from left to right."""
-
-    def __init__(self, tokens: list[_Token] | tuple[_Token, ...], where: str) -> None:
-        self.tokens, self.where, self.index = tokens, where, 0
-
-    def peek(self, ahead: int = 0) -> str:
-        index = self.index + ahead
-        return self.tokens[index].text if index < len(self.tokens) else ""
-
-    def next(self) -> _Token:
-        if self.index >= len(self.tokens):
-            raise self.fail("more text")
-        self.index += 1
-        return self.tokens[self.index - 1]
-
-    def fail(self, expected: str) -> CertificateError:
-        """Return the error for the token at hand."""
-        at = min(self.index, len(self.tokens) - 1)
-        found = repr(self.tokens[at].text) if 0 <= self.index < len(self.tokens) else "the end"
-        line = self.tokens[at].line if self.tokens else 1
-        return CertificateError(f"{self.where}, line {line}: expected {expected}, got {found}")
-
-    def expect(self, *marks: str) -> None:
-        for mark in marks:
-            if self.peek() != mark:
-                raise self.fail(f"'{mark}'")
-            self.index += 1
-
-    def name(self) -> str:
-        if self.index >= len(self.tokens) or self.tokens[self.index].kind != "name":
-            raise self.fail("a name")
-        return self.next().text
-
-    def integer(self) -> int:
-        if not self.peek().isdigit():
-            raise self.fail("an index")
-        return int(self.next().text)
-
-    def block(self) -> tuple[_Token, ...]:
-        """Return the tokens between the brace at hand and the one that closes it."""
-        self.expect("{")
-        start, depth = self.index, 1
-        while depth:
-            depth += {"{": 1, "}": -1}.get(self.next().text, 0)
-        return tuple(self.tokens[start : self.index - 1])
-
-
-def functions_of(text: str, where: str = "kernel") -> dict[str, Function]:
-    """Return the functions that a C file defines, by name.
-
-    Raises
-    ------
-    CertificateError
-        For anything that is not of the emitted subset, with its line.
-    """
-    cursor, found = _Cursor(_tokens(text, where), where), {}
-    while cursor.index < len(cursor.tokens):
-        function = _function(cursor)
-        if function is None:
-            continue
-        if function.name in found:
-            raise CertificateError(
-                f"{where}, line {function.line}: expected one definition of {function.name}, got two"
-            )
-        found[function.name] = function
-    return found
-
-
-def _function(cursor: _Cursor) -> Function | None:
-    while cursor.peek() in ("static", "inline"):
-        cursor.next()
-    line = cursor.tokens[cursor.index].line if cursor.index < len(cursor.tokens) else 0
-    returns = cursor.name()
-    if returns not in ("void", "double", "float"):
-        raise cursor.fail("a function of double or float")
-    name = cursor.name()
-    cursor.expect("(")
-    parameters = [_parameter(cursor)]
-    while cursor.peek() == ",":
-        cursor.next()
-        parameters.append(_parameter(cursor))
-    cursor.expect(")")
-    if len({parameter.name for parameter in parameters}) != len(parameters):
-        raise cursor.fail(f"different names for the parameters of {name}")
-    if cursor.peek() == ";":
-        cursor.next()
-        return None
-    return Function(name, returns, tuple(parameters), cursor.block(), line)
-
-
-def _parameter(cursor: _Cursor) -> Parameter:
-    is_const = cursor.peek() == "const"
-    if is_const:
-        cursor.next()
-    kind = cursor.name()
-    if kind not in ("double", "float", "size_t"):
-        raise cursor.fail("a parameter of double or float")
-    if cursor.peek() == "*":
-        cursor.next()
-        if cursor.peek() in ("SYMROT_RESTRICT", "restrict"):
-            cursor.next()
-        return Parameter(cursor.name(), kind, -1, is_const)
-    name, size = cursor.name(), 0
-    if cursor.peek() == "[":
-        cursor.next()
-        size = cursor.integer()
-        cursor.expect("]")
-    return Parameter(name, kind, size, is_const)
 
 
 @dataclass
@@ -227,7 +57,7 @@ class _Reader:
     def input(self, place: str) -> int:
         return self.inputs.setdefault(place, self.builder.add("in", place))
 
-    def statements(self, cursor: _Cursor, scope: _Scope) -> int | None:
+    def statements(self, cursor: Cursor, scope: _Scope) -> int | None:
         """Read statements to the end of a body; return the node of ``return``, if there is one."""
         while cursor.peek():
             if cursor.peek() == "(":
@@ -253,11 +83,11 @@ class _Reader:
                 self._assignment(cursor, scope)
         return None
 
-    def _known(self, cursor: _Cursor, scope: _Scope, name: str) -> None:
+    def _known(self, cursor: Cursor, scope: _Scope, name: str) -> None:
         if name not in scope.values and name not in scope.arrays:
             raise cursor.fail(f"the name of a parameter instead of {name}")
 
-    def _assignment(self, cursor: _Cursor, scope: _Scope) -> None:
+    def _assignment(self, cursor: Cursor, scope: _Scope) -> None:
         name = cursor.name()
         array = scope.arrays.get(name)
         if array is None or array.is_const:
@@ -270,7 +100,7 @@ class _Reader:
             raise cursor.fail(f"one assignment to {name}[{index}], and here is a second; before")
         scope.written[name, index] = value
 
-    def _index(self, cursor: _Cursor, scope: _Scope, array: Parameter) -> int:
+    def _index(self, cursor: Cursor, scope: _Scope, array: Parameter) -> int:
         """Read ``[i]`` of an array with a size, ``[i*n + k]`` of one in a batch."""
         cursor.expect("[")
         if array.size > 0:
@@ -285,7 +115,7 @@ class _Reader:
         cursor.expect("]")
         return index
 
-    def expression(self, cursor: _Cursor, scope: _Scope) -> int:
+    def expression(self, cursor: Cursor, scope: _Scope) -> int:
         self.depth += 1
         if self.depth > DEEPEST:
             raise cursor.fail(f"at most {DEEPEST} nested levels")
@@ -301,21 +131,21 @@ class _Reader:
         self.depth -= 1
         return value
 
-    def sum(self, cursor: _Cursor, scope: _Scope) -> int:
+    def sum(self, cursor: Cursor, scope: _Scope) -> int:
         value = self.product(cursor, scope)
         while cursor.peek() in ("+", "-"):
             kind = "add" if cursor.next().text == "+" else "sub"
             value = self.builder.add(kind, value, self.product(cursor, scope))
         return value
 
-    def product(self, cursor: _Cursor, scope: _Scope) -> int:
+    def product(self, cursor: Cursor, scope: _Scope) -> int:
         value = self.factor(cursor, scope)
         while cursor.peek() in ("*", "/"):
             kind = "mul" if cursor.next().text == "*" else "div"
             value = self.builder.add(kind, value, self.factor(cursor, scope))
         return value
 
-    def factor(self, cursor: _Cursor, scope: _Scope) -> int:
+    def factor(self, cursor: Cursor, scope: _Scope) -> int:
         if cursor.peek() == "-":
             cursor.next()
             value = self.factor(cursor, scope)
@@ -337,7 +167,7 @@ class _Reader:
             raise cursor.fail(f"a name that has a value instead of {name}, before")
         return scope.values[name]
 
-    def _literal(self, cursor: _Cursor) -> int:
+    def _literal(self, cursor: Cursor) -> int:
         text = cursor.peek()
         is_float = text.endswith("f")  # a hexadecimal literal has a decimal exponent, so that its f is a suffix too
         if is_float != (self.real == "float") or text.isdigit():
@@ -349,7 +179,7 @@ class _Reader:
             value = _nearest_float(digits, value)
         return self.builder.add("const", Fraction(value))
 
-    def _element(self, cursor: _Cursor, scope: _Scope, name: str) -> int:
+    def _element(self, cursor: Cursor, scope: _Scope, name: str) -> int:
         array = scope.arrays.get(name)
         if array is None or not array.is_const:
             raise cursor.fail(f"an input array instead of {name}, before")
@@ -358,7 +188,7 @@ class _Reader:
             return self.input(name)
         return self.input(f"{name}[{self._index(cursor, scope, array)}]")
 
-    def _call(self, cursor: _Cursor, scope: _Scope, name: str) -> int:
+    def _call(self, cursor: Cursor, scope: _Scope, name: str) -> int:
         cursor.expect("(")
         taken = [self.expression(cursor, scope)]
         while cursor.peek() == ",":
@@ -383,7 +213,7 @@ class _Reader:
             raise cursor.fail(f"a function of <math.h> that kernels use instead of {name}, before")
         return self.builder.add("call", bare, tuple(taken))
 
-    def _inlined(self, cursor: _Cursor, function: Function, taken: list[int]) -> int:
+    def _inlined(self, cursor: Cursor, function: Function, taken: list[int]) -> int:
         wanted = function.parameters
         if function.returns != self.real or any(p.size or p.type != self.real for p in wanted):
             raise cursor.fail(f"a function of {self.real} instead of {function.name}, before")
@@ -393,7 +223,7 @@ class _Reader:
             raise cursor.fail(f"no recursion, as in {function.name}, before")
         self.calls.append(function.name)
         scope = _Scope(values={p.name: value for p, value in zip(wanted, taken, strict=True)})
-        value = self.statements(_Cursor(function.body, self.where), scope)
+        value = self.statements(Cursor(function.body, self.where), scope)
         self.calls.pop()
         if value is None:
             raise cursor.fail(f"a return in {function.name}, before")
@@ -458,7 +288,7 @@ def read_kernel(text: str, name: str, where: str = "kernel") -> Operations:
             if parameter.is_const:
                 for index in range(parameter.size):
                     reader.input(f"{parameter.name}[{index}]")
-    reader.statements(_Cursor(function.body, where), scope)
+    reader.statements(Cursor(function.body, where), scope)
     places = [(p.name, i) for p in function.parameters if p.size > 0 and not p.is_const for i in range(p.size)]
     return _finished(reader, scope, function, places, where)
 
@@ -486,7 +316,7 @@ def read_batch(text: str, name: str, where: str = "kernel") -> Operations:
         raise CertificateError(f"{where}, line {function.line}: expected one number of samples for {name}")
     reader, scope = _Reader(functions, where, real, batch=True), _Scope(count=counts[0])
     scope.arrays = {p.name: p for p in function.parameters if p.type != "size_t"}
-    cursor = _Cursor(function.body, where)
+    cursor = Cursor(function.body, where)
     while cursor.peek() == "(":
         cursor.expect("(", "void", ")")
         reader._known(cursor, scope, cursor.name())
@@ -496,7 +326,7 @@ def read_batch(text: str, name: str, where: str = "kernel") -> Operations:
     elif cursor.peek(3) == "start":
         _blocks(cursor, reader, scope)
     else:
-        reader.statements(_Cursor(_samples(cursor, scope, "0", scope.count), where), scope)
+        reader.statements(Cursor(_samples(cursor, scope, "0", scope.count), where), scope)
     if cursor.peek():
         raise cursor.fail("the end of the function after the loop over samples")
     order = [parameter.name for parameter in function.parameters]
@@ -504,7 +334,7 @@ def read_batch(text: str, name: str, where: str = "kernel") -> Operations:
     return _finished(reader, scope, function, places, where)
 
 
-def _samples(cursor: _Cursor, scope: _Scope, start: str, end: str) -> tuple[_Token, ...]:
+def _samples(cursor: Cursor, scope: _Scope, start: str, end: str) -> tuple[Token, ...]:
     """Return the body of the loop over samples from start to end."""
     if cursor.peek() == "SYMROT_INDEPENDENT":
         cursor.next()
@@ -514,12 +344,12 @@ def _samples(cursor: _Cursor, scope: _Scope, start: str, end: str) -> tuple[_Tok
     return cursor.block()
 
 
-def _parts(cursor: _Cursor, reader: _Reader, scope: _Scope) -> None:
+def _parts(cursor: Cursor, reader: _Reader, scope: _Scope) -> None:
     """Read loops over the same samples, one block after the other: each assigns outputs of its own."""
     _heads(cursor, scope, SPAN)
     while cursor.peek() != "}":
         part = _Scope(arrays=scope.arrays, count=scope.count)
-        reader.statements(_Cursor(_samples(cursor, part, "start", "end"), cursor.where), part)
+        reader.statements(Cursor(_samples(cursor, part, "start", "end"), cursor.where), part)
         twice = [f"{name}[{index}]" for name, index in part.written if (name, index) in scope.written]
         if twice:
             raise cursor.fail(f"one assignment to {twice[0]}, and the loop before has a second; before")
@@ -527,13 +357,13 @@ def _parts(cursor: _Cursor, reader: _Reader, scope: _Scope) -> None:
     cursor.expect("}")
 
 
-def _heads(cursor: _Cursor, scope: _Scope, size: str) -> None:
+def _heads(cursor: Cursor, scope: _Scope, size: str) -> None:
     """Read the head of a loop over blocks of samples, and the end of the block at hand."""
     cursor.expect(*f"for ( size_t start = 0 ; start < {scope.count} ; start + = {size} ) {{".split())
     cursor.expect(*f"const size_t end = {scope.count} - start < {size} ? {scope.count} : start + {size} ;".split())
 
 
-def _blocks(cursor: _Cursor, reader: _Reader, scope: _Scope) -> None:
+def _blocks(cursor: Cursor, reader: _Reader, scope: _Scope) -> None:
     """Read the loop over blocks: samples by ``symrot_math.h``, and again by the C library if an angle is far.
 
     Both compute the same, and each angle that ``symrot_sin`` or ``symrot_cos`` is taken of is asked how far it is.
@@ -545,9 +375,9 @@ def _blocks(cursor: _Cursor, reader: _Reader, scope: _Scope) -> None:
     split = next((i for i, token in enumerate(body) if token.text == "beyond"), len(body))
     plain = _Scope(arrays=scope.arrays, loop=scope.loop, count=scope.count)
     reader.turning = set()
-    reader.statements(_Cursor(body[:split], cursor.where), scope)
+    reader.statements(Cursor(body[:split], cursor.where), scope)
     asked, mark = set(), "="
-    question = _Cursor(body[split:], cursor.where)
+    question = Cursor(body[split:], cursor.where)
     question.expect("beyond", "+")
     while question.peek() == mark:
         question.expect(mark, far, "(")
@@ -559,7 +389,7 @@ def _blocks(cursor: _Cursor, reader: _Reader, scope: _Scope) -> None:
         raise question.fail(f"the end of the loop after {far} of each angle")
     reader.turning = None
     cursor.expect(*["const", "size_t", "again", "=", "beyond", "==", "0", "?", "start", ":", "end", ";"])
-    reader.statements(_Cursor(_samples(cursor, plain, "start", "again"), cursor.where), plain)
+    reader.statements(Cursor(_samples(cursor, plain, "start", "again"), cursor.where), plain)
     cursor.expect("}")
     if plain.written != scope.written:
         raise cursor.fail("both loops over samples to compute the same")

@@ -1,0 +1,192 @@
+"""C text as the functions it defines, each a list of tokens; whatever is not of the emitted subset is refused.
+
+Nothing here is shared with the emitter.
+"""
+
+import re
+from dataclasses import dataclass
+
+from symrot.errors import CertificateError
+
+__all__ = ["Cursor", "Function", "Parameter", "Token", "functions_of"]
+
+_TOKEN = re.compile(
+    r"(?P<space>\s+)|(?P<number>(?:0[xX][0-9a-fA-F]+\.?[0-9a-fA-F]*[pP][+-]?\d+|(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)f?)"
+    r"|(?P<name>[A-Za-z_]\w*)|(?P<mark>\+\+|<=|>=|==|!=|[-+*/()\[\]{},;=<>?:])",
+    re.ASCII,
+)
+_COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)
+_DIRECTIVE = re.compile(r'\s*#\s*(?:include\s*(?:<(?:math|stddef)\.h>|"\w+\.h")|pragma\s+STDC\s+FP_CONTRACT\s+OFF)\s*')
+
+
+@dataclass(frozen=True)
+class Token:
+    """A word, number or mark of C: its kind (``name``, ``number``, ``mark``), text and line."""
+
+    kind: str
+    text: str
+    line: int
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A parameter of a C function: ``size`` is 0 for a scalar, -1 for a pointer without a size."""
+
+    name: str
+    type: str
+    size: int
+    is_const: bool
+
+
+@dataclass(frozen=True)
+class Function:
+    """A C function as tokens: what it takes and its body, read when it is called or asked for."""
+
+    name: str
+    returns: str
+    parameters: tuple[Parameter, ...]
+    body: tuple[Token, ...]
+    line: int
+
+
+def _tokens(text: str, where: str) -> list[Token]:
+    if "??" in text or "\\" in text:  # trigraphs, spliced lines: never emitted, and a reader may be led astray by them
+        raise CertificateError(f"{where}: expected C as symrot emits it, got a backslash or a trigraph")
+    bare = _COMMENT.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
+    lines = bare.split("\n")
+    for number, line in enumerate(lines, 1):
+        if "#" in line:
+            if not _DIRECTIVE.fullmatch(line):
+                raise CertificateError(
+                    f"{where}, line {number}: expected an #include that symrot emits, got {line.strip()!r}"
+                )
+            lines[number - 1] = ""
+    found: list[Token] = []
+    for number, line in enumerate(lines, 1):
+        position = 0
+        while position < len(line):
+            match = _TOKEN.match(line, position)
+            if match is None:
+                raise CertificateError(
+                    f"{where}, line {number}: expected C of the emitted subset, got {line[position]!r}"
+                )
+            position = match.end()
+            if match.lastgroup != "space":
+                found.append(Token(str(match.lastgroup), match[0], number))
+    return found
+
+
+class Cursor:
+    """Tokens of one file or one body, taken from left to right."""
+
+    def __init__(self, tokens: list[Token] | tuple[Token, ...], where: str) -> None:
+        self.tokens, self.where, self.index = tokens, where, 0
+
+    def peek(self, ahead: int = 0) -> str:
+        """Return the text of the token at hand or ahead of it; nothing beyond the end."""
+        index = self.index + ahead
+        return self.tokens[index].text if index < len(self.tokens) else ""
+
+    def next(self) -> Token:
+        """Return the token at hand and go on."""
+        if self.index >= len(self.tokens):
+            raise self.fail("more text")
+        self.index += 1
+        return self.tokens[self.index - 1]
+
+    def fail(self, expected: str) -> CertificateError:
+        """Return the error for the token at hand."""
+        at = min(self.index, len(self.tokens) - 1)
+        found = repr(self.tokens[at].text) if 0 <= self.index < len(self.tokens) else "the end"
+        line = self.tokens[at].line if self.tokens else 1
+        return CertificateError(f"{self.where}, line {line}: expected {expected}, got {found}")
+
+    def expect(self, *marks: str) -> None:
+        """Go on past tokens of these texts, or raise."""
+        for mark in marks:
+            if self.peek() != mark:
+                raise self.fail(f"'{mark}'")
+            self.index += 1
+
+    def name(self) -> str:
+        """Return the name at hand and go on."""
+        if self.index >= len(self.tokens) or self.tokens[self.index].kind != "name":
+            raise self.fail("a name")
+        return self.next().text
+
+    def integer(self) -> int:
+        """Return the index at hand and go on."""
+        if not self.peek().isdigit():
+            raise self.fail("an index")
+        return int(self.next().text)
+
+    def block(self) -> tuple[Token, ...]:
+        """Return the tokens between the brace at hand and the one that closes it."""
+        self.expect("{")
+        start, depth = self.index, 1
+        while depth:
+            depth += {"{": 1, "}": -1}.get(self.next().text, 0)
+        return tuple(self.tokens[start : self.index - 1])
+
+
+def functions_of(text: str, where: str = "kernel") -> dict[str, Function]:
+    """Return the functions that a C file defines, by name.
+
+    Raises
+    ------
+    CertificateError
+        For anything that is not of the emitted subset, with its line.
+    """
+    cursor, found = Cursor(_tokens(text, where), where), {}
+    while cursor.index < len(cursor.tokens):
+        function = _function(cursor)
+        if function is None:
+            continue
+        if function.name in found:
+            raise CertificateError(
+                f"{where}, line {function.line}: expected one definition of {function.name}, got two"
+            )
+        found[function.name] = function
+    return found
+
+
+def _function(cursor: Cursor) -> Function | None:
+    while cursor.peek() in ("static", "inline"):
+        cursor.next()
+    line = cursor.tokens[cursor.index].line if cursor.index < len(cursor.tokens) else 0
+    returns = cursor.name()
+    if returns not in ("void", "double", "float"):
+        raise cursor.fail("a function of double or float")
+    name = cursor.name()
+    cursor.expect("(")
+    parameters = [_parameter(cursor)]
+    while cursor.peek() == ",":
+        cursor.next()
+        parameters.append(_parameter(cursor))
+    cursor.expect(")")
+    if len({parameter.name for parameter in parameters}) != len(parameters):
+        raise cursor.fail(f"different names for the parameters of {name}")
+    if cursor.peek() == ";":
+        cursor.next()
+        return None
+    return Function(name, returns, tuple(parameters), cursor.block(), line)
+
+
+def _parameter(cursor: Cursor) -> Parameter:
+    is_const = cursor.peek() == "const"
+    if is_const:
+        cursor.next()
+    kind = cursor.name()
+    if kind not in ("double", "float", "size_t"):
+        raise cursor.fail("a parameter of double or float")
+    if cursor.peek() == "*":
+        cursor.next()
+        if cursor.peek() in ("SYMROT_RESTRICT", "restrict"):
+            cursor.next()
+        return Parameter(cursor.name(), kind, -1, is_const)
+    name, size = cursor.name(), 0
+    if cursor.peek() == "[":
+        cursor.next()
+        size = cursor.integer()
+        cursor.expect("]")
+    return Parameter(name, kind, size, is_const)
