@@ -4,7 +4,7 @@ A rational value is exact: ``"1/3"``, ``"0.6375"`` (51/80), ``1e-3`` (1/1000). W
 and the circular functions) is rounded once, to a relative error below 2^-300. Standard library only.
 """
 
-__all__ = ["PI", "Angle", "cos", "equal", "read", "read_angle", "show", "sin", "sqrt", "tan"]
+__all__ = ["PI", "Angle", "cos", "equal", "read", "read_angle", "show", "sin", "sqrt", "tan", "without_turns"]
 
 from collections.abc import Callable
 from decimal import Decimal
@@ -124,6 +124,13 @@ def _sin_half_turns(half_turns: Fraction) -> Fraction:
 def _bits_for(value: Fraction) -> int:
     """Return the absolute precision that keeps a small ``value`` to BITS relative."""
     return BITS + max(0, value.denominator.bit_length() - value.numerator.bit_length())
+
+
+def without_turns(value: Fraction) -> Fraction:
+    """Return ``value`` (rad) less the whole turns in it: between -pi and pi, error below 2^-300."""
+    magnitude = max(0, value.numerator.bit_length() - value.denominator.bit_length())
+    turn = 2 * (PI if magnitude < 8 else _pi(BITS + magnitude))
+    return value - round(value / turn) * turn
 
 
 def _sin_shifted(value: Fraction, quarter_turns: int) -> Fraction:

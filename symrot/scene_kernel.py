@@ -12,14 +12,16 @@ from symrot import number
 from symrot.expression import Node, evaluate
 from symrot.kernel import Program, node_from_json, node_to_json
 
-__all__ = ["Conserved", "Parameters", "SceneKernel", "bind"]
+__all__ = ["EPOCH", "EXACT_FUNCTIONS", "Conserved", "Parameters", "SceneKernel", "bind"]
 
 EXACT_FUNCTIONS: dict[str, Callable[..., Fraction]] = {
     "sqrt": number.sqrt,
     "sin": number.sin,
     "cos": number.cos,
     "abs": abs,
+    "without_turns": number.without_turns,
 }
+EPOCH = "epoch"  # of formulas of parameters: the time, s, that the clock of a moved kernel calls 0
 
 Parameters = tuple[tuple[str, Node], ...]  # name in the kernel, formula over the physical constants
 

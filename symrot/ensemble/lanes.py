@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from symrot.codegen import library
 from symrot.errors import CompilerError
 from symrot.kernel import Program
-from symrot.propagation.stepping import DONE, NOT_FINITE, UNDERFLOW, Floats, PathLike, cut_off
+from symrot.propagation.stepping import DONE, NOT_FINITE, UNDERFLOW, Floats, PathLike, cut_off, why_stuck
 from symrot.propagation.taylor import step_tail
 
 __all__ = ["FLAGS", "Lanes", "Outcome", "around", "follow", "lanes", "order_for", "translation_unit"]
@@ -191,6 +191,7 @@ def follow(
     *,
     max_steps: int = MAX_STEPS,
     workers: int = 1,
+    epoch: float = 0.0,
 ) -> Outcome:
     """Follow n motions through their sample times.
 
@@ -210,6 +211,8 @@ def follow(
         Most steps of one motion.
     workers : int
         Threads; each steps its share in lanes of its own.
+    epoch : float
+        What messages add to times, s: what other clocks show where that of t0 and of the times shows 0.
     """
     library, n = lanes(os.fspath(path)), len(y)
     p, y, times = (np.ascontiguousarray(array, dtype=np.float64) for array in (p, y, times))
@@ -240,7 +243,9 @@ def follow(
     for leg in np.flatnonzero(status != DONE).tolist():
         stop = float(legs.table[legs.first[leg] + legs.samples[leg] - 1])
         reason = REASONS[int(status[leg])].format(steps=max_steps)
-        messages[int(legs.motion[leg])] = str(cut_off(float(reached[leg]), reason, stop))
+        if status[leg] == UNDERFLOW:
+            reason = why_stuck(reason, float(reached[leg]), t0, stop)
+        messages[int(legs.motion[leg])] = str(cut_off(float(reached[leg]), reason, stop).later(epoch))
     counted = [np.bincount(legs.motion, weights, n).astype(np.int64) for weights in (steps, evaluations)]
     return Outcome(grid, counted[0], counted[1], tuple(messages))
 

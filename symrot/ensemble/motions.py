@@ -11,10 +11,10 @@ from symrot.ensemble import lanes
 from symrot.ensemble.variation import Variation
 from symrot.errors import InputError, PropagationError
 from symrot.planner import Plan
-from symrot.propagation import dop853, taylor
+from symrot.propagation import dop853, epoch, taylor
 from symrot.propagation.kernels import compiled, error_blocks, kernel_key, missing_compiler, scene_kernel
 from symrot.propagation.method import METHODS, choose_method
-from symrot.propagation.stepping import Floats
+from symrot.propagation.stepping import CutOff, Floats
 from symrot.propagation.trajectory import ARRAY_FUNCTIONS
 from symrot.scene_kernel import SceneKernel, bind
 
@@ -132,9 +132,17 @@ class _Stepped:
         scenes = [problem.variation.scenes[i] for i in chosen]
         self.plans = [Plan(scene, self.plan.structure, ()) for scene in scenes]
         self.y = np.array([plan.initial_state for plan in self.plans]).reshape(len(chosen), -1)
-        self.p = self._bound(self.kernel.rate_parameters)
         times = problem.times
         self.times = times if times.ndim == 1 else np.ascontiguousarray(times[list(chosen)])
+        self.epoch, self.t0, self.moved = 0.0, problem.t0, (self.plan, self.kernel)
+        if self.times.size and epoch.far(problem.t0, float(self.times.min()), float(self.times.max())):
+            self.epoch, self.t0, self.moved = problem.t0, 0.0, epoch.moved(self.plan, self.kernel)
+        rows = [epoch.moved_parameters(self.moved[1], plan.constants, self.epoch) for plan in self.plans]
+        self.p = np.array(rows, dtype=np.float64).reshape(len(rows), len(self.moved[1].rate_parameters))
+
+    def on_clock(self, times: Floats) -> Floats:
+        """Return times on the clock of the steppers, which shows 0 at the epoch."""
+        return times - self.epoch if self.epoch else times
 
     def _bound(self, parameters: Any) -> Floats:
         rows = [bind(parameters, plan.constants) for plan in self.plans]
@@ -166,9 +174,11 @@ class _Stepped:
         messages = []
         for k, i in enumerate(self.chosen):
             try:
-                states[k], stats = integrate(k, self.problem.times_of(i))
+                states[k], stats = integrate(k, self.on_clock(self.problem.times_of(i)))
                 steps[k], evaluations[k] = stats.accepted, stats.evaluations
                 messages.append("")
+            except CutOff as error:
+                messages.append(str(error.later(self.epoch)))
             except PropagationError as error:
                 messages.append(str(error))
         return lanes.Outcome(states, steps, evaluations, tuple(messages))
@@ -176,16 +186,18 @@ class _Stepped:
 
 def _taylor(stepped: _Stepped, method: str) -> lanes.Outcome:
     problem = stepped.problem
-    path = lane_library(stepped.plan, stepped.kernel, problem.tolerance)
+    path = lane_library(*stepped.moved, problem.tolerance)
     return lanes.follow(
-        path, stepped.p, stepped.y, problem.t0, stepped.times, problem.tolerance, workers=problem.workers
-    )
+        path, stepped.p, stepped.y, stepped.t0, stepped.on_clock(stepped.times), problem.tolerance,
+        workers=problem.workers, epoch=stepped.epoch,
+    )  # fmt: skip
 
 
 def _dop853(stepped: _Stepped, method: str) -> lanes.Outcome:
-    problem, (_, path) = stepped.problem, compiled(stepped.plan)
+    problem, plan = stepped.problem, stepped.plan
+    path = compiled(plan)[1] if stepped.moved[0] is plan else epoch.compiled(*stepped.moved)
     return stepped.one_by_one(
-        lambda k, times: dop853.integrate(path, stepped.p[k], stepped.y[k], problem.t0, times, problem.tolerance)
+        lambda k, times: dop853.integrate(path, stepped.p[k], stepped.y[k], stepped.t0, times, problem.tolerance)
     )
 
 
@@ -193,14 +205,14 @@ def _scipy(stepped: _Stepped, method: str) -> lanes.Outcome:
     from symrot.codegen.numpy_kernel import load_numpy_kernel
     from symrot.propagation import fallback
 
-    problem, function = stepped.problem, load_numpy_kernel(stepped.kernel.rates)
+    problem, function = stepped.problem, load_numpy_kernel(stepped.moved[1].rates)
     blocks, scales = error_blocks(stepped.plan)
     solver = method.partition(":")[2]
     options: dict[str, Any] = {"blocks": blocks, "scales": scales, **({"method": solver} if solver else {})}
 
     def integrate(k: int, times: Floats) -> tuple[Floats, Any]:
         rates = function if stepped.p.shape[1] else lambda t, y, p: function(t, y)
-        return fallback.integrate(rates, stepped.p[k], stepped.y[k], problem.t0, times, problem.tolerance, **options)
+        return fallback.integrate(rates, stepped.p[k], stepped.y[k], stepped.t0, times, problem.tolerance, **options)
 
     return stepped.one_by_one(integrate)
 

@@ -170,6 +170,8 @@ def _address(pointer: Any) -> int:
 class DrivenMotion(Motion):
     """The motion of a scene under one more torque."""
 
+    movable = False  # the torque is asked for at the times of the scene
+
     def __init__(self, plan: Plan, tolerance: float, drive: Any, in_space: bool, switching: Sequence[float]) -> None:
         plan = replace(plan, structure=plan.structure | WHOLE)
         self.plan, self.tolerance = plan, tolerance
@@ -232,7 +234,7 @@ class DrivenMotion(Motion):
         found: tuple[Floats, Stats] = self.guarded(low, high, lambda: self.stepping.again().sample(times))
         return found
 
-    def _dense(self, span: tuple[float, float]) -> Recording:
+    def dense(self, span: tuple[float, float]) -> Recording:
         recording: Recording = self.guarded(*span, lambda: self.stepping.again().record(span))
         return recording
 

@@ -83,6 +83,8 @@ class _Block(NamedTuple):
 class EulerMotion(Motion):
     """The motion of a scene with Euler angles in place of the quaternion."""
 
+    movable = False  # angles start anew on the way, each time on the clock of the scene
+
     def __init__(self, plan: Plan, method: str, tolerance: float, sequence: str, switching: bool) -> None:
         if plan.structure["planar"] is not None:
             plan = replace(plan, structure=plan.structure | {"constant": {}})
@@ -208,7 +210,7 @@ class EulerMotion(Motion):
         accepted, rejected, evaluations, switches = self._count
         return states, Stats(accepted, rejected, evaluations, perf_counter() - began, switches)
 
-    def _dense(self, span: tuple[float, float]) -> Callable[[Floats], Floats]:
+    def dense(self, span: tuple[float, float]) -> Callable[[Floats], Floats]:
         """Return omega and quaternion as a function of time."""
         sides = [list(self._blocks(end)) if end != self.start else [] for end in span]
 

@@ -17,10 +17,11 @@ from symrot.propagation.events import (
     exact_dense,
     search,
     stepped,
+    timed,
     uses_attitude,
 )
 from symrot.propagation.kernels import error_blocks
-from symrot.propagation.stepping import Stats, both_sides
+from symrot.propagation.stepping import CutOff, Stats, both_sides
 from symrot.scene_kernel import bind
 
 if TYPE_CHECKING:
@@ -89,6 +90,9 @@ def follow(motion: "Motion", times: Floats, events: Sequence[Event]) -> Eventful
     if not plan.states:
         raise InputError(f"events: expected a motion with states that change, got the scene {plan.scene.name!r}")
     quantities = motion.kernel.quantities
+    motion = motion if timed(quantities, events) else motion.on_clock(times)
+    zero, asked = motion.epoch, times
+    times = times - zero if zero else times
     source = event_library_source(quantities, events, plan.states, *error_blocks(plan))
     path, p = library.build(source, "events"), bind(motion.kernel.quantity_parameters, plan.constants)
     states, kept = np.empty((len(times), len(plan.states))), np.zeros(len(times), dtype=bool)
@@ -101,7 +105,8 @@ def follow(motion: "Motion", times: Floats, events: Sequence[Event]) -> Eventful
             search(path, events, p, side.dense, side.pieces, motion.start) if end != motion.start else ([], None)
         )
         if side.broken and stop is None:
-            raise side.broken[0]
+            error = side.broken[0]
+            raise error.later(zero) if isinstance(error, CutOff) else error
         ended |= stop is not None
         inside = part if stop is None else part[np.abs(times[part] - motion.start) <= abs(stop - motion.start)]
         kept[inside] = True
@@ -113,10 +118,10 @@ def follow(motion: "Motion", times: Floats, events: Sequence[Event]) -> Eventful
     found.sort(key=lambda each: each[0].t)
     own = [[each for each in found if each[0].event == number] for number in range(len(events))]
     return Eventful(
-        times[kept],
+        asked[kept],
         states[kept],
         Stats(int(counts[0]), int(counts[1]), int(counts[2]), perf_counter() - began),
-        [np.array([each.t for each, _ in group]) for group in own],
+        [np.array([each.t + zero for each, _ in group]) for group in own],
         [np.array([row for _, row in group]).reshape(-1, len(plan.states)) for group in own],
         [[each.kind for each, _ in group] for group in own],
         ended,

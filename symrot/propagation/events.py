@@ -21,7 +21,7 @@ from symrot.errors import InputError, PropagationError
 from symrot.expression import Node, names, parse, rename
 from symrot.kernel import Program
 
-__all__ = ["Event", "Found", "Piece", "event_library_source", "read_events", "search", "uses_attitude"]
+__all__ = ["Event", "Found", "Piece", "event_library_source", "read_events", "search", "timed", "uses_attitude"]
 
 Floats = NDArray[np.float64]
 Dense = Any  # a function in C: record, steps, times, count, states
@@ -123,6 +123,14 @@ def _checked(event: Event, where: str) -> Event:
 def uses_attitude(events: Iterable[Event]) -> bool:
     """Return whether some event needs the attitude."""
     return any(names(event.node) & ATTITUDE for event in events)
+
+
+def timed(quantities: Program, events: Iterable[Event]) -> bool:
+    """Return whether the time stands in some event, or in the quantities that events are made of."""
+    from symrot.codegen.epoch import uses_time
+
+    used = set().union(*(names(event.node) for event in events))
+    return "t" in used or uses_time(quantities, tuple(f"{name} of t" for name in used))
 
 
 def event_library_source(

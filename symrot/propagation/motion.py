@@ -12,12 +12,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from symrot.closed_form.choose import Exact, Form, exact_form
 from symrot.planner import Plan, Row, general_structure
-from symrot.propagation import dop853, taylor
+from symrot.propagation import dop853, epoch, taylor
 from symrot.propagation.dop853 import Stats
 from symrot.propagation.invariants import invariant_parameters
 from symrot.propagation.kernels import compiled, error_blocks, scene_kernel, taylor_library
 from symrot.propagation.method import Choice
-from symrot.propagation.stepping import Task
+from symrot.propagation.stepping import CutOff, Recording, Task
 from symrot.propagation.trajectory import ARRAY_FUNCTIONS, Trajectory
 from symrot.scene_kernel import SceneKernel, bind
 
@@ -45,7 +45,13 @@ def unreduced(plan: Plan, form: Form) -> Plan:
 
 
 class Motion:
-    """A plan with its kernel, bound to numbers."""
+    """A plan with its kernel, bound to numbers.
+
+    Its clock shows 0 at the time ``epoch`` of the scene.
+    """
+
+    epoch = 0.0
+    movable = True  # whether another clock may be taken
 
     def __init__(self, plan: Plan, choice: Choice, tolerance: float) -> None:
         self.plan, self.choice, self.tolerance = plan, choice, tolerance
@@ -113,8 +119,24 @@ class Motion:
         output = next(item.output for item in self.kernel.conserved if item.name == name)
         return float(self.evaluate(*self._initial, [output])[0, 0])
 
+    def on_clock(self, times: Floats) -> "Motion":
+        """Return the motion on the clock that suits such times: this one, or one that shows 0 at the start."""
+        if not (self.start and self.movable and len(times) and self.choice.method.partition(":")[0] in STEPPED):
+            return self
+        return self._from_start if epoch.far(self.start, float(times.min()), float(times.max())) else self
+
+    @cached_property
+    def _from_start(self) -> "Motion":
+        return _FromStart(self)
+
     def integrate(self, times: Floats, rise: bool = False) -> tuple[Floats, Stats]:
         """Return the states at the times, shape (n, N), and what it cost; ``rise``: they are known to be in order."""
+        motion = self.on_clock(times) if self.start else self
+        if motion is not self:
+            try:
+                return motion.integrate(times - motion.epoch, rise)
+            except CutOff as error:
+                raise error.later(motion.epoch) from None
         return INTEGRATORS[self.choice.method.partition(":")[0]](self, times, rise)
 
     def follow(self, times: Floats, rise: bool = False) -> tuple[Floats | tuple[Floats, ...], Stats]:
@@ -144,19 +166,21 @@ class Motion:
             if len(times)
             else (self.start,) * 2
         )
-        states = self._dense(span)
+        motion = self.on_clock(np.array(span))
+        zero = motion.epoch
+        states = motion.dense((span[0] - zero, span[1] - zero))
         names = [f"omega_{i} of t" for i in (1, 2, 3)]
         names += [f"q{i} of t" for i in range(4)] if trajectory.has_attitude else []
 
         def at(t: ArrayLike) -> Floats:
             wanted = np.asarray(t, dtype=float)
             flat = np.atleast_1d(wanted).ravel()
-            found = self.evaluate(flat, states(flat), names).T
+            found = self.evaluate(flat, states(flat - zero if zero else flat), names).T
             return found.reshape(len(names), *wanted.shape)
 
         return at
 
-    def _dense(self, span: tuple[float, float]) -> Callable[[Floats], Floats]:
+    def dense(self, span: tuple[float, float]) -> Callable[[Floats], Floats]:
         """Return the states as a function of time."""
         if self.choice.method == "constant":
             return lambda t: np.empty((len(t), 0))
@@ -164,10 +188,13 @@ class Motion:
             return lambda t: _exact(self, t)[0]
         start = (self.rate_parameters, self.plan.initial_state, self.start)
         if self.library is not None:
-            return self.stepping.again().record(span)
-        from symrot.propagation import fallback
+            recording: Recording = self.stepping.again().record(span)
+        else:
+            from symrot.propagation import fallback
 
-        return fallback.record(self.rates, *start, span, self.tolerance, **self.scipy_options)
+            recording = fallback.record(self.rates, *start, span, self.tolerance, **self.scipy_options)
+        recording.epoch = self.epoch
+        return recording
 
     @property
     def scipy_options(self) -> dict[str, Any]:
@@ -175,6 +202,27 @@ class Motion:
         blocks, scales = error_blocks(self.plan)
         solver = self.choice.method.partition(":")[2]
         return {"blocks": blocks, "scales": scales, **({"method": solver} if solver else {})}
+
+
+class _FromStart(Motion):
+    """A motion on a clock that shows 0 at its start, see :mod:`symrot.propagation.epoch`."""
+
+    movable = False
+
+    def __init__(self, motion: Motion) -> None:
+        self.choice, self.tolerance, self.library = motion.choice, motion.tolerance, motion.library
+        self.epoch, self.start = motion.start, 0.0
+        self.plan, self.kernel = epoch.moved(motion.plan, motion.kernel)
+        if self.plan is motion.plan:  # no time stands in the rates
+            return
+        if self.choice.method == "taylor":
+            self.library = taylor_library(self.plan, self.kernel, self.tolerance)
+        elif self.choice.method == "dop853":
+            self.library = epoch.compiled(self.plan, self.kernel)
+
+    @cached_property
+    def rate_parameters(self) -> list[float]:
+        return epoch.moved_parameters(self.kernel, self.plan.constants, self.epoch)
 
 
 def _keep(motion: Motion, times: Floats, rise: bool) -> tuple[Floats, Stats]:
@@ -210,6 +258,7 @@ def _scipy(motion: Motion, times: Floats, rise: bool) -> tuple[Floats, Stats]:
     return fallback.integrate(motion.rates, *start, times, motion.tolerance, **motion.scipy_options)
 
 
+STEPPED = ("taylor", "dop853", "scipy")
 INTEGRATORS: dict[str, Callable[[Motion, Floats, bool], tuple[Floats, Stats]]] = {
     "constant": _keep,
     "exact": _exact,

@@ -28,6 +28,7 @@ __all__ = [
     "NOT_FINITE_SENTENCE",
     "PAUSED",
     "UNDERFLOW",
+    "CutOff",
     "Floats",
     "PathLike",
     "Recording",
@@ -42,10 +43,12 @@ __all__ = [
     "cut_off",
     "rising",
     "stretches",
+    "why_stuck",
 ]
 
 MAX_STEPS = 1_000_000_000
 FEW = 40  # sample times
+MANY_TICKS = 2**20  # of the clock between two ends: with fewer, it is the clock that ends short steps
 
 Floats = NDArray[np.float64]
 PathLike = str | os.PathLike[str]
@@ -82,10 +85,32 @@ def check_longest_step(max_step: float) -> None:
         raise InputError(f"the longest step is a positive number of seconds, got {max_step}")
 
 
-def cut_off(t: float, reason: str, stop: float | None = None) -> PropagationError:
+class CutOff(PropagationError):
+    """A motion that ends at t, s, on the way to ``stop``."""
+
+    def __init__(self, t: float, reason: str, stop: float | None = None) -> None:
+        way = "" if stop is None else f" on the way to {stop!r} s"
+        super().__init__(f"the motion cannot be followed beyond t = {t!r} s{way}: {reason}")
+        self.t, self.reason, self.stop = t, reason, stop
+
+    def later(self, epoch: float) -> "CutOff":
+        """Return the error for a clock that shows ``epoch`` where this one shows 0."""
+        return CutOff(self.t + epoch, self.reason, None if self.stop is None else self.stop + epoch)
+
+
+def cut_off(t: float, reason: str, stop: float | None = None) -> CutOff:
     """Return the error of a motion that ends at t, s, on the way to ``stop``."""
-    way = "" if stop is None else f" on the way to {stop!r} s"
-    return PropagationError(f"the motion cannot be followed beyond t = {t!r} s{way}: {reason}")
+    return CutOff(t, reason, stop)
+
+
+def why_stuck(reason: str, t: float, t0: float, stop: float) -> str:
+    """Return why steps shrank to nothing at t: for ``reason``, or since the clock has few numbers on the whole way."""
+    apart = math.ulp(t)
+    if abs(stop - t0) > MANY_TICKS * apart:
+        return reason
+    return (
+        f"the clock is too coarse for its steps: numbers lie {apart:.3g} s apart there; count the time from nearer by"
+    )
 
 
 def _numbers(what: str, values: ArrayLike, length: int) -> list[float]:
@@ -147,8 +172,10 @@ class Recording(ABC):
     """A motion that can be evaluated at any time of its span: ``recording(t)``.
 
     ``recording(t)`` returns the states at a time or an array of times, shape (N,) or (n, N); a time outside ``span`` is
-    an InputError. ``stats`` says what the recording cost.
+    an InputError. ``stats`` says what the recording cost; ``epoch`` is what other clocks show where its own shows 0.
     """
+
+    epoch = 0.0
 
     def __init__(self, t0: float, y0: Sequence[float] | Floats, span: tuple[float, float], stats: Stats) -> None:
         self._t0, self._y0, self.span, self.stats = t0, y0, span, stats
@@ -162,8 +189,8 @@ class Recording(ABC):
         flat = np.ascontiguousarray(times).reshape(-1)
         outside = ~((flat >= self.span[0]) & (flat <= self.span[1]))
         if outside.any():
-            asked = float(flat[outside][0])
-            raise InputError(f"the motion is known from {self.span[0]} to {self.span[1]} s, asked for {asked} s")
+            low, high, asked = (time + self.epoch for time in (*self.span, float(flat[outside][0])))
+            raise InputError(f"the motion is known from {low} to {high} s, asked for {asked} s")
         states = np.empty((len(flat), len(self._y0)))
         self._fill(flat, states)
         states[flat == self._t0] = self._y0
@@ -435,7 +462,9 @@ class Task:
         if status == DONE:
             return status
         if status in (NOT_FINITE, UNDERFLOW):
-            raise cut_off(run.t, stepper.reasons[status], run.stop)
+            reason = stepper.reasons[status]
+            reason = why_stuck(reason, run.t, self.t0, run.stop) if status == UNDERFLOW else reason
+            raise cut_off(run.t, reason, run.stop)
         if stepper.tried(run) >= self.max_steps:
             raise cut_off(run.t, stepper.reasons[PAUSED].format(steps=self.max_steps, run=run), run.stop)
         return status

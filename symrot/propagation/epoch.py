@@ -1,0 +1,54 @@
+"""Motions on a clock that shows 0 where they start, for those that start far from t = 0.
+
+Steppers then never see the large numbers: neither phases such as ``a*t + b`` nor the ends of short steps lose digits to
+them. The clock is moved only where all differences of times are exact, for times between half the start and twice the
+start; a motion that goes farther loses no more than one that starts at 0 and goes as far.
+"""
+
+import json
+from collections.abc import Mapping
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+
+from symrot.codegen import library
+from symrot.planner import Plan
+from symrot.propagation.kernels import kernel_key, library_source
+from symrot.propagation.stepping import NOT_FINITE_SENTENCE, cut_off
+from symrot.scene_kernel import EPOCH, SceneKernel, bind
+
+__all__ = ["compiled", "far", "moved", "moved_parameters"]
+
+
+def far(start: float, low: float, high: float) -> bool:
+    """Return whether a motion starts so far from t = 0 that its clock is moved, for times from low to high, s."""
+    nearest, farthest = sorted((0.5 * start, 2.0 * start))
+    return start != 0.0 and nearest <= low and high <= farthest  # time - start is exact there (Sterbenz)
+
+
+def moved(plan: Plan, kernel: SceneKernel) -> tuple[Plan, SceneKernel]:
+    """Return a plan and its kernel for a clock that shows 0 at an epoch; the same where no time stands in the rates."""
+    from symrot.codegen.epoch import from_epoch, uses_time
+
+    if not uses_time(kernel.rates):
+        return plan, kernel
+    plan = replace(plan, structure=plan.structure | {"clock": EPOCH})
+    saved = library.fetch(kernel_key(plan))
+    if saved is not None:
+        return plan, SceneKernel(json.loads(saved))
+    kernel = from_epoch(kernel)
+    library.store(kernel_key(plan), json.dumps(kernel.data))
+    return plan, kernel
+
+
+def moved_parameters(kernel: SceneKernel, constants: Mapping[str, Fraction], epoch: float) -> list[float]:
+    """Return the parameters of moved rates for the constants of a scene: exact arithmetic, one rounding each."""
+    try:
+        return bind(kernel.rate_parameters, {**constants, EPOCH: Fraction(epoch)})
+    except OverflowError:
+        raise cut_off(epoch, NOT_FINITE_SENTENCE) from None
+
+
+def compiled(plan: Plan, kernel: SceneKernel) -> Path:
+    """Return the library of a moved plan: kernel and stepper of DOP853."""
+    return library.build(library_source(plan, kernel.source, len(kernel.rate_parameters)), "motion")
