@@ -3,6 +3,7 @@
 import json
 import os
 import shutil
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -241,6 +242,15 @@ def test_tampered_certificates_are_refused(kernels):
     campaign = tampered_certificates(list(kernels.values()), 30, Random(13), sealed=True)
     assert campaign.survivors == []
     assert campaign.words
+
+
+@pytest.mark.skipif(not shutil.which("cc"), reason="needs a C compiler")
+def test_what_computes_the_same_bits(kernels):
+    """-x where only its square counts."""
+    files, draw = kernels["rotation_vector_body_rates"], Random(3)
+    for text in (files.source.replace(" + ", " - ", 1), files.source.replace("0.5*", "0.25*", 1), "void f(void) {"):
+        assert not files.same_bits(text, draw)
+    assert files.same_bits(files.source.replace("v1*v1", "(-v1)*(-v1)"), draw) and files.same_bits(files.source, draw)
 
 
 def test_what_claims_the_same(kernels):

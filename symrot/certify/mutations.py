@@ -25,6 +25,7 @@ from symrot.certify.certificate import Data, Subject, printed, said_of
 from symrot.certify.claims import claims_no_more, same_but_for_bounds
 from symrot.certify.operations import Operations
 from symrot.certify.readback import read_batch, read_kernel
+from symrot.certify.same_bits import same_bits
 from symrot.errors import CertificateError
 
 __all__ = ["Campaign", "Files", "corrupt_c", "corrupted_c", "main", "tamper", "tampered_certificates"]
@@ -251,6 +252,11 @@ class Files:
         double, *single = operations_of(self.data, self.source).values()
         return double, single[0] if single else None
 
+    def same_bits(self, other: str, random: Random) -> bool:
+        """Tell whether another text of the C file computes the same bits, by running both."""
+        named = {Path(file).name: text for file, text in self.texts.items()}
+        return same_bits(named, self.name, other, self.data, random)
+
     def restore(self) -> None:
         """Write everything as it was."""
         for name, text in self.texts.items():
@@ -310,9 +316,9 @@ class Campaign:
 def corrupted_c(kernels: Sequence[Files], count: int, random: Random) -> Campaign:
     """Corrupt C files, put right their hash and seal the certificate anew; no one may accept what results.
 
-    A mutant whose operations, of all functions, are those of the original computes the same, rounding for rounding.
-    One that both checkers prove to be the same formulas differs in rounding alone, as ``x + y`` written ``y + x``
-    does not, and ``a*(b*c)`` written ``(a*b)*c`` does: the certificate's digest of operations still refuses it.
+    A mutant whose operations, of all functions, are those of the original computes the same, rounding for rounding, and
+    so does one that puts -x where only x^2 counts: the audit refuses it, as its operations are others, ``recheck.py``
+    takes it, as its formulas are the same, and a run of both shows the same bits.
     """
     campaign = Campaign()
     for _ in range(count):
@@ -326,9 +332,12 @@ def corrupted_c(kernels: Sequence[Files], count: int, random: Random) -> Campaig
         digest = sha256(text.encode()).hexdigest()
         forged = files.data | {"files": files.data["files"] | {f"{files.name}.c": digest}}
         files.path.write_text(printed(forged), encoding="utf-8")
-        for who in files.accepted():
-            campaign.survivors.append(f"{who}: {files.name}, {kind}")
+        accepted = files.accepted()
         files.restore()
+        if accepted == ["recheck"] and files.same_bits(text, random):
+            campaign.same[kind] += 1
+            continue
+        campaign.survivors += [f"{who}: {files.name}, {kind}" for who in accepted]
     return campaign
 
 
