@@ -21,6 +21,8 @@ LARGEST_FILE = 20_000_000
 
 MOST_SAMPLES = 200_000
 
+_STEEPEST = 1e100
+
 
 class Table(NamedTuple):
     """Samples of a torque: ``times`` (s, rising; twice the same at a switching time) and ``moments`` (N m).
@@ -101,6 +103,12 @@ def read_samples(value: Mapping[str, Any], folder: Path, where: str, span: tuple
         place, rows = f"{where}.file: {found['file']}", 2
         times, moments = _read_file(folder / found["file"], place)
     _check(times, found["switching_times"], place, rows)
+    _check_slopes(times, moments, place)
+    twice = {after for before, after in pairwise(times) if after == before}
+    for switch in found["switching_times"]:
+        if switch not in twice:
+            expected(f"{where}.switching_times", "times that the samples have twice, before and after the jump, got "
+                     f"{switch!r} s")  # fmt: skip
     first, last = map(float, span)
     if times[0] > first or times[-1] < last:
         expected(place, f"samples that cover the span of the scene, {first:g} to {last:g} s, got {times[0]:g} to "
@@ -127,12 +135,21 @@ def _check(times: tuple[float, ...], switching: tuple[float, ...], place: str, r
         expected(place, f"two samples or more between switching times, got one at {times[-1]!r} s")
 
 
+def _check_slopes(times: tuple[float, ...], moments: tuple[tuple[float, ...], ...], place: str) -> None:
+    """Check that the coefficients of a spline are doubles."""
+    for (before, here), (after, there) in pairwise(zip(times, moments, strict=True)):
+        gap, change = after - before, max(abs(y - x) for x, y in zip(here, there, strict=True))
+        if gap and not (gap >= 1 / _STEEPEST and change <= gap * _STEEPEST):
+            expected(place, f"a torque that changes by at most {_STEEPEST:g} N m/s between samples at least "
+                     f"{1 / _STEEPEST:g} s apart, got {change:g} N m within {gap:g} s after {before!r} s")  # fmt: skip
+
+
 def _read_file(path: Path, place: str) -> tuple[tuple[float, ...], tuple[tuple[float, float, float], ...]]:
     """Return times and moments of a CSV file whose first line is ``t, M1, M2, M3``."""
     said = f"a CSV file with the columns {', '.join(COLUMNS)}"
     try:
         if path.exists() and not path.is_file():
-            expected(place, f"{said}, got something that is no file")
+            raise OSError("something that is no file")
         with path.open("rb") as file:
             content = file.read(LARGEST_FILE + 1)
     except (OSError, ValueError) as reason:
@@ -157,6 +174,8 @@ def _row(line: str, place: str) -> list[float]:
     def refuse() -> NoReturn:
         raise InputError(f"{place}: expected four finite numbers {', '.join(COLUMNS)}, got {line[:80]!r}")
 
+    if not line.isascii() or "_" in line:  # which float() would read
+        refuse()
     try:
         found = [float(cell) for cell in line.split(",")]
     except ValueError:

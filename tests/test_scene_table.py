@@ -112,6 +112,7 @@ REFUSED = {
     "NaN": (CSV.replace("0.2", "nan").encode(), "line 2: expected four finite numbers"),
     "infinite": (CSV.replace("-0.1", "1e999").encode(), "line 5: expected four finite numbers"),
     "words": (CSV.replace("-0.1", "none").encode(), "line 5: expected four finite numbers"),
+    "not of a CSV": (CSV.replace("-0.1", "1_0").encode(), "line 5: expected four finite numbers"),
     "unsorted": (CSV.replace("\n3,", "\n1.5,").encode(), "line 5: expected rising times, got 1.5 s after 2.0 s"),
     "repeated": (CSV.replace("\n3,", "\n2,").encode(), "line 5: expected rising times, twice the same only where"),
     "one row": (f"{HEAD}\n0, 0, 0, 0".encode(), "two samples or more, got 1"),
@@ -134,8 +135,9 @@ def test_files_that_cannot_be_used_are_named_in_one_sentence(name, tmp_path, cap
 
 def test_folders_and_devices_are_no_files(tmp_path):
     for name in (".", "/dev/zero", "a\\u0000b"):
-        with pytest.raises(InputError, match=r"CSV file|line of text"):
+        with pytest.raises(InputError, match=r"CSV file|line of text") as refused:
             load_scene(written(tmp_path, None, f'file = "{name}"'))
+        assert str(refused.value).count("expected") == 1
 
 
 @pytest.mark.parametrize("fields, said", [
@@ -152,6 +154,9 @@ def test_folders_and_devices_are_no_files(tmp_path):
     ({"interpolation": "linear"}, 'one of "cubic_spline", got'),
     ({"frame": "orbit"}, 'one of "body", "space"'),
     ({"switching_times": 2}, "a list of times"),
+    ({"switching_times": [2]}, r"switching_times: expected times that the samples have twice.*got 2.0 s"),
+    ({"switching_times": [9]}, r"switching_times: expected times that the samples have twice.*got 9.0 s"),
+    ({"t": [0, 1e-99, 2, 3, 4], "moment": [[0, 0, 0], [1e10, 0, 0]] + [[0, 0, 0]] * 3}, "at most 1e.100 N m/s between"),
     ({"units": "N m"}, "one of the keys kind, t, moment, file"),
 ])  # fmt: skip
 def test_tables_that_cannot_be_used_are_named_in_one_sentence(fields, said):
