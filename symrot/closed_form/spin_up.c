@@ -106,7 +106,8 @@ static void far_attitude(const spin_up *f, dd omega, dd turns, dd q[4])
 static void swept_attitude(const spin_up *f, dd omega, dd q[4])
 {
     const dd w = dd_pair(f->across[0], f->across[1]), speed = dd_sqrt(dd_add(dd_square(omega), dd_square(w)));
-    far_attitude(f, omega, f->phase.way == SPIN_UP_WEAK ? dd_of(0.0) : swept_turns(&f->phase, omega, speed, 1), q);
+    const dd turns = swept_turns(&f->phase, omega, speed, swept_logarithm(omega, speed, 1));
+    far_attitude(f, omega, f->phase.way == SPIN_UP_WEAK ? dd_of(0.0) : turns, q);
 }
 
 /* The series of q0, q1, q2, q3 about a place from its first terms, the last in doubles; halves: 1/(2 n). */

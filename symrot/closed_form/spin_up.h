@@ -4,8 +4,8 @@
  * In axes e1, e2, e3 of the body, e3 along the axis so that the torque about it is positive, e1 along the transverse
  * angular velocity at time 0, of length W:
  *     omega = W (e1 cos chi + e2 sin chi) + w3 e3,  w3 linear in time,  chi = (C - A)/A times the integral of w3.
- * In axes that turn with the transverse part the body turns at (W, 0, Omega), Omega = (C/A) w3, which sweeps at the rate
- * s = M/A. With a = q0 + i q3, b = q1 + i q2 for their attitude: 2 a' = i Omega a - W b, 2 b' = W a - i Omega b.
+ * In axes that turn with the transverse part the body turns at (W, 0, Omega), Omega = (C/A) w3, which sweeps at a rate
+ * of s = M/A. With a = q0 + i q3, b = q1 + i q2 for their attitude: 2 a' = i Omega a - W b, 2 b' = W a - i Omega b.
  * Far from Omega = 0, |Omega| >= 10 sqrt(s), or everywhere if W >= 9 sqrt(s), with S = sqrt(Omega^2 + W^2):
  *     attitude = exp(e3 (P + delta)/2) (turn that takes e3 to m)^-1 exp(-e2 theta/2),  tan theta = W/Omega,
  *     P = integral of S = (Omega S + W^2 asinh(Omega/W))/(2 s),  m and delta as polynomials in y = Y/S^2.

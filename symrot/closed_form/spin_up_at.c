@@ -6,10 +6,11 @@
 typedef struct {
     const double *table;
     int lacking;  /* a table */
+    int found[3]; /* places of samples */
     int64_t lost; /* not 0 where a time is too long */
     double t[BLOCK], sine[BLOCK], cosine[BLOCK];  /* of chi/2 */
     double omega[BLOCK], omega_low[BLOCK], speed[BLOCK], speed_low[BLOCK];
-    double turns[BLOCK], turns_low[BLOCK], turned[BLOCK], along[BLOCK]; /* of half the phase */
+    double turns[BLOCK], turns_low[BLOCK], delta[BLOCK], slow[4][BLOCK]; /* turns of half the phase */
     double far[4][BLOCK], near[4][BLOCK];
 } block;
 
@@ -49,15 +50,23 @@ STAGE rates(const spin_up *restrict f, ptrdiff_t n, const block *restrict b, dou
     }
 }
 
-/* Omega, in double-double arithmetic, and how far they reach. */
-STAGE places(const double sweep[4], ptrdiff_t n, block *restrict b)
+/* Omega in double-double arithmetic, and which places there are. */
+STAGE places(const spin_up *restrict f, ptrdiff_t n, block *restrict b)
 {
-    const dd start = dd_pair(sweep[0], sweep[1]), s = dd_pair(sweep[2], sweep[3]);
+    const dd start = dd_pair(f->sweep[0], f->sweep[1]), s = dd_pair(f->sweep[2], f->sweep[3]);
+    const double edge = f->edge, whole = f->whole;
+    int64_t before = 0, near = 0, beyond = 0;
     EACH (i, n) {
         const dd omega = linear(start, s, b->t[i]);
         b->omega[i] = omega.hi;
         b->omega_low[i] = omega.lo;
+        beyond |= omega.hi >= edge ? 1 : 0;
+        before |= omega.hi <= -edge ? 1 : 0;
+        near |= fabs(omega.hi) < edge ? 1 : 0;
     }
+    b->found[SPIN_UP_BEFORE] = before != 0 && whole == 0.0;
+    b->found[SPIN_UP_NEAR] = near != 0;
+    b->found[SPIN_UP_BEYOND] = beyond != 0 || whole != 0.0;
 }
 
 /* S */
@@ -71,24 +80,36 @@ STAGE speeds(const double across[2], ptrdiff_t n, block *restrict b)
     }
 }
 
-ALWAYS_INLINE void swept_by(const spin_up_phase *restrict p, int fine, ptrdiff_t n, block *restrict b)
+/* log(|Omega| + S) */
+ALWAYS_INLINE void logarithms_by(int fine, ptrdiff_t n, block *restrict b)
 {
     EACH (i, n) {
         const dd omega = dd_pair(b->omega[i], b->omega_low[i]), speed = dd_pair(b->speed[i], b->speed_low[i]);
-        const dd turns = swept_turns(p, omega, speed, fine);
-        b->turns[i] = turns.hi;
-        b->turns_low[i] = turns.lo;
+        const dd log = swept_logarithm(omega, speed, fine);
+        b->turns[i] = log.hi;
+        b->turns_low[i] = log.lo;
     }
 }
 
-STAGE swept(const spin_up_phase *restrict p, ptrdiff_t n, block *restrict b)
+STAGE logarithms(ptrdiff_t n, block *restrict b)
 {
-    swept_by(p, 0, n, b);
+    logarithms_by(0, n, b);
 }
 
-STAGE swept_finely(const spin_up_phase *restrict p, ptrdiff_t n, block *restrict b)
+STAGE fine_logarithms(ptrdiff_t n, block *restrict b)
 {
-    swept_by(p, 1, n, b);
+    logarithms_by(1, n, b);
+}
+
+/* P/(4 pi) from that. */
+STAGE swept(const spin_up_phase *restrict p, ptrdiff_t n, block *restrict b)
+{
+    EACH (i, n) {
+        const dd omega = dd_pair(b->omega[i], b->omega_low[i]), speed = dd_pair(b->speed[i], b->speed_low[i]);
+        const dd turns = swept_turns(p, omega, speed, dd_pair(b->turns[i], b->turns_low[i]));
+        b->turns[i] = turns.hi;
+        b->turns_low[i] = turns.lo;
+    }
 }
 
 /* The same from the start on, under a weak torque. */
@@ -121,22 +142,34 @@ STAGE weakly_swept(const spin_up_phase *restrict p, ptrdiff_t n, block *restrict
     }
 }
 
-/* Far from resonance: the attitude of the turning axes, and from it that of the body in e1, e2, e3. */
-STAGE far(const spin_up *restrict f, ptrdiff_t n, block *restrict b)
+/* Far from resonance: the slow part of the attitude of the turning axes, and delta in turns of half of it. */
+STAGE followed(const spin_up *restrict f, ptrdiff_t n, block *restrict b)
 {
     EACH (i, n) {
         const double r = 1.0/b->speed[i], sine = f->across[0]*r, cosine = b->omega[i]*r, y = f->unit*r*r;
         const double m1 = sine*cosine*(y*y)*series_of(f->g, y), m2 = sine*y*series_of(f->c, y);
-        double turned, along;
-        circle(dd_pair(b->turns[i], b->turns_low[i]), cosine*series_of(f->e, y)*SPIN_UP_QUARTER.hi, &turned, &along);
-        const double across2 = MUL_ADD(m1, m1, m2*m2), m3 = 1.0 + sqrt(1.0 - across2);
-        const double norm = 1.0/sqrt(MUL_ADD(m3, m3, across2)), n0 = m3*norm, n1 = m1*norm, n2 = m2*norm;
-        const double larger = sqrt(0.5 + 0.5*fabs(cosine)), smaller = 0.5*sine/larger;
-        const double c = cosine >= 0.0 ? larger : smaller, d = cosine >= 0.0 ? smaller : larger;
-        const double a0 = MUL_ADD(n0, c, -n1*d), a1 = -n2*d, b0 = n2*c, b1 = -MUL_ADD(n0, d, n1*c);
+        /* 1 + sqrt(1 - x), x < 1/81^2; m3^2 + x = 2 m3, (1 + |cos|)^2 + sin^2 = 2 (1 + |cos|) */
+        const double x = MUL_ADD(m1, m1, m2*m2), m3 = 2.0 - x*MUL_ADD(x, MUL_ADD(x, 0.0625, 0.125), 0.5);
+        const double larger = 1.0 + fabs(cosine), norm = 0.5/sqrt(m3*larger);
+        const double c = (cosine >= 0.0 ? larger : sine)*norm, d = (cosine >= 0.0 ? sine : larger)*norm;
+        b->delta[i] = cosine*series_of(f->e, y)*SPIN_UP_QUARTER.hi;
+        b->slow[0][i] = MUL_ADD(m3, c, -m1*d);
+        b->slow[1][i] = m2*c;
+        b->slow[2][i] = -MUL_ADD(m3, d, m1*c);
+        b->slow[3][i] = -m2*d;
+    }
+}
+
+/* The attitude of the body in e1, e2, e3: a turns by half of P + delta less chi/2, b by their sum. */
+STAGE turned(ptrdiff_t n, block *restrict b)
+{
+    EACH (i, n) {
+        double s, c;
+        circle(dd_pair(b->turns[i], b->turns_low[i]), b->delta[i], &s, &c);
+        const double a0 = b->slow[0][i], a1 = b->slow[3][i], b0 = b->slow[1][i], b1 = b->slow[2][i];
         const double plus = b->sine[i], even = b->cosine[i];
-        const double less0 = MUL_ADD(along, even, turned*plus), less1 = MUL_ADD(turned, even, -along*plus);
-        const double more0 = MUL_ADD(along, even, -turned*plus), more1 = MUL_ADD(turned, even, along*plus);
+        const double less0 = MUL_ADD(c, even, s*plus), less1 = MUL_ADD(s, even, -c*plus);
+        const double more0 = MUL_ADD(c, even, -s*plus), more1 = MUL_ADD(s, even, c*plus);
         b->far[0][i] = MUL_ADD(less0, a0, -less1*a1);
         b->far[3][i] = MUL_ADD(less0, a1, less1*a0);
         b->far[1][i] = MUL_ADD(more0, b0, -more1*b1);
@@ -182,16 +215,20 @@ STAGE near(const spin_up *restrict f, ptrdiff_t n, block *restrict b)
     }
 }
 
-static void all_far(const spin_up *f, ptrdiff_t n, block *b)
+static void far(const spin_up *f, ptrdiff_t n, block *b)
 {
     speeds(f->across, n, b);
-    if (f->phase.way == SPIN_UP_PLAIN)
-        swept(&f->phase, n, b);
-    else if (f->phase.way == SPIN_UP_FINE)
-        swept_finely(&f->phase, n, b);
-    else
+    if (f->phase.way == SPIN_UP_WEAK)
         weakly_swept(&f->phase, n, b);
-    far(f, n, b);
+    else {
+        if (f->phase.way == SPIN_UP_FINE)
+            fine_logarithms(n, b);
+        else
+            logarithms(n, b);
+        swept(&f->phase, n, b);
+    }
+    followed(f, n, b);
+    turned(n, b);
 }
 
 static int place_of(const spin_up *f, const block *b, ptrdiff_t i)
@@ -204,23 +241,18 @@ static int place_of(const spin_up *f, const block *b, ptrdiff_t i)
 /* Runs of samples in one place, each through its own map. */
 static void attitudes(const spin_up *f, ptrdiff_t n, block *b, double *q)
 {
-    int found[3] = {0, 0, 0}, away = 0;
-    for (ptrdiff_t i = 0; i < n; ++i) {
-        const int place = place_of(f, b, i);
-        found[place] = 1;
-        away |= place != (int)f->start;
-    }
-    if (b->table == NULL && (away || found[SPIN_UP_NEAR])) {
+    const int *found = b->found, places = found[SPIN_UP_BEFORE] + found[SPIN_UP_NEAR] + found[SPIN_UP_BEYOND];
+    if (b->table == NULL && (places > 1 || found[SPIN_UP_NEAR] || !found[(int)f->start])) {
         b->lacking = 1;
         return;
     }
     if (found[SPIN_UP_BEFORE] || found[SPIN_UP_BEYOND])
-        all_far(f, n, b);
+        far(f, n, b);
     if (found[SPIN_UP_NEAR])
         near(f, n, b);
     for (ptrdiff_t i = 0, next; i < n; i = next) {
         const int place = place_of(f, b, i);
-        for (next = i + 1; next < n && place_of(f, b, next) == place;)
+        for (next = places > 1 ? i + 1 : n; next < n && place_of(f, b, next) == place;)
             ++next;
         double(*x)[BLOCK] = place == SPIN_UP_NEAR ? b->near : b->far;
         put_quaternion(f->attitude[place], next - i, x[0] + i, x[1] + i, x[2] + i, x[3] + i, q + 4*i);
@@ -233,7 +265,7 @@ static void motion(const spin_up *f, ptrdiff_t n, block *b, double *omega, doubl
     if (omega != NULL)
         rates(f, n, b, omega);
     if (q != NULL) {
-        places(f->sweep, n, b);
+        places(f, n, b);
         attitudes(f, n, b, q);
     }
 }

@@ -102,9 +102,9 @@ ALWAYS_INLINE dd logarithm(dd a, int fine)
     const double c = size.number;
     /* r = (f - c)/(f + c): the difference is exact */
     const double above = part.number - c, below = part.number + c, below_low = (c - (below - part.number)) + low;
-    const double first = above/below, product = first*below;
+    const double inverse = 1.0/below, first = above*inverse, product = first*below;
     const double rest = ((above - product) - product_error(first, below, product)) + MUL_ADD(-first, below_low, low);
-    const dd r = quick_two_sum(first, rest/below);
+    const dd r = quick_two_sum(first, rest*inverse);
     const dd atanh2 = dd_scale(added_less(r, atanh_rest(r, fine)), 2.0);
     const double octaves = n*ln2.hi, lost = MUL_ADD(n, ln2.lo, product_error(n, ln2.hi, octaves));
     const dd known = two_sum(octaves, LOG_HIGH[i]);
@@ -113,32 +113,38 @@ ALWAYS_INLINE dd logarithm(dd a, int fine)
     return added(added(known, two_sum(lost, LOG_LOW[i])), atanh2);
 }
 
-/* P/(4 pi) from Omega and S, but for a constant; finely where kappa is large. */
-ALWAYS_INLINE dd swept_turns(const spin_up_phase *p, dd omega, dd speed, int fine)
+/* log(|Omega| + S); finely where kappa is large. */
+ALWAYS_INLINE dd swept_logarithm(dd omega, dd speed, int fine)
+{
+    return logarithm(added(dd_scale(omega, omega.hi < 0.0 ? -1.0 : 1.0), speed), fine);
+}
+
+/* P/(4 pi) from Omega, S and that, but for a constant. */
+ALWAYS_INLINE dd swept_turns(const spin_up_phase *p, dd omega, dd speed, dd log)
 {
     const double sign = omega.hi < 0.0 ? -1.0 : 1.0;
-    const dd log = logarithm(added(dd_scale(omega, sign), speed), fine);
     const dd asinh = added(log, dd_pair(-p->logarithm[0], -p->logarithm[1]));
     const dd even = dd_mul(dd_mul(omega, speed), dd_pair(p->product[0], p->product[1]));
     return added(even, dd_mul(asinh, dd_pair(sign*p->share[0], sign*p->share[1])));
 }
 
-/* c[0] + c[1] x + .. + c[12] x^12 */
+/* c[0] + c[1] x + .. + c[12] x^12: even and odd powers apart, which a processor does side by side. */
 ALWAYS_INLINE double series_of(const double c[SPIN_UP_SERIES], double x)
 {
-    double sum = c[12];
-    sum = MUL_ADD(sum, x, c[11]);
-    sum = MUL_ADD(sum, x, c[10]);
-    sum = MUL_ADD(sum, x, c[9]);
-    sum = MUL_ADD(sum, x, c[8]);
-    sum = MUL_ADD(sum, x, c[7]);
-    sum = MUL_ADD(sum, x, c[6]);
-    sum = MUL_ADD(sum, x, c[5]);
-    sum = MUL_ADD(sum, x, c[4]);
-    sum = MUL_ADD(sum, x, c[3]);
-    sum = MUL_ADD(sum, x, c[2]);
-    sum = MUL_ADD(sum, x, c[1]);
-    return MUL_ADD(sum, x, c[0]);
+    const double square = x*x;
+    double even = c[12], odd = c[11];
+    even = MUL_ADD(even, square, c[10]);
+    odd = MUL_ADD(odd, square, c[9]);
+    even = MUL_ADD(even, square, c[8]);
+    odd = MUL_ADD(odd, square, c[7]);
+    even = MUL_ADD(even, square, c[6]);
+    odd = MUL_ADD(odd, square, c[5]);
+    even = MUL_ADD(even, square, c[4]);
+    odd = MUL_ADD(odd, square, c[3]);
+    even = MUL_ADD(even, square, c[2]);
+    odd = MUL_ADD(odd, square, c[1]);
+    even = MUL_ADD(even, square, c[0]);
+    return MUL_ADD(odd, x, even);
 }
 
 #endif
