@@ -70,6 +70,13 @@ class Program:
         """Count the operations of one evaluation (see :func:`symrot.expression.operations`)."""
         return sum((operations(node) for _, node in self.temporaries + self.outputs), Counter())
 
+    def uses(self, symbol: str, only: Collection[str] | None = None) -> bool:
+        """Return whether a symbol stands in the program or, with ``only``, in what just those outputs need."""
+        needed = {name for name, _ in self.outputs} if only is None else set(only)
+        for name, node in reversed((*self.temporaries, *self.outputs)):
+            needed |= names(node) if name in needed else set()
+        return symbol in needed
+
     def evaluate(
         self,
         values: Mapping[str, Any],

@@ -12,11 +12,11 @@ from math import comb
 from typing import NamedTuple
 
 from symrot.codegen.c_source import c_function
-from symrot.expression import Node, children, evaluate, names
+from symrot.expression import Node, children, evaluate
 from symrot.kernel import Argument, Program, Signature
 from symrot.scene_kernel import EPOCH, Parameters, SceneKernel
 
-__all__ = ["from_epoch", "moved", "uses_time"]
+__all__ = ["from_epoch", "moved"]
 
 ZERO: Node = ("number", Fraction(0))
 ONE: Node = ("number", Fraction(1))
@@ -26,14 +26,6 @@ CONSTANT = {"sqrt", "sin", "cos", "abs"}  # functions of constants that can be f
 HIGHEST = 12  # degree of a polynomial that is moved as one
 
 
-def uses_time(program: Program, only: tuple[str, ...] | None = None) -> bool:
-    """Return whether the time stands in a program, or in what some of its outputs need."""
-    needed = {name for name, _ in program.outputs} if only is None else set(only)
-    for name, node in reversed((*program.temporaries, *program.outputs)):
-        needed |= names(node) if name in needed else set()
-    return TIME in needed
-
-
 def from_epoch(kernel: SceneKernel) -> SceneKernel:
     """Return the kernel of a scene with rates in which t counts from the epoch, a constant like those of the scene.
 
@@ -41,7 +33,7 @@ def from_epoch(kernel: SceneKernel) -> SceneKernel:
     """
     rates, parameters = moved(kernel.rates, kernel.rate_parameters)
     timeless = [
-        item._replace(kept=item.kept and not uses_time(kernel.quantities, (item.output,))) for item in kernel.conserved
+        item._replace(kept=item.kept and not kernel.quantities.uses(TIME, (item.output,))) for item in kernel.conserved
     ]
     source = c_function(rates, "static inline ")
     return SceneKernel.of(rates, parameters, kernel.quantities, kernel.quantity_parameters, tuple(timeless), source)

@@ -127,10 +127,8 @@ def uses_attitude(events: Iterable[Event]) -> bool:
 
 def timed(quantities: Program, events: Iterable[Event]) -> bool:
     """Return whether the time stands in some event, or in the quantities that events are made of."""
-    from symrot.codegen.epoch import uses_time
-
     used = set().union(*(names(event.node) for event in events))
-    return "t" in used or uses_time(quantities, tuple(f"{name} of t" for name in used))
+    return "t" in used or quantities.uses("t", tuple(f"{name} of t" for name in used))
 
 
 def event_library_source(
