@@ -145,6 +145,28 @@ def test_a_weak_torque_leaves_a_free_body():
             assert np.abs(a - b).max() < BAR
 
 
+@pytest.mark.parametrize(
+    "kappa, x0", [(1e-3, 3.1e7), (1e-3, 3.2e7), (3.1e7, -9.0), (3.2e7, 9.0), (5.0, -1e9), (1e12, 1e12)]
+)
+def test_phases_by_their_formula_and_by_their_series(kappa, x0):
+    """A torque is weak from S^2 = 1e15 s on; up to 1e13 rad pairs of doubles count either way."""
+    *given, unit = at(kappa, x0, -2)
+    times = np.array([-0.97, -1e-4, -1e-9, 1e-11, 1e-6, 0.3, 0.97]) * 1e13 / np.hypot(kappa, x0) * unit * 0.6
+    motion = spin_up.motion(*given)
+    (w, q), (rates, attitudes) = motion.evaluate(times), by_integers(motion, times)
+    assert np.abs(q - attitudes).max() <= BAR and np.abs(w - rates).max() <= BAR * np.abs(w).max()
+    assert max(abs(times)) < motion._source.longest  # else integers are held against themselves
+
+
+def test_what_is_asked_for_first_does_not_matter():
+    """Constants beyond resonance are found when a sample gets there."""
+    *given, unit = at(2.0, -12.0)
+    early, late = np.array([-3.0, 0.0, 1.5]) * unit, np.array([30.0, 2.5, 12.0]) * unit
+    motion, once = spin_up.motion(*given), spin_up.motion(*given).evaluate(np.concatenate([early, late]))[1]
+    twice = [motion.evaluate(early)[1], motion.evaluate(late)[1], motion.evaluate(early)[1]]
+    assert np.array_equal(np.concatenate(twice), np.concatenate([once, once[:3]]))
+
+
 def test_a_sample_does_not_depend_on_its_neighbours():
     *given, unit = at(1.0, -12.0)
     motion, times = spin_up.motion(*given), np.array([3.0, 12.0, 12.0, 30.0, -1.0]) * unit
