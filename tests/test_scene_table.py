@@ -103,6 +103,13 @@ def test_the_shipped_scene():
     assert found.kinetic_energy[-1] > 5 * found.kinetic_energy[0]
 
 
+def test_steps_end_at_samples():
+    """Where the third derivative of the torque jumps: a step across it would miss its tolerance a hundredfold."""
+    for tolerance in (1e-8, 1e-10, 1e-12):
+        found, fine = (symrot.propagator("thruster_pulse", tolerance=x)([30.0]) for x in (tolerance, 1e-14))
+        assert np.abs(found.y - fine.y).max() < tolerance
+
+
 REFUSED = {
     "empty": (b"", "got an empty file"),
     "blank": (b"\n \n", "got an empty file"),

@@ -46,6 +46,7 @@ class _Function:
 
     user: Any = None
     longest_step = math.inf
+    knots: Sequence[float] = ()
 
     def __init__(self, function: Callable[[float, Floats, Floats], ArrayLike]) -> None:
         self.function, self.error = function, None  # type: tuple[Callable[..., Any], BaseException | None]
@@ -82,6 +83,7 @@ class _CFunction:
 
     user: Any = None
     longest_step = math.inf
+    knots: Sequence[float] = ()
 
     def __init__(self, function: Any) -> None:
         self.pointer = function
@@ -115,6 +117,7 @@ class _Table:
             )
         self.span = float(t[0]), float(t[-1])
         self.longest_step = SAMPLES_PER_STEP * float(np.diff(t).max())
+        self.knots = t.tolist()  # where steps end: the third derivative jumps
         self.user = np.concatenate(_pieces(t, values, switching))
         self.pointer: Any = None  # set when the library is loaded
 
@@ -214,7 +217,7 @@ class DrivenMotion(Motion):
         assert self.library is not None
         return dop853.task(
             self.library, self.driven_parameters, self.plan.initial_state, self.start, self.tolerance,
-            max_step=self._drive.longest_step, breaks=self.switching,
+            max_step=self._drive.longest_step, breaks=sorted({*self.switching, *self._drive.knots}),
         )  # fmt: skip
 
     def guarded(self, low: float, high: float, run: Callable[[], Any]) -> Any:
