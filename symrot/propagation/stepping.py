@@ -143,14 +143,14 @@ def stretches(t0: float, end: float, breaks: Sequence[float]) -> list[Stretch]:
     if not breaks:
         return [Stretch(t0, end, t0, end)]
     low, high = min(t0, end), max(t0, end)
-    inside = [time for time in breaks if low < time < high]
+    inside, known = [time for time in breaks if low < time < high], set(breaks)
     edges = [t0, *(inside if end >= t0 else reversed(inside)), end]
     return [
         Stretch(
             start,
             stop,
-            math.nextafter(start, stop) if start in breaks else start,
-            math.nextafter(stop, start) if stop in breaks else stop,
+            math.nextafter(start, stop) if start in known else start,
+            math.nextafter(stop, start) if stop in known else stop,
         )
         for start, stop in pairwise(edges)
     ]
