@@ -243,13 +243,26 @@ class _Jet:
         return f"V_SET({', '.join(lanes)})"
 
     def _clock_seed(self, row: Row, name: str) -> list[str]:
+        """Return coefficient 0 of functions of ``a t + b``, what rounding of that takes from it put right by slopes."""
         series = [self.layout.series[i] for i in row.lanes if i is not None]
         rates = self.constant(tuple(s.weights[0] for s in series))  # type: ignore[misc]
         offsets = self.constant(row.constant) if row.constant and set(row.constant) != {("number", 0)} else ""
-        turns = f"V_FMA({rates}, V_ALL(t), {offsets})" if offsets else f"V_MUL({rates}, V_ALL(t))"
-        first = [series.index(s) for s in series]  # equal lanes take one call
-        lanes = ", ".join(f"{s.function}(V_LANE({name}, {lane}))" for lane, s in zip(first, series, strict=True))
-        return [f"{name} = {turns};", f"{name} = V_SET({lanes});"]
+        lines, turns = [], {}  # equal lanes take one call
+        for lane, s in enumerate(series):
+            if s.weights not in turns:
+                turn = turns[s.weights] = f"turn_{name}_{lane}"
+                a, b = f"V_LANE({rates}, {lane})", f"V_LANE({offsets}, {lane})" if offsets else "0.0"
+                lines += [f"double lost_{turn};",
+                          f"const double {turn} = symrot_turn({a}, {b}, t, t_low, &lost_{turn});"]  # fmt: skip
+            for function in (s.function, self.layout.series[s.operands[0]].function):
+                value = f"const double {_of(function, turns[s.weights])} = {function}({turns[s.weights]});"
+                lines += [value] if value not in lines else []
+        lanes = []
+        for s in series:
+            turn, partner = turns[s.weights], self.layout.series[s.operands[0]].function
+            sign = "-" if s.sign < 0 else "+"
+            lanes.append(f"{_of(s.function, turn)} {sign} lost_{turn}*{_of(partner, turn)}")
+        return [*lines, f"{name} = V_SET({', '.join(lanes)});"]
 
     def _lane_of(self, series: int) -> str:
         row, lane = next((r, row.lanes.index(series)) for r, row in enumerate(self.rows) if series in row.lanes)
@@ -352,6 +365,7 @@ class _Jet:
         body = [
             "(void)c;",
             "(void)t;",
+            "(void)t_low;",
             *(f"symrot_v4 k{i}[SYMROT_ORDER + 1];" for i in self.packs.values()),
             *(f"symrot_v4 u{i}[SYMROT_ORDER + 1];" for i in sorted(self.stored)),
             *(f"symrot_v4 r{i} = x[{i}][0];" for i in range(self.own_rows)),
@@ -378,13 +392,21 @@ class _Jet:
             *_indented(["(void)p;", "(void)c;", *values]),
             "}",
             "",
-            "/* Fill x[row][1] to x[row][order], order even, from x[row][0]; step[n] is the unit of time over n. */",
-            "static SYMROT_APART void symrot_jet(const symrot_v4 *SYMROT_RESTRICT c, double t,",
+            "/*",
+            " * Fill x[row][1] to x[row][order], order even, from x[row][0], at t + t_low; step[n] is the unit of time",
+            " * over n.",
+            " */",
+            "static SYMROT_APART void symrot_jet(const symrot_v4 *SYMROT_RESTRICT c, double t, double t_low,",
             "    const double *SYMROT_RESTRICT step, int64_t order, symrot_v4 (*SYMROT_RESTRICT x)[SYMROT_ORDER + 1])",
             "{",
             *_indented(body),
             "}",
         ]) + "\n"  # fmt: skip
+
+
+def _of(function: str, turn: str) -> str:
+    """Return the name of a function's value."""
+    return f"{function}_{turn}"
 
 
 def _calls(node: Node) -> list[Node]:

@@ -152,7 +152,7 @@ static SYMROT_APART double symrot_first_unit(const symrot_v4 *c, double t, doubl
     int tries = 0, exponent;
     for (; tries < 64; ++tries, unit *= 1.0/65536) {
         symrot_set_unit(unit, step);
-        symrot_jet(c, t, step, 2, x);
+        symrot_jet(c, t, 0.0, step, 2, x);
         if (symrot_finite(x, 2)) break;
     }
     if (tries == 64) return 0.0;
@@ -205,7 +205,7 @@ SYMROT_EXPORT void symrot_taylor_jet(double t, const double *y, const double *p,
         x[r][0] = V_ALL(0.0);
         memcpy(&x[r][0], y + symrot_starts[r], (size_t)symrot_sizes[r]*sizeof(double));
     }
-    symrot_jet(c, t, step, (int)order, x);
+    symrot_jet(c, t, 0.0, step, (int)order, x);
     for (int n = 0; n <= (int)order; ++n)
         EACH_ROW(r) memcpy(out + n*SYMROT_STATES + symrot_starts[r], &x[r][n], (size_t)symrot_sizes[r]*sizeof(double));
 }
@@ -292,7 +292,7 @@ SYMROT_EXPORT int symrot_taylor(symrot_run *run, const double *p, const double *
 
     while (status == SYMROT_PAUSED && accepted < attempts) {
         if (room > 0 && recorded == room) { status = SYMROT_FULL; break; }
-        symrot_jet(c, t, step, SYMROT_ORDER, x);
+        symrot_jet(c, t, t_low, step, SYMROT_ORDER, x);
         ++jets;
         if (!symrot_finite(x, SYMROT_ORDER)) {
             if (++halvings > 60) { status = SYMROT_NOT_FINITE; break; }
