@@ -46,6 +46,14 @@ static inline symrot_pair symrot_pair_multiply(symrot_pair a, symrot_pair b)
     return symrot_pair_short_sum(product, rest + (a.high*b.low + a.low*b.high));
 }
 
+/* a t + b at the time t + t_low: as it is rounded, and what the rounding took from it */
+static inline symrot_pair symrot_pair_turn(double a, double b, double t, double t_low)
+{
+    const double product = a*t;
+    const symrot_pair sum = symrot_pair_sum(product, b);
+    return symrot_pair_of(sum.high, sum.low + (fma(a, t, -product) + a*t_low));
+}
+
 static inline symrot_pair symrot_pair_divide(symrot_pair a, symrot_pair b)
 {
     const double first = a.high/b.high;

@@ -29,14 +29,6 @@
 #define SYMROT_ALIGNED
 #endif
 
-/* Return a t + b, rounded, at the time t + t_low, and what the rounding took from it. */
-static inline double symrot_turn(double a, double b, double t, double t_low, double *lost)
-{
-    const double product = a*t, sum = product + b, back = sum - product;
-    *lost = ((product - (sum - back)) + (b - back)) + (fma(a, t, -product) + a*t_low);
-    return sum;
-}
-
 #if defined(__GNUC__) && !defined(SYMROT_PLAIN)
 #if defined(__AVX__) && defined(__has_builtin) && !defined(SYMROT_PAIRS)
 #if __has_builtin(__builtin_shufflevector)

@@ -114,11 +114,11 @@ def translation_unit(
     own = {name: (Path(__file__).parent / name).read_text(encoding="utf-8") for name in FILES}
     definitions = taylor_definitions(program, blocks, scales, ORDER if order is None else order)
     if not invariants:
-        parts = [own["taylor.h"], definitions, own["series.h"], NO_INVARIANTS, own["taylor.c"].replace(PROJECTION, "")]
+        invariants, projection = NO_INVARIANTS, ""
     else:
-        stepper = own["taylor.c"].replace(PROJECTION, own["projection.c"])
-        parts = [own["taylor.h"], own["pairs.h"], definitions, own["series.h"], invariants, stepper]
-    return "\n".join(parts)
+        projection = own["projection.c"]
+    stepper = own["taylor.c"].replace(PROJECTION, projection)
+    return "\n".join([own["taylor.h"], own["pairs.h"], definitions, own["series.h"], invariants, stepper])
 
 
 def integrate(
