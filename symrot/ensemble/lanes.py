@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from symrot.codegen import library
 from symrot.errors import CompilerError
 from symrot.kernel import Program
-from symrot.propagation.stepping import DONE, NOT_FINITE, UNDERFLOW, Floats, PathLike, cut_off, why_stuck
+from symrot.propagation.stepping import DONE, NOT_FINITE, UNDERFLOW, CutOff, Floats, PathLike, why_stuck
 from symrot.propagation.taylor import step_tail
 
 __all__ = ["FLAGS", "Lanes", "Outcome", "around", "follow", "lanes", "order_for", "translation_unit"]
@@ -245,7 +245,7 @@ def follow(
         reason = REASONS[int(status[leg])].format(steps=max_steps)
         if status[leg] == UNDERFLOW:
             reason = why_stuck(reason, float(reached[leg]), t0, stop)
-        messages[int(legs.motion[leg])] = str(cut_off(float(reached[leg]), reason, stop).later(epoch))
+        messages[int(legs.motion[leg])] = str(CutOff(float(reached[leg]), reason, stop).later(epoch))
     counted = [np.bincount(legs.motion, weights, n).astype(np.int64) for weights in (steps, evaluations)]
     return Outcome(grid, counted[0], counted[1], tuple(messages))
 

@@ -17,7 +17,7 @@ from pathlib import Path
 from symrot.codegen import library
 from symrot.planner import Plan
 from symrot.propagation.kernels import kernel_key, library_source
-from symrot.propagation.stepping import NOT_FINITE_SENTENCE, cut_off
+from symrot.propagation.stepping import NOT_FINITE_SENTENCE, CutOff
 from symrot.scene_kernel import EPOCH, SceneKernel, bind
 
 __all__ = ["compiled", "far", "moved", "moved_parameters"]
@@ -49,7 +49,7 @@ def moved_parameters(kernel: SceneKernel, constants: Mapping[str, Fraction], epo
     try:
         return bind(kernel.rate_parameters, {**constants, EPOCH: Fraction(epoch)})
     except OverflowError:
-        raise cut_off(epoch, NOT_FINITE_SENTENCE) from None
+        raise CutOff(epoch, NOT_FINITE_SENTENCE) from None
 
 
 def compiled(plan: Plan, kernel: SceneKernel) -> Path:

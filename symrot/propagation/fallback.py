@@ -17,13 +17,13 @@ from numpy.typing import ArrayLike
 from symrot.errors import InputError
 from symrot.propagation.stepping import (
     NOT_FINITE_SENTENCE,
+    CutOff,
     Floats,
     Recording,
     Stats,
     both_sides,
     check_longest_step,
     check_tolerance,
-    cut_off,
     stretches,
 )
 
@@ -170,7 +170,7 @@ class _Task:
         ]
         self.steps = self.evaluations = self.broken = 0
         if not np.isfinite(self._derivative(self.t0, self.y0)).all():
-            raise cut_off(self.t0, NOT_FINITE_SENTENCE)
+            raise CutOff(self.t0, NOT_FINITE_SENTENCE)
 
     def stats(self) -> Stats:
         return Stats(self.steps, 0, self.evaluations, perf_counter() - self.began)
@@ -216,7 +216,7 @@ class _Task:
                     dense_output=True,
                 )
             if found.status != 0 or not np.isfinite(found.y[:, -1]).all():
-                raise cut_off(float(found.t[-1]), found.message, stop)
+                raise CutOff(float(found.t[-1]), found.message, stop)
             self.steps += len(found.t) - 1
             pieces.append((min(start, stop), max(start, stop), found.sol))
             y = found.y[:, -1]
@@ -225,12 +225,12 @@ class _Task:
     def _derivative(self, t: float, y: Floats) -> Floats:
         self.evaluations += 1
         if self.evaluations > self.max_evaluations:
-            raise cut_off(t, f"{self.max_evaluations} evaluations were not enough")
+            raise CutOff(t, f"{self.max_evaluations} evaluations were not enough")
         dy = np.asarray(self.rhs(t, y, self.p), dtype=np.float64)
         if dy.shape != self.y0.shape:
             raise InputError(f"the right-hand side returns {len(self.y0)} numbers, got an array of shape {dy.shape}")
         if not math.isfinite(dy.sum()):
             self.broken += 1
             if self.broken > MAX_BROKEN:
-                raise cut_off(t, NOT_FINITE_SENTENCE)
+                raise CutOff(t, NOT_FINITE_SENTENCE)
         return dy

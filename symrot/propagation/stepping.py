@@ -40,7 +40,6 @@ __all__ = [
     "both_sides",
     "check_longest_step",
     "check_tolerance",
-    "cut_off",
     "rising",
     "stretches",
     "why_stuck",
@@ -96,11 +95,6 @@ class CutOff(PropagationError):
     def later(self, epoch: float) -> "CutOff":
         """Return the error for a clock that shows ``epoch`` where this one shows 0."""
         return CutOff(self.t + epoch, self.reason, None if self.stop is None else self.stop + epoch)
-
-
-def cut_off(t: float, reason: str, stop: float | None = None) -> CutOff:
-    """Return the error of a motion that ends at t, s, on the way to ``stop``."""
-    return CutOff(t, reason, stop)
 
 
 def why_stuck(reason: str, t: float, t0: float, stop: float) -> str:
@@ -464,7 +458,7 @@ class Task:
         if status in (NOT_FINITE, UNDERFLOW):
             reason = stepper.reasons[status]
             reason = why_stuck(reason, run.t, self.t0, run.stop) if status == UNDERFLOW else reason
-            raise cut_off(run.t, reason, run.stop)
+            raise CutOff(run.t, reason, run.stop)
         if stepper.tried(run) >= self.max_steps:
-            raise cut_off(run.t, stepper.reasons[PAUSED].format(steps=self.max_steps, run=run), run.stop)
+            raise CutOff(run.t, stepper.reasons[PAUSED].format(steps=self.max_steps, run=run), run.stop)
         return status
