@@ -23,11 +23,8 @@ LIBRARY: dict[str, int] = {  # functions of <math.h> that kernels call, without 
 ROUNDED = {"sqrt": ("sqrt", 1), "fabs": ("abs", 1), "copysign": ("copysign", 2)}  # exact, or rounded correctly
 NEAR = {"symrot_sin": "sin", "symrot_cos": "cos"}  # of symrot_math.h, in batches: assumed to its stated error
 ARC = {"symrot_atan2": "atan2"}  # the same, for all numbers
-SELECT = {
-    "symrot_select_lt": "<",
-    "symrot_select_eq": "==",
-    "symrot_choose_ge": ">=",
-}  # of symrot_math.h: choices without a branch
+# of symrot_math.h: choices without a branch
+SELECT = {"symrot_select_lt": "<", "symrot_select_eq": "==", "symrot_choose_ge": ">="}
 SPAN = "SYMROT_SPAN"  # samples that several loops of a batch take in turn
 DEEPEST = 200  # nested levels of an expression
 

@@ -222,21 +222,14 @@ def _batch(program: Program, real: Real, near: bool) -> list[str]:
     angles = turning_arguments(of_sample) if near else []
     parts = _split(program)
     if len(parts) > 1:
-        return [
-            *head,
-            f"    for (size_t start = 0; start < n; start += {SPAN}) {{",
-            f"        const size_t end = n - start < {SPAN} ? n : start + {SPAN};",
-            *(line for part in parts for line in _loop(part, real, ("start", "end"), (), "        ", INDEPENDENT)),
-            "    }",
-            "}",
-        ]
+        loops = [_loop(part, real, ("start", "end"), (), "        ", INDEPENDENT, near) for part in parts]
+        return [*head, *_blocks(SPAN), *(line for loop in loops for line in loop), "    }", "}"]
     if not angles:
         return [*head, *_loop(of_sample, real, ("0", "n"), loaded, "    ", INDEPENDENT, near), "}"]
     far = " + ".join(f"symrot_far{real.suffix}({c_expression(angle, real, True)})" for angle in angles)
     return [
         *head,
-        "    for (size_t start = 0; start < n; start += SYMROT_BLOCK) {",
-        "        const size_t end = n - start < SYMROT_BLOCK ? n : start + SYMROT_BLOCK;",
+        *_blocks("SYMROT_BLOCK"),
         f"        {real.bits} beyond = 0;",
         *_loop(of_sample, real, ("start", "end"), loaded, "        ", INDEPENDENT, near=True)[:-1],
         *_statement("beyond", far, "            ", "+="),
@@ -245,6 +238,14 @@ def _batch(program: Program, real: Real, near: bool) -> list[str]:
         *_loop(of_sample, real, ("start", "again"), loaded, "        "),
         "    }",
         "}",
+    ]
+
+
+def _blocks(size: str) -> list[str]:
+    """Return the head of a loop over blocks of samples."""
+    return [
+        f"    for (size_t start = 0; start < n; start += {size}) {{",
+        f"        const size_t end = n - start < {size} ? n : start + {size};",
     ]
 
 
