@@ -1,6 +1,7 @@
 """What every exact motion offers: angular velocity and attitude at any times, each sample for itself."""
 
 import ctypes
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from typing import Any
 
@@ -21,14 +22,14 @@ _Functions = tuple[Any, Any, Any]
 _bound: dict[str, _Functions] = {}
 
 
-class ExactMotion:
+class ExactMotion(ABC):
     """A motion at any time. Times are counted from that of the initial state."""
 
     regime: str
     """One of :data:`REGIMES`."""
 
-    def _fill(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> None:
-        raise NotImplementedError
+    @abstractmethod
+    def _fill(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> None: ...
 
     def evaluate(
         self, t: ArrayLike, omega: bool = True, quaternion: bool = True
@@ -77,7 +78,10 @@ class _Portable(ExactMotion):
     """A motion whose constants mpmath and whose samples NumPy computes: where there is no C compiler."""
 
     def __init__(self, motion: Any) -> None:
-        self.regime, self._fill = motion.regime, motion.evaluate  # type: ignore[method-assign]
+        self.regime, self._motion = motion.regime, motion
+
+    def _fill(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> None:
+        self._motion.evaluate(times, omega, quaternion)
 
 
 def _functions(name: str, arguments: int) -> _Functions:
