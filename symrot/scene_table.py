@@ -111,8 +111,8 @@ def read_samples(value: Mapping[str, Any], folder: Path, where: str, span: tuple
                      f"{switch!r} s")  # fmt: skip
     first, last = map(float, span)
     if times[0] > first or times[-1] < last:
-        expected(place, f"samples that cover the span of the scene, {first:g} to {last:g} s, got {times[0]:g} to "
-                 f"{times[-1]:g} s")  # fmt: skip
+        expected(place, f"samples that cover the span of the scene, {first!r} to {last!r} s, got {times[0]!r} to "
+                 f"{times[-1]!r} s")  # fmt: skip
     return Table(times, moments, found["frame"], tuple(sorted(set(found["switching_times"]))))
 
 
@@ -141,7 +141,7 @@ def _check_slopes(times: tuple[float, ...], moments: tuple[tuple[float, ...], ..
         gap, change = after - before, max(abs(y - x) for x, y in zip(here, there, strict=True))
         if gap and not (gap >= 1 / _STEEPEST and change <= gap * _STEEPEST):
             expected(place, f"a torque that changes by at most {_STEEPEST:g} N m/s between samples at least "
-                     f"{1 / _STEEPEST:g} s apart, got {change:g} N m within {gap:g} s after {before!r} s")  # fmt: skip
+                     f"{1 / _STEEPEST:g} s apart, got {change!r} N m within {gap!r} s after {before!r} s")  # fmt: skip
 
 
 def _read_file(path: Path, place: str) -> tuple[tuple[float, ...], tuple[tuple[float, float, float], ...]]:

@@ -143,3 +143,29 @@ def test_tables_align_and_wrap_one_column():
 
 def test_text_of_a_scene_is_one_printable_line():
     assert layout.one_line("a\n b\t\x1b[31m") == "a b ?[31m"
+
+
+@pytest.mark.parametrize(
+    ("values", "said"),
+    [
+        ((0, 20), ["0", "20"]),
+        ((0, 1 / 3), ["0", "0.333333"]),
+        ((1e9, 1e9 + 8), ["1000000000", "1000000008"]),
+        ((1e9 + 0.5, 1e9 + 8.25), ["1000000000.5", "1000000008.25"]),
+        ((-1e-9, 1e9), ["-1e-09", "1e+09"]),
+        ((1.0, 1.0 + 2**-52), ["1", "1.0000000000000002"]),
+        ((1e6 + 1 / 7, 1e6, 1e6 + 1), ["1000000.1429", "1000000", "1000001"]),
+        ((-1.7e308, 1.7e308), ["-1.7e+308", "1.7e+308"]),
+        ((2.5, 2.5), ["2.5", "2.5"]),
+    ],
+)
+def test_times_are_shown_with_the_digits_that_tell_them_apart(values, said):
+    assert layout.apart(*values) == said
+
+
+def test_a_run_far_from_zero_says_when_it_was(tmp_path, capsys):
+    path = _scene(tmp_path, ["omega"])
+    path.write_text(path.read_text().replace("t = [0, 1]", "t = [1e9, 1000000008]"))
+    assert cli.main(["run", str(path)]) == 0
+    text = capsys.readouterr().out
+    assert "1000000000 to 1000000008 s, 5 samples" in text and "t = 1000000008 s" in text

@@ -124,7 +124,7 @@ REFUSED = {
     "repeated": (CSV.replace("\n3,", "\n2,").encode(), "line 5: expected rising times, twice the same only where"),
     "one row": (f"{HEAD}\n0, 0, 0, 0".encode(), "two samples or more, got 1"),
     "header alone": (HEAD.encode(), "two samples or more, got 0"),
-    "too short": (CSV.rsplit("\n", 1)[0].encode(), "cover the span of the scene, 0 to 4 s, got 0 to 3 s"),
+    "too short": (CSV.rsplit("\n", 1)[0].encode(), "cover the span of the scene, 0.0 to 4.0 s, got 0.0 to 3.0 s"),
     "binary": (b"\x89PNG\r\n\x1a\n\xff\x00", "expected UTF-8 text, got byte 0x89 at position 0"),
     "zeros": (b"\0" * 1000, "line 1: expected the columns"),
     "huge": (b"0" * (LARGEST_FILE + 1), "at most 20 MB"),

@@ -99,8 +99,8 @@ class AxialMotion:
 
     def _refuse(self, times: Floats) -> NoReturn:
         raise InputError(
-            f"expected times after {self._first:.6g} s, before which the damped angular velocity was "
-            f"beyond all doubles, got {times.min():.6g} s"
+            f"expected times after {self._first!r} s, before which the damped angular velocity was "
+            f"beyond all doubles, got {float(times.min())!r} s"
         )
 
     def _angle(self, t: Floats, share: Fraction) -> tuple[Floats, Floats]:

@@ -95,7 +95,7 @@ class SpinUp:
         """Write the samples of more turns than pairs of doubles count."""
         for time in (float(times.min()), float(times.max())):
             if not self.integers.finite(time):
-                raise InputError(f"expected times at which the angular velocity is a finite number, got {time:.6g} s")
+                raise InputError(f"expected times at which the angular velocity is a finite number, got {time!r} s")
         for i, time in enumerate(times.tolist()):
             if abs(time) > self._source.longest:
                 self.integers.put(i, time, rates, attitudes)

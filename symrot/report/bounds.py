@@ -19,7 +19,7 @@ from symrot.errors import InputError
 from symrot.interface import emit, scene_inputs
 from symrot.kernels.library import definition, kernel_names
 from symrot.report.box import boxed
-from symrot.report.layout import columns
+from symrot.report.layout import apart, columns
 from symrot.scene_file import shipped_names
 from symrot.scene_reader import nearest
 
@@ -144,7 +144,7 @@ def _said_box(box: Mapping[str, Any], names: Mapping[str, str]) -> str:
 def _said_range(low: float, high: float) -> str:
     if (Fraction(low), Fraction(high)) == ANY:
         return "any"
-    return f"{low:.6g}" if low == high else f"{low:.6g} .. {high:.6g}"
+    return " .. ".join(dict.fromkeys(apart(low, high)))
 
 
 def _value(end: Any) -> float:

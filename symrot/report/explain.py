@@ -4,7 +4,7 @@ from collections import Counter
 from typing import Any
 
 from symrot.planner import Plan
-from symrot.report.layout import columns, one_line
+from symrot.report.layout import apart, columns, one_line
 from symrot.scene import QUANTITIES
 
 __all__ = ["explanation", "facts", "lines"]
@@ -72,8 +72,9 @@ def _samples(plan: Plan) -> list[dict[str, Any]]:
     table = plan.scene.table
     if table is None:
         return []
-    jumps = f", jumps at {', '.join(f'{t:g}' for t in table.switching_times)} s" if table.switching_times else ""
-    why = f"{len(table.times)} samples from {table.times[0]:g} to {table.times[-1]:g} s, cubic splines{jumps}"
+    first, last, *switches = apart(table.times[0], table.times[-1], *table.switching_times)
+    jumps = f", jumps at {', '.join(switches)} s" if switches else ""
+    why = f"{len(table.times)} samples from {first} to {last} s, cubic splines{jumps}"
     return [_row("torque by samples", False, f"{why}; besides the operations counted here")]
 
 

@@ -1,14 +1,18 @@
 """Text for people: any text on one line, numbers, durations, aligned columns, bold where a terminal shows it."""
 
+import math
 import os
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
+from itertools import pairwise
 from typing import TextIO
 
-__all__ = ["WIDTH", "columns", "duration", "emphasis", "exact", "fields", "one_line", "shown"]
+__all__ = ["WIDTH", "apart", "columns", "duration", "emphasis", "exact", "fields", "one_line", "shown"]
 
 WIDTH = 110
 LONGEST_DENOMINATOR = 10**12
+DIGITS = 17  # which tell any two doubles apart
+SEEN = 0.001  # of a distance: to so much of it its ends are shown
 
 
 def one_line(text: str) -> str:
@@ -19,6 +23,16 @@ def one_line(text: str) -> str:
 def shown(value: float | Fraction, digits: int = 6) -> str:
     """Return a number for people."""
     return f"{float(value):.{digits}g}"
+
+
+def apart(*values: float) -> list[str]:
+    """Return numbers as :func:`shown` does, with the digits it takes to see how far apart the nearest are."""
+    ordered = sorted({float(value) for value in values})
+    nearest = min((after - before for before, after in pairwise(ordered)), default=math.inf)
+    digits = 6
+    while digits < DIGITS and any(abs(float(shown(value, digits)) - value) > SEEN * nearest for value in ordered):
+        digits += 1
+    return [shown(value, digits) for value in values]
 
 
 def exact(value: Fraction) -> str:

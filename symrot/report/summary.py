@@ -3,7 +3,7 @@
 from typing import Any
 
 from symrot import __version__
-from symrot.report.layout import columns, duration, exact, fields, one_line, shown
+from symrot.report.layout import apart, columns, duration, exact, fields, one_line, shown
 
 __all__ = ["facts", "summary"]
 
@@ -111,11 +111,12 @@ def _settings(found: dict[str, Any]) -> list[tuple[str, str]]:
     meaning = METHODS[method["name"].partition(":")[0]]
     torques = ", ".join(kind.replace("_", " ") for kind in found["torques"]) or "none"
     exact = method["name"] == "exact"
+    start, stop = apart(_value(span["start"]), _value(span["stop"]))
     return [
         ("body", _body(found["body"])),
         ("torque", torques),
         ("start", f"omega = ({_numbers([_value(x) for x in found['initial']['omega']])}) rad/s in the body"),
-        ("span", f"{shown(_value(span['start']))} to {shown(_value(span['stop']))} s, {span['samples']} samples"),
+        ("span", f"{start} to {stop} s, {span['samples']} samples"),
         ("method", f"{method['name']} ({meaning}); {method['reason']}"),
         ("tolerance", f"{method['tolerance']:g}"),
         ("states", (not exact and _states(found["states"])) or "none to integrate"),
@@ -148,8 +149,11 @@ def _lost(candidates: list[dict[str, str]]) -> list[tuple[str, str]]:
     return [("not kept" if number == 0 else "", row) for number, row in enumerate(rows)]
 
 
-def _final(final: dict[str, Any]) -> list[str]:
-    rows = [("end", f"t = {shown(final['t'])} s"), ("  omega", f"({_numbers(final['omega'], 12)}) rad/s in the body")]
+def _final(final: dict[str, Any], start: float) -> list[str]:
+    rows = [
+        ("end", f"t = {apart(start, final['t'])[1]} s"),
+        ("  omega", f"({_numbers(final['omega'], 12)}) rad/s in the body"),
+    ]
     if "quaternion" in final:
         rows.append(("  attitude", f"({_numbers(final['quaternion'], 12)}) as a quaternion"))
     return [f"  {line}" for line in fields(rows)]
@@ -180,7 +184,7 @@ def summary(found: dict[str, Any]) -> list[str]:
         "",
         *_kept(found),
         "",
-        *_final(found["final"]),
+        *_final(found["final"], _value(found["span"]["start"])),
         "",
         *_written(found["written"]),
     ]

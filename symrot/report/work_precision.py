@@ -8,7 +8,7 @@ from statistics import geometric_mean
 from typing import Any
 
 from symrot.errors import InputError
-from symrot.report.layout import columns, duration, fields, one_line
+from symrot.report.layout import apart, columns, duration, fields, one_line
 
 __all__ = ["compared", "lines", "lines_of_comparison", "read_study"]
 
@@ -79,7 +79,7 @@ def lines(found: Mapping[str, Any]) -> list[str]:
     title = f"{one_line(scene['title'])} [{one_line(scene['name'])}]: time against error"
     head = fields(
         [
-            ("span", f"{scene['span'][0]:g} to {scene['span'][1]:g} s; the error is the largest at four times of it, "
+            ("span", f"{' to '.join(apart(*scene['span']))} s; the error is the largest at four times of it, "
                      "attitude in rad, angular velocity relative to its size"),
             ("reference", "; ".join([reference["name"], *(others or ["no second one to hold it against"])])),
             ("machine", f"{machine['processor']}; {', '.join(versions)}"),

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from symrot import __version__
-from symrot.report.layout import one_line
+from symrot.report.layout import apart, one_line
 from symrot.report.picture import save_page
 from symrot.report.plot import GREY, STYLE
 
@@ -148,7 +148,7 @@ def _words(page: Any, found: Mapping[str, Any]) -> None:
     scene, machine, reference = found["scene"], found["machine"], found["reference"]
     page.text(0.02, 0.965, _literal(scene["title"])[:75], fontsize=13, fontweight="bold", va="top")
     versions = ", ".join(f"{name} {machine[name]}" for name in ("scipy", "heyoka") if machine[name])
-    line = f"t = {scene['span'][0]:g} to {scene['span'][1]:g} s, one core of {machine['processor']}; {versions}"
+    line = f"t = {' to '.join(apart(*scene['span']))} s, one core of {machine['processor']}; {versions}"
     page.text(0.02, 0.915, _literal(line)[:130], fontsize=8.5, color=GREY, va="top")
     others = "; ".join(f"{other['name']} within {max(other['difference'], 1e-16):.0e}" for other in reference["others"])
     caption = f"reference: {reference['name']}" + (f"; {others}" if others else "")
