@@ -12,8 +12,9 @@ from typing import Any, NamedTuple
 
 from symrot import number
 from symrot.closed_form import library
-from symrot.closed_form.library import Floats, address
+from symrot.closed_form.library import Floats
 from symrot.codegen import library as codegen
+from symrot.codegen.address import address
 from symrot.errors import CompilerError
 
 __all__ = ["EARLY", "LOST", "Loops", "available", "loops", "parts"]

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 from symrot.codegen import library
 from symrot.errors import CompilerError, InputError
 
-__all__ = ["FLAGS", "PARTS", "Floats", "address", "begin", "load", "source", "times_of"]
+__all__ = ["FLAGS", "PARTS", "Floats", "begin", "load", "source", "times_of"]
 
 Floats = NDArray[np.float64]
 
@@ -106,14 +106,3 @@ def times_of(t: ArrayLike) -> Floats:
     if not isfinite(np.add.reduce(times)) and not np.isfinite(times).all():
         raise InputError(f"times must be finite, got {times[~np.isfinite(times)][0]}")
     return times
-
-
-def address(array: Any) -> int | None:
-    """Return where an array begins, or None for none; NumPy's `ctypes` attribute takes eight times as long."""
-    if array is None:
-        return None
-    try:
-        return ctypes.addressof(ctypes.c_char.from_buffer(array))
-    except (TypeError, ValueError):  # it is read-only or empty
-        place: int = array.__array_interface__["data"][0]
-        return place

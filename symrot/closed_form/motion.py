@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from symrot.closed_form.library import Floats, address, load, times_of
+from symrot.closed_form.library import Floats, load, times_of
 from symrot.codegen import library
+from symrot.codegen.address import address
 from symrot.errors import CompilerError, InputError
 
 __all__ = ["REGIMES", "ExactMotion", "prepared"]

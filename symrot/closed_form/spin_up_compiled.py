@@ -6,9 +6,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from symrot.closed_form import spin_up_series
-from symrot.closed_form.library import Floats, address, load
+from symrot.closed_form.library import Floats, load
 from symrot.closed_form.spin_up_near import DEGREE, PIECES
 from symrot.codegen import library
+from symrot.codegen.address import address
 from symrot.errors import CompilerError
 
 __all__ = ["Compiled", "available"]

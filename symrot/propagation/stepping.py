@@ -9,7 +9,6 @@ import math
 import os
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
-from ctypes import addressof
 from functools import cached_property
 from itertools import pairwise
 from operator import le
@@ -19,6 +18,7 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from symrot.codegen.address import address
 from symrot.errors import CompilerError, InputError, PropagationError
 
 __all__ = [
@@ -297,15 +297,6 @@ def _no_stepper(path: str, error: Exception) -> CompilerError:
     return CompilerError(f"the compiled kernel {path} cannot be loaded: {error}")
 
 
-def _address(array: Any) -> int:
-    """Return where an array begins, by the quickest way there is."""
-    try:
-        return addressof(ctypes.c_char.from_buffer(array))
-    except (TypeError, ValueError):  # it is read-only or empty
-        found: int = array.ctypes.data
-        return found
-
-
 def rising(times: Floats) -> bool:
     """Return whether times never fall, which a nan among two does; a few are sooner compared one by one."""
     if len(times) > FEW:
@@ -392,7 +383,7 @@ class Task:
         run = stepper.new_run.from_buffer_copy(self._ready)
         run.pace, run.stop = (end - self.t0) * self.pace, end
         stepper.enter(run, Stretch(self.t0, end, self.t0, end), self.allowed)
-        first, out = _address(times), _address(states)
+        first, out = address(times), address(states)
         while self.advance(run, first, count, out, None, 0) != DONE:
             pass
         return states, Stats(*stepper.cost(run), perf_counter() - began)
@@ -414,7 +405,7 @@ class Task:
 
     def follow(self, times: Floats, states: Floats) -> None:
         """Write the states at times sorted away from t0, all on one side of it."""
-        count, done, first, out = len(times), 0, _address(times), _address(states)
+        count, done, first, out = len(times), 0, address(times), address(states)
         row = 8 * self.stepper.states
         for run in self.runs(float(times[-1])):
             while self.advance(run, first + 8 * done, count - done, out + row * done, None, 0) != DONE:
@@ -452,7 +443,8 @@ class Task:
         """Call the stepper once; raise where it cannot go on."""
         stepper = self.stepper
         attempts = min(stepper.steps_per_call, self.max_steps - stepper.tried(run))
-        status: int = stepper.run(addressof(run), addressof(self.p), times, count, states, rows, room, attempts)
+        given = (ctypes.addressof(run), ctypes.addressof(self.p), times, count, states, rows, room, attempts)
+        status: int = stepper.run(*given)
         if status == DONE:
             return status
         if status in (NOT_FINITE, UNDERFLOW):
