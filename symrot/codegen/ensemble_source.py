@@ -12,6 +12,7 @@ from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 from symrot.codegen.c_source import c_expression
+from symrot.codegen.lane_functions import LANE_FUNCTIONS
 from symrot.codegen.recurrences import Recurrences, Series, recurrences, split_sign
 from symrot.codegen.taylor_source import checked_system
 from symrot.expression import Node, names, rename
@@ -20,6 +21,7 @@ from symrot.kernel import Program
 __all__ = ["lane_definitions", "multiplications"]
 
 ONE: Node = ("number", 1)
+CIRCLE = {"sin", "cos"}  # found at once
 LOAD_OF_LOOP = 18  # accumulators and factors that a loop may hold: about the 16 registers of a processor
 
 
@@ -76,7 +78,7 @@ def lane_definitions(program: Program, edges: Sequence[int], scales: Sequence[fl
             f"#define SYMROT_SCALES {{{', '.join(repr(float(scale)) for scale in scales)}}}",
             "",
             f"static const double symrot_inverse[] = {{{inverses}}};",
-            "",
+            LANE_FUNCTIONS if any(s.rule == "clock" or s.function in CIRCLE for s in system.series) else "",
             _Jet(system).text(),
         )
     )
@@ -149,6 +151,11 @@ class _Jet:
             return f"V_ALL({c_expression(node)})"
         return f"c[{self.constants.setdefault(node, len(self.constants))}]"
 
+    def signed(self, node: Node | None) -> str:
+        """Return a constant of either sign; None is zero."""
+        sign, size = split_sign(node or ("number", 0))
+        return self.weight(size) if sign > 0 else f"V_SUB(V_ALL(0.0), {self.weight(size)})"
+
     def slot(self, number: int, phase: str, sums: str) -> str:
         """Return coefficient n of a slot; of two chains of sums, so that neither waits for all the newest."""
         older = f"{sums}{number}" if phase == "later" else ""
@@ -210,7 +217,7 @@ class _Jet:
             factor = {"first": "0.0", "second": "1.0"}.get(phase, f"(double)({n})")
             return [f"{name} = V_MUL(v{s.operands[0]}, V_ALL({factor}));"]
         if s.rule == "clock":
-            return self._clock(s, name, n, phase)
+            return self._clock_start(i, s) if phase == "first" else self._clock(s, name, n)
         total = self.slot(self.slot_of[i][1], phase, sums)
         if s.rule == "product":
             return [f"{name} = {total};"]
@@ -222,6 +229,9 @@ class _Jet:
             upper = f"v{s.operands[0]}" if len(s.operands) > 1 else "V_ALL(0.0)"
             return [f"{name} = V_DIV(V_SUB({upper}, {total}), d{i});"]
         if s.rule == "driven":
+            if phase == "first" and s.function in CIRCLE:
+                v, w = (f"v{one}" for one in (i, s.operands[1]))
+                return [f"symrot_circle(v{s.operands[2]}, V_ALL(0.0), &{v}, &{w});"] if s.function == "sin" else []
             if phase == "first":
                 return [f"{name} = {_called(s, 2)};"]
             sign = "" if s.sign > 0 else "-"
@@ -236,22 +246,31 @@ class _Jet:
         upper = f"V_SUB(v{s.operands[0]}, {total})" if total else f"v{s.operands[0]}"
         return [f"{name} = V_DIV({upper}, V_MUL(d{i}, V_ALL((double)({n}))));"]
 
-    def _clock(self, s: Series, name: str, n: str, phase: str) -> list[str]:
-        rate, offset = s.weights
+    def _clock(self, s: Series, name: str, n: str) -> list[str]:
+        """Return coefficient n of a function of ``a t + b`` from coefficient n - 1 of its partner."""
+        rate, _ = s.weights
         assert rate is not None
         sign, size = split_sign(rate)
-        if phase != "first":
-            sign *= s.sign
-            step = f"V_MUL(unit, V_ALL(symrot_inverse[{n}]))"
-            step = step if size == ONE else f"V_MUL({self.weight(size)}, {step})"
-            previous = f"p{s.operands[0]}"
-            return [f"{name} = V_MUL({previous}, {step if sign > 0 else f'V_SUB(V_ALL(0.0), {step})'});"]
-        turned = f"V_MUL({self.weight(size)}, t)" if size != ONE else "t"
-        turned = turned if sign > 0 else f"V_SUB(V_ALL(0.0), {turned})"
-        if offset is not None and offset != ("number", 0):
-            other, constant = split_sign(offset)
-            turned = f"V_{'ADD' if other > 0 else 'SUB'}({turned}, {self.weight(constant)})"
-        return [f"{name} = V_CALL({s.function}, {turned});"]
+        step = f"V_MUL(unit, V_ALL(symrot_inverse[{n}]))"
+        step = step if size == ONE else f"V_MUL({self.weight(size)}, {step})"
+        step = step if sign * s.sign > 0 else f"V_SUB(V_ALL(0.0), {step})"
+        return [f"{name} = V_MUL(p{s.operands[0]}, {step});"]
+
+    def _clock_start(self, i: int, s: Series) -> list[str]:
+        """Return coefficient 0 of functions of ``a t + b`` that drive each other, with the first one of them."""
+        both = sorted({i, s.operands[0]})
+        if i != both[0]:
+            return []
+        rate, offset = (self.signed(node) for node in s.weights)
+        lines = [f"symrot_v low{i};", f"const symrot_v high{i} = symrot_turn({rate}, {offset}, t, t_low, &low{i});"]
+        if s.function in CIRCLE:
+            return [*lines, f"symrot_circle(high{i}, low{i}, &v{i}, &v{both[1]});"]
+        for one in both:
+            lines.append(f"const symrot_v k{one} = V_CALL({self.series[one].function}, high{i});")
+        for one in both:  # what rounding took from the phase is put right by the slope
+            slope = "FMA" if self.series[one].sign > 0 else "FNMA"
+            lines.append(f"v{one} = V_{slope}(low{i}, k{self.series[one].operands[0]}, k{one});")
+        return lines
 
     # -------------------------------------------------------------------------------------------- orders
 
@@ -373,6 +392,7 @@ class _Jet:
         body = [
             "(void)c;",
             "(void)t;",
+            "(void)t_low;",
             *(f"symrot_v u{i}[SYMROT_ORDER + 1];" for i in sorted(self.stored)),
             *(f"symrot_v v{i} = {self.at(i, '0')};" if i in self.state else f"symrot_v v{i};" for i in own),
             *(f"symrot_v d{i};" for i in self.divided),
@@ -394,8 +414,8 @@ class _Jet:
             "}",
             "",
             "/* Fill x[i][1] to x[i][order], order even, from x[i][0], in powers of the unit of time of each lane. */",
-            "static SYMROT_APART void symrot_jet(const symrot_v *SYMROT_RESTRICT c, symrot_v t, symrot_v unit,",
-            "    int64_t order, symrot_v (*SYMROT_RESTRICT x)[SYMROT_ORDER + 1])",
+            "static SYMROT_APART void symrot_jet(const symrot_v *SYMROT_RESTRICT c, symrot_v t, symrot_v t_low,",
+            "    symrot_v unit, int64_t order, symrot_v (*SYMROT_RESTRICT x)[SYMROT_ORDER + 1])",
             "{",
             *_indented(body),
             "}",

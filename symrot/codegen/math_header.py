@@ -19,7 +19,7 @@ from math import cos, factorial, pi
 from symrot.codegen.c_source import DOUBLE, FLOAT, Real
 from symrot.number import PI
 
-__all__ = ["FAR", "math_header"]
+__all__ = ["FAR", "math_header", "quarter_turn_parts", "tail_coefficients"]
 
 FAR = {"binary64": 2**17, "binary32": 2**12}  # rad; beyond it, a batch computes its block again with the C library
 _DIGITS = {"binary64": 53, "binary32": 24}
@@ -35,7 +35,7 @@ _RAISED = {"binary64": (900, 200), "binary32": (90, 40)}  # a quotient below 2^-
 
 
 @cache
-def _coefficients(first: int, count: int) -> tuple[Fraction, ...]:
+def tail_coefficients(first: int, count: int) -> tuple[Fraction, ...]:
     """Return the polynomial in t = x^2 nearest to the tail of a series, lowest power first.
 
     The tail is ``sum of (-1)^k t^(k - m)/first!..``: of sine for ``first = 3``, of cosine for ``first = 4``, from the
@@ -68,7 +68,7 @@ def _nearest(series: list[Fraction], largest: Fraction, count: int) -> tuple[Fra
     return tuple(polynomial)
 
 
-def _parts(precision: str) -> list[Fraction]:
+def quarter_turn_parts(precision: str) -> list[Fraction]:
     """Return pi/2 as parts of few bits and a last one of full precision."""
     rest, parts = PI / 2, []
     for bits in _PARTS[precision]:
@@ -110,7 +110,7 @@ def _wrapped(head: str, formula: str) -> list[str]:
 
 def _reduction(real: Real) -> list[str]:
     """Return the statements from x to the rest ``high + low``, its square t and the number of quarter turns."""
-    parts = [real.literal(part) for part in _parts(real.precision)]
+    parts = [real.literal(part) for part in quarter_turn_parts(real.precision)]
     digits = _DIGITS[real.precision]
     lines = [
         f"    const {real.type} shifted = x*{real.literal(2 / PI)} + {real.literal(Fraction(3 * 2 ** (digits - 2)))};",
@@ -135,7 +135,7 @@ def _functions(real: Real) -> list[str]:
     kind, s = real.type, real.suffix
     bits, top = ("uint64_t", 62) if kind == "double" else ("uint32_t", 30)
     one, half = real.literal(Fraction(1)), real.literal(Fraction(1, 2))
-    sine, cosine = (_coefficients(first, count) for first, count in zip((3, 4), _COUNT[real.precision], strict=True))
+    sine, cosine = (tail_coefficients(*each) for each in zip((3, 4), _COUNT[real.precision], strict=True))
     lines = [
         f"SYMROT_INLINE {bits} symrot_bits{s}({kind} x) {{ {bits} u; memcpy(&u, &x, sizeof u); return u; }}",
         f"SYMROT_INLINE {kind} symrot_of_bits{s}({bits} u) {{ {kind} x; memcpy(&x, &u, sizeof x); return x; }}",

@@ -213,7 +213,7 @@ static SYMROT_APART void symrot_first_units(symrot_job *job, symrot_lanes *lanes
     for (int i = 0; i < SYMROT_CONSTANTS; ++i) c[i] = symrot_load(lanes->c[i]);
     EACH_STATE(i) x[i][0] = symrot_load(lanes->y[i]);
     for (int tries = 0; tries < 64; ++tries) {
-        symrot_jet(c, symrot_load(lanes->t), unit, 2, x);
+        symrot_jet(c, symrot_load(lanes->t), V_ALL(0.0), unit, 2, x);
         broken = fresh & ~symrot_finite(x, 2);
         if (!V_ANY(broken)) break;
         unit = V_SELECT(broken, V_MUL(unit, V_ALL(1.0/65536)), unit);
@@ -265,7 +265,7 @@ SYMROT_EXPORT void symrot_lanes_jet(double t, const double *y, const double *p, 
     symrot_constants(p, values);
     for (int i = 0; i < SYMROT_CONSTANTS; ++i) c[i] = V_ALL(values[i]);
     EACH_STATE(i) x[i][0] = V_ALL(y[i]);
-    symrot_jet(c, V_ALL(t), V_ALL(unit), order, x);
+    symrot_jet(c, V_ALL(t), V_ALL(0.0), V_ALL(unit), order, x);
     for (int64_t n = 0; n <= order; ++n)
         EACH_STATE(i) out[n*N + i] = V_LANE(x[i][n], 0);
 }
@@ -314,7 +314,7 @@ SYMROT_EXPORT int symrot_lanes_run(symrot_lanes *lanes, symrot_job *job, int64_t
             tiny = V_FMA(V_ALL(1e-30), symrot_size_of(V_SUB(stop, V_ALL(job->t0))), V_ALL(1e-300));
             changed = 0;
         }
-        symrot_jet(c, t, unit, SYMROT_ORDER, x);
+        symrot_jet(c, t, low, unit, SYMROT_ORDER, x);
         jets = V_ADD(jets, V_ALL(1.0));
 
         const symrot_bits finite = symrot_finite(x, SYMROT_ORDER);

@@ -49,6 +49,7 @@ typedef int64_t symrot_bits __attribute__((vector_size(8*SYMROT_LANES)));  /* a 
 #endif
 #define V_LESS(a, b) ((symrot_bits)((a) < (b)))
 #define V_EQUAL(a, b) ((symrot_bits)((a) == (b)))
+#define V_HAS(bits, one) ((symrot_bits)(((bits) & (one)) != 0))
 #define V_TO_BITS(v) ((symrot_bits)(v))
 #define V_FROM_BITS(b) ((symrot_v)(b))
 #define V_NO_BITS ((symrot_bits){0})
@@ -61,6 +62,7 @@ typedef int64_t symrot_bits;
 #define V_ANY(m) ((m) != 0)
 #define V_LESS(a, b) (-(symrot_bits)((a) < (b)))
 #define V_EQUAL(a, b) (-(symrot_bits)((a) == (b)))
+#define V_HAS(bits, one) (-(symrot_bits)(((bits) & (one)) != 0))
 #define V_TO_BITS(v) symrot_to_bits(v)
 #define V_FROM_BITS(b) symrot_from_bits(b)
 #define V_NO_BITS ((symrot_bits)0)
