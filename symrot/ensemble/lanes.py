@@ -8,17 +8,16 @@ threads, and one that breaks off leaves the rest alone.
 
 import ctypes
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cache
-from itertools import pairwise
 from pathlib import Path
-from threading import Event
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from symrot.codegen import library
+from symrot.codegen.address import address
 from symrot.errors import CompilerError
 from symrot.kernel import Program
 from symrot.propagation.stepping import DONE, NOT_FINITE, UNDERFLOW, CutOff, Floats, PathLike, why_stuck
@@ -32,6 +31,7 @@ FLAGS = (*library.FLAGS, "-fno-tree-pre")  # it keeps loaded numbers in register
 MAX_STEPS = 1_000_000_000
 STEPS_PER_CALL = 20_000  # of all lanes at once: some 20 ms, after which Python can see an interrupt
 TOO_MANY = 5
+MEASURED = ("reached", "steps", "evaluations")  # of each leg
 REASONS = {
     NOT_FINITE: "its derivatives are not finite there",
     UNDERFLOW: "the step shrank to nothing, as it does before a singularity",
@@ -138,11 +138,11 @@ class Lanes:
         jet(t, state.ctypes.data, values.ctypes.data, unit, self.order, found.ctypes.data)
         return found
 
-    def work(self, job: _Job, interrupted: Event) -> None:
+    def work(self, job: _Job, interrupted: Callable[[], bool] = bool) -> None:
         """Follow the legs of a job to their ends, or until interrupted."""
         memory = ctypes.create_string_buffer(self._memory)
         self._library.symrot_lanes_clear(memory)
-        while not interrupted.is_set() and self._run(memory, ctypes.addressof(job), STEPS_PER_CALL) != DONE:
+        while not interrupted() and self._run(memory, ctypes.addressof(job), STEPS_PER_CALL) != DONE:
             pass
 
 
@@ -156,29 +156,25 @@ class _Legs(NamedTuple):
     """The motions cut at t0: sample times of each leg sorted away from it. See ``symrot_job``."""
 
     table: Floats
-    motion: Integers
-    first: Integers
-    samples: Integers
-    row: Integers
-    order: Integers  # (m,) or (n, m): the sample that each sorted one is
+    rows: Integers  # (4, legs): motion, first of its times, how many, row of the first sample
+    order: Integers | None  # (m,) or (n, m): the sample that each sorted one is; None if they are sorted already
 
 
 def _legs(t0: float, times: Floats, n: int) -> _Legs:
+    samples, motion = times.shape[-1], np.arange(n)
+    if times.ndim == 1 and samples and times[0] >= t0 and (times[1:] >= times[:-1]).all():
+        rows = np.empty((4, n), dtype=np.int64)
+        rows[0], rows[1], rows[2], rows[3] = motion, 0, samples, motion * samples
+        return _Legs(times, rows, None)
     forward = times >= t0
     order = np.lexsort((np.where(forward, times, -times), forward), axis=-1)
     table = np.take_along_axis(times, order, axis=-1)
     backward = np.broadcast_to((~forward).sum(axis=-1), (n,))
-    samples, motion = times.shape[-1], np.arange(n)
     base = motion * (samples if times.ndim == 2 else 0)
     sides = [(backward, 0 * backward), (samples - backward, backward)]
-    motions, firsts, counts, rows = (
-        np.concatenate(parts).astype(np.int64)
-        for parts in zip(
-            *((motion, base + offset, count, motion * samples + offset) for count, offset in sides), strict=True
-        )
-    )
-    kept = counts > 0
-    return _Legs(table.ravel(), motions[kept], firsts[kept], counts[kept], rows[kept], order)
+    rows = np.hstack([(motion, base + offset, count, motion * samples + offset) for count, offset in sides])
+    in_order = np.array_equal(order, np.broadcast_to(np.arange(samples), order.shape))
+    return _Legs(table.ravel(), np.ascontiguousarray(rows[:, rows[2] > 0]), None if in_order else order)
 
 
 def follow(
@@ -219,48 +215,49 @@ def follow(
     tail, pace = step_tail(tolerance)
     legs = _legs(t0, times, n)
     states = np.full((n * times.shape[-1], library.states), np.nan)
-    total = len(legs.motion)
-    reached, steps, evaluations = np.zeros(total), np.zeros(total), np.zeros(total)
-    status = np.full(total, TOO_MANY, dtype=np.int64)
-    shared = {"y": y, "p": p, "times": legs.table, "states": states}
-    own = {
-        "motion": legs.motion, "first": legs.first, "count": legs.samples, "row": legs.row,
-        "reached": reached, "steps": steps, "evaluations": evaluations, "status": status,
-    }  # fmt: skip
+    total = legs.rows.shape[1]
+    reached, steps, evaluations = measured = np.zeros((3, total))
+    status = np.full(total, TOO_MANY)
+    shared = {"y": address(y), "p": address(p), "times": address(legs.table), "states": address(states)}
+    rows = {"status": address(status)}
+    for names, table in ((("motion", "first", "count", "row"), legs.rows), (MEASURED, measured)):
+        place = address(table)
+        rows |= {name: place + 8 * total * k for k, name in enumerate(names)}
 
     def job(start: int, stop: int) -> _Job:
-        places = {name: array.ctypes.data for name, array in shared.items()}
-        places |= {name: array.ctypes.data + 8 * start for name, array in own.items()}
-        return _Job(legs=stop - start, t0=t0, tail=tail, pace=pace, max_steps=float(max_steps), **places)
+        own = {name: place + 8 * start for name, place in rows.items()}
+        return _Job(legs=stop - start, t0=t0, tail=tail, pace=pace, max_steps=float(max_steps), **shared, **own)
 
-    edges = np.linspace(0, total, max(1, min(workers, total)) + 1).astype(int).tolist()
-    _share(library, [job(start, stop) for start, stop in pairwise(edges)])
+    workers = max(1, min(workers, total))
+    _share(library, [job(k * total // workers, (k + 1) * total // workers) for k in range(workers)])
     grid = states.reshape(n, times.shape[-1], library.states)
-    if not np.array_equal(legs.order, np.broadcast_to(np.arange(times.shape[-1]), legs.order.shape)):
+    if legs.order is not None:
         sorted_grid, grid = grid, np.empty_like(grid)
         np.put_along_axis(grid, np.broadcast_to(legs.order, grid.shape[:2])[..., None], sorted_grid, axis=1)
+    motion, first, samples, _ = legs.rows
     messages = [""] * n
     for leg in np.flatnonzero(status != DONE).tolist():
-        stop = float(legs.table[legs.first[leg] + legs.samples[leg] - 1])
+        stop = float(legs.table[first[leg] + samples[leg] - 1])
         reason = REASONS[int(status[leg])].format(steps=max_steps)
         if status[leg] == UNDERFLOW:
             reason = why_stuck(reason, float(reached[leg]), t0, stop)
-        messages[int(legs.motion[leg])] = str(CutOff(float(reached[leg]), reason, stop).later(epoch))
-    counted = [np.bincount(legs.motion, weights, n).astype(np.int64) for weights in (steps, evaluations)]
+        messages[motion[leg]] = str(CutOff(float(reached[leg]), reason, stop).later(epoch))
+    counted = [np.bincount(motion, weights, n).astype(np.int64) for weights in (steps, evaluations)]
     return Outcome(grid, counted[0], counted[1], tuple(messages))
 
 
 def _share(library: Lanes, jobs: list[Any]) -> None:
     """Do the jobs, each in a thread; an interrupt stops them all."""
-    interrupted = Event()
     if len(jobs) == 1:
-        library.work(jobs[0], interrupted)
+        library.work(jobs[0])
         return
     from concurrent.futures import ThreadPoolExecutor
+    from threading import Event
 
+    interrupted = Event()
     with ThreadPoolExecutor(len(jobs)) as pool:
         try:
-            for done in [pool.submit(library.work, job, interrupted) for job in jobs]:
+            for done in [pool.submit(library.work, job, interrupted.is_set) for job in jobs]:
                 done.result()
         finally:
             interrupted.set()
