@@ -22,13 +22,6 @@
 #define MUL_ADD(a, b, c) ((a)*(b) + (c))
 #endif
 
-/* Loops over samples turn into SIMD code only where everything in them is inlined. */
-#if defined(__GNUC__)
-#define ALWAYS_INLINE static inline __attribute__((always_inline))
-#else
-#define ALWAYS_INLINE static inline
-#endif
-
 /* A phase that grows evenly with time, in turns, to 31 digits: its rate and its start, each as hi, lo. */
 typedef struct {
     double rate[2], start[2];

@@ -12,19 +12,26 @@
 #error "error-free arithmetic is compiled without -ffast-math"
 #endif
 
+/* In loops over samples, which turn into SIMD code only so, and in each operation of several roundings. */
+#if defined(__GNUC__)
+#define ALWAYS_INLINE static inline __attribute__((always_inline))
+#else
+#define ALWAYS_INLINE static inline
+#endif
+
 /* An unevaluated sum, |lo| <= ulp(hi)/2. */
 typedef struct {
     double hi, lo;
 } dd;
 
-static inline dd dd_pair(double hi, double lo)
+ALWAYS_INLINE dd dd_pair(double hi, double lo)
 {
     const dd r = {hi, lo};
     return r;
 }
 
 /* a + b exactly. */
-static inline dd two_sum(double a, double b)
+ALWAYS_INLINE dd two_sum(double a, double b)
 {
     const double s = a + b;
     const double t = s - a;
@@ -32,14 +39,14 @@ static inline dd two_sum(double a, double b)
 }
 
 /* a + b exactly, for |a| >= |b| or a = 0. */
-static inline dd quick_two_sum(double a, double b)
+ALWAYS_INLINE dd quick_two_sum(double a, double b)
 {
     const double s = a + b;
     return dd_pair(s, b - (s - a));
 }
 
 /* The rounding error of p = a*b. Without a fused instruction the factors are split into halves of 26 bits. */
-static inline double product_error(double a, double b, double p)
+ALWAYS_INLINE double product_error(double a, double b, double p)
 {
 #ifdef FP_FAST_FMA
     return fma(a, b, -p);
@@ -51,7 +58,7 @@ static inline double product_error(double a, double b, double p)
 #endif
 }
 
-static inline dd two_product(double a, double b)
+ALWAYS_INLINE dd two_product(double a, double b)
 {
     const double p = a*b;
     return dd_pair(p, product_error(a, b, p));

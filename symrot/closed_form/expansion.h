@@ -48,7 +48,9 @@ static inline void expansion_times(const expansion *from, dd x, expansion *to)
 /* to = I w^2 (I - other), added to what `to` holds, exactly. */
 static inline void add_share(dd moment, dd omega, dd other, expansion *to)
 {
-    expansion first = {1, {1.0}}, second;
+    expansion first, second;
+    first.length = 1; /* what lies beyond the length is left alone: 4 kB */
+    first.part[0] = 1.0;
     expansion_times(&first, moment, &second);
     expansion_times(&second, omega, &first);
     expansion_times(&first, omega, &second);
@@ -69,7 +71,8 @@ static inline dd exact_defect(const dd moments[3], const dd omega[3])
         if ((!dd_less(moments[i], a) && !dd_less(b, moments[i])) || (!dd_less(moments[i], b) && !dd_less(a, moments[i])))
             middle = i;
     }
-    expansion sum = {0, {0.0}};
+    expansion sum;
+    sum.length = 0;
     add_share(moments[(middle + 1)%3], omega[(middle + 1)%3], moments[middle], &sum);
     add_share(moments[(middle + 2)%3], omega[(middle + 2)%3], moments[middle], &sum);
     dd rounded = {0.0, 0.0};
