@@ -3,13 +3,16 @@
 #include "free_body.h"
 #include "series.h"
 
+/* Terms of a series below this part of the first are left out: 2^-110. */
+#define NEGLIGIBLE 0x1p-110
+
 /* The body in its own renamed axes, everything to 31 digits. */
 typedef struct {
     int axis[3];        /* which given axis e1, e2, e3 is */
     double direction[3]; /* along it (1) or against it (-1) */
     double s;
     dd moments[3], momenta[3], amplitudes[3], total, twice_energy; /* I, L, A, |L|, 2T */
-    dd modulus, complement, rate, u;                              /* m, 1 - m, lambda, u0 */
+    dd modulus, complement, rate, u, eta;                         /* m, 1 - m, lambda, u0, eta */
 } canonical_motion;
 
 /* The quaternion of the change of axes from the given ones to e1, e2, e3 (Shepperd's choice of the largest). */
@@ -37,17 +40,11 @@ static void renaming(const canonical_motion *c, dd q[4])
     normalise(q);
 }
 
-/* f->attitude, column j = left*e_i*right*conj(axes). */
-static void store_column(const dd left[4], int i, const dd right[4], const body_axes *axes, int j, free_body *f)
+/* f->attitude, column j = left*right. */
+static void store_column(const dd left[4], const dd right[4], int j, free_body *f)
 {
-    dd back[4], last[4], unit[4], first[4], column[4];
-    for (int k = 0; k < 4; ++k) {
-        back[k] = k ? dd_negative(axes->quaternion[k]) : axes->quaternion[k];
-        unit[k] = dd_of(k == i);
-    }
-    quaternion_product(right, back, last);
-    quaternion_product(left, unit, first);
-    quaternion_product(first, last, column);
+    dd column[4];
+    quaternion_product(left, right, column);
     for (int k = 0; k < 4; ++k)
         f->attitude[k][j] = column[k].hi;
 }
@@ -63,9 +60,8 @@ static void store_omega(const body_axes *axes, int axis, dd amplitude, double sc
 static void prepare_steady(const dd omega[3], const dd q0[4], const body_axes *axes, double scale, free_body *f)
 {
     static const dd pi = DD_PI;
-    const dd one[4] = {{1.0, 0.0}, {0.0, 0.0}, {0.0, 0.0}, {0.0, 0.0}};
     const dd speed = dd_sqrt(dd_add(dd_add(dd_square(omega[0]), dd_square(omega[1])), dd_square(omega[2])));
-    dd unit[4] = {{0.0, 0.0}}, turned[4];
+    dd unit[4] = {{0.0, 0.0}}, turned[4], back[4];
     for (int i = 0; i < 3; ++i) {
         dd given = dd_of(0.0);
         for (int k = 0; k < 3; ++k)
@@ -74,8 +70,9 @@ static void prepare_steady(const dd omega[3], const dd q0[4], const body_axes *a
         unit[i + 1] = speed.hi > 0.0 ? dd_div(omega[i], speed) : dd_of(0.0);
     }
     quaternion_product(q0, unit, turned);
-    store_column(q0, 0, one, axes, 0, f);
-    store_column(turned, 0, one, axes, 1, f);
+    quaternion_conjugate(axes->quaternion, back);
+    store_column(q0, back, 0, f);
+    store_column(turned, back, 1, f);
     f->regime = STEADY;
     store_phase(dd_scale(dd_div(speed, pi), 0.25), dd_of(0.0), f->turning);
 }
@@ -117,9 +114,10 @@ static void canonical(const dd inertia[3], const dd omega[3], const dd differenc
     c->s = third == 0 ? 1.0 : -1.0;
 
     const dd square1 = dd_square(L[0]), square2 = dd_square(L[1]), square3 = dd_square(L[2]);
-    const dd a1 = dd_add(square1, dd_div(dd_mul(dd_mul(square2, I[0]), i32), dd_mul(I[1], i31)));
+    const dd across = dd_div(square2, dd_mul(I[1], i31));
+    const dd a1 = dd_add(square1, dd_mul(across, dd_mul(I[0], i32)));
     const dd a2 = dd_add(square2, dd_div(dd_mul(dd_mul(square1, I[1]), i31), dd_mul(I[0], i32)));
-    const dd a3 = dd_add(square3, dd_div(dd_mul(dd_mul(square2, I[2]), i21), dd_mul(I[1], i31)));
+    const dd a3 = dd_add(square3, dd_mul(across, dd_mul(I[2], i21)));
     const dd g = dd_add(dd_add(square1, square2), square3);
     c->amplitudes[0] = dd_sqrt(a1);
     c->amplitudes[1] = dd_sqrt(a2);
@@ -130,9 +128,9 @@ static void canonical(const dd inertia[3], const dd omega[3], const dd differenc
     c->modulus = dd_div(dd_mul(dd_mul(i21, a1), share), I[0]);
     c->complement = dd_mul(dd_abs(defect), share);
     c->rate = dd_mul(dd_div(c->amplitudes[2], I[2]), dd_sqrt(dd_div(dd_mul(i32, i31), dd_mul(I[0], I[1]))));
-    const dd cosine = dd_div(L[0], c->amplitudes[0]), sine = dd_scale(dd_div(L[1], c->amplitudes[1]), c->s);
-    const dd delta = dd_div(L[2], c->amplitudes[2]);
-    c->u = dd_mul(sine, dd_rf(dd_square(cosine), dd_square(delta), dd_of(1.0)));
+    const dd sine = dd_scale(dd_div(L[1], c->amplitudes[1]), c->s);
+    c->u = dd_mul(sine, dd_rf(dd_div(square1, a1), dd_div(square3, a3), dd_of(1.0)));
+    c->eta = dd_mul(c->amplitudes[2], dd_rf(a1, dd_add(a1, dd_mul(c->modulus, a3)), g));
 }
 
 /* d psi/dt / 2 at u = 0, where L = (A1, 0, A3). */
@@ -143,42 +141,38 @@ static dd half_turning(const canonical_motion *c)
     return dd_scale(dd_div(above, dd_add(c->total, c->amplitudes[2])), 0.5);
 }
 
-enum { TERMS = 8 };
+/* The nome is at most 0.075 (where m = 0.7): nome^(n^2) is below 1e-40 from n = 6 on. */
+enum { TERMS = 6 };
 
-/* nome^(n(n+1)) and nome^(n^2), also with the signs of theta1 and theta4; the sums at 0, theta2 over 2 nome^(1/4). */
+/* nome^(n(n+1)) and nome^(n^2), the latter twice but for n = 0; the sums at 0, theta2 over 2 nome^(1/4). */
 typedef struct {
-    dd odd[TERMS], odd_signed[TERMS], even[TERMS], even_signed[TERMS], theta2, theta3, theta4;
+    dd odd[TERMS], even[TERMS], theta2, theta3, theta4;
 } theta_terms;
 
 static void theta_terms_of(dd nome, theta_terms *t)
 {
-    dd product = dd_of(1.0), step = nome, square = dd_square(nome), odd_sum = dd_of(0.0);
-    /* product: nome^(n^2), step: nome^(2n+1) */
-    dd power = dd_of(1.0); /* nome^n */
+    dd product = dd_of(1.0), power = dd_of(1.0), sums[2] = {{0.0, 0.0}, {0.0, 0.0}}; /* nome^(n^2), nome^n */
+    t->theta2 = dd_of(0.0);
     for (int n = 0; n < TERMS; ++n) {
-        const double sign = n%2 ? -1.0 : 1.0;
+        if (product.hi < NEGLIGIBLE) {
+            t->even[n] = t->odd[n] = dd_of(0.0);
+            continue;
+        }
         t->even[n] = dd_scale(product, n ? 2.0 : 1.0);
-        t->even_signed[n] = dd_scale(t->even[n], sign);
         t->odd[n] = dd_mul(product, power);
-        t->odd_signed[n] = dd_scale(t->odd[n], sign);
-        odd_sum = dd_add(odd_sum, t->odd[n]);
-        product = dd_mul(product, step);
-        step = dd_mul(step, square);
+        t->theta2 = dd_add(t->theta2, t->odd[n]);
+        sums[n & 1] = dd_add(sums[n & 1], t->even[n]);
         power = dd_mul(power, nome);
+        product = dd_mul(t->odd[n], power);
     }
-    dd even = dd_of(0.0), alternating = dd_of(0.0);
-    for (int n = TERMS - 1; n >= 0; --n) {
-        even = dd_add(even, t->even[n]);
-        alternating = dd_add(alternating, t->even_signed[n]);
-    }
-    t->theta2 = odd_sum;
-    t->theta3 = even;
-    t->theta4 = alternating;
+    t->theta3 = dd_add(sums[0], sums[1]);
+    t->theta4 = dd_sub(sums[0], sums[1]);
 }
 
-static void scaled(const dd from[TERMS], dd factor, dd to[SERIES])
+/* to = factor*from, with alternating signs where `sign` is -1. */
+static void scaled(const dd from[TERMS], dd factor, double sign, dd to[SERIES])
 {
-    for (int n = 0; n < SERIES; ++n)
+    for (int n = 0; n < SERIES; ++n, factor = dd_scale(factor, sign))
         to[n] = dd_mul(from[n], factor);
 }
 
@@ -186,42 +180,41 @@ static void scaled(const dd from[TERMS], dd factor, dd to[SERIES])
  * m < 0.7. In z = pi u/2K: cn ~ theta2/theta4, sn ~ theta1/theta4, dn ~ theta3/theta4; N real and imaginary from
  * c_n, s_n = q^(2n^2-n) e^(-n pi eta/K) +- q^(2n^2+n) e^(n pi eta/K). Returns kappa; N at the start in `real`, `imag`.
  */
-static dd prepare_circular(const canonical_motion *c, dd k, dd k_prime, dd eta, free_body *f, dd *real, dd *imag)
+static dd prepare_circular(const canonical_motion *c, dd k, dd k_prime, free_body *f, dd *real, dd *imag)
 {
     static const dd pi = DD_PI;
     const int round = !(c->modulus.hi > 0.0);
     const dd per = dd_div(pi, k);
-    const dd nome = round ? dd_of(0.0) : dd_exp(dd_negative(dd_mul(per, k_prime)));
+    /* q = shift*close; q e^(eta pi/K) = exp(-(K' - eta) pi/K), without a product of something huge and something tiny */
+    const dd shift = dd_exp(dd_negative(dd_mul(per, c->eta)));
+    const dd close = round ? dd_of(0.0) : dd_exp(dd_negative(dd_mul(per, dd_sub(k_prime, c->eta))));
+    const dd nome = dd_mul(shift, close);
     theta_terms t;
     theta_terms_of(nome, &t);
-    dd c4[SERIES], work[SERIES];
+    dd work[SERIES];
     /* theta4 scaled so that it is about 1, the numerators so that cn(0) = sn(K) = dn(0) = 1 */
-    scaled(t.even_signed, dd_of(1.0), c4);
-    even_series(c4, f->series[3]);
-    scaled(t.odd, dd_div(t.theta4, t.theta2), work);
+    scaled(t.even, dd_of(1.0), -1.0, work);
+    even_series(work, f->series[3]);
+    scaled(t.odd, dd_div(t.theta4, t.theta2), 1.0, work);
     odd_series(work, 1.0, f->series[0]);
-    scaled(t.odd_signed, dd_div(t.theta3, t.theta2), work); /* theta1, theta4 at pi/2 are theta2, theta3 at 0 */
+    scaled(t.odd, dd_div(t.theta3, t.theta2), -1.0, work); /* theta1, theta4 at pi/2 are theta2, theta3 at 0 */
     odd_series(work, -1.0, f->series[1]);
-    scaled(t.even, dd_div(t.theta4, t.theta3), work);
+    scaled(t.even, dd_div(t.theta4, t.theta3), 1.0, work);
     even_series(work, f->series[2]);
 
-    dd cosines[TERMS], sines[TERMS];
-    cosines[0] = dd_of(1.0);
-    sines[0] = dd_of(0.0);
+    dd cosines[SERIES] = {{1.0, 0.0}}, sines[SERIES] = {{0.0, 0.0}};
     dd growing = dd_of(1.0), shrinking = dd_of(1.0); /* q^(2n^2+n) e^(n pi eta/K), q^(2n^2-n) e^(-n pi eta/K) */
-    dd bare = nome;                                  /* nome^(4n+1) below */
-    const dd shift = dd_exp(dd_negative(dd_mul(per, eta)));
-    /* q e^(eta pi/K) = exp(-(K' - eta) pi/K), without a product of something huge and something tiny */
-    const dd close = round ? dd_of(0.0) : dd_exp(dd_negative(dd_mul(per, dd_sub(k_prime, eta))));
-    const dd square = dd_square(nome), fourth = dd_square(square);
-    for (int n = 1; n < TERMS; ++n) {
+    dd bare = dd_of(1.0);                            /* nome^(4n) below */
+    const dd square = dd_square(nome), fourth = dd_square(square), both = dd_mul(nome, shift), last = dd_mul(square, close);
+    int terms = 1; /* at most SERIES: for n = 5 already q^(2n^2-n) is below 1e-50 */
+    for (; terms < SERIES && shrinking.hi > NEGLIGIBLE; ++terms) {
         /* from n-1 to n: 2n^2-n grows by 4n-3, 2n^2+n by 4n-1 */
-        shrinking = dd_mul(shrinking, dd_mul(bare, shift));
-        growing = dd_mul(growing, dd_mul(dd_mul(bare, nome), close));
+        shrinking = dd_mul(shrinking, dd_mul(bare, both));
+        growing = dd_mul(growing, dd_mul(bare, last));
         bare = dd_mul(bare, fourth);
-        const double sign = n%2 ? -1.0 : 1.0;
-        cosines[n] = dd_scale(dd_add(shrinking, growing), sign);
-        sines[n] = dd_scale(dd_sub(shrinking, growing), sign*c->s);
+        const double sign = terms%2 ? -1.0 : 1.0;
+        cosines[terms] = dd_scale(dd_add(shrinking, growing), sign);
+        sines[terms] = dd_scale(dd_sub(shrinking, growing), sign*c->s);
     }
     even_series(cosines, f->series[4]);
     /* sin 2nz = sin 2z U_(n-1)(cos 2z): U0 = 1, U1 = 2x, U2 = 4x^2 - 1, U3 = 8x^3 - 4x */
@@ -237,7 +230,7 @@ static dd prepare_circular(const canonical_motion *c, dd k, dd k_prime, dd eta, 
     *imag = dd_of(0.0);
     dd s1, c1, sn = dd_of(0.0), cn = dd_of(1.0);
     dd_sincos_turns(dd_scale(start, 2.0), &s1, &c1); /* of 2z */
-    for (int n = 1; n < TERMS; ++n) {
+    for (int n = 1; n < terms; ++n) {
         const dd next = dd_sub(dd_mul(cn, c1), dd_mul(sn, s1));
         sn = dd_add(dd_mul(sn, c1), dd_mul(cn, s1));
         cn = next;
@@ -257,7 +250,7 @@ static dd prepare_circular(const canonical_motion *c, dd k, dd k_prime, dd eta, 
  * N = sum q'^(n(n+1)/2) [cos((2n+1)x) cosh((2n+1)v/2) - i sin((2n+1)x) sinh((2n+1)v/2)], x = s pi (K' - eta)/4K',
  * and an even part of psi per u that goes into kappa. On the separatrix K is infinite and q' = 0.
  */
-static dd prepare_hyperbolic(const canonical_motion *c, dd k, dd k_prime, dd eta, free_body *f, dd *real, dd *imag)
+static dd prepare_hyperbolic(const canonical_motion *c, dd k, dd k_prime, free_body *f, dd *real, dd *imag)
 {
     static const dd pi = DD_PI;
     const int endless = !(c->complement.hi > 0.0);
@@ -266,28 +259,29 @@ static dd prepare_hyperbolic(const canonical_motion *c, dd k, dd k_prime, dd eta
     theta_terms t;
     theta_terms_of(nome, &t);
     dd work[SERIES];
-    scaled(t.odd, dd_of(1.0), work);
+    scaled(t.odd, dd_of(1.0), 1.0, work);
     odd_series(work, 1.0, f->series[3]);
-    scaled(t.even_signed, dd_div(t.theta2, t.theta4), work);
+    scaled(t.even, dd_div(t.theta2, t.theta4), -1.0, work);
     even_series(work, f->series[0]);
-    scaled(t.odd_signed, dd_div(t.theta3, t.theta4), work);
+    scaled(t.odd, dd_div(t.theta3, t.theta4), -1.0, work);
     odd_series(work, -1.0, f->series[1]);
-    scaled(t.even, dd_div(t.theta2, t.theta3), work);
+    scaled(t.even, dd_div(t.theta2, t.theta3), 1.0, work);
     even_series(work, f->series[2]);
 
-    const dd turns = dd_scale(dd_div(dd_sub(k_prime, eta), k_prime), 0.125*c->s); /* x/(2 pi) */
+    const dd turns = dd_scale(dd_div(dd_sub(k_prime, c->eta), k_prime), 0.125*c->s); /* x/(2 pi) */
     const dd v = dd_scale(dd_mul(per, c->u), 0.5);
-    const dd up = dd_exp(dd_scale(v, 0.5)), down = dd_exp(dd_scale(v, -0.5));
-    dd plus = up, minus = down, sine, cosine, product = dd_of(1.0), step = nome;
+    const dd up = dd_exp(dd_scale(v, 0.5)), down = dd_div(dd_of(1.0), up);
     const dd up2 = dd_square(up), down2 = dd_square(down);
+    dd plus = up, minus = down, sine, cosine, product = dd_of(1.0), step = nome;
     dd real_terms[TERMS], imag_terms[TERMS], drift = dd_of(0.0), level = dd_of(0.0);
+    dd_sincos_turns(turns, &sine, &cosine);
+    const dd c2 = dd_sub(dd_square(cosine), dd_square(sine)), s2 = dd_scale(dd_mul(sine, cosine), 2.0);
     *real = *imag = dd_of(0.0);
-    const double decay = 0.5*dd_mul(per, k).hi; /* term n is at most exp(-decay n^2) of the first */
+    const double decay = 0.5*dd_mul(per, k).hi; /* term n is at most exp(-decay n^2) of the first, n = 6 below 1e-29 */
     for (int n = 0; n < TERMS; ++n) {
         real_terms[n] = imag_terms[n] = dd_of(0.0);
         if (n > 0 && (endless || decay*n*n > 80.0))
             continue;
-        dd_sincos_turns(dd_mul(turns, dd_of(2.0*n + 1.0)), &sine, &cosine);
         real_terms[n] = dd_mul(product, cosine);
         imag_terms[n] = dd_negative(dd_mul(product, sine));
         *real = dd_add(*real, dd_scale(dd_mul(real_terms[n], dd_add(plus, minus)), 0.5));
@@ -298,6 +292,9 @@ static dd prepare_hyperbolic(const canonical_motion *c, dd k, dd k_prime, dd eta
         step = dd_mul(step, nome);
         plus = dd_mul(plus, up2);
         minus = dd_mul(minus, down2);
+        const dd next = dd_sub(dd_mul(cosine, c2), dd_mul(sine, s2));
+        sine = dd_add(dd_mul(sine, c2), dd_mul(cosine, s2));
+        cosine = next;
     }
     odd_series(real_terms, 1.0, f->series[4]);
     odd_series(imag_terms, -1.0, f->series[5]);
@@ -322,9 +319,10 @@ static dd prepare_hyperbolic(const canonical_motion *c, dd k, dd k_prime, dd eta
 static void prepare_attitude(const canonical_motion *c, dd real, dd imag, dd lead, const dd q0[4], const body_axes *axes,
     free_body *f)
 {
-    dd x[4], spun[4], back[4], left[4], turn[4];
-    dd sine, cosine;
-    dd_sincos_turns(lead, &sine, &cosine);
+    dd x[4], spun[4], back[4], left[4], turn[4], right[4], column[4];
+    dd sine = dd_of(0.0), cosine = dd_of(1.0);
+    if (lead.hi != 0.0)
+        dd_sincos_turns(lead, &sine, &cosine);
     const dd re = dd_sub(dd_mul(real, cosine), dd_mul(imag, sine));
     const dd im = dd_add(dd_mul(real, sine), dd_mul(imag, cosine));
     const dd p[3] = {dd_add(c->total, c->momenta[2]), c->momenta[1], dd_negative(c->momenta[0])};
@@ -335,11 +333,14 @@ static void prepare_attitude(const canonical_motion *c, dd real, dd imag, dd lea
     normalise(x);
     renaming(c, turn);
     quaternion_product(x, turn, spun);
-    for (int i = 0; i < 4; ++i)
-        back[i] = i ? dd_negative(spun[i]) : spun[i];
+    quaternion_conjugate(spun, back);
     quaternion_product(q0, back, left);
-    for (int j = 0; j < 4; ++j)
-        store_column(left, j, turn, axes, j, f);
+    quaternion_conjugate(axes->quaternion, back);
+    quaternion_product(turn, back, right);
+    for (int j = 0; j < 4; ++j) {
+        quaternion_times_unit(left, j, column);
+        store_column(column, right, j, f);
+    }
 }
 
 /*
@@ -419,16 +420,11 @@ int symrot_free_body_prepare(
     const dd half_pi = dd_scale(pi, 0.5);
     const dd k = c.complement.hi > 0.0 ? dd_div(half_pi, dd_agm(dd_sqrt(c.complement))) : endless;
     const dd k_prime = c.modulus.hi > 0.0 ? dd_div(half_pi, dd_agm(dd_sqrt(c.modulus))) : endless;
-    const dd squares[2] = {dd_square(c.amplitudes[0]), dd_square(c.amplitudes[2])};
-    const dd g = dd_square(c.total);
-    const dd eta = dd_mul(
-        dd_div(c.amplitudes[2], c.total),
-        dd_rf(dd_div(squares[0], g), dd_div(dd_add(squares[0], dd_mul(c.modulus, squares[1])), g), dd_of(1.0)));
     dd real, imag, kappa, lead = dd_of(0.0);
     if (c.modulus.hi < 0.7)
-        kappa = prepare_circular(&c, k, k_prime, eta, f, &real, &imag);
+        kappa = prepare_circular(&c, k, k_prime, f, &real, &imag);
     else
-        kappa = prepare_hyperbolic(&c, k, k_prime, eta, f, &real, &imag);
+        kappa = prepare_hyperbolic(&c, k, k_prime, f, &real, &imag);
     if (f->regime == HYPERBOLIC)
         lead = dd_scale(dd_mul(dd_div(c.u, k), dd_of(f->slope)), 0.5); /* the sawtooth of psi/2 at the start */
     store_phase(dd_scale(dd_div(kappa, pi), 0.5), dd_of(0.0), f->turning);

@@ -7,15 +7,31 @@
 #include "double_double.h"
 #include "regimes.h"
 
+static const int QUATERNION_OTHER[4][4] = {{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 3, 0, 1}, {3, 2, 1, 0}};
+static const double QUATERNION_SIGN[4][4] = {{1, -1, -1, -1}, {1, 1, -1, 1}, {1, 1, 1, -1}, {1, -1, 1, 1}};
+
+/* c = a b; zeros of b, as changes of axes have them, cost nothing. */
 ONE_COPY void quaternion_product(const dd a[4], const dd b[4], dd c[4])
 {
-    static const int other[4][4] = {{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 3, 0, 1}, {3, 2, 1, 0}};
-    static const double sign[4][4] = {{1, -1, -1, -1}, {1, 1, -1, 1}, {1, 1, 1, -1}, {1, -1, 1, 1}};
     for (int i = 0; i < 4; ++i) {
-        c[i] = dd_of(0.0);
-        for (int j = 0; j < 4; ++j)
-            c[i] = dd_add(c[i], dd_scale(dd_mul(a[other[i][j]], b[j]), sign[i][j]));
+        c[i] = dd_mul(a[i], b[0]);
+        for (int j = 1; j < 4; ++j)
+            if (b[j].hi != 0.0)
+                c[i] = dd_add(c[i], dd_scale(dd_mul(a[QUATERNION_OTHER[i][j]], b[j]), QUATERNION_SIGN[i][j]));
     }
+}
+
+/* c = a e, with e the quaternion unit 1, i, j or k: 0 to 3. */
+static inline void quaternion_times_unit(const dd a[4], int unit, dd c[4])
+{
+    for (int i = 0; i < 4; ++i)
+        c[i] = dd_scale(a[QUATERNION_OTHER[i][unit]], QUATERNION_SIGN[i][unit]);
+}
+
+static inline void quaternion_conjugate(const dd a[4], dd c[4])
+{
+    for (int i = 0; i < 4; ++i)
+        c[i] = i ? dd_negative(a[i]) : a[i];
 }
 
 /* Divide by the norm; a norm of 1 to the last bit is left alone. */
@@ -75,12 +91,10 @@ ONE_COPY void even_series(const dd c[SERIES], double to[SERIES])
  */
 ONE_COPY void odd_series(const dd c[SERIES], double sign, double to[SERIES])
 {
-    dd even[SERIES];
-    for (int n = 0; n < SERIES; ++n) {
-        even[n] = dd_of(0.0);
-        double flip = n ? 2.0 : 1.0;
-        for (int k = n; k < SERIES; ++k, flip *= -sign)
-            even[n] = dd_add(even[n], dd_scale(c[k], flip));
+    dd even[SERIES], rest = dd_of(0.0);
+    for (int n = SERIES - 1; n >= 0; --n) {
+        rest = dd_sub(c[n], dd_scale(rest, sign));
+        even[n] = dd_scale(rest, n ? 2.0 : 1.0);
     }
     even_series(even, to);
 }
