@@ -45,16 +45,26 @@ _time = number("a time in s")
 _moment = vector("N m")
 
 
+def _plain(value: Any) -> bool:
+    """Return whether a number is a double that needs no reading, as of many samples nearly all do not."""
+    return type(value) is float and (1e-99 < abs(value) < 1e99 or value == 0.0)
+
+
 def _times(value: Any, where: str) -> tuple[float, ...]:
     if not isinstance(value, list | tuple):
         expected(where, "a list of times in s", value)
-    return tuple(float(_time(item, f"{where}[{index}]")) for index, item in enumerate(value))
+    return tuple(item if _plain(item) else float(_time(item, f"{where}[{index}]")) for index, item in enumerate(value))
 
 
 def _moments(value: Any, where: str) -> tuple[tuple[float, ...], ...]:
     if not isinstance(value, list | tuple):
         expected(where, "a list of torques, each three numbers [x, y, z] in N m", value)
-    return tuple(tuple(map(float, _moment(item, f"{where}[{index}]"))) for index, item in enumerate(value))
+    return tuple(
+        tuple(item)
+        if isinstance(item, list | tuple) and len(item) == 3 and all(map(_plain, item))
+        else tuple(map(float, _moment(item, f"{where}[{index}]")))
+        for index, item in enumerate(value)
+    )
 
 
 _ENTRIES = {

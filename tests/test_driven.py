@@ -9,7 +9,8 @@ import pytest
 
 import symrot
 from symrot.codegen import library
-from symrot.errors import InputError
+from symrot.errors import InputError, PropagationError
+from symrot.propagation import driven
 from symrot.scene import Scene
 
 
@@ -91,6 +92,40 @@ def test_a_table_is_interpolated_and_may_jump():
     stepped = symrot.propagator(scene(), torque=jump, switching_times=[1.25])()
     assert stepped.omega[-1, 2] == pytest.approx(1.25 - 1.75 / 2, abs=1e-15)
     assert stepped.stats.rejected == 0
+
+
+@pytest.mark.parametrize("formulas", [["3/10", "1/10", "-1/5"], ["3/10 - t/10", "t/5", "0"]], ids=["constant", "line"])
+def test_samples_of_one_line_take_no_steps_of_their_own(formulas):
+    """Pieces of one line, or constant, are stepped over eight samples at a time; a bend between two lines is not."""
+    free = {"omega": (0.1, 1, 0.3), "moments": (1, 2, 3)}
+    known = symrot.propagate(scene(**free, torque=[{"kind": "expression", "torque": formulas}]), tolerance=1e-14)
+    times = np.linspace(0, 3, 1001)
+    slopes, starts = ([-0.1, 0.2, 0], [0.3, 0, 0]) if "t" in formulas[1] else ([0, 0, 0], [0.3, 0.1, -0.2])
+    samples = np.outer(times, slopes) + starts
+    smooth = symrot.propagator(scene(**free), torque=(times, samples), tolerance=1e-12)()
+    assert smooth.stats.accepted < 1.1 * 1000 / driven.SAMPLES_PER_STEP and abs(smooth.y - known.y).max() < 1e-12
+    waves = symrot.propagator(scene(**free), torque=(times, samples + np.sin(times)[:, None]), tolerance=1e-12)()
+    assert waves.stats.accepted > 900
+
+
+def test_a_spline_far_from_its_samples_is_refused():
+    """Two samples of a jump one bit apart send the spline beside it to 1e30 N m; declared, the jump is one."""
+    samples = np.array([[0, 0, 0], [0.1, 0, 0], [-0.1, 1, 0], [0, 0, 0.1]])
+    with pytest.raises(
+        InputError, match=r"expected samples that a cubic spline keeps near, .* between 1\.0000000000000002 and 3\.0 s"
+    ):
+        symrot.propagator(scene(), torque=([0, 1, math.nextafter(1, 2), 3], samples))
+    assert symrot.propagator(scene(), torque=([0, 1, 1, 3], samples), switching_times=[1])().success
+    ramps = [[0, 0, 0], [0, 0, 0], [1, 0, 0], [1, 0, 0]]  # one sample of 100 apart: odd, not refused
+    assert symrot.propagator(scene(), torque=([0, 1, 1.01, 3], ramps))().success
+
+
+def test_a_table_that_spins_too_fast_ends_in_a_sentence(monkeypatch):
+    """1e10 N m for 3 s are 1e10 turns."""
+    table = [0, 1, 3], [[1e10, 0, 0], [0, 1e10, 0], [0, 0, 1e10]]
+    monkeypatch.setattr(driven._Table, "most_steps", 100_000)
+    with pytest.raises(PropagationError, match=r"beyond t = .* s: 100000 steps were not enough; the next would be"):
+        symrot.propagator(scene(omega=(1, 2, 3), moments=(1, 2, 2.5)), torque=table)()
 
 
 def test_a_c_function_through_ctypes(tmp_path):

@@ -25,7 +25,7 @@ from symrot.propagation.kernels import error_blocks, scene_kernel
 from symrot.propagation.method import DRIVEN
 from symrot.propagation.motion import Motion
 from symrot.propagation.propagator import Propagator
-from symrot.propagation.stepping import Recording, Stats, Task
+from symrot.propagation.stepping import MAX_STEPS, Recording, Stats, Task
 from symrot.scene import Initial, Scene
 from symrot.scene_kernel import SceneKernel
 
@@ -38,6 +38,9 @@ CALLBACK = ctypes.CFUNCTYPE(
 )  # fmt: skip
 WHOLE: dict[str, Any] = {"planar": None, "initial_quaternion": None, "constant": {}, "attitude": True}
 SAMPLES_PER_STEP = 8.0  # of a table: a longer step could pass over what they say
+BEND = 2.0**-50  # of the torque: what the last bits of samples bend their spline by, from one to the next
+OVERSHOOT = 100.0  # times the largest sample: a spline that goes so far says nothing of the torque
+MOST_STEPS = 30_000_000  # under a table, some 20 s; others end at stepping.MAX_STEPS
 FORMS = "a function of (t, omega, quaternion), a C function of ctypes, or a table (times, samples)"
 
 
@@ -46,6 +49,7 @@ class _Function:
 
     user: Any = None
     longest_step = math.inf
+    most_steps = MAX_STEPS
     knots: Sequence[float] = ()
 
     def __init__(self, function: Callable[[float, Floats, Floats], ArrayLike]) -> None:
@@ -83,6 +87,7 @@ class _CFunction:
 
     user: Any = None
     longest_step = math.inf
+    most_steps = MAX_STEPS
     knots: Sequence[float] = ()
 
     def __init__(self, function: Any) -> None:
@@ -96,6 +101,8 @@ class _CFunction:
 
 class _Table:
     """Samples, interpolated by cubic splines between switching times."""
+
+    most_steps = MOST_STEPS
 
     def __init__(self, times: Any, samples: Any, switching: Sequence[float]) -> None:
         try:
@@ -117,8 +124,7 @@ class _Table:
             )
         self.span = float(t[0]), float(t[-1])
         self.longest_step = SAMPLES_PER_STEP * float(np.diff(t).max())
-        self.knots = t.tolist()  # where steps end: the third derivative jumps
-        self.user = np.concatenate(_pieces(t, values, switching))
+        self.user, self.knots = _pieces(t, values, switching)
         self.pointer: Any = None  # set when the library is loaded
 
     def check(self, low: float, high: float) -> None:
@@ -130,8 +136,8 @@ class _Table:
         return None
 
 
-def _pieces(t: Floats, values: Floats, switching: Sequence[float]) -> list[Floats]:
-    """Return the table of ``symrot_table_torque``: one spline between each two switching times."""
+def _pieces(t: Floats, values: Floats, switching: Sequence[float]) -> tuple[Floats, list[float]]:
+    """Return the table of ``symrot_table_torque``, one spline between each two switching times; and where steps end."""
     from scipy.interpolate import CubicSpline
 
     cuts = [0]
@@ -140,15 +146,39 @@ def _pieces(t: Floats, values: Floats, switching: Sequence[float]) -> list[Float
         if len(inside) == 2:
             cuts.append(int(inside[1]))
     cuts.append(len(t))
-    edges, coefficients = [], []
+    edges, coefficients, knots = [], [], [float(t[-1])]
     for low, high in pairwise(cuts):
         if high - low < 2:
             raise InputError(f"torque: expected two samples or more between switching times, got one at {t[low]} s")
         spline = CubicSpline(t[low:high], values[low:high])
+        _check_overshoot(spline, float(np.abs(values).max()))
         edges.append(spline.x[:-1])
+        knots += [float(spline.x[0]), *_bends(spline)]
         coefficients.append(np.ascontiguousarray(np.moveaxis(spline.c, 0, 2)).reshape(-1, 12))
     count = sum(map(len, edges))
-    return [np.array([float(count)]), *edges, t[-1:], *(part.ravel() for part in coefficients)]
+    return np.concatenate([[float(count)], *edges, t[-1:], *(part.ravel() for part in coefficients)]), knots
+
+
+def _check_overshoot(spline: Any, largest: float) -> None:
+    """Refuse samples so unevenly spaced that the spline through them is far from all of them."""
+    starts, gaps = spline.x[:-1], np.diff(spline.x)
+    found = np.max([np.abs(spline(starts + part * gaps)).max(axis=1) for part in (0.25, 0.5, 0.75)], axis=0)
+    worst = int(np.argmax(found))
+    before, after = map(float, spline.x[worst : worst + 2])
+    if not found[worst] <= OVERSHOOT * largest:
+        raise InputError(
+            f"torque: expected samples that a cubic spline keeps near, got samples of at most {largest:.3g} N m that "
+            f"send it to {found[worst]:.3g} N m between {before!r} and {after!r} s; a jump is a switching time with "
+            "two samples, before and after"
+        )
+
+
+def _bends(spline: Any) -> list[float]:
+    """Return the samples at which the third derivative jumps: not those between pieces of one line, or constant."""
+    gaps, cubic = np.diff(spline.x)[:, None], spline.c[0]
+    jumps = np.abs(np.diff(cubic, axis=0)) * np.minimum(gaps[1:], gaps[:-1]) ** 3
+    found: list[float] = spline.x[1:-1][(jumps > BEND * np.abs(spline.c[3]).max(axis=0)).any(axis=1)].tolist()
+    return found
 
 
 def _drive(torque: Any, switching: Sequence[float]) -> Any:
@@ -217,7 +247,8 @@ class DrivenMotion(Motion):
         assert self.library is not None
         return dop853.task(
             self.library, self.driven_parameters, self.plan.initial_state, self.start, self.tolerance,
-            max_step=self._drive.longest_step, breaks=sorted({*self.switching, *self._drive.knots}),
+            max_step=self._drive.longest_step, max_steps=self._drive.most_steps,
+            breaks=sorted({*self.switching, *self._drive.knots}),
         )  # fmt: skip
 
     def guarded(self, low: float, high: float, run: Callable[[], Any]) -> Any:
