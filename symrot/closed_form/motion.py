@@ -3,6 +3,7 @@
 import ctypes
 from abc import ABC, abstractmethod
 from collections.abc import Callable
+from struct import Struct
 from typing import Any
 
 import numpy as np
@@ -117,7 +118,7 @@ def prepared(name: str, arguments: tuple[list[float] | None, ...], refusal: Call
             raise InputError(refusal()) from None
     prepare, evaluate, record = _functions(name, len(arguments))
     constants = record()
-    given = [None if values is None else _array(values) for values in arguments]
+    given = [None if values is None else _packed(values) for values in arguments]
     status = prepare(*given, ctypes.addressof(constants))
     if status == _DOMAIN:
         raise InputError(refusal())
@@ -126,8 +127,9 @@ def prepared(name: str, arguments: tuple[list[float] | None, ...], refusal: Call
     return _Compiled(constants, evaluate)
 
 
-_kinds = {length: ctypes.c_double * length for length in (2, 4, 6, 8, 26)}
+_packing = {length: Struct(f"{length}d").pack for length in (2, 4, 6, 8, 26)}
 
 
-def _array(values: list[float]) -> Any:
-    return _kinds[len(values)](*values)
+def _packed(values: list[float]) -> bytes:
+    """Return doubles as C reads them; an array of ctypes takes five times as long."""
+    return _packing[len(values)](*values)

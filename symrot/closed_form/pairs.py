@@ -53,7 +53,7 @@ def numbers(what: str, values: Sequence[Number], length: int) -> list[Number]:
         If there is another count of them, or one is not a finite real number.
     """
     found = list(values)
-    if len(found) == length and all(type(value) is float and isfinite(value) for value in found):
+    if len(found) == length and {*map(type, found)} == {float} and all(map(isfinite, found)):
         return found
     if len(found) != length:
         raise InputError(f"{what}: expected {length} numbers, got {len(found)}")
