@@ -35,7 +35,10 @@ static dd polished(dd b, dd c, dd d, double x)
         const dd slope = dd_add(dd_mul(dd_add(dd_add(dd_scale(root, 2.0), root), dd_scale(b, 2.0)), root), c);
         if (slope.hi == 0.0)
             break;
-        root = dd_sub(root, dd_div(value, slope));
+        const dd change = dd_div(value, slope);
+        root = dd_sub(root, change);
+        if (fabs(change.hi) <= 0x1p-80*fabs(root.hi)) /* the next change would be about its square */
+            break;
     }
     return root;
 }
