@@ -120,6 +120,14 @@ def test_a_spline_far_from_its_samples_is_refused():
     assert symrot.propagator(scene(), torque=([0, 1, 1.01, 3], ramps))().success
 
 
+def test_a_table_of_a_torque_that_grows_from_nothing_moves_a_body_at_rest():
+    """At rest, without a torque in the first moment: the first step is chosen by what it grows to."""
+    times = np.arange(-1.0, 4.0)
+    for first in (0, 1):
+        moved = symrot.propagator(scene(), torque=(times[first:], np.outer(times, [0, 1, 0])[first:]))()
+        assert abs(moved.omega[:, 1] - moved.t**2 / 2).max() < 1e-15 and moved.stats.accepted < 100
+
+
 def test_a_table_that_spins_too_fast_ends_in_a_sentence(monkeypatch):
     """1e10 N m for 3 s are 1e10 turns."""
     table = [0, 1, 3], [[1e10, 0, 0], [0, 1e10, 0], [0, 0, 1e10]]

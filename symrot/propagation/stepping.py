@@ -47,6 +47,7 @@ __all__ = [
 
 MAX_STEPS = 1_000_000_000
 FEW = 40  # sample times
+SLIVER = 2.0**-100  # of a stretch: a time that no formula tells from its end
 MANY_TICKS = 2**20  # of the clock between two ends: with fewer, it is the clock that ends short steps
 
 Floats = NDArray[np.float64]
@@ -143,11 +144,17 @@ def stretches(t0: float, end: float, breaks: Sequence[float]) -> list[Stretch]:
         Stretch(
             start,
             stop,
-            math.nextafter(start, stop) if start in known else start,
-            math.nextafter(stop, start) if stop in known else stop,
+            _inside(start, stop) if start in known else start,
+            _inside(stop, start) if stop in known else stop,
         )
         for start, stop in pairwise(edges)
     ]
+
+
+def _inside(edge: float, other: float) -> float:
+    """Return a time just inside an end of a stretch; near 0 a sliver, since first steps are chosen by the rates there."""
+    time = edge + SLIVER * (other - edge)
+    return time if time != edge else math.nextafter(edge, other)
 
 
 def both_sides(times: Floats, t0: float) -> Iterator[NDArray[np.intp]]:
