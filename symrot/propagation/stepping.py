@@ -152,7 +152,7 @@ def stretches(t0: float, end: float, breaks: Sequence[float]) -> list[Stretch]:
 
 
 def _inside(edge: float, other: float) -> float:
-    """Return a time just inside an end of a stretch; near 0 a sliver, since first steps are chosen by the rates there."""
+    """Return a time just inside an end of a stretch; near 0 a sliver, since rates there choose the first step."""
     time = edge + SLIVER * (other - edge)
     return time if time != edge else math.nextafter(edge, other)
 
