@@ -69,8 +69,7 @@ int symrot_gyrostat_prepare(
     renaming[2] = dd_of(rows[0][2] - rows[2][0]);
     renaming[3] = dd_of(rows[1][0] - rows[0][1]);
     normalise(renaming);
-    for (int i = 0; i < 4; ++i)
-        back[i] = i ? dd_negative(renaming[i]) : renaming[i];
+    quaternion_conjugate(renaming, back);
     dd start[4], n_body[4] = {{0.0, 0.0}, {0.0, 0.0}, {0.0, 0.0}, {0.0, 0.0}}, axial[4] = {{0.0, 0.0}, {0.0, 0.0}, {0.0, 0.0}, {1.0, 0.0}};
     quaternion_product(q0, back, start); /* attitude of e1, e2, e3 */
     const dd direction[3] = {w[0], w[1], along};

@@ -150,8 +150,7 @@ static void multiples(int odd, double sign, dd c1, dd s1, dd c[TERMS], dd s[TERM
 static void store_column(const dd space[4], const dd x[4], const body_axes *axes, int j, heavy_top *t)
 {
     dd back[4], first[4], column[4];
-    for (int i = 0; i < 4; ++i)
-        back[i] = i ? dd_negative(axes->quaternion[i]) : axes->quaternion[i];
+    quaternion_conjugate(axes->quaternion, back);
     quaternion_product(space, x, first);
     quaternion_product(first, back, column);
     for (int i = 0; i < 4; ++i)

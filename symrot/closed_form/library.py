@@ -1,7 +1,7 @@
 """Compile the closed forms, once per machine, and load them: all scenes share them, only their constants differ.
 
 A closed form is two C files, compiled side by side: ``name.c`` finds the constants of a motion, once, and is compiled
-at -Og, in a third of the time that -O2 takes for 5 us less; ``name_at.c`` holds the loops over samples. Elementary
+at -Og, in a third of the time that -O2 takes for 1 us less; ``name_at.c`` holds the loops over samples. Elementary
 constants need no ``name.c``. Error-free
 arithmetic needs every rounding as written: contraction is off, and each prepared motion first asks the compiled code
 whether that is so.
