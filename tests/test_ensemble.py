@@ -72,6 +72,32 @@ def test_compiled_polynomial_systems(name):
     compare(SYSTEMS[name], None)
 
 
+@pytest.mark.parametrize("width", WIDTHS)
+@pytest.mark.parametrize("t", [0.0, 0.7, -1e5, 1e6 / 7, 1e9 / 3, 1e15 / 3])
+def test_phases_of_torques_of_time_are_as_exact_as_the_time(width, t):
+    """sin(k t + 1/3), cos(k t + 1/3), exp(k t 1e-15) at any t: k t is known to 2^-78 of it, not to the 2^-53 of one double."""
+    rates = {"x": "sin(k*t + 1/3)", "y": "cos(k*t + 1/3)", "z": "exp(1e-15*k*t)", "w": "sin(-k*t)*cos(2*k*t)"}
+    k, third = 1.0 / 7, 1.0 / 3
+    found = lanes.Lanes(str(small(rates, width=width))).jet(t, [0.0] * 4, [k])[1]
+    with mpmath.workdps(60):
+        phase, rest = mpmath.mpf(k) * mpmath.mpf(t), mpmath.mpf(third)
+        exact = [
+            mpmath.sin(phase + rest), mpmath.cos(phase + rest), mpmath.exp(mpmath.mpf(float(1e-15 * k)) * t),
+            mpmath.sin(-phase) * mpmath.cos(2 * phase),
+        ]  # fmt: skip
+        bound = 4e-16 + abs(k * t) * 2.0**-78
+        assert max(abs(value - one) for value, one in zip(found, exact, strict=True)) < bound
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+def test_sine_and_cosine_of_states(width):
+    """Within the range of the vectors' own sine and beyond it, where the C library is asked for single lanes."""
+    path = small({"x": "sin(x) + 0*y", "y": "cos(y)"}, width=width)
+    for x in [*np.linspace(-20, 20, 41), 1e5, 131072.0, 131073.0, -1e9, 1e300]:
+        found = lanes.Lanes(str(path)).jet(0.0, [x, x], [0.0])[1]
+        assert abs(found[0] - float(mpmath.sin(x))) < 2.3e-16 and abs(found[1] - float(mpmath.cos(x))) < 2.3e-16
+
+
 @pytest.mark.parametrize(("name", "sums", "products"), [("free asymmetric", 7, 15), ("heavy symmetric", 6, 12)])
 def test_products_of_one_weight_share_an_accumulator(name, sums, products):
     """The rates of a quaternion are sums of products that are weighed once: fifteen products, seven sums."""

@@ -13,22 +13,25 @@ from symrot.number import PI
 __all__ = ["LANE_FUNCTIONS"]
 
 TEMPLATE = """
-/* a b - p for p = a b as it is rounded, from halves whose products are exact: to the last bit or the one beyond it. */
-static inline symrot_v symrot_missed(symrot_v a, symrot_v b, symrot_v p)
+/* Return a + b as it is rounded; *low gains what the rounding took from it (Knuth's sum). */
+static inline symrot_v symrot_plus(symrot_v a, symrot_v b, symrot_v *low)
 {
-    const symrot_v a_high = V_FROM_BITS(V_TO_BITS(a) & ~(int64_t)0x7ffffff), a_low = V_SUB(a, a_high);
-    const symrot_v b_high = V_FROM_BITS(V_TO_BITS(b) & ~(int64_t)0x7ffffff), b_low = V_SUB(b, b_high);
-    const symrot_v first = V_SUB(V_MUL(a_high, b_high), p);
-    return V_FMA(a_low, b_low, V_ADD(V_FMA(a_high, b_low, first), V_MUL(a_low, b_high)));
+    const symrot_v sum = V_ADD(a, b), rise = V_SUB(sum, a);
+    *low = V_ADD(*low, V_ADD(V_SUB(a, V_SUB(sum, rise)), V_SUB(b, rise)));
+    return sum;
 }
 
-/* Return a t + b at the time t + t_low as it is rounded; what the rounding took from it goes to *low. */
+/*
+ * Return a t + b at the time t + t_low as it is rounded; what the rounding took from it goes to *low, to 2^-79 of it.
+ * The product is that of upper halves, which is exact, and the rest: nothing changes where sums and products are fused.
+ */
 static inline symrot_v symrot_turn(symrot_v a, symrot_v b, symrot_v t, symrot_v t_low, symrot_v *low)
 {
-    const symrot_v product = V_MUL(a, t), missed = symrot_missed(a, t, product);
-    const symrot_v high = V_ADD(product, b), rise = V_SUB(high, product);
-    *low = V_ADD(V_ADD(V_SUB(product, V_SUB(high, rise)), V_SUB(b, rise)), V_FMA(a, t_low, missed));
-    return high;
+    const symrot_v a_high = V_FROM_BITS(V_TO_BITS(a) & ~(int64_t)0x7ffffff), a_low = V_SUB(a, a_high);
+    const symrot_v t_high = V_FROM_BITS(V_TO_BITS(t) & ~(int64_t)0x7ffffff), t_rest = V_SUB(t, t_high);
+    const symrot_v rest = V_FMA(a_low, t_rest, V_FMA(a_high, t_rest, V_MUL(a_low, t_high)));
+    *low = V_MUL(a, t_low);
+    return symrot_plus(symrot_plus(V_MUL(a_high, t_high), b, low), rest, low);
 }
 
 /* Sine and cosine of high + low, |low| below half a unit in the last place of high; see symrot_math.h. */
@@ -54,8 +57,9 @@ static inline void symrot_circle(symrot_v high, symrot_v low, symrot_v *sine, sy
     const symrot_bits far = V_LESS(V_ALL(@far@), symrot_size_of(high));
     if (V_ANY(far)) EACH_LANE(l) if (V_LANE(far, l)) {
         const double up = sin(V_LANE(high, l)), along = cos(V_LANE(high, l));
-        V_LANE(*sine, l) = up + V_LANE(low, l)*along;
-        V_LANE(*cosine, l) = along - V_LANE(low, l)*up;
+        const double s_low = sin(V_LANE(low, l)), c_low = cos(V_LANE(low, l));
+        V_LANE(*sine, l) = up*c_low + along*s_low;
+        V_LANE(*cosine, l) = along*c_low - up*s_low;
     }
 }
 """
