@@ -101,8 +101,8 @@ def _library(problem: Any, order: int, width: int | None = None) -> Any:
     return library.build(source, "lanes", lanes.FLAGS)
 
 
-def _lanes(path: Any, start: Start, p: Floats, tolerance: float) -> Outcome:
-    found = lanes.follow(path, p, start.y, 0.0, np.array([start.stop]), tolerance)
+def _lanes(task: lanes.Task) -> Outcome:
+    found = task.run()
     return int(found.steps.sum()), found.states[:, 0]
 
 
@@ -114,7 +114,8 @@ def _ours(
     for order in sorted(set(orders)) or [0]:
         for tolerance in tolerances:
             path = _library(start.problem, order or lanes.order_for(tolerance), width)
-            tasks.append((f"{order}" if order else "lanes", tolerance, partial(_lanes, path, start, p, tolerance)))
+            task = lanes.Task(path, p, start.y, 0.0, np.array([start.stop]), tolerance)
+            tasks.append((f"{order}" if order else "lanes", tolerance, partial(_lanes, task)))
     return tasks
 
 
@@ -172,7 +173,7 @@ def _heyoka(start: Start, tolerances: Sequence[float], many: bool) -> list[Task]
 
 def measure(start: Start, rounds: int, many: bool = False) -> list[Run]:
     """Return the runs of all contestants."""
-    ours, theirs = ([10.0 ** (-k / 2) for k in range(first, last)] for first, last in ((2, 29), (6, 33)))
+    ours, theirs = [10.0 ** (-k / 4) for k in range(4, 57)], [10.0 ** (-k / 2) for k in range(6, 33)]
     return raced([*_ours(start, ours), *_heyoka(start, theirs, many)], start.error, rounds, process_time)
 
 

@@ -23,7 +23,7 @@ from symrot.kernel import Program
 from symrot.propagation.stepping import DONE, NOT_FINITE, UNDERFLOW, CutOff, Floats, PathLike, why_stuck
 from symrot.propagation.taylor import step_tail
 
-__all__ = ["FLAGS", "Lanes", "Outcome", "around", "follow", "lanes", "order_for", "translation_unit"]
+__all__ = ["FLAGS", "Lanes", "Outcome", "Task", "around", "follow", "lanes", "order_for", "translation_unit"]
 
 Integers = NDArray[np.int64]
 
@@ -162,7 +162,7 @@ class _Legs(NamedTuple):
 
 def _legs(t0: float, times: Floats, n: int) -> _Legs:
     samples, motion = times.shape[-1], np.arange(n)
-    if times.ndim == 1 and samples and times[0] >= t0 and (times[1:] >= times[:-1]).all():
+    if times.ndim == 1 and samples and times[0] >= t0 and (samples == 1 or (times[1:] >= times[:-1]).all()):
         rows = np.empty((4, n), dtype=np.int64)
         rows[0], rows[1], rows[2], rows[3] = motion, 0, samples, motion * samples
         return _Legs(times, rows, None)
@@ -177,19 +177,8 @@ def _legs(t0: float, times: Floats, n: int) -> _Legs:
     return _Legs(table.ravel(), np.ascontiguousarray(rows[:, rows[2] > 0]), None if in_order else order)
 
 
-def follow(
-    path: PathLike,
-    p: Floats,
-    y: Floats,
-    t0: float,
-    times: Floats,
-    tolerance: float,
-    *,
-    max_steps: int = MAX_STEPS,
-    workers: int = 1,
-    epoch: float = 0.0,
-) -> Outcome:
-    """Follow n motions through their sample times.
+class Task:
+    """Motions bound to numbers and sample times: prepared once, run as often as one likes.
 
     Parameters
     ----------
@@ -210,40 +199,67 @@ def follow(
     epoch : float
         What messages add to times, s: what other clocks show where that of t0 and of the times shows 0.
     """
-    library, n = lanes(os.fspath(path)), len(y)
-    p, y, times = (np.ascontiguousarray(array, dtype=np.float64) for array in (p, y, times))
-    tail, pace = step_tail(tolerance)
-    legs = _legs(t0, times, n)
-    states = np.full((n * times.shape[-1], library.states), np.nan)
-    total = legs.rows.shape[1]
-    reached, steps, evaluations = measured = np.zeros((3, total))
-    status = np.full(total, TOO_MANY)
-    shared = {"y": address(y), "p": address(p), "times": address(legs.table), "states": address(states)}
-    rows = {"status": address(status)}
-    for names, table in ((("motion", "first", "count", "row"), legs.rows), (MEASURED, measured)):
+
+    def __init__(
+        self, path: PathLike, p: Floats, y: Floats, t0: float, times: Floats, tolerance: float, *,
+        max_steps: int = MAX_STEPS, workers: int = 1, epoch: float = 0.0,
+    ) -> None:  # fmt: skip
+        self.library = lanes(os.fspath(path))
+        self.p, self.y, times = (np.ascontiguousarray(array, dtype=np.float64) for array in (p, y, times))
+        self.t0, self.max_steps, self.epoch = t0, max_steps, epoch
+        self.legs = _legs(t0, times, len(y))
+        self.samples, self.total = times.shape[-1], self.legs.rows.shape[1]
+        self.workers = max(1, min(workers, self.total))
+        tail, pace = step_tail(tolerance)
+        self._given: dict[str, float] = {"t0": t0, "tail": tail, "pace": pace, "max_steps": float(max_steps)}
+        self._given |= {"y": address(self.y), "p": address(self.p), "times": address(self.legs.table)}
+        self._rows = self._places(("motion", "first", "count", "row"), self.legs.rows)
+
+    def _places(self, names: Sequence[str], table: NDArray[Any]) -> dict[str, int]:
+        """Return where each row of a table of legs begins."""
         place = address(table)
-        rows |= {name: place + 8 * total * k for k, name in enumerate(names)}
+        return {name: place + 8 * self.total * k for k, name in enumerate(names)}
 
-    def job(start: int, stop: int) -> _Job:
-        own = {name: place + 8 * start for name, place in rows.items()}
-        return _Job(legs=stop - start, t0=t0, tail=tail, pace=pace, max_steps=float(max_steps), **shared, **own)
+    def run(self) -> Outcome:
+        """Follow the motions through their sample times."""
+        n, total, legs = len(self.y), self.total, self.legs
+        states = np.full((n * self.samples, self.library.states), np.nan)
+        measured, status = np.zeros((len(MEASURED), total)), np.full((1, total), TOO_MANY)
+        rows = {**self._rows, **self._places(MEASURED, measured), **self._places(("status",), status)}
+        jobs = []
+        for k in range(self.workers):
+            start, stop = k * total // self.workers, (k + 1) * total // self.workers
+            own = {name: place + 8 * start for name, place in rows.items()}
+            jobs.append(_Job(legs=stop - start, states=address(states), **self._given, **own))
+        _share(self.library, jobs)
+        counted = np.zeros((2, n), dtype=np.int64)
+        if total == n:  # one leg each
+            counted[:, legs.rows[0]] = measured[1:]
+        else:
+            counted[:] = [np.bincount(legs.rows[0], weights, n) for weights in measured[1:]]
+        grid = states.reshape(n, self.samples, self.library.states)
+        if legs.order is not None:
+            sorted_grid, grid = grid, np.empty_like(grid)
+            np.put_along_axis(grid, np.broadcast_to(legs.order, grid.shape[:2])[..., None], sorted_grid, axis=1)
+        messages = self._messages(status[0], measured[0]) if status.any() else ("",) * n
+        return Outcome(grid, counted[0], counted[1], messages)
 
-    workers = max(1, min(workers, total))
-    _share(library, [job(k * total // workers, (k + 1) * total // workers) for k in range(workers)])
-    grid = states.reshape(n, times.shape[-1], library.states)
-    if legs.order is not None:
-        sorted_grid, grid = grid, np.empty_like(grid)
-        np.put_along_axis(grid, np.broadcast_to(legs.order, grid.shape[:2])[..., None], sorted_grid, axis=1)
-    motion, first, samples, _ = legs.rows
-    messages = [""] * n
-    for leg in np.flatnonzero(status != DONE).tolist():
-        stop = float(legs.table[first[leg] + samples[leg] - 1])
-        reason = REASONS[int(status[leg])].format(steps=max_steps)
-        if status[leg] == UNDERFLOW:
-            reason = why_stuck(reason, float(reached[leg]), t0, stop)
-        messages[motion[leg]] = str(CutOff(float(reached[leg]), reason, stop).later(epoch))
-    counted = [np.bincount(motion, weights, n).astype(np.int64) for weights in (steps, evaluations)]
-    return Outcome(grid, counted[0], counted[1], tuple(messages))
+    def _messages(self, status: Integers, reached: Floats) -> tuple[str, ...]:
+        """Return why motions broke off."""
+        motion, first, samples, _ = self.legs.rows
+        messages = [""] * len(self.y)
+        for leg in np.flatnonzero(status != DONE).tolist():
+            stop, last = float(self.legs.table[first[leg] + samples[leg] - 1]), float(reached[leg])
+            reason = REASONS[int(status[leg])].format(steps=self.max_steps)
+            if status[leg] == UNDERFLOW:
+                reason = why_stuck(reason, last, self.t0, stop)
+            messages[motion[leg]] = str(CutOff(last, reason, stop).later(self.epoch))
+        return tuple(messages)
+
+
+def follow(*arguments: Any, **options: Any) -> Outcome:
+    """Follow n motions through their sample times; arguments as :class:`Task` takes them."""
+    return Task(*arguments, **options).run()
 
 
 def _share(library: Lanes, jobs: list[Any]) -> None:
