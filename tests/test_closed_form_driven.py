@@ -287,7 +287,7 @@ def test_rates_before_the_start_that_all_but_cancel(way):
 def test_times_before_the_doubles_are_refused(way):
     motion = axial.motion((2, 2, 2), 2, 1, (0, 0, 1), damping=2)
     assert np.isfinite(motion.evaluate(-600.0)[0]).all()
-    with pytest.raises(InputError, match=r"after -700 s, before which .* got -800 s"):
+    with pytest.raises(InputError, match=r"after -700.0 s, before which .* got -800.0 s"):
         motion.evaluate([0.0, -800.0])
 
 

@@ -25,7 +25,7 @@ from symrot.closed_form import axial_compiled
 from symrot.closed_form.axial_angle import Turning, fallen
 from symrot.closed_form.double_double import two_product
 from symrot.closed_form.library import Floats, times_of
-from symrot.closed_form.pairs import Number, common, numbers, pair
+from symrot.closed_form.pairs import LARGEST, SMALLEST, Number, common, numbers, pair
 from symrot.errors import InputError
 
 __all__ = ["AxialMotion", "motion"]
@@ -73,8 +73,8 @@ class AxialMotion:
         Raises
         ------
         InputError
-            If a time is not finite, or so far before the start that the damped angular velocity was no double, or the
-            attitude is asked for and :attr:`has_attitude` is false.
+            If a time is not finite, or the damped angular velocity at it is beyond all doubles, or the attitude is asked
+            for and :attr:`has_attitude` is false.
         """
         if quaternion and not self.has_attitude:
             raise InputError(
@@ -176,15 +176,15 @@ def motion(
     InputError
         If the body turns across the axis and is not symmetric about it, or a number is not of this domain.
     """
-    moments = [Fraction(x) for x in numbers("inertia", inertia, 3)]
+    moments = [Fraction(x) for x in numbers("inertia", inertia, 3, SMALLEST)]
     rates = [Fraction(x) for x in numbers("omega", omega0, 3)]
     attitude, _ = common(numbers("quaternion", quaternion0, 4))
     push, drag, slowing = (Fraction(x) for x in numbers("torque and damping", [torque, damping, damping_across], 3))
     square = sum(x * x for x in attitude)
-    if axis not in (0, 1, 2) or min(moments) <= 0 or not square:
+    if not isinstance(axis, int) or axis not in (0, 1, 2) or not square:
         raise InputError(
-            f"expected an axis 0, 1 or 2, positive moments and a quaternion that is not zero, got axis {axis}, moments "
-            f"{[float(x) for x in moments]} kg m^2 and quaternion {list(quaternion0)}"
+            "expected an axis 0, 1 or 2 and a quaternion that is not zero, got axis "
+            f"{number.show(axis)} and quaternion {list(quaternion0)}"
         )
     across, other, own = moments[axis - 2], moments[axis - 1], moments[axis]
     if (rates[axis - 2] or rates[axis - 1]) and not number.equal(across, other):
@@ -193,6 +193,13 @@ def motion(
             f"{[float(x) for x in moments]} kg m^2 and omega {[float(x) for x in rates]} rad/s"
         )
     turning = (own - across) / across, slowing / across
+    quotients = push / own, drag / own, *turning
+    if max(map(abs, quotients)) > LARGEST:
+        raise InputError(
+            f"expected torque, damping and moments with quotients up to {LARGEST:g}, got moments "
+            f"{[float(x) for x in moments]} kg m^2, torque {float(push)!r} N m, damping {float(drag)!r} and "
+            f"{float(slowing)!r} N m s"
+        )
     norm = math.isqrt(square << 2 * _BITS)
     start = [(x << _BITS) / norm for x in attitude]
     turned = [0.0] * 4  # the product of the start and the axis

@@ -17,6 +17,7 @@ from symrot import number
 from symrot.closed_form import double_double as dd
 from symrot.closed_form.library import Floats
 from symrot.closed_form.pairs import pair
+from symrot.errors import InputError
 
 __all__ = ["FEW", "LARGE", "SMALL", "Turning", "fallen"]
 
@@ -32,6 +33,7 @@ LARGE = 1e10
 _BLOCK = 4096  # times at once: what they need stays in the caches
 _BITS = 192  # behind the point of a turn, with 64 for the size of the time
 _HALVINGS = 8  # of the argument of the exponential in integers
+_GROWN = 1500.0  # the exponential of more is beyond all doubles, times the smallest of them too
 _GUARD = 16  # bits for what they lose
 _TERMS = 20  # of the series of (exp(x) - 1 - x)/x^2 for |x| <= 1, whose next is 2^-70
 
@@ -77,10 +79,17 @@ class Turning:
         final = push / decay if decay else rate
         rest = (rate - final) / decay if decay else push / 2
         self._exact = final, rest, decay
-        self._final, self._rest = pair(final * turn), pair(rest * turn)
+        try:
+            self._final, self._rest = pair(final * turn), pair(rest * turn)
+        except OverflowError:
+            raise InputError(
+                "expected no damping, or one that ends the motion within turns that doubles can count, got a decay of "
+                f"{float(decay)!r} 1/s under {float(push)!r} rad/s^2"
+            ) from None
         self._bits = _BITS + max(int(abs(x)) for x in self._exact).bit_length()
         self._scaled: dict[int, tuple[int, int, int, int]] = {}
 
+    @np.errstate(over="ignore")  # of a size: what is so large is a matter of integers
     def __call__(self, t: Floats) -> Floats:
         """Return the turns at each time, from -1/2 to 1/2."""
         if len(t) > _BLOCK:
@@ -149,6 +158,8 @@ class Turning:
         """Return the turns at one time, in integers."""
         top, bottom = t.as_integer_ratio()
         growth = max(0.0, self._decay[0] * t)  # of which each octave takes a bit from all others
+        if growth > _GROWN:
+            raise InputError(f"expected times at which the angular velocity is a finite number, got {t!r} s")
         bits = self._bits + 64 * int(growth / 32)
         final, rest, decay, octave = self._integers(bits)
         shift, one = bottom.bit_length() - 1, 1 << bits

@@ -14,7 +14,7 @@ from fractions import Fraction
 
 from symrot.closed_form.frames import quaternion_of
 from symrot.closed_form.motion import ExactMotion, prepared
-from symrot.closed_form.pairs import Number, common, numbers, quotient, spread
+from symrot.closed_form.pairs import SMALLEST, Number, common, numbers, quotient, spread
 from symrot.inertia.principal import principal_axes
 
 __all__ = ["motion", "motion_of_tensor"]
@@ -47,7 +47,7 @@ def motion(
     >>> omega.tolist()
     [[0.0, 0.0, 1.0]]
     """
-    moments, rates = numbers("inertia", inertia, 3), numbers("omega", omega0, 3)
+    moments, rates = numbers("inertia", inertia, 3, SMALLEST), numbers("omega", omega0, 3)
     attitude = numbers("quaternion", quaternion0, 4)
     exact = None if all(isinstance(x, float) for x in (*moments, *rates)) else _differences(moments, rates)
     return _prepared(spread(moments), spread(rates), spread(attitude), exact, None)

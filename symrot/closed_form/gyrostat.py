@@ -8,7 +8,7 @@ Proof: ``derivations/symmetric_gyrostat.md``.
 from collections.abc import Sequence
 
 from symrot.closed_form.motion import ExactMotion, prepared
-from symrot.closed_form.pairs import Number, numbers, same, spread
+from symrot.closed_form.pairs import SMALLEST, Number, numbers, same, spread
 from symrot.errors import InputError
 
 __all__ = ["motion"]
@@ -36,7 +36,7 @@ def motion(
     InputError
         If the body is not symmetric about the rotor's axis, or a number is not of this domain.
     """
-    moments = numbers("inertia", inertia, 3)
+    moments = numbers("inertia", inertia, 3, SMALLEST)
     momentum = numbers("rotor", rotor, 3)
     rates, attitude = numbers("omega", omega0, 3), numbers("quaternion", quaternion0, 4)
     symmetric = [k for k in range(3) if same(moments[k - 2], moments[k - 1])]

@@ -15,7 +15,7 @@ from fractions import Fraction
 from symrot.closed_form import free_body
 from symrot.closed_form.frames import product, quaternion_of, to_axis
 from symrot.closed_form.motion import ExactMotion, prepared
-from symrot.closed_form.pairs import Number, numbers, same, spread
+from symrot.closed_form.pairs import SMALLEST, Number, numbers, same, spread
 from symrot.errors import InputError
 
 __all__ = ["motion"]
@@ -60,7 +60,7 @@ def motion(
     >>> motion((1, 1, 0.5), 1, (0, 0, 1), (0, 0, 2)).regime
     'steady'
     """
-    moments = numbers("inertia", inertia, 3)
+    moments = numbers("inertia", inertia, 3, SMALLEST)
     center = numbers("center_of_mass", center_of_mass, 3)
     force = numbers("weight", [weight], 1)[0]
     down = numbers("direction", direction, 3)

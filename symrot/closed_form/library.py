@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from symrot.codegen import library
 from symrot.errors import CompilerError, InputError
+from symrot.number import show
 
 __all__ = ["FLAGS", "PARTS", "Floats", "begin", "load", "source", "times_of"]
 
@@ -99,7 +100,10 @@ def times_of(t: ArrayLike) -> Floats:
     InputError
         If they are not finite numbers in a sequence.
     """
-    times = np.ascontiguousarray(t, dtype=np.float64)
+    try:
+        times = np.ascontiguousarray(t, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(f"times are a number or a sequence of numbers (s), got {show(t)}") from None
     if times.ndim > 1:
         raise InputError(f"times are a number or a sequence of numbers (s), got an array of shape {times.shape}")
     times = times.reshape(-1)

@@ -3,6 +3,7 @@
 import ctypes
 from abc import ABC, abstractmethod
 from collections.abc import Callable
+from math import isnan
 from struct import Struct
 from typing import Any
 
@@ -55,12 +56,18 @@ class ExactMotion(ABC):
         Raises
         ------
         InputError
-            If a time is not finite.
+            If a time is not finite, or products of the numbers and times leave the doubles.
         """
         times = times_of(t)
         rates = np.empty((len(times), 3)) if omega else None
         attitudes = np.empty((len(times), 4)) if quaternion else None
         self._fill(times, rates, attitudes)
+        found = rates if attitudes is None else attitudes
+        if found is not None and len(times) and isnan(found.item(0) + found.item(-1)):  # of times in order, ends tell
+            raise InputError(
+                f"expected numbers of a motion that doubles can hold until then, got times {times.item(0)!r} to "
+                f"{times.item(-1)!r} s: nearer times or other units would do"
+            )
         return rates, attitudes
 
 

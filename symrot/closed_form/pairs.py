@@ -3,13 +3,20 @@
 from collections.abc import Sequence
 from fractions import Fraction
 from math import isfinite, lcm
+from typing import Any
 
 from symrot.errors import InputError
-from symrot.number import equal
+from symrot.number import equal, show
 
-__all__ = ["Number", "common", "numbers", "pair", "quotient", "same", "spread"]
+__all__ = ["LARGEST", "SMALLEST", "Number", "common", "numbers", "pair", "quotient", "same", "spread"]
 
 Number = float | int | Fraction
+
+LARGEST = 1e205
+"""Of the numbers that give a motion, in their units: the constants made of them stay doubles."""
+
+SMALLEST = 1e-205
+"""Of the moments of inertia, kg m^2."""
 
 
 def quotient(numerator: int, denominator: int) -> tuple[float, float]:
@@ -44,25 +51,41 @@ def common(values: Sequence[Number]) -> tuple[list[int], int]:
     return [top * (shared // bottom) for top, bottom in ratios], shared
 
 
-def numbers(what: str, values: Sequence[Number], length: int) -> list[Number]:
-    """Return finite numbers, each a float (NumPy's too), an int or a Fraction, as they are.
+def numbers(what: str, values: Sequence[Number], length: int, least: float = -LARGEST) -> list[Number]:
+    """Return numbers, each a float (NumPy's too), an int or a Fraction, as they are.
 
     Raises
     ------
     InputError
-        If there is another count of them, or one is not a finite real number.
+        If there is another count of them, or one is no real number, beyond :data:`LARGEST`, or below ``least``.
     """
-    found = list(values)
-    if len(found) == length and {*map(type, found)} == {float} and all(map(isfinite, found)):
+    found = _listed(what, values, length)
+    if {*map(type, found)} == {float} and all(map(isfinite, found)) and max(found) <= LARGEST and min(found) >= least:
         return found
+    for index, value in enumerate(found):
+        if isinstance(value, bool) or not isinstance(value, float | int | Fraction):
+            found[index] = value = _double(what, value)
+        if not abs(value) <= LARGEST:
+            raise InputError(f"{what}: expected finite numbers of a magnitude up to {LARGEST:g}, got {show(value)}")
+        if value < least:
+            raise InputError(f"{what}: expected positive numbers, {least:g} at least, got {show(value)}")
+    return found
+
+
+def _listed(what: str, values: Sequence[Number], length: int) -> list[Any]:
+    try:
+        found = list(values)
+    except TypeError:
+        raise InputError(f"{what}: expected {length} numbers, got {show(values)}") from None
     if len(found) != length:
         raise InputError(f"{what}: expected {length} numbers, got {len(found)}")
-    for index, value in enumerate(found):
-        if isinstance(value, float):
-            if not isfinite(value):
-                raise InputError(f"{what}: expected finite numbers, got {value}")
-        elif isinstance(value, bool) or not isinstance(value, int | Fraction):
-            if not hasattr(value, "__float__") or isinstance(value, bool):
-                raise InputError(f"{what}: expected real numbers, got {value!r}")
-            found[index] = float(value)
     return found
+
+
+def _double(what: str, value: Any) -> float:
+    try:
+        if not isinstance(value, bool | str):
+            return float(value)
+    except (TypeError, ValueError, OverflowError):
+        pass
+    raise InputError(f"{what}: expected real numbers, got {show(value)}")

@@ -21,9 +21,10 @@ from numpy.typing import ArrayLike
 
 from symrot.closed_form import spin_up_compiled
 from symrot.closed_form.library import Floats, times_of
-from symrot.closed_form.pairs import Number, numbers, same, spread
+from symrot.closed_form.pairs import SMALLEST, Number, numbers, same, spread
 from symrot.closed_form.spin_up_compiled import Compiled
 from symrot.errors import InputError
+from symrot.number import show
 
 if TYPE_CHECKING:
     from symrot.closed_form.spin_up_integers import Integers
@@ -125,12 +126,12 @@ def motion(
     InputError
         If the body is not symmetric about the axis, turns about it alone, or a number is not of this domain.
     """
-    moments, rates = numbers("inertia", inertia, 3), numbers("omega", omega0, 3)
+    moments, rates = numbers("inertia", inertia, 3, SMALLEST), numbers("omega", omega0, 3)
     attitude, (push,) = numbers("quaternion", quaternion0, 4), numbers("torque", [torque], 1)
-    if axis not in (0, 1, 2) or min(moments) <= 0 or not any(attitude):
+    if not isinstance(axis, int) or axis not in (0, 1, 2) or not any(attitude):
         raise InputError(
-            f"expected an axis 0, 1 or 2, positive moments and a quaternion that is not zero, got axis {axis}, moments "
-            f"{[float(x) for x in moments]} kg m^2 and quaternion {[float(x) for x in attitude]}"
+            f"expected an axis 0, 1 or 2 and a quaternion that is not zero, got axis {show(axis)} and quaternion "
+            f"{[float(x) for x in attitude]}"
         )
     across, other = moments[axis - 2], moments[axis - 1]
     if not same(across, other) or not (rates[axis - 2] or rates[axis - 1]):

@@ -1,0 +1,74 @@
+"""Exact motions from numbers that are none, or beyond what doubles hold: one sentence, never a nan."""
+
+import math
+
+import numpy as np
+import pytest
+
+from symrot.closed_form import axial, free_body, gyrostat, heavy_top, spin_up
+from symrot.errors import InputError
+
+LEVEL = [0.9, 0.1, 0.2, 0.3]
+MOTIONS = {
+    free_body: {"inertia": [1, 2, 2.5], "omega0": [0.1, 0.2, 0.5], "quaternion0": LEVEL},
+    heavy_top: {
+        "inertia": [2, 2, 1], "weight": 9.8, "center_of_mass": [0, 0, 0.1], "omega0": [0.1, 0.2, 5],
+        "quaternion0": LEVEL, "direction": [0, 0, -1],
+    },
+    gyrostat: {"inertia": [2, 2, 1], "rotor": [0, 0, 0.7], "omega0": [0.1, 0.2, 0.5], "quaternion0": LEVEL},
+    spin_up: {"inertia": [2, 2, 1], "axis": 2, "torque": 0.3, "omega0": [0.1, 0.2, 0.5], "quaternion0": LEVEL},
+    axial: {
+        "inertia": [2, 2, 1], "axis": 2, "torque": 0.3, "omega0": [0, 0, 0.5], "quaternion0": LEVEL, "damping": 0.1,
+        "damping_across": 0.2,
+    },
+}  # fmt: skip
+NUMBERS = [
+    math.inf, -math.inf, math.nan, 1e300, -1e300, 1.7e308, 1e160, 1e-160, 1e-320, 5e-324, 0.0, -1.0, 10**400, 1j, "x",
+    None, True, [1, 2], np.ones(2),
+]  # fmt: skip
+TIMES = [0.0, 1.0, -3.0], [1e300, -1e300], [1e-320, 1e15]
+
+
+def spoilt(given):
+    """Yield the arguments of a motion with one of them spoilt."""
+    for name, value in given.items():
+        if isinstance(value, list):
+            shapes = [value[:-1], [*value, 1.0], [value, value], [], None, 3.0, "abc", np.array([value]), {}]
+            places = [[*value[:i], bad, *value[i + 1 :]] for i in range(len(value)) for bad in NUMBERS]
+            yield from ({**given, name: one} for one in [*places, *([bad] * len(value) for bad in NUMBERS), *shapes])
+        else:
+            yield from ({**given, name: bad} for bad in [*NUMBERS, [], [1]])
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("form", MOTIONS, ids=lambda form: form.__name__.rpartition(".")[2])
+def test_a_motion_is_one_or_is_refused_in_a_sentence(form):
+    for given in spoilt(MOTIONS[form]):
+        for times in TIMES:
+            try:
+                motion = form.motion(**given)
+                rates, attitudes = motion.evaluate(times, quaternion=getattr(motion, "has_attitude", True))
+            except InputError as error:
+                assert len(str(error)) < 400 and "\n" not in str(error)
+                continue
+            assert np.isfinite(rates).all(), (given, times)
+            assert attitudes is None or abs(np.linalg.norm(attitudes, axis=1) - 1).max() < 1e-14, (given, times)
+
+
+@pytest.mark.parametrize("form", MOTIONS, ids=lambda form: form.__name__.rpartition(".")[2])
+def test_times_that_are_none_are_refused(form):
+    motion = form.motion(**MOTIONS[form])
+    for times in ([math.nan], [math.inf], "x", None, [1j], [10**400], [[1, 2]], np.ones((2, 2))):
+        with pytest.raises(InputError, match="times"):
+            motion.evaluate(times)
+    rates, attitudes = motion.evaluate([])
+    assert rates.shape == (0, 3) and attitudes.shape == (0, 4)
+
+
+def test_the_sentences_say_what_arrived():
+    with pytest.raises(InputError, match=r"omega: expected finite numbers of a magnitude up to 1e\+205, got 1e\+?300"):
+        free_body.motion([1, 2, 3], [0, 1e300, 0])
+    with pytest.raises(InputError, match=r"inertia: expected positive numbers, 1e-205 at least, got 1e-320"):
+        spin_up.motion([1e-320, 1, 2], 2, 1.0, [0, 1, 0])
+    with pytest.raises(InputError, match=r"that doubles can hold until then, got times 1e\+300 to 1e\+300 s"):
+        free_body.motion([1, 2, 3], [0, 1e150, 1e-3]).evaluate([1e300])
