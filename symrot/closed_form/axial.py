@@ -73,8 +73,8 @@ class AxialMotion:
         Raises
         ------
         InputError
-            If a time is not finite, or the damped angular velocity at it is beyond all doubles, or the attitude is asked
-            for and :attr:`has_attitude` is false.
+            If a time is not finite, or the damped angular velocity at it is beyond all doubles, or the attitude is
+            asked for and :attr:`has_attitude` is false.
         """
         if quaternion and not self.has_attitude:
             raise InputError(
