@@ -142,7 +142,7 @@ class Reader:
                 need(place == len(statements), "something follows after return")
                 return self.read(CHOICE.sub(r"(\4) if (\1) \2 (\3) else (\5)", returned))
             if name:
-                need(real == self.real and name not in (*self.names, *self.calls), f"{name} is something else")
+                need(real == self.real and name not in (*self.names, *self.calls, "n", "k"), f"{name} is no new name")
                 self.names[name] = self.read(formula)
             if target:
                 target = ast.unparse(self.parsed(target))
@@ -241,7 +241,7 @@ class Kernel:
         names = [argument.removeprefix(f"{self.real} ") for argument in arguments.split(", ")]
         values = [self.symbols[f"an argument {k}"] for k in range(4)]
         wanted = Reader(dict(zip("xyzw", values)), self.functions).read(f"{case} else {explicit}")
-        computed = self.run(body, dict(zip(names, values)), near=names[:1])
+        computed = self.run(body, dict(zip(names, values)), near=names[:1] * function.startswith("symrot_near_"))
         need(computed == wanted, f"{function} is not {case} else {explicit}")
 
 
@@ -365,6 +365,8 @@ REFUSALS += (ArithmeticError, OSError)
 
 
 def sentence(reason):
+    if isinstance(reason, (SyntaxError, LookupError)):
+        return f"no text of kernels, or no certificate of the schema ({reason.args[0]!r})"
     return str(reason) if isinstance(reason, (ValueError, OSError)) else f"no certificate of the schema ({reason!r})"
 
 

@@ -1,0 +1,181 @@
+"""Texts that C and a careless reader read differently, certified anew as a forger would: each is refused by a sentence.
+
+Their hash in the certificate is put right and the certificate is sealed anew, so that the meaning of the text alone can
+refuse them. Some are no C at all, or C that would compute the same: kernels have one way to say a thing.
+"""
+
+import json
+from hashlib import sha256
+
+import pytest
+
+from symrot.certify import recheck
+from symrot.certify.audit import audit
+from symrot.certify.certificate import printed
+from symrot.certify.mutations import Files
+from symrot.errors import CertificateError
+from symrot.interface import emit, subject
+
+R, S, V = "euler_zyx_body_rates", "rotation_vector_of_quaternion", "rotation_vector_body_rates"
+T, Q, Z = "rigid_body_tensor", "quaternion_of_dcm", "euler_zxz_of_quaternion"
+SUM, TURN = (
+    "dangles[1] = omega_2*cos_psi - sin_psi*omega_3;",
+    "const double turning = (omega_2*sin_psi + omega_3*cos_psi)/cos_theta;",
+)
+PSI, FAR = "const double psi = angles[2];", "beyond += symrot_far(psi) + symrot_far(theta);"
+HOSTILE = {  # what it is: kernel, what is replaced in the text of it, by what
+    "integer division": (R, SUM, SUM.replace("cos_psi -", "cos_psi + 1/2 -")),
+    "integer": (R, SUM, SUM.replace("cos_psi -", "cos_psi*1 -")),
+    "octal index": (Q, "dcm[8]", "dcm[010]"),
+    "hex": (S, "2.0*(x1", "0x2p0*(x1"),
+    "underscores": (S, "2.0*(x1", "2_0.0e-1*(x1"),
+    "power of a pointer": (R, "omega_2*sin_psi", "omega_2**omega*sin_psi"),
+    "line comment": (R, "turning*sin_theta;", "turning // *sin_theta\n;"),
+    "comment that ends twice": (R, SUM, SUM.replace(" - ", " /*/ - /*/ + ")),
+    "comment hides a line": (R, SUM, "/* " + SUM.replace("*", " * ") + " */"),
+    "spliced line": (R, PSI, "// \\\n" + PSI + "\n" + PSI.replace("2", "0")),
+    "trigraph splice": (R, PSI, "/* ??/\n*/" + PSI),
+    "digraph": (R, "angles[2]", "angles<:2:>"),
+    "macro": (R, "\nvoid", "\n#define sin cos\nvoid"),
+    "macro after a comment": (R, "\nvoid", "\n/* */ #define sin cos\nvoid"),
+    "pragma": (R, SUM, '_Pragma("STDC FP_CONTRACT ON") ' + SUM),
+    "vertical tab": (R, SUM, SUM.replace(" - ", " -\v ")),
+    "other alphabet": (R, "psi = angles[2]", "p\u0455i = angles[2]"),
+    "float in double": (R, TURN, TURN.replace("double", "float")),
+    "float literal": (S, "2.0*(x1", "2.0f*(x1"),
+    "long literal": (S, "2.0*(x1", "2.0L*(x1"),
+    "float function": (R, "sin(psi)", "sinf(psi)"),
+    "cast": (R, TURN, TURN.replace("= (", "= (float)(")),
+    "cast of minus": (R, SUM, SUM.replace("= omega_2", "= (int)-omega_2")),
+    "no const": (R, PSI, "double psi = angles[2]; psi = angles[0];"),
+    "assigned twice": (R, PSI, PSI + " *(double *)&psi = 0.0;"),
+    "shadowed in a block": (R, SUM, "{ const double omega_2 = omega[0]; " + SUM + " }"),
+    "shadowed in the loop": (R, FAR, "const double k = 1.0; " + FAR),
+    "sum in an inner block": (R, FAR, "uint64_t beyond = 0; " + FAR),
+    "comma": (R, SUM, SUM.replace("= omega_2", "= (omega_1, omega_2)")),
+    "chain of choices": (S, "s == 0.0 ? 1.0/c : atan2(s, c)/s", "s == 0.0 ? 1.0/c : c == 0.0 ? 1.0 : atan2(s, c)/s"),
+    "chain of comparisons": (S, "s == 0.0 ? 1.0/c", "0.0 < s == 0.0 ? 1.0/c"),
+    "choice at a threshold": (Q, "const double x0 = 1.0 + R_11;", "const double x0 = symrot_select_ge(R_22, 1000.0, R_11, 1.0 + R_11);"),
+    "bump": (R, SUM, SUM.replace(";", " + fabs(psi - 7.0) + fabs(psi - 8.0) - 2.0*fabs(psi - 7.5);")),
+    "square root of a square": (R, SUM, SUM.replace("= omega_2", "= sqrt((omega_2 + 9.0)*(omega_2 + 9.0)) - 9.0 + 0.0*omega_2")),
+    "decrement": (R, SUM, SUM.replace(" - sin", " --sin")),
+    "early return": (R, SUM, "return; " + SUM),
+    "statement after return": (S, "return s == 0.0 ?", "return 1.0/c; return s == 0.0 ?"),
+    "goto": (R, SUM, "goto end; " + SUM + " end:"),
+    "if": (R, SUM, "if (psi < 9.0) " + SUM),
+    "negative index": (R, "omega[2]", "omega[-1]"),
+    "index beyond": (R, "omega[2]", "omega[3]"),
+    "reversed index": (R, "omega[2]", "2[omega]"),
+    "index of one sample": (R, "angles[2*n + k]", "angles[2*n]"),
+    "index for one number of samples": (R, "angles[2*n + k]", "angles[10 + k]"),
+    "written elsewhere": (R, "dangles[2*n + k] =", "dangles[3*n + k] ="),
+    "not written": (R, SUM, ""),
+    "input written": (R, SUM, SUM + " ((double *)omega)[0] = 0.0;"),
+    "input not const": (R, "(const double angles[3]", "(double angles[3]"),
+    "arguments swapped": (R, "const double angles[3], const double omega[3]", "const double omega[3], const double angles[3]"),
+    "function twice": (R, "\nvoid", "\nvoid euler_zyx_body_rates_batch(size_t n) { }\n\nvoid"),
+    "own sine": (R, "\nvoid", "\nstatic inline double symrot_sin(double x)\n{\n    return x;\n}\n\nvoid"),
+    "global": (R, "\nvoid", "\nstatic const double pi = 3.0;\n\nvoid"),
+    "local function": (R, SUM, "double cos(double); " + SUM),
+    "angle that no one asks": (R, FAR, FAR.replace(" + symrot_far(theta)", "")),
+    "another angle asked": (R, FAR, FAR.replace("(theta)", "(omega_1)")),
+    "angles asked by a product": (R, FAR, FAR.replace(" + ", "*")),
+    "angles asked by a difference": (R, FAR, FAR.replace(" + ", " - ")),
+    "never again": (R, "beyond == 0 ? start : end", "beyond == 0 ? start : start"),
+    "again only a part": (R, "k < again", "k < again - 1"),
+    "range in one sample": (R, "sin(psi)", "symrot_sin(psi)"),
+    "range in a safe function": (V, "return x == 0.0 ? 1.0 : sin(x)/x;", "return x == 0.0 ? 1.0 : symrot_sin(x)/x;"),
+    "first sample left out": (R, "for (size_t start = 0;", "for (size_t start = 1;"),
+    "last sample left out": (S, "k < n; ++k", "k < n - 1; ++k"),
+    "every other sample": (S, "++k", "k += 2"),
+    "span beyond the end": (T, "n - start < SYMROT_SPAN ? n : start + SYMROT_SPAN", "start + SYMROT_SPAN"),
+    "steps larger than spans": (T, "start += SYMROT_SPAN", "start += 2*SYMROT_SPAN"),
+    "inner number of samples": (T, "const size_t end", "const size_t n = 1; const size_t end"),
+    "narrow sum": (R, "uint64_t beyond", "uint8_t beyond"),
+    "series, last digit": (V, "0.0011904761904761906", "0.0011904761904761908"),
+    "series, a term less": (V, " + t*(-3.9145882126782523e-19)", ""),
+    "series, split": (V, "t < 2.25 ?", "t < 2.5 ?"),
+    "too small to matter": (R, SUM, SUM.replace(";", " + 1e-300;")),
+    "attribute": (R, "cos_psi - sin_psi", "cos_psi.real - sin_psi"),
+    "import": (R, SUM, SUM.replace("= omega_2", "= __import__('os').getpid()")),
+    "nested comments": (R, SUM, "/* /* */ " + SUM.replace(" - ", " + ") + " /* */"),
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def kernels(tmp_path_factory):
+    """Some kernels in a folder, as they are emitted."""
+    directory = tmp_path_factory.mktemp("kernels")
+    return {name: Files(directory, subject(name), emit(name).certificate) for name in (R, S, V, T, Q, Z)}
+
+
+@pytest.fixture
+def refused(kernels):
+    """Write a text and a certificate of a kernel; both checkers have to refuse them, in one sentence each."""
+    written = []
+
+    def refused(name, text, **changes):
+        files = kernels[name]
+        written.append(files)
+        (files.directory / f"{name}.c").write_text(text, encoding="utf-8")
+        digests = files.data["files"] | {f"{name}.c": sha256(text.encode()).hexdigest()}
+        files.path.write_text(printed(files.data | {"files": digests} | changes), encoding="utf-8")
+        with pytest.raises(recheck.REFUSALS) as first:
+            recheck.check(files.path)
+        with pytest.raises(CertificateError) as second:
+            audit(files.path, lambda data: files.said)
+        assert "\n" not in recheck.sentence(first.value) + str(second.value)
+        return recheck.sentence(first.value)
+
+    yield refused
+    for files in written:
+        files.restore()
+
+
+@pytest.mark.parametrize("what", HOSTILE)
+def test_a_text_that_c_reads_differently_is_refused(kernels, refused, what):
+    name, old, new = HOSTILE[what]
+    text = kernels[name].source
+    start = text.index("#include")
+    assert old in text[start:]
+    said = refused(name, text[:start] + text[start:].replace(old, new, 1))
+    assert "hash" not in said and "certified" not in said
+
+
+def test_angles_beyond_the_range_are_computed_again_by_the_c_library(kernels, refused):
+    """The second loop of a block may not take the functions of the first, nor may what functions of the file call."""
+    text = kernels[R].source
+    at = text.index("k < again")
+    for function in ("sin", "cos"):
+        changed = text[at:].replace(f"= {function}(", f"= symrot_{function}(", 1)
+        assert "beyond their range" in refused(R, text[:at] + changed)
+    text = kernels[V].source
+    for function in ("sinc", "tangent_gap"):
+        at = text.index(f"double symrot_{function}(")
+        assert "beyond their range" in refused(
+            V, text[:at] + text[at:].replace(" sin(x)", " symrot_sin(x)").replace("(sin(x)", "(symrot_sin(x)", 1)
+        )
+
+
+FORGED = {  # what it is: kernel, part of its readback or law, what takes its place
+    "pi by another number": (Z, "constants", lambda each: [each[0], "22/7"]),
+    "twice pi": (Z, "constants", lambda each: [each[0], "2*pi"]),
+    "another number of pi": (Z, "constants", lambda each: ["3", each[1]]),
+    "a split further out": (V, "series", lambda each: [each[0], "5/2", *each[2:]]),
+    "a term more": (V, "series", lambda each: [*each[:2], each[2] + 1, each[3]]),
+    "a smaller rest": (V, "series", lambda each: [*each[:3], "0"]),
+}
+
+
+@pytest.mark.parametrize("what", FORGED)
+def test_a_certificate_of_other_constants_or_series_is_refused(kernels, refused, what):
+    name, part, changed = FORGED[what]
+    readback = json.loads(json.dumps(kernels[name].data["readback"]))
+    readback[name][part][0] = changed(readback[name][part][0])
+    assert refused(name, kernels[name].source, readback=readback)
+
+
+@pytest.mark.parametrize("vanishing", ["q0/10**60", "q0 - q0**2/q0 + 1/10**50", "q0**2 + q1**2 + q2**2 + q3**2 - 2"])
+def test_a_law_that_is_nearly_true_is_refused(kernels, refused, vanishing):
+    (law, *laws) = kernels[S].data["laws"]
+    assert refused(S, kernels[S].source, laws=[law | {"vanishing": [vanishing, *law["vanishing"][1:]]}, *laws])
