@@ -34,7 +34,9 @@ RANDOM = np.random.default_rng(20)
 
 def small(rates, order=20, width=None):
     """Return a library for a few states in one block, with one parameter k."""
-    return library.build(lanes.translation_unit(program(rates), (0, len(rates)), (1.0,), order, width), "small")
+    return library.build(
+        lanes.translation_unit(program(rates), (0, len(rates)), (1.0,), order, width), "small", lanes.FLAGS
+    )
 
 
 def follow(path, y, times, tolerance=1e-12, p=None, **options):

@@ -45,6 +45,13 @@ FLAGS = (
     "-fPIC",
     "-shared",
 )
+TUNING = (  # for long sums in registers, of gcc alone: a compiler that refuses them does without
+    "-fno-tree-pre",
+    "-fno-gcse",
+    "-fno-ivopts",
+    "-fschedule-insns",
+    "-fsched-pressure",
+)
 COMPILERS = ("cc", "gcc", "clang")
 SECONDS_TO_COMPILE = 300  # a compiler that takes longer is taken to hang
 SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
@@ -387,9 +394,10 @@ def _compile(tool: Compiler, source: str, name: str, entry: str, flags: tuple[st
         with tempfile.TemporaryDirectory(prefix="symrot-", ignore_cleanup_errors=True) as place:
             output = Path(place) / f"{name}{SUFFIX}"
             complaint = _run(tool, source, flags, output)
-            if complaint and NATIVE in flags:
-                portable = tuple(flag for flag in flags if flag != NATIVE)
-                complaint = complaint if _run(tool, source, portable, output) else ""
+            for spared in (set(TUNING), {*TUNING, NATIVE}):
+                if complaint and spared.intersection(flags):
+                    fewer = tuple(flag for flag in flags if flag not in spared)
+                    complaint = complaint if _run(tool, source, fewer, output) else ""
             if complaint:
                 raise CompilerError(f"the C compiler {tool.command[0]} fails on the kernel {name!r}: {complaint}")
             content = output.read_bytes()

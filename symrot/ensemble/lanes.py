@@ -27,7 +27,7 @@ __all__ = ["FLAGS", "Lanes", "Outcome", "Task", "around", "follow", "lanes", "or
 
 Integers = NDArray[np.int64]
 
-FLAGS = (*library.FLAGS, "-fno-tree-pre")  # it keeps loaded numbers in registers that the sums need
+FLAGS = (*library.FLAGS, *library.TUNING)
 MAX_STEPS = 1_000_000_000
 STEPS_PER_CALL = 20_000  # of all lanes at once: some 20 ms, after which Python can see an interrupt
 TOO_MANY = 5
