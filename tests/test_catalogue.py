@@ -9,9 +9,10 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
-from sympy import Matrix, MatrixBase, Rational, Symbol
+from sympy import Matrix, MatrixBase, Poly, Rational, Symbol
 
 from symrot import catalogue
+from symrot.catalogue._power_series import coefficient, indexed
 from symrot.cli import main
 from symrot.conventions import SEQUENCES
 from symrot.errors import InputError
@@ -116,6 +117,22 @@ def test_a_tampered_page_cannot_be_derived(monkeypatch):
 def test_every_sequence_has_its_rates(derived):
     titles = [item.title for item in derived["euler_body_rates"].items if hasattr(item, "title")]
     assert [title.split(",")[0] for title in titles] == list(SEQUENCES)
+
+
+def test_the_coefficient_of_a_power_is_that_of_the_product():
+    """Of polynomials with numbers in them, multiplied out and differentiated by SymPy."""
+    x, k = Symbol("x"), Symbol("k")
+    series = {"a": [2, -3, 5, 7, 0, 1], "b": [1, 4, -2, 0, 3, 9]}
+    factors = {"a": {0: x**2 - 3, 1: 2 * x, 2: x**3 + 1}, "b": {0: 4 * x, 1: 1 - x**2}}
+    sums = {name: sum(value * x**n for n, value in enumerate(values)) for name, values in series.items()}
+    whole = sum(factor * sums[name].diff(x, order) for name, own in factors.items() for order, factor in own.items())
+    one = coefficient(factors, x, k)
+    values = {indexed(name, k, shift): (name, shift) for name in series for shift in range(-3, 4)}
+    for n in range(12):
+        numbers = {
+            symbol: series[name][n + shift] if 0 <= n + shift < 6 else 0 for symbol, (name, shift) in values.items()
+        }
+        assert one.subs(numbers).subs(k, n) == Poly(whole, x).coeff_monomial(x**n)
 
 
 def test_what_the_planner_and_the_docstrings_cite_exists():

@@ -5,7 +5,9 @@ import random
 import numpy as np
 import pytest
 from mpmath import exp, hyp1f1, mp, mpc, mpf
+from sympy import Rational, Symbol, solve
 
+from symrot.catalogue import derivation
 from symrot.closed_form import library, spin_up, spin_up_compiled, spin_up_series
 from symrot.errors import InputError
 from symrot.propagation.propagator import propagate
@@ -143,6 +145,27 @@ def test_a_weak_torque_leaves_a_free_body():
         weak = spin_up.motion((1, 1, 2), 2, torque, (0.3, 1, -0.4), Q0)
         for a, b in zip(free.evaluate([-7.0, 1e3]), weak.evaluate([-7.0, 1e3]), strict=True):
             assert np.abs(a - b).max() < BAR
+
+
+def test_the_series_of_a_weak_torque_is_the_one_derived():
+    """The coefficients of C are those of the recurrence proven in driven_rotation.md, and of the root, to 1e-31."""
+    step = next(s for s in derivation("driven_rotation").steps if "sum a_k h^k$ the coefficient" in s.claim)
+    following, now, before, k, c = (Symbol(name) for name in ("a_{k+1}", "a_{k}", "a_{k-1}", "k", "c"))
+    (recurrence,) = solve(step.right, following)
+    a = [Rational(0), Rational(1)]  # W = 4, S_0 = 5
+    for n in range(15):
+        a.append(recurrence.subs({k: n, now: a[-1], before: a[-2], c: Rational(3, 5)}))
+    assert [x * 5**n for n, x in enumerate(a[1:4])] == [1, 3, 8]
+    with mp.workdps(40):
+        root = mp.taylor(lambda h: mp.sqrt(1 + mpf(6) / 5 * h + h * h), 0, 15)
+        assert max(abs(mpf(x.p) / x.q - y) for x, y in zip(a[1:], root, strict=True)) < 1e-35
+        found = spin_up.motion((1, 1, 2), 2, 1e-25, (4, 0, 1.5))._source._known[0]
+        wanted = [mpf(x.p) / x.q / n for n, x in enumerate(a[1:], start=1)]
+        off = [
+            max(abs(mpf(found[i + 2 * n]) + found[i + 2 * n + 1] - x) for n, x in enumerate(wanted))
+            for i in range(len(found) - 31)
+        ]
+        assert min(off) < 1e-31
 
 
 @pytest.mark.parametrize(

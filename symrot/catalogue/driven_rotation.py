@@ -3,6 +3,7 @@
 from sympy import Expr, Matrix, Rational, S, Symbol, cos, diag, exp, sin
 
 from symrot import symbols
+from symrot.catalogue import _swept_body
 from symrot.catalogue._elliptic import I, imaginary
 from symrot.catalogue._motion import pairs, rate
 from symrot.dynamics.equations import angular_acceleration
@@ -35,6 +36,10 @@ def derive() -> Derivation:
     _attitude(d)
     _by_kummer(d)
     _far(d)
+    _swept_body.far(d)
+    _swept_body.near(d)
+    _swept_body.weak(d)
+    _swept_body.between(d)
     return d
 
 

@@ -204,7 +204,10 @@ static void handed_on(const dd given[4], const dd from[4], const dd to[4], dd fo
     quaternion_product(left, to, found);
 }
 
-/* P/(4 pi) = t S(0)/(4 pi) sum h^n a_n/(n + 1), sqrt(1 + 2 c h + h^2) = sum a_n h^n, c = Omega(0)/S(0). */
+/*
+ * P/(4 pi) = t S(0)/(4 pi) sum h^n a_n/(n + 1), sqrt(1 + 2 c h + h^2) = sum a_n h^n, c = Omega(0)/S(0):
+ * (n + 1) a_(n+1) = (1 - 2 n) c a_n + (2 - n) a_(n-1).
+ */
 static void prepare_weak(const body *own, dd speed, spin_up_phase *p)
 {
     const dd c = dd_div(own->start, speed);

@@ -12,6 +12,7 @@
  * A torque so weak that P loses digits at the start, S^2 > 1e15 s, has P from there on as a series in h = s t/S(0):
  * |h| < 1/90 for the 1e13 rad that pairs of doubles count.
  * Elsewhere Taylor's polynomials of (a, b) about even places in x = Omega/sqrt(s).
+ * Proof, of the recurrences too: derivations/driven_rotation.md.
  *
  * symrot_spin_up_prepare (spin_up.c) finds the constants, once; symrot_spin_up_at (spin_up_at.c) takes the samples.
  * No allocation, no globals, no input or output. Compile with -ffp-contract=off.

@@ -1,0 +1,33 @@
+"""Linear differential equations in power series: the coefficient of any power, for an index that is a symbol."""
+
+from collections.abc import Mapping
+
+from sympy import Expr, Integer, Poly, Symbol, ff
+
+__all__ = ["coefficient", "indexed"]
+
+
+def indexed(name: str, index: Symbol, shift: int = 0) -> Symbol:
+    """Return the symbol of a coefficient, e.g. ``a_{n-1}``."""
+    return Symbol(f"{name}_{{{index.name}{f'{shift:+d}' if shift else ''}}}")
+
+
+def coefficient(terms: Mapping[str, Mapping[int, Expr]], variable: Symbol, index: Symbol) -> Expr:
+    """Return the coefficient of ``variable^index`` in a sum of series, their derivatives, and polynomials times them.
+
+    Parameters
+    ----------
+    terms : mapping
+        Name of a series -> order of a derivative of it -> polynomial of the variable that multiplies it.
+
+    Notes
+    -----
+    The k-th term of a series has the derivative of order d ``k (k - 1) .. (k - d + 1) variable^(k - d)``.
+    """
+    total = Integer(0)
+    for name, factors in terms.items():
+        for order, factor in factors.items():
+            for (power,), value in Poly(factor, variable).terms():
+                shift = order - power
+                total += value * ff(index + shift, order) * indexed(name, index, shift)
+    return total
