@@ -56,7 +56,7 @@ def measure(omega: Sequence[Any], revolutions: float) -> dict[str, tuple[float, 
     plan = make_plan(scene)
     kernel = scene_kernel(plan)
     source = taylor.translation_unit(kernel.rates, *error_blocks(plan), 20, invariant_source(kernel, plan.states))
-    path, p = library.build(source, "taylor"), bind(kernel.rate_parameters, plan.constants)
+    path, p = library.build(source, "taylor", taylor.FLAGS), bind(kernel.rate_parameters, plan.constants)
     start = np.array([float(value) for value in plan.initial_state])
     stop = revolutions * 2.0 * math.pi / float(np.linalg.norm(start[:3]))
     exact = propagator(scene, method="exact")([stop])

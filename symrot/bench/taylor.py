@@ -105,7 +105,7 @@ class _Problem:
     def taylor_library(self, order: int | None = None, project: bool = True) -> Any:
         invariants = invariant_source(self.kernel, self.plan.states) if project else ""
         source = taylor.translation_unit(self.kernel.rates, self.blocks, self.scales, order, invariants)
-        return library.build(source, "taylor")
+        return library.build(source, "taylor", taylor.FLAGS)
 
     @property
     def taylor_p(self) -> list[float]:

@@ -111,7 +111,7 @@ def taylor_library(plan: Plan, kernel: SceneKernel, tolerance: float) -> Path:
         invariants = invariant_source(kernel, plan.states)
         source = taylor.translation_unit(kernel.rates, *error_blocks(plan), order, invariants)
         library.store(key, source)
-    return library.build(source, "taylor")
+    return library.build(source, "taylor", taylor.FLAGS)
 
 
 def error_blocks(plan: Plan) -> tuple[list[int], list[float]]:

@@ -17,6 +17,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from symrot.codegen import library as compiled
 from symrot.errors import CompilerError, InputError
 from symrot.expression import operations
 from symrot.kernel import Program
@@ -35,8 +36,9 @@ from symrot.propagation.stepping import (
     check_tolerance,
 )
 
-__all__ = ["integrate", "order_for", "record", "refusal", "step_tail", "translation_unit"]
+__all__ = ["FLAGS", "integrate", "order_for", "record", "refusal", "step_tail", "translation_unit"]
 
+FLAGS = (*compiled.FLAGS, *compiled.SCHEDULED)
 STEPS_OF_ALL = 4.0  # a span of so many steps allows each of them the whole tolerance, see step_tail
 FILES = ("taylor.h", "series.h", "pairs.h", "projection.c", "taylor.c")
 PROJECTION = "/* PROJECTION */\n"  # where taylor.c takes projection.c
