@@ -9,6 +9,7 @@ __all__ = ["PI", "Angle", "cos", "equal", "read", "read_angle", "show", "sin", "
 from collections.abc import Callable
 from decimal import Decimal
 from fractions import Fraction
+from functools import cache
 from math import isfinite, isqrt
 from typing import NamedTuple, NoReturn, SupportsFloat
 
@@ -65,6 +66,7 @@ def _round(value: Fraction, bits: int = BITS) -> Fraction:
     return Fraction(quotient, 1 << shift) if shift > 0 else Fraction(quotient << -shift)
 
 
+@cache
 def _pi(bits: int) -> Fraction:
     """Return pi to an absolute error below 2^-bits (Machin: pi = 16 arctan(1/5) - 4 arctan(1/239))."""
     one = 1 << (bits + 16)

@@ -14,8 +14,10 @@ from symrot.errors import PropagationError
 from symrot.expression import evaluate, parse
 from symrot.kernel import Argument, Program, Signature
 from symrot.number import PI, without_turns
+from symrot.propagation import dop853, epoch
 from symrot.propagation.epoch import far
 from symrot.propagation.propagator import propagator
+from symrot.propagation.stepping import MAX_STEPS
 from symrot.scene import Scene
 from symrot.scene_kernel import EXACT_FUNCTIONS, bind
 
@@ -131,6 +133,40 @@ def test_taylor_steps_keep_phases_over_a_long_span():
         expected = axis_reference(0, (100_000,))
     found = propagator(scene(AXIS, CASES["axis"][1], 0), "taylor")([100_000])
     assert abs(found.omega[0, 2] - expected[0][2]) < 2e-14
+
+
+@pytest.mark.parametrize("t0, end", [(0, 10_000), (0, -10_000), (-400, 9_000), (10_000, 20_000)])
+def test_dormand_prince_steps_keep_phases_over_a_long_span(t0, end):
+    """Samples, motion between them and events, within what the tolerance promises; on clocks of either kind."""
+    middle, promised = (t0 + end) / 2, 5 * BELOW
+    with mpmath.workdps(40):
+        halfway, last = (float(row[2]) for row in axis_reference(t0, (middle - t0, end - t0)))
+    found = propagator(scene(AXIS, CASES["axis"][1], t0), "dop853")
+    trajectory = found([middle, end])
+    assert np.abs(trajectory.omega[:, 2] - [halfway, last]).max() < promised
+    assert abs(trajectory.sol(middle)[2] - halfway) < promised
+    eventful = found([t0, end], events=[f"omega_3 == {halfway!r}"])
+    assert np.abs(eventful.t_events[0] - middle).min() < 20 * promised  # omega changes at some 0.1 rad/s^2
+    assert abs(eventful.omega[-1, 2] - last) < promised
+
+
+def test_one_time_for_all_steps_would_lose_phases(monkeypatch):
+    """``1.5 t`` rounded at 1e4 s; at 1e5 s omega was off by 3e-8, and before 1e6 s steps shrank to nothing."""
+    with mpmath.workdps(40):
+        expected = float(axis_reference(0, (10_000,))[0][2])
+    monkeypatch.setattr(dop853, "WINDOW", MAX_STEPS)
+    found = propagator(scene(AXIS, CASES["axis"][1], 0), "dop853")([10_000])
+    assert abs(found.omega[0, 2] - expected) > 20 * BELOW
+
+
+def test_parameters_follow_the_epoch_exactly():
+    """What was found once and what is found anew make what all found anew makes."""
+    found = propagator(scene(GENERAL, GENERAL_TORQUE, 10**6), "dop853")._motion
+    plan, kernel = epoch.moved(found.plan, found.kernel)
+    following = epoch.Following(kernel, plan.constants, 0.1)
+    for since in (0.0, 1 / 3, -(10**9)):
+        values = {**plan.constants, "epoch": Fraction(0.1) + Fraction(since)}
+        assert following.parameters(since) == bind(kernel.rate_parameters, values)
 
 
 def test_the_motion_between_samples_starts_far_away_too():

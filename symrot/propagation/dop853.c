@@ -56,6 +56,7 @@ typedef struct {
     double tolerance;    /* of one step of length `pace` or more; a shorter one is allowed its share of it */
     double pace;
     double max_step;     /* positive */
+    double epoch;        /* the kernel counts its time from here */
     int64_t next;        /* first sample not yet written */
     int64_t accepted, rejected, evaluations, recorded;
     double y[SYMROT_STATES], carry[SYMROT_STATES], dy[SYMROT_STATES];
@@ -152,7 +153,7 @@ static SYMROT_APART double symrot_first_step(const symrot_run *run, const double
     }
     const double probe = side*fmin(fmin(0.01/rate, 1e-3*span), run->max_step);
     EACH_STATE(i) y1[i] = run->y[i] + probe*run->dy[i];
-    symrot_rate(run->first + probe, y1, p, dy1);
+    symrot_rate(run->first - run->epoch + probe, y1, p, dy1);
     EACH_STATE(i) dy1[i] = (dy1[i] - run->dy[i])/probe;
     for (int b = 0; b < SYMROT_COUNT; ++b) {
         const double size = symrot_first_size(run, b);
@@ -165,18 +166,19 @@ static SYMROT_APART double symrot_first_step(const symrot_run *run, const double
     return side*fmin(fmin(h, run->max_step), span);  /* fmin passes over the NaN and infinity of a motion at rest */
 }
 
-/* Fill the coefficients of the dense output of the step from y to y1; k has stages 1 to 13 and receives 14 to 16. */
-static SYMROT_APART void symrot_dense_coefficients(double t, double h, const double *y, const double *step,
+/* Fill the coefficients of the dense output of the step from y to y1, which begins at the kernel's time `at`; k has
+ * stages 1 to 13 and receives 14 to 16. */
+static SYMROT_APART void symrot_dense_coefficients(double at, double h, const double *y, const double *step,
     const double *p, double (*k)[SYMROT_WIDTH], double (*term)[SYMROT_WIDTH])
 {
     double z[SYMROT_WIDTH] SYMROT_ALIGNED;
 #define K(s) k[s][i]
     EACH(i) z[i] = y[i] + h*DOP853_SUM_14(K);
-    symrot_rate(t + DOP853_NODE_14*h, z, p, k[14]);
+    symrot_rate(at + DOP853_NODE_14*h, z, p, k[14]);
     EACH(i) z[i] = y[i] + h*DOP853_SUM_15(K);
-    symrot_rate(t + DOP853_NODE_15*h, z, p, k[15]);
+    symrot_rate(at + DOP853_NODE_15*h, z, p, k[15]);
     EACH(i) z[i] = y[i] + h*DOP853_SUM_16(K);
-    symrot_rate(t + DOP853_NODE_16*h, z, p, k[16]);
+    symrot_rate(at + DOP853_NODE_16*h, z, p, k[16]);
     EACH(i) {
         const double rise = step[i], bend = h*k[1][i] - rise;
         term[0][i] = y[i];
@@ -246,7 +248,7 @@ SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *
     double step[SYMROT_WIDTH] SYMROT_ALIGNED, carry[SYMROT_WIDTH] SYMROT_ALIGNED;
     double error5[SYMROT_WIDTH] SYMROT_ALIGNED, error3[SYMROT_WIDTH] SYMROT_ALIGNED;
     const double stop = run->stop, side = stop < run->t ? -1.0 : 1.0;
-    const double pace = run->pace, tiny = 1e-30*fabs(stop - run->t);
+    const double epoch = run->epoch, pace = run->pace, tiny = 1e-30*fabs(stop - run->t);
     double t = run->t, h = run->h, growth = run->growth;
     int64_t next = run->next, accepted = 0, rejected = 0, dense = 0, recorded = 0;
     int status = SYMROT_PAUSED, broken = 0;
@@ -256,7 +258,7 @@ SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *
     memset(z, 0, sizeof z);
     memset(carry, 0, sizeof carry);
     if (h == 0.0) {
-        symrot_rate(run->first, run->y, p, run->dy);
+        symrot_rate(run->first - run->epoch, run->y, p, run->dy);
         h = run->h = stop == t ? 0.0 : symrot_first_step(run, p);
         growth = SYMROT_GROWTH;
         run->evaluations += 2;
@@ -275,7 +277,7 @@ SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *
             break;
         }
         if (room > 0 && recorded == room) { status = SYMROT_FULL; break; }
-        const double last = t1 == stop ? run->last : t1;
+        const double at = t - epoch, last = (t1 == stop ? run->last : t1) - epoch;  /* for the kernel */
 
 #define K(s) k[s][i]
 #define ADD_NEWEST(i) z[i] += newest*latest[i];
@@ -287,16 +289,16 @@ SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *
         } \
         symrot_rate(time, z, p, k[s]);
 
-        STAGE(2, 1, t + DOP853_NODE_2*h)
-        STAGE(3, 2, t + DOP853_NODE_3*h)
-        STAGE(4, 3, t + DOP853_NODE_4*h)
-        STAGE(5, 4, t + DOP853_NODE_5*h)
-        STAGE(6, 5, t + DOP853_NODE_6*h)
-        STAGE(7, 6, t + DOP853_NODE_7*h)
-        STAGE(8, 7, t + DOP853_NODE_8*h)
-        STAGE(9, 8, t + DOP853_NODE_9*h)
-        STAGE(10, 9, t + DOP853_NODE_10*h)
-        STAGE(11, 10, t + DOP853_NODE_11*h)
+        STAGE(2, 1, at + DOP853_NODE_2*h)
+        STAGE(3, 2, at + DOP853_NODE_3*h)
+        STAGE(4, 3, at + DOP853_NODE_4*h)
+        STAGE(5, 4, at + DOP853_NODE_5*h)
+        STAGE(6, 5, at + DOP853_NODE_6*h)
+        STAGE(7, 6, at + DOP853_NODE_7*h)
+        STAGE(8, 7, at + DOP853_NODE_8*h)
+        STAGE(9, 8, at + DOP853_NODE_9*h)
+        STAGE(10, 9, at + DOP853_NODE_10*h)
+        STAGE(11, 10, at + DOP853_NODE_11*h)
         STAGE(12, 11, last)
 
         EACH(i) {
@@ -328,7 +330,7 @@ SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *
 
         const int sampled = next < count && (times[next] - t1)*side <= 0.0;
         if (room > 0 || (sampled && times[next] != t1)) {
-            symrot_dense_coefficients(t, h, y, step, p, k, term);
+            symrot_dense_coefficients(at, h, y, step, p, k, term);
             ++dense;
         }
         if (room > 0) {

@@ -345,7 +345,7 @@ class Task:
 
     def again(self) -> "Task":
         """Return the same motion with nothing spent yet; what was checked is not checked again."""
-        other: Task = object.__new__(Task)
+        other: Task = object.__new__(type(self))
         other.__dict__.update(self.__dict__)
         other.began = perf_counter()
         other.accepted = other.rejected = other.evaluations = 0
@@ -446,12 +446,16 @@ class Task:
             self.rejected += rejected
             self.evaluations += evaluations
 
+    def hand(self, run: Any) -> tuple[Callable[..., Any], Any, int]:
+        """Return what steps a run further: the function in C, its kernel's parameters, the most steps in one call."""
+        return self.stepper.run, self.p, self.stepper.steps_per_call
+
     def advance(self, run: Any, times: int | None, count: int, states: int | None, rows: int | None, room: int) -> int:
         """Call the stepper once; raise where it cannot go on."""
-        stepper = self.stepper
-        attempts = min(stepper.steps_per_call, self.max_steps - stepper.tried(run))
-        given = (ctypes.addressof(run), ctypes.addressof(self.p), times, count, states, rows, room, attempts)
-        status: int = stepper.run(*given)
+        stepper, (function, p, most) = self.stepper, self.hand(run)
+        attempts = min(most, self.max_steps - stepper.tried(run))
+        given = (ctypes.addressof(run), ctypes.addressof(p), times, count, states, rows, room, attempts)
+        status: int = function(*given)
         if status == DONE:
             return status
         if status in (NOT_FINITE, UNDERFLOW):
