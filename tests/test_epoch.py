@@ -148,6 +148,8 @@ def test_dormand_prince_steps_keep_phases_over_a_long_span(t0, end):
     eventful = found([t0, end], events=[f"omega_3 == {halfway!r}"])
     assert np.abs(eventful.t_events[0] - middle).min() < 20 * promised  # omega changes at some 0.1 rad/s^2
     assert abs(eventful.omega[-1, 2] - last) < promised
+    many = propagate_ensemble(scene(AXIS, CASES["axis"][1], t0), omega=[[0, 0, 0.5]] * 2, t=[end], method="dop853")
+    assert np.abs(many.omega[:, 0, 2] - last).max() < promised
 
 
 def test_one_time_for_all_steps_would_lose_phases(monkeypatch):

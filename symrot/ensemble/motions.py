@@ -1,6 +1,7 @@
 """The motions of an ensemble, each by the method that suits it: in closed form, in lanes, or one after the other."""
 
 from collections.abc import Callable, Sequence
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -144,6 +145,18 @@ class _Stepped:
         """Return times on the clock of the steppers, which shows 0 at the epoch."""
         return times - self.epoch if self.epoch else times
 
+    def clock(self, k: int) -> dop853.Clock | None:
+        """Return the clock of the rates of one motion, see :mod:`symrot.propagation.dop853`."""
+        if not self.kernel.rates.uses("t"):
+            return None
+
+        @cache
+        def following() -> tuple[Any, epoch.Following]:
+            plan, kernel = self.moved if self.epoch else epoch.moved(self.plan, self.kernel)
+            return epoch.compiled(plan, kernel), epoch.Following(kernel, self.plans[k].constants, self.epoch)
+
+        return lambda since: (following()[0], following()[1].parameters(since))
+
     def _bound(self, parameters: Any) -> Floats:
         rows = [bind(parameters, plan.constants) for plan in self.plans]
         return np.array(rows, dtype=np.float64).reshape(len(rows), len(parameters))
@@ -196,9 +209,12 @@ def _taylor(stepped: _Stepped, method: str) -> lanes.Outcome:
 def _dop853(stepped: _Stepped, method: str) -> lanes.Outcome:
     problem, plan = stepped.problem, stepped.plan
     path = compiled(plan)[1] if stepped.moved[0] is plan else epoch.compiled(*stepped.moved)
-    return stepped.one_by_one(
-        lambda k, times: dop853.integrate(path, stepped.p[k], stepped.y[k], stepped.t0, times, problem.tolerance)
-    )
+
+    def integrate(k: int, times: Floats) -> tuple[Floats, Any]:
+        given = path, stepped.p[k], stepped.y[k], stepped.t0, problem.tolerance
+        return dop853.task(*given, clock=stepped.clock(k)).sample(times)
+
+    return stepped.one_by_one(integrate)
 
 
 def _scipy(stepped: _Stepped, method: str) -> lanes.Outcome:
