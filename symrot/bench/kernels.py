@@ -5,7 +5,8 @@
 All contestants take turns in one run, on one thread, on the same memory, and compute the same numbers, which is
 checked. What makes C is compiled with the same compiler and flags; heyoka's machine code, with its sines of 3.5 ulp, is
 linked to the same loops. CasADi's own evaluation is called from Python. "moves only" reads each input and writes each
-output of a batch with no more than a sum between: what a batch of 10^6 is from the memory alone.
+output of a batch with no more than a sum between: about what a batch of 10^6 is from the memory alone, as many samples
+at once ask for it; longer loops, with fewer samples at once in the processor, can be some percent faster.
 """
 
 import argparse
@@ -39,6 +40,7 @@ FLAGS = ("-std=c99", "-O3", library.NATIVE, "-fno-math-errno", "-ffp-contract=fa
 CACHED, MANY = 1000, 1_000_000  # no power of two, at which all arrays would share cache lines
 PROPER = ("zxz", "zyz", "xyx", "xzx", "yxy", "yzy")
 TAIT_BRYAN = ("zyx", "zxy", "xyz", "xzy", "yxz", "yzx")
+PAGE = 4096  # bytes
 SHORTEST = 1e-3  # s, one measurement
 BAR = 1.05  # of the least time of the others
 FLOOR = "moves only"
@@ -74,10 +76,24 @@ def _samples(name: str, count: int) -> list[Floats]:
 
 @cache
 def _block(name: str, shape: str, count: int) -> tuple[Floats, Floats]:
-    """Return inputs and outputs, the same memory for all contestants: one sample in a row, in a batch in a column."""
+    """Return inputs and outputs, the same memory for all contestants: one sample in a row, in a batch in a column.
+
+    The outputs follow the inputs in one piece that begins on a page and has all been written. Left to the allocator,
+    they lay apart by another part of a page in each run, on other kinds of pages, and each second vector on two lines.
+    """
     given = np.concatenate(_samples(name, count))
-    found = np.zeros((sum(a.size for a in kernel_program(name).signature.arguments if a.role == "out"), count))
-    return (np.ascontiguousarray(given.T), np.ascontiguousarray(found.T)) if shape == "one" else (given, found)
+    size = sum(a.size for a in kernel_program(name).signature.arguments if a.role == "out")
+    memory = np.empty((len(given) + size) * count + PAGE)
+    memory = memory[-memory.ctypes.data % PAGE // memory.itemsize :]
+    apart = np.split(memory[: (len(given) + size) * count], [given.size])
+    if shape == "one":
+        inputs, outputs = (part.reshape(count, -1) for part in apart)
+        inputs[:] = given.T
+    else:
+        inputs, outputs = (part.reshape(-1, count) for part in apart)
+        inputs[:] = given
+    outputs[:] = 0
+    return inputs, outputs
 
 
 def _addresses(name: str, shape: str, count: int) -> Any:
