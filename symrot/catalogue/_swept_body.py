@@ -258,7 +258,7 @@ def between(d: Derivation) -> None:
         r"\Omega_0 S)/W^2$.",
         2 * across**2 * z * root,
         omega * there - start * speed,
-        because=r"$\sinh 2 y = 2 \sinh y \cosh y$, and $\sinh Z = \Omega / W$, $\cosh Z = S / W$",
+        because=r"of the double argument, and $\Omega / W$ and $S / W$ are hyperbolic sine and cosine of $Z$",
         relations=squares,
         named=r"2\,W^2\,z\,w",
     )
