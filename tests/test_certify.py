@@ -1,16 +1,19 @@
 """Certificates: what they say is proven, re-checked without symrot, audited; and whatever is altered is refused."""
 
+import ast
 import json
 import os
 import shutil
 import subprocess
 import sys
+from decimal import Context, Decimal, localcontext
 from pathlib import Path
 from random import Random
 
 import pytest
+from mpmath import mp
 
-from symrot.certify import recheck
+from symrot.certify import exact_check, recheck, recheck_formula
 from symrot.certify.audit import audit
 from symrot.certify.certificate import certificate_text, printed, with_slots
 from symrot.certify.claims import claims_no_more, same_but_for_bounds
@@ -29,7 +32,7 @@ from symrot.symbols import constant
 SLICE = ("quaternion_dcm", "quaternion_of_dcm", "euler_zyx_body_rates", "euler_zxz_of_quaternion", "mrp_shadow",
          "rotation_vector_body_rates", "rotation_vector_of_quaternion", "torque_gravity", "gravity_gradient_satellite",
          "heavy_top_loops", "rigid_body_principal")  # fmt: skip
-RECHECK = Path(recheck.__file__)
+RECHECK = [Path(recheck.__file__).with_name(name) for name in ("recheck.py", "recheck_c.py", "recheck_formula.py")]
 
 
 @pytest.fixture(scope="module")
@@ -51,9 +54,10 @@ def dcm(kernels):
 
 
 def refused(files, said, *options):
-    """Both checkers refuse the files; the audit says why."""
-    with pytest.raises(recheck.REFUSALS):
-        recheck.check(files.path)
+    """All checkers refuse the files; the audit says why."""
+    for checker in (recheck, exact_check):
+        with pytest.raises(checker.REFUSALS):
+            checker.check(files.path)
     with pytest.raises(CertificateError, match=said) as caught:
         audit(files.path, lambda data: files.said)
     assert "\n" not in str(caught.value)
@@ -62,7 +66,7 @@ def refused(files, said, *options):
 @pytest.mark.parametrize("name", SLICE)
 def test_a_certificate_holds_and_is_rechecked_without_symrot(kernels, name):
     files = kernels[name]
-    assert files.accepted() == ["recheck", "audit"]
+    assert files.accepted() == ["recheck", "exact", "audit"]
     assert emit(name).certificate == files.path.read_text(encoding="utf-8")
     bare = {part: value for part, value in files.data.items() if part != "rounding"}
     assert certificate_text(files.subject) == printed(bare)
@@ -71,17 +75,16 @@ def test_a_certificate_holds_and_is_rechecked_without_symrot(kernels, name):
 
 def test_recheck_imports_nothing_of_symrot(kernels, tmp_path):
     """It runs where there is neither symrot nor any package, from a copy."""
-    (tmp_path / RECHECK.name).write_bytes(RECHECK.read_bytes())
-    modules = {
-        line.split()[1]
-        for line in RECHECK.read_text(encoding="utf-8").splitlines()
-        if line.startswith(("import ", "from "))
-    }
-    assert modules and modules <= sys.stdlib_module_names
+    for file in RECHECK:
+        shutil.copy(file, tmp_path)
+        nodes = list(ast.walk(ast.parse(file.read_text(encoding="utf-8"))))
+        modules = {alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names}
+        modules |= {node.module for node in nodes if isinstance(node, ast.ImportFrom)}
+        assert modules - {each.stem for each in RECHECK} <= sys.stdlib_module_names
+        assert len(file.read_text(encoding="utf-8").splitlines()) < 150
     paths = [str(files.path) for files in kernels.values()]
-    command = [sys.executable, "-I", "-S", str(tmp_path / "recheck.py")]
-    code = "import sys; sys.path.insert(0, sys.argv[1]); import recheck; recheck.main(sys.argv[2:])"
-    done = subprocess.run([*command[:3], "-c", code, str(tmp_path), *paths], capture_output=True, text=True)
+    command = [sys.executable, "-I", "-S", str(tmp_path / "recheck.py"), *paths]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path.root)
     assert done.returncode == 0, done.stderr
     assert done.stdout.count("hold") == len(paths)
     kernels["quaternion_dcm"].path.write_text("{}", encoding="utf-8")
@@ -93,7 +96,7 @@ def test_recheck_imports_nothing_of_symrot(kernels, tmp_path):
 @pytest.mark.campaign
 @pytest.mark.parametrize("name", (*kernel_names(), *names_with_kernels()))
 def test_every_certificate_holds(name, tmp_path):
-    assert Files(tmp_path, subject(name), emit(name).certificate).accepted() == ["recheck", "audit"]
+    assert Files(tmp_path, subject(name), emit(name).certificate).accepted() == ["recheck", "exact", "audit"]
 
 
 # --- link 1 -----------------------------------------------------------------------------------------------------------
@@ -115,7 +118,7 @@ def test_a_law_that_does_not_follow_is_refused():
 @pytest.mark.parametrize("name", ["euler_equations_principal", "torque_rotor", "mrp_of_quaternion"])
 def test_laws_are_proven_in_every_case(name):
     for proof in prove_laws(definition(name)):
-        assert recheck.complete([[list(choice) for choice in case.case] for case in proof.cases])
+        assert exact_check.complete([[list(choice) for choice in case.case] for case in proof.cases])
         assert len(proof.cases) == (2 if name == "mrp_of_quaternion" else 1)
 
 
@@ -137,16 +140,21 @@ def test_a_proof_by_what_vanishes_itself_is_refused(dcm):
         {"case": [], "steps": [], "relations": [norm], "entries": [["1", [[0, "q0"]]]]}]}  # fmt: skip
     resealed(dcm, laws=[*dcm.data["laws"], right])
     recheck.check(dcm.path)
+    exact_check.check(dcm.path)
     resealed(dcm, laws=[right | {"witness": right["witness"] | {"q0": "1"}}])
-    refused(dcm, "witness")
+    recheck.check(dcm.path)  # proofs are not what it looks at
+    with pytest.raises(ValueError, match="witness"):
+        exact_check.check(dcm.path)
+    with pytest.raises(CertificateError, match="witness"):
+        audit(dcm.path, lambda data: dcm.said)
 
 
 def test_cases_that_are_missing_are_noticed():
     less, more = ["a", "<", "b"], ["a", ">=", "b"]
-    assert recheck.complete([[]]) and recheck.complete([[less], [more]])
-    assert recheck.complete([[less], [more, ["c", "<", "d"]], [more, ["c", ">=", "d"]]])
+    assert exact_check.complete([[]]) and exact_check.complete([[less], [more]])
+    assert exact_check.complete([[less], [more, ["c", "<", "d"]], [more, ["c", ">=", "d"]]])
     for cases in ([], [[less]], [[less], [less]], [[], []], [[less], [more], []], [[less], ["b", ">=", "a"]]):
-        assert not recheck.complete(cases)
+        assert not exact_check.complete(cases)
 
 
 # --- what is hostile --------------------------------------------------------------------------------------------------
@@ -455,3 +463,34 @@ def test_certificates_are_the_same_bytes_whatever_the_seed_of_hashes():
     environment = {"PYTHONHASHSEED": seed, "SYMROT_CACHE": "/nowhere"}
     done = subprocess.run([sys.executable, "-c", code, *names], capture_output=True, check=True, env=environment)
     assert done.stdout.decode() == "".join(emit(name).certificate for name in names) + "\n"
+
+
+@pytest.mark.parametrize("name", ["sin", "cos", "tan", "asin", "acos", "atan", "exp", "log", "sinh", "cosh", "tanh", "sqrt",
+                                  "atan2", "sinc", "sine_gap", "tangent_gap", "arc_ratio", "pi"])  # fmt: skip
+def test_recheck_evaluates_functions_to_what_mpmath_finds(name):
+    """To 80 digits of 90: laws are refused from 60 on."""
+    own = {
+        "sinc": lambda x: mp.sin(x) / x, "sine_gap": lambda x: (x - mp.sin(x)) / x**3, "arc_ratio": lambda x, y: mp.atan2(x, y) / x,
+        "tangent_gap": lambda x: (mp.sin(x) - x * mp.cos(x)) / x**3, "pi": lambda: mp.pi,
+    }  # fmt: skip
+    oracle = own.get(name) or getattr(mp, name)
+    with localcontext(Context(prec=90)), mp.workdps(110):
+        names = recheck_formula.with_texts(
+            recheck_formula.REAL | {"choose": lambda sign, a, b, x, y: y}, recheck_formula.TEXTS
+        )
+        scale = 1 if name in ("asin", "acos") else 30
+        for x, y in ((Decimal("0.7301"), Decimal("-0.21")), (Decimal("0.013"), Decimal("0.9"))):
+            arguments = [x * scale, y][: 2 if name in ("atan2", "arc_ratio") else name != "pi"]
+            found = names[name](*arguments) if arguments else names[name]
+            wanted = oracle(*(mp.mpf(str(each)) for each in arguments))
+            assert abs(mp.mpf(str(found)) / wanted - 1) < mp.mpf(10) ** -80
+
+
+def test_a_rotation_that_recheck_draws_is_one():
+    with localcontext(Context(prec=90)):
+        unit = recheck_formula.of_length_one([Decimal(each) for each in (3, -1, 7, 2)])
+        rows = recheck_formula.rotation(unit)
+        a, b, c = (rows[start : start + 3] for start in (0, 3, 6))
+        products = [sum(x * y for x, y in zip(p, q, strict=True)) for p in (a, b, c) for q in (a, b, c)]
+        assert all(abs(each - (k % 4 == 0)) < Decimal("1e-85") for k, each in enumerate(products))
+        assert all(abs(a[k - 2] * b[k - 1] - a[k - 1] * b[k - 2] - c[k]) < Decimal("1e-85") for k in range(3))

@@ -9,7 +9,7 @@ from hashlib import sha256
 
 import pytest
 
-from symrot.certify import recheck
+from symrot.certify import exact_check, recheck
 from symrot.certify.audit import audit
 from symrot.certify.certificate import printed
 from symrot.certify.mutations import Files
@@ -92,6 +92,10 @@ HOSTILE = {  # what it is: kernel, what is replaced in the text of it, by what
     "steps larger than spans": (T, "start += SYMROT_SPAN", "start += 2*SYMROT_SPAN"),
     "inner number of samples": (T, "const size_t end", "const size_t n = 1; const size_t end"),
     "narrow sum": (R, "uint64_t beyond", "uint8_t beyond"),
+    "start of a block shadowed": (R, "const size_t end", "const double start = 0.5; const size_t end"),
+    "first loop empty": (S, "SYMROT_INDEPENDENT\n    for (size_t k = 0; k < n; ++k) {", "for (size_t k = 0; k < n; ++k) { } {"),
+    "function of itself": (V, "return x == 0.0 ? 1.0 : sin(x)/x;", "return symrot_sinc(x);"),
+    "two functions of each other": (V, "return x == 0.0 ? 1.0 : sin(x)/x;", "return symrot_near_sinc(x);"),
     "series, last digit": (V, "0.0011904761904761906", "0.0011904761904761908"),
     "series, a term less": (V, " + t*(-3.9145882126782523e-19)", ""),
     "series, split": (V, "t < 2.25 ?", "t < 2.5 ?"),
@@ -111,7 +115,7 @@ def kernels(tmp_path_factory):
 
 @pytest.fixture
 def refused(kernels):
-    """Write a text and a certificate of a kernel; both checkers have to refuse them, in one sentence each."""
+    """Write a text and a certificate of a kernel; all checkers have to refuse them, in one sentence each."""
     written = []
 
     def refused(name, text, **changes):
@@ -120,12 +124,15 @@ def refused(kernels):
         (files.directory / f"{name}.c").write_text(text, encoding="utf-8")
         digests = files.data["files"] | {f"{name}.c": sha256(text.encode()).hexdigest()}
         files.path.write_text(printed(files.data | {"files": digests} | changes), encoding="utf-8")
-        with pytest.raises(recheck.REFUSALS) as first:
-            recheck.check(files.path)
-        with pytest.raises(CertificateError) as second:
+        said = []
+        for checker in (recheck, exact_check):
+            with pytest.raises(checker.REFUSALS) as caught:
+                checker.check(files.path)
+            said.append(checker.sentence(caught.value))
+        with pytest.raises(CertificateError) as caught:
             audit(files.path, lambda data: files.said)
-        assert "\n" not in recheck.sentence(first.value) + str(second.value)
-        return recheck.sentence(first.value)
+        assert "\n" not in "".join(said) + str(caught.value)
+        return said[0]
 
     yield refused
     for files in written:
@@ -157,6 +164,18 @@ def test_angles_beyond_the_range_are_computed_again_by_the_c_library(kernels, re
         )
 
 
+def test_angles_are_asked_for_before_anything_is_computed_again(kernels, refused):
+    """A sum that is built in the second loop, or a first loop that computes nothing, leaves samples as they are."""
+    text = kernels[R].source
+    at = text.index("k < again")
+    end = text.index("        }\n", at)
+    late = text[:at].replace(FAR, "") + text[at:end] + "    " + FAR + "\n" + text[end:]
+    assert late.count(FAR) == 1
+    assert "beyond their range" in refused(R, late)
+    start = text.index("{\n", text.index("k < end")) + 2
+    assert "is not its formulas" in refused(R, text[:start] + text[text.index("        }\n", start) :])
+
+
 FORGED = {  # what it is: kernel, part of its readback or law, what takes its place
     "pi by another number": (Z, "constants", lambda each: [each[0], "22/7"]),
     "twice pi": (Z, "constants", lambda each: [each[0], "2*pi"]),
@@ -173,6 +192,31 @@ def test_a_certificate_of_other_constants_or_series_is_refused(kernels, refused,
     readback = json.loads(json.dumps(kernels[name].data["readback"]))
     readback[name][part][0] = changed(readback[name][part][0])
     assert refused(name, kernels[name].source, readback=readback)
+
+
+def test_an_output_may_not_take_the_name_of_an_input(kernels, refused):
+    """Laws would be about it, where they seem to be about the input."""
+    spec = kernels[R].data["spec"]
+    for symbol in ("omega_1", "phi", "pi", spec["formulas"][1][1], *(name for name, _ in spec["named"][:1])):
+        (place, _, text), *formulas = spec["formulas"]
+        said = refused(R, kernels[R].source, spec=spec | {"formulas": [[place, symbol, text], *formulas]})
+        assert said == f"{symbol} is no new name"
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        lambda given: given[:6], lambda given: given[:-9], lambda given: [*given, "R_11 - 1"], lambda given: [],
+        lambda given: ["q0**2 + q1**2 + q2**2 + q3**2 - 1"], lambda given: [given[0]] * len(given),
+    ],
+    ids=["columns", "mirrors", "one rotation", "nothing", "of outputs", "one of them"],
+)  # fmt: skip
+def test_points_are_drawn_only_where_what_is_given_says_no_more(kernels, refused, given):
+    """A rotation is drawn where the relations given imply one, and say nothing beyond."""
+    laws = kernels[Q].data["laws"]
+    changed = [law | {"given": given(law["given"])} if len(law["given"]) > 1 else law for law in laws]
+    assert changed != laws
+    assert "law" in refused(Q, kernels[Q].source, laws=changed)
 
 
 @pytest.mark.parametrize("vanishing", ["q0/10**60", "q0 - q0**2/q0 + 1/10**50", "q0**2 + q1**2 + q2**2 + q3**2 - 2"])

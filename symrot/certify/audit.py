@@ -1,9 +1,9 @@
 """Audit a certificate: whether everything it says still holds, for the files beside it and for what symrot derives.
 
-:mod:`symrot.certify.recheck` decides what can be decided from the files alone. Beyond it: the header says nothing but
-prototypes, the operations are those that were certified, and what the certificate says of the kernel (formulas, laws
-and their proofs, domain, units, assumptions) is what symrot derives for a kernel of that name and proves exactly, as
-identities of fractions of polynomials (:mod:`symrot.certify.laws`, :mod:`symrot.certify.equality`), so that no
+:mod:`symrot.certify.exact_check` decides what can be decided from the files alone. Beyond it: the header says nothing
+but prototypes, the operations are those that were certified, and what the certificate says of the kernel (formulas,
+laws and their proofs, domain, units, assumptions) is what symrot derives for a kernel of that name and proves exactly,
+as identities of fractions of polynomials (:mod:`symrot.certify.laws`, :mod:`symrot.certify.equality`), so that no
 certificate of something else, however well proven, passes for it. Bounds of rounding errors are those that symrot
 finds on the box of the certificate.
 """
@@ -14,7 +14,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from symrot.certify import recheck
+from symrot.certify import exact_check
 from symrot.certify.certificate import Data, printed, shown
 from symrot.certify.header import check_header
 from symrot.certify.operations import Operations
@@ -97,12 +97,12 @@ def audit(path: Path, said_by: Callable[[Data], Data | None]) -> tuple[Data, lis
         if not file.startswith("../") and not (path.parent / file).is_file():
             raise CertificateError(f"{path}: expected {file} beside it, which it is a certificate of, there is none")
     try:
-        said = [recheck.check(path), *_audited(path, data, said_by), *_compared(data)]
+        said = [exact_check.check(path), *_audited(path, data, said_by), *_compared(data)]
         return data, [*said, _bounds(path, data, (path.parent / f"{data['kernel']}.c").read_text(encoding="utf-8"))]
     except CertificateError:
         raise
-    except recheck.REFUSALS as reason:
-        raise CertificateError(f"{path}: {recheck.sentence(reason)}") from None
+    except exact_check.REFUSALS as reason:
+        raise CertificateError(f"{path}: {exact_check.sentence(reason)}") from None
 
 
 def _audited(path: Path, data: Data, said_by: Callable[[Data], Data | None]) -> list[str]:

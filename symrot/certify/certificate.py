@@ -44,7 +44,8 @@ SCHEMA = "symrot.certificate/1"
 Data = dict[str, Any]
 
 TRUSTED = {
-    "formulas and laws": "recheck.py alone, or the reader and the prover of symrot",
+    "formulas and laws": "`symrot audit`, which proves them exactly, or recheck.py, which evaluates them at random "
+    "points",
     "C text": "that the compiler gives C its meaning: real numbers are rounded as IEEE 754 says, to nearest",
     "functions": "sin, cos, sqrt and others of <math.h> are, but for rounding, the functions of that name",
 }

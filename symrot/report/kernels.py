@@ -24,7 +24,7 @@ from symrot.scene_file import names_with_kernels
 __all__ = ["certificate_files", "kept_bounds", "kernel_files", "kernel_lines", "stale", "write_all", "write_files"]
 
 SUFFIXES = {"c": (".c", ".h", ".json", ".txt", ".in"), "numpy": (".py",)}
-RECHECK = ("recheck.py",)  # what re-checks certificates without symrot
+RECHECK = ("recheck.py", "recheck_c.py", "recheck_formula.py")  # what re-checks certificates without symrot
 WORKERS = min(os.cpu_count() or 1, 4)
 SCENES = "scenes"  # under the folder of each target: the kernels of shipped scenes; those of the library beside it
 
