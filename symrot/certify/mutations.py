@@ -301,6 +301,7 @@ class Campaign:
         self.tried: Counter[str] = Counter()
         self.same: Counter[str] = Counter()
         self.words: Counter[str] = Counter()  # what recheck.py does not look at: refused by the audit alone
+        self.proofs = 0  # those among them that the exact check, with which the audit begins, refuses: proofs of laws
         self.survivors: list[str] = []
 
     def lines(self, title: str, seconds: float) -> list[str]:
@@ -310,7 +311,9 @@ class Campaign:
         )
         same = f"{self.same.total()} the same" + (f" ({alike})" if alike else "")
         said = f"{title}: {self.tried.total()} tried, {same}, {len(self.survivors)} accepted, {seconds:.0f} s"
-        said += f"; {self.words.total()} not for recheck.py to see, refused by the audit alone" if self.words else ""
+        if self.words:
+            said += f"; {self.words.total()} not for recheck.py to see, refused by the audit alone"
+            said += f" ({self.proofs} in proofs of laws, by its exact check)"
         return [said, f"  {kinds}", *(f"  ACCEPTED {each}" for each in self.survivors)]
 
 
@@ -363,6 +366,7 @@ def tampered_certificates(kernels: Sequence[Files], count: int, random: Random, 
             continue
         if sealed and accepted and "audit" not in accepted and claims_no_more(files.data, data):
             campaign.words[part] += 1
+            campaign.proofs += "exact" not in accepted
             continue
         campaign.survivors += [f"{who}: {files.name}, {part}{', sealed anew' if sealed else ''}" for who in accepted]
     return campaign
