@@ -257,7 +257,9 @@ def _exact_parts(motion: Motion, times: Floats, rise: bool) -> tuple[tuple[Float
     omega, quaternion = exact.evaluate(times - start if start else times, quaternion=attitude)
     assert omega is not None
     if not (rise and len(times) and times.item(0) > start):  # to the last bit, as every method has it
-        at_start = times == start
+        at_start: Any = times == start
+        if rise:
+            at_start = slice(times.searchsorted(start, "left"), times.searchsorted(start, "right"))
         omega[at_start] = motion.plan.initial_state[:3]
         if quaternion is not None:
             quaternion[at_start] = motion.plan.initial_state[3:]
