@@ -161,7 +161,7 @@ def test_coefficients_are_the_series_to_the_last_bit():
     with mpmath.workdps(40):
         for precision, digits in (("binary64", 53), ("binary32", 24)):
             for first, count in zip((3, 4), made._COUNT[precision], strict=True):
-                polynomial = made._coefficients(first, count)
+                polynomial = made.tail_coefficients(first, count)
                 for x in np.linspace(0.01, np.pi / 4, 300):
                     x = mpmath.mpf(x)
                     tail = mpmath.fsum(
