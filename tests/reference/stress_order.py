@@ -53,7 +53,7 @@ SYMROT_EXPORT void symrot_steps(const plain *p, const plain *start, int64_t orde
         for (int i = 0; i < symrot_sizes[r]; ++i) x[r][0].lane[i] = start[symrot_starts[r] + i];
     }
     for (int64_t k = 0; k < count; ++k) {
-        symrot_jet(c, (double)k/count, step, order, x);
+        symrot_jet(c, (double)k/count, 0, step, order, x);
         EACH_ROW(r) for (int64_t n = order; n > 0; --n)
             x[r][n - 1] = V_ADD(x[r][n - 1], x[r][n]);
     }
