@@ -1,16 +1,15 @@
 """Check certificates exactly, from their files alone: what `symrot audit` begins with.
 
 Every hash; link 3, that the C text is its formulas; link 1, that the formulas obey their laws. Both are evaluated in
-exact arithmetic at random integers, functions of equal arguments being one random integer more: a wrong equation
-passes one run with a chance of about its degree in 2^128. Laws are proven by the cases, steps and cofactors that the
-certificate holds (:mod:`symrot.certify.laws`). ``recheck.py``, which looks at no proof but at numbers, shares no code
-with this. Headers are known by hash alone. Whatever else a certificate says (titles and units, counts and digests of
-operations, flags, theorems, bounds of rounding errors, object code) is a statement that is not looked at.
+exact arithmetic at random integers, functions of equal arguments being one random integer more: a wrong equation passes
+one run with a chance of about its degree in 2^128. Laws are proven by the cases, steps and cofactors that the
+certificate holds (:mod:`symrot.certify.laws`). ``recheck.py``, which looks at no proof but at numbers, shares with this
+the seal and the hashes alone. Headers are known by hash alone. Whatever else a certificate says (titles and units,
+counts and digests of operations, flags, theorems, bounds of rounding errors, object code) is a statement that is not
+looked at.
 """
 
 import ast
-import hashlib
-import json
 import math
 import operator
 import re
@@ -18,6 +17,8 @@ import secrets
 from collections import defaultdict
 from fractions import Fraction
 from pathlib import Path
+
+from symrot.certify import recheck
 
 # ruff: noqa: B905
 # mypy: ignore-errors
@@ -335,18 +336,9 @@ def functions_of(text, name, files):
 
 def check(path):
     """Return what a certificate shows, in a line; raise one of REFUSALS if it does not."""
-    path, directory = Path(path), Path(path).parent
-    data = json.loads(path.read_bytes())
-    need(isinstance(data, dict) and data.get("schema") == "symrot.certificate/1", "the schema is another")
-    bare = json.dumps({k: v for k, v in data.items() if k != "seal"}, sort_keys=True, separators=(",", ":"))
-    need(hashlib.sha256(bare.encode()).hexdigest() == data["seal"], "the certificate is not as it was printed")
+    data = recheck.certified(path)
     name, files, spec, readback = data["kernel"], data["files"], data["spec"], data["readback"]
-    need(path.name == f"{name}.cert.json" and {f"{name}.c", f"{name}.h"} <= {*files}, "it is that of another file")
-    for file, digest in files.items():
-        if not file.startswith("../") or (directory / file).exists():
-            content = (directory / file).read_bytes()
-            need(hashlib.sha256(content).hexdigest() == digest, f"{file} is not what was certified")
-    found = functions_of((directory / f"{name}.c").read_text("utf-8"), name, files)
+    found = functions_of(Path(path).with_name(f"{name}.c").read_text("utf-8"), name, files)
     wanted = {f"{function}{end}" for function in readback for end in ("", "_batch")}
     need({f for f in found if not found[f][0]} == wanted, f"expected the functions {', '.join(wanted)}")
     for function in readback:
@@ -361,8 +353,7 @@ def check(path):
     return f"{name}: {len(files)} hashes, C text of {functions} and batches = formulas, {laws} (bounds not looked at)"
 
 
-REFUSALS = (LookupError, TypeError, AttributeError, SyntaxError, MemoryError, RecursionError, ValueError)
-REFUSALS += (ArithmeticError, OSError)
+REFUSALS = recheck.REFUSALS
 
 
 def sentence(reason):

@@ -91,21 +91,28 @@ def functions_of(text, includes):
     return found
 
 
-def check(path):
-    """Return what a certificate shows, in a line; raise one of REFUSALS if it does not."""
+def certified(path):
+    """Return what a certificate says, after its seal and the hashes of all its files."""
     path, directory = Path(path), Path(path).parent
     data = json.loads(path.read_bytes())
     need(isinstance(data, dict) and data.get("schema") == "symrot.certificate/1", "the schema is another")
     bare = json.dumps({k: v for k, v in data.items() if k != "seal"}, sort_keys=True, separators=(",", ":"))
     need(hashlib.sha256(bare.encode()).hexdigest() == data["seal"], "the certificate is not as it was printed")
-    name, files, spec, readback = data["kernel"], data["files"], data["spec"], data["readback"]
+    name, files = data["kernel"], data["files"]
     need(path.name == f"{name}.cert.json" and {f"{name}.c", f"{name}.h"} <= {*files}, "it is that of another file")
     for file, digest in files.items():
         if not file.startswith("../") or (directory / file).exists():
             content = (directory / file).read_bytes()
             need(hashlib.sha256(content).hexdigest() == digest, f"{file} is not what was certified")
+    return data
+
+
+def check(path):
+    """Return what a certificate shows, in a line; raise one of REFUSALS if it does not."""
+    data = certified(path)
+    name, files, spec, readback = data["kernel"], data["files"], data["spec"], data["readback"]
     includes = ["#include <math.h>", f'#include "{name}.h"', *['#include "symrot_math.h"'] * ("symrot_math.h" in files)]
-    found = functions_of((directory / f"{name}.c").read_text("utf-8"), includes)
+    found = functions_of(Path(path).with_name(f"{name}.c").read_text("utf-8"), includes)
     wanted = {f"{function}{end}" for function in readback for end in ("", "_batch")}
     need({f for f in found if found[f][0] == "void"} == wanted, f"expected the functions {', '.join(wanted)}")
     kinds = {"void", *(f"static inline {said['type']}" for said in readback.values())}
