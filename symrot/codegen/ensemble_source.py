@@ -12,7 +12,7 @@ from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 from symrot.codegen.c_source import c_expression
-from symrot.codegen.lane_functions import LANE_FUNCTIONS
+from symrot.codegen.lane_functions import lane_functions
 from symrot.codegen.recurrences import Recurrences, Series, recurrences, split_sign
 from symrot.codegen.taylor_source import checked_system
 from symrot.expression import Node, names, rename
@@ -78,7 +78,7 @@ def lane_definitions(program: Program, edges: Sequence[int], scales: Sequence[fl
             f"#define SYMROT_SCALES {{{', '.join(repr(float(scale)) for scale in scales)}}}",
             "",
             f"static const double symrot_inverse[] = {{{inverses}}};",
-            LANE_FUNCTIONS if any(s.rule == "clock" or s.function in CIRCLE for s in system.series) else "",
+            lane_functions() if any(s.rule == "clock" or s.function in CIRCLE for s in system.series) else "",
             _Jet(system).text(),
         )
     )

@@ -5,12 +5,13 @@ the C library, so that its bits depend on nothing but its own angle.
 """
 
 from fractions import Fraction
+from functools import cache
 
 from symrot.codegen.c_source import DOUBLE
 from symrot.codegen.math_header import FAR, quarter_turn_parts, tail_coefficients
 from symrot.number import PI
 
-__all__ = ["LANE_FUNCTIONS"]
+__all__ = ["lane_functions"]
 
 TEMPLATE = """
 /* Return a + b as it is rounded; *low gains what the rounding took from it (Knuth's sum). */
@@ -72,7 +73,9 @@ def _horner(name: str, coefficients: tuple[Fraction, ...]) -> str:
     )
 
 
-def _text() -> str:
+@cache
+def lane_functions() -> str:
+    """Return the C text of ``symrot_turn`` and ``symrot_circle``, for operations of :file:`lanes.h`."""
     sine, cosine = tail_coefficients(3, 6), tail_coefficients(4, 6)
     first, second, third = map(DOUBLE.literal, quarter_turn_parts(DOUBLE.precision))
     numbers = {
@@ -85,7 +88,3 @@ def _text() -> str:
     for name, value in numbers.items():
         text = text.replace(f"@{name}@", value)
     return text
-
-
-LANE_FUNCTIONS = _text()
-"""C text of ``symrot_turn`` and ``symrot_circle``, for operations of :file:`lanes.h`."""

@@ -20,7 +20,7 @@ from symrot.codegen import library
 from symrot.codegen.address import address
 from symrot.errors import CompilerError
 from symrot.kernel import Program
-from symrot.propagation.stepping import DONE, NOT_FINITE, UNDERFLOW, CutOff, Floats, PathLike, why_stuck
+from symrot.propagation.stepping import DONE, NOT_FINITE, UNDERFLOW, CutOff, Floats, PathLike, rising, why_stuck
 from symrot.propagation.taylor import step_tail
 
 __all__ = ["FLAGS", "Lanes", "Outcome", "Task", "around", "follow", "lanes", "order_for", "translation_unit"]
@@ -162,7 +162,7 @@ class _Legs(NamedTuple):
 
 def _legs(t0: float, times: Floats, n: int) -> _Legs:
     samples, motion = times.shape[-1], np.arange(n)
-    if times.ndim == 1 and samples and times[0] >= t0 and (samples == 1 or (times[1:] >= times[:-1]).all()):
+    if times.ndim == 1 and samples and times[0] >= t0 and rising(times):
         rows = np.empty((4, n), dtype=np.int64)
         rows[0], rows[1], rows[2], rows[3] = motion, 0, samples, motion * samples
         return _Legs(times, rows, None)
