@@ -1,7 +1,6 @@
 """The motions of an ensemble, each by the method that suits it: in closed form, in lanes, or one after the other."""
 
 from collections.abc import Callable, Sequence
-from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -149,13 +148,10 @@ class _Stepped:
         """Return the clock of the rates of one motion, see :mod:`symrot.propagation.dop853`."""
         if not self.kernel.rates.uses("t"):
             return None
+        def moving() -> tuple[Plan, SceneKernel]:
+            return self.moved if self.epoch else epoch.moved(self.plan, self.kernel)
 
-        @cache
-        def following() -> tuple[Any, epoch.Following]:
-            plan, kernel = self.moved if self.epoch else epoch.moved(self.plan, self.kernel)
-            return epoch.compiled(plan, kernel), epoch.Following(kernel, self.plans[k].constants, self.epoch)
-
-        return lambda since: (following()[0], following()[1].parameters(since))
+        return epoch.clock(moving, self.plans[k].constants, self.epoch)
 
     def _bound(self, parameters: Any) -> Floats:
         rows = [bind(parameters, plan.constants) for plan in self.plans]

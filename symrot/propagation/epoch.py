@@ -11,20 +11,22 @@ the clock of the scene: there a phase ``a*t`` is off by up to ``1e-16*|a*t|`` ra
 """
 
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from fractions import Fraction
+from functools import cache
 from pathlib import Path
 
 from symrot import number
 from symrot.codegen import library
 from symrot.expression import Node, children, evaluate, names
 from symrot.planner import Plan
+from symrot.propagation.dop853 import Clock
 from symrot.propagation.kernels import kernel_key, library_source
 from symrot.propagation.stepping import NOT_FINITE_SENTENCE, CutOff
 from symrot.scene_kernel import EPOCH, EXACT_FUNCTIONS, SceneKernel
 
-__all__ = ["Following", "compiled", "far", "moved", "moved_parameters"]
+__all__ = ["Following", "clock", "compiled", "far", "moved", "moved_parameters"]
 
 
 def far(start: float, low: float, high: float) -> bool:
@@ -78,6 +80,22 @@ class Following:
             return [float(evaluate(node, values, EXACT_FUNCTIONS)) for node in self._formulas]
         except OverflowError:
             raise CutOff(epoch, NOT_FINITE_SENTENCE) from None
+
+
+def clock(
+    moving: Callable[[], tuple[Plan, SceneKernel]], constants: Mapping[str, Fraction], start: float = 0.0
+) -> Clock:
+    """Return the clock of what ``moving`` returns as :func:`moved` does; it is compiled when it is first moved.
+
+    ``constants`` and ``start`` are those of :class:`Following`.
+    """
+
+    @cache
+    def following() -> tuple[Path, Following]:
+        plan, kernel = moving()
+        return compiled(plan, kernel), Following(kernel, constants, start)
+
+    return lambda since: (following()[0], following()[1].parameters(since))
 
 
 def _folded(node: Node, known: Mapping[str, Fraction]) -> Node:

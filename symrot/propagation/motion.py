@@ -14,7 +14,6 @@ from symrot.closed_form.choose import Exact, Form, exact_form
 from symrot.planner import Plan, Row, general_structure
 from symrot.propagation import dop853, epoch, taylor
 from symrot.propagation.dop853 import Stats
-from symrot.propagation.epoch import Following
 from symrot.propagation.invariants import invariant_parameters
 from symrot.propagation.kernels import compiled, error_blocks, scene_kernel, taylor_library
 from symrot.propagation.method import Choice
@@ -85,19 +84,14 @@ class Motion:
         if self.choice.method == "taylor":
             start = (self.taylor_parameters, self.plan.initial_state, self.start)
             return taylor.task(self.library, *start, self.tolerance)
-        clock = self._clock if (self.movable or self.epoch) and self.kernel.rates.uses("t") else None
+        timed = (self.movable or self.epoch) and self.kernel.rates.uses("t")
+        clock = epoch.clock(self._moved, self.plan.constants, self.epoch) if timed else None
         start = (self.rate_parameters, self.plan.initial_state, self.start)
         return dop853.task(self.library, *start, self.tolerance, clock=clock)
 
-    def _clock(self, since: float) -> tuple[Path, list[float]]:
-        """Return library and parameters of rates that count their time from one on the clock of this motion."""
-        library, following = self._following
-        return library, following.parameters(since)
-
-    @cached_property
-    def _following(self) -> tuple[Path, Following]:
-        plan, kernel = epoch.moved(self.plan, self.kernel)
-        return epoch.compiled(plan, kernel), Following(kernel, plan.constants)
+    def _moved(self) -> tuple[Plan, SceneKernel]:
+        """Return plan and kernel on a clock that can be moved."""
+        return epoch.moved(self.plan, self.kernel)
 
     @cached_property
     def taylor_parameters(self) -> list[float]:
@@ -237,10 +231,8 @@ class _FromStart(Motion):
     def rate_parameters(self) -> list[float]:
         return epoch.moved_parameters(self.kernel, self.plan.constants, self.epoch)
 
-    @cached_property
-    def _following(self) -> tuple[Path, Following]:
-        assert self.library is not None
-        return self.library, Following(self.kernel, self.plan.constants, self.epoch)
+    def _moved(self) -> tuple[Plan, SceneKernel]:
+        return self.plan, self.kernel
 
 
 def _keep(motion: Motion, times: Floats, rise: bool) -> tuple[Floats, Stats]:
