@@ -148,6 +148,7 @@ class _Stepped:
         """Return the clock of the rates of one motion, see :mod:`symrot.propagation.dop853`."""
         if not self.kernel.rates.uses("t"):
             return None
+
         def moving() -> tuple[Plan, SceneKernel]:
             return self.moved if self.epoch else epoch.moved(self.plan, self.kernel)
 
