@@ -7,6 +7,7 @@ from random import Random
 
 import pytest
 
+from symrot.certify import recheck
 from symrot.certify.readback import read_kernel
 from symrot.certify.rounding import check_section
 from symrot.certify.rounding_constants import enclosed
@@ -258,3 +259,28 @@ def test_the_largest_box_of_a_scene_has_the_target():
     assert found["box"]["y[3]"] == [(0.5).hex(), (1.0).hex()]
     (part,) = facts("t_handle", BOXES["t_handle"], "double")["precisions"]
     assert max(float.fromhex(each["absolute"]) for each in part["outputs"]) < 1e-13
+
+
+@pytest.mark.parametrize("q0, q1", [("3/5", "4/5"), (1, 0)])
+def test_a_pendulum_that_starts_anywhere_is_certified(q0, q1, tmp_path, capsys):
+    """Its laws hold for the attitudes that it starts from: two numbers whose squares sum to one."""
+    scene = tmp_path / "pendulum.toml"
+    scene.write_text(
+        f"""schema = 1
+title = "Pendulum"
+source = "made for this test"
+body = {{about = "fixed_point", principal = ["11/10", "11/10", "4/5"]}}
+initial = {{omega = ["1/2", 0, 0], attitude = {{quaternion = ["{q0}", "{q1}", 0, 0]}}}}
+torque = [{{kind = "gravity", center_of_mass = [0, 0, "1/10"], weight = 9.81}}]
+span = {{t = [0, 10], samples = 11}}
+output = {{quantities = ["omega", "quaternion"]}}
+""",
+        encoding="utf-8",
+    )
+    assert main(["emit", str(scene), "--target", "c", "-o", str(tmp_path)]) == 0
+    path = tmp_path / "pendulum_rates.cert.json"
+    given = [law["given"] for law in json.loads(path.read_text(encoding="utf-8"))["laws"]]
+    assert given == [["initial_q0", "initial_q1"] if q1 else []] * len(given)
+    assert "laws" in recheck.check(path)
+    assert main(["audit", str(path)]) == 0
+    capsys.readouterr()

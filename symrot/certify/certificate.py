@@ -5,17 +5,17 @@ links are filled in by their rooms. Same kernel, same bytes, on every machine.
 """
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
-from sympy import Expr, Symbol
+from sympy import Expr, Function, Symbol
 
 from symrot.certify.coq_library import coq_section
-from symrot.certify.equality import Equality, prove_equal
+from symrot.certify.equality import SAFE, Equality, prove_equal
 from symrot.certify.flags import flags_section
 from symrot.certify.law_proof import CaseProof
 from symrot.certify.laws import LawProof, prove_law
@@ -26,6 +26,7 @@ from symrot.codegen.banner import Description
 from symrot.errors import CertificateError
 from symrot.kernel import Argument
 from symrot.kernels.definition import Law
+from symrot.kernels.removable import REMOVABLE
 
 __all__ = [
     "SCHEMA",
@@ -139,11 +140,28 @@ def statement(subject: Subject) -> Data:
             "parameters": {symbol: str(value) for symbol, value in subject.parameters.items()},
             "named": [[str(symbol), str(value)] for symbol, value in subject.named],
             "formulas": [[place, symbol, str(formula)] for place, (symbol, formula) in subject.formulas.items()],
+            "functions": _functions(
+                [*(value for _, value in subject.named), *(f for _, f in subject.formulas.values())]
+            ),
         },
         "coq": coq_section(subject.name),
         "flags": flags_section(),
         "trusted": TRUSTED,
     }
+
+
+def _functions(formulas: Sequence[Expr]) -> list[list[str]]:
+    """Return what the functions with a removable singularity are that formulas call, of x, or x and y."""
+    x, y = (Symbol(name, real=True) for name in "xy")
+    found = {type(call).__name__ for formula in formulas for call in formula.atoms(Function)}
+    texts = {}
+    for safe in SAFE:
+        limit, formula = (
+            each.xreplace(dict(zip(safe.arguments, (x, y), strict=False))) for each in (safe.limit, safe.formula)
+        )
+        texts[safe.name] = f"x == 0 ? {limit} : {formula}"
+    texts |= {name: str(each.formula(x)) for name, each in REMOVABLE.items()}
+    return [[name, text] for name, text in texts.items() if name in found]
 
 
 def said_of(subject: Subject) -> Data:
@@ -208,7 +226,15 @@ def shown(meant: Meant) -> str:
 
 def _series(proof: Equality) -> list[list[Any]]:
     found = {each.function: each for each in proof.truncations}
-    return [[each.function, str(each.split), each.terms, str(each.relative)] for each in found.values()]
+    return [
+        [
+            each.function,
+            str(each.split),
+            list(map(str, REMOVABLE[each.function].taylor(each.terms))),
+            str(each.relative),
+        ]
+        for each in found.values()
+    ]
 
 
 def seal(data: Data) -> str:

@@ -13,7 +13,7 @@ from typing import Any
 from sympy import Abs, Expr, Integer, Symbol, atan2, cos, pi, sin, sqrt
 
 from symrot.certify.certificate import Data
-from symrot.certify.laws import prove_law
+from symrot.certify.laws import hypotheses, prove_law
 from symrot.certify.operations import Operations
 from symrot.certify.rounding import check_section
 from symrot.errors import CertificateError
@@ -88,7 +88,7 @@ class _Claims:
         self.plain |= {("function", name, said["type"]) for name, said in data["readback"].items()}
         self.texts: dict[Any, tuple[str, list[str]]] = {}
         for law in data["laws"]:
-            given = frozenset(_primitive(self.read(text)) for text in law["given"])
+            given = tuple(map(self.read, law["given"]))
             self.texts |= {(_primitive(self.read(text)), given): (text, law["given"]) for text in law["vanishing"]}
         self.laws = set(self.texts)
         self.spec = spec
@@ -100,15 +100,14 @@ class _Claims:
         """Tell whether a law follows from the formulas: for the prover of symrot, which evaluates nothing."""
         names: dict[str, Symbol] = {}
         text, given = self.texts[law]
-        vanishing, *relations = (
-            _expression(ast.parse(each.strip(), mode="eval").body, names) for each in (text, *given)
-        )
+        vanishing = _expression(ast.parse(text.strip(), mode="eval").body, names)
+        relations = hypotheses([names.get(each, Symbol(each, real=True)) for each in given])
         formulas = {
             symbol: _expression(ast.parse(each, mode="eval").body, names)
             for symbol, each in (*self.spec["named"], *(item[1:] for item in self.spec["formulas"]))
         }
         try:
-            prove_law(self.name, Law(text, (vanishing,), tuple(relations)), formulas)
+            prove_law(self.name, Law(text, (vanishing,), relations), formulas)
         except CertificateError:
             return False
         return True

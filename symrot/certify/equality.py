@@ -22,7 +22,7 @@ from symrot.certify.rounded import Meant, meaning
 from symrot.errors import CertificateError
 from symrot.kernels.removable import REMOVABLE, arc_ratio, explicit, sinc
 
-__all__ = ["Equality", "Truncation", "prove_equal"]
+__all__ = ["SAFE", "Equality", "Truncation", "prove_equal"]
 
 Quotient = tuple[PolyElement, PolyElement]  # numerator, denominator, in lowest terms
 MOST_ATOMS = 80
@@ -134,7 +134,7 @@ class _Formulas:
 
 
 @dataclass(frozen=True)
-class _Safe:
+class Safe:
     """A function that the C text computes by a choice: at one point by its limit, elsewhere by its formula."""
 
     name: str
@@ -144,9 +144,9 @@ class _Safe:
 
 
 _x, _c = Symbol("x", real=True), Symbol("c", real=True)
-_SAFE = (
-    _Safe("sinc", explicit(sinc(_x)), (explicit(sinc(_x)) * _x).diff(_x).xreplace({_x: Integer(0)}), (_x,)),
-    _Safe("arc_ratio", explicit(arc_ratio(_x, _c)), atan2(_x, _c).diff(_x).xreplace({_x: Integer(0)}), (_x, _c)),
+SAFE = (
+    Safe("sinc", explicit(sinc(_x)), (explicit(sinc(_x)) * _x).diff(_x).xreplace({_x: Integer(0)}), (_x,)),
+    Safe("arc_ratio", explicit(arc_ratio(_x, _c)), atan2(_x, _c).diff(_x).xreplace({_x: Integer(0)}), (_x, _c)),
 )
 
 
@@ -215,14 +215,14 @@ class _Prover:
             return self.fractions.atom("select_ge", (left, right, then, other))
         if relation == "==" and not right[0]:
             for (name, arguments), atom in list(self.fractions.atoms.items()):
-                for safe in _SAFE:
+                for safe in SAFE:
                     if name == safe.name and arguments[0] == left and self._is(safe, arguments, then, other):
                         return self.fractions.of(atom)
         raise CertificateError(
             f"{self.operations.name}: expected a choice that is part of the formula, got {relation!r}"
         )
 
-    def _is(self, safe: _Safe, arguments: tuple[Quotient, ...], then: Quotient, other: Quotient) -> bool:
+    def _is(self, safe: Safe, arguments: tuple[Quotient, ...], then: Quotient, other: Quotient) -> bool:
         """Tell whether a choice takes the limit of a function at zero and its formula elsewhere."""
         reader = _Formulas(self.fractions)
         reader.values.update(zip(safe.arguments, arguments, strict=True))

@@ -233,11 +233,12 @@ class Kernel:
     def check_own(self, function, bare):
         """Check a function of the file: it is what formulas mean by its name, a series up to a bound that is proven."""
         (explicit, case), (_, _, arguments, body) = SAFE[bare], self.found[function]
-        for split, terms, rest in (map(Fraction, each[1:]) for each in self.said["series"] if each[0] == bare):
-            taylor = [(-1) ** k * Fraction(TAYLOR[bare](k), math.factorial(2 * k + 3)) for k in range(int(terms) + 1)]
-            falling = [abs(each) * split**k for k, each in enumerate(taylor)]
-            holds = sorted(falling, reverse=True) == falling and rest == falling[-1] / (falling[0] - falling[1])
-            need(holds, f"the bound of the series of {bare} is another")
+        for _, split, said, rest in (each for each in self.said["series"] if each[0] == bare):
+            taylor = [(-1) ** k * Fraction(TAYLOR[bare](k), math.factorial(2 * k + 3)) for k in range(len(said) + 1)]
+            falling = [abs(each) * Fraction(split) ** k for k, each in enumerate(taylor)]
+            holds = sorted(falling, reverse=True) == falling and [*map(Fraction, said)] == taylor[:-1]
+            holds = holds and Fraction(rest) == falling[-1] / (falling[0] - falling[1])
+            need(holds, f"the series of {bare}, or its bound, is another")
             series = [f"({nearest(each, self.real)})*x**{2 * k}" for k, each in enumerate(taylor[:-1])]
             case = case.format(series=" + ".join(series), split=split)
         names = [argument.removeprefix(f"{self.real} ") for argument in arguments.split(", ")]
@@ -254,6 +255,18 @@ class Measured(dict):
         return Fraction(getattr(math, call[0])(*map(float, call[1:])))
 
 
+def hypotheses(given):
+    """Return what vanishes for numbers whose squares sum to one, or for the nine entries of a rotation, row by row."""
+    if len(given) != 9:
+        return [sum(each**2 for each in given) - 1] if given else []
+    rows, pairs = [given[:3], given[3:6], given[6:]], [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)]
+    columns = [[row[k] for row in rows] for k in range(3)]
+    normal = [sum(map(operator.mul, of[i], of[j])) - (i == j) for of in (columns, rows) for i, j in pairs]
+    for a, b, c in ((columns[k - 2], columns[k - 1], columns[k]) for k in (2, 0, 1)):
+        normal += [a[k - 2] * b[k - 1] - a[k - 1] * b[k - 2] - c[k] for k in range(3)]
+    return normal
+
+
 def prove(law, case, formulas):
     """Link 1, a law in one case: what vanishes, times a factor, is a sum of cofactors times relations.
 
@@ -262,8 +275,8 @@ def prove(law, case, formulas):
     """
     witness = {name: Fraction(text) for name, text in law["witness"].items()} | {"pi": PI}
     there, reader = Reader(witness, Measured(), cases={}), Reader(Drawn(), Drawn(), cases={})
-    relations, roots = [reader.read(text) for text in law["given"]], set()
-    need(not any(map(there.read, law["given"])), "the witness is none")
+    relations, roots = hypotheses([*map(reader.read, law["given"])]), set()
+    need(not any(hypotheses([*map(there.read, law["given"])])), "the witness is none")
 
     def combined(value, factor, cofactors):
         holds = abs(there.read(factor)) > 1e-6 and all(abs(there.read(text)) < 1e6 for _, text in cofactors)
@@ -336,9 +349,10 @@ def functions_of(text, name, files):
 
 def check(path):
     """Return what a certificate shows, in a line; raise one of REFUSALS if it does not."""
+    path = Path(path)
     data = recheck.certified(path)
     name, files, spec, readback = data["kernel"], data["files"], data["spec"], data["readback"]
-    found = functions_of(Path(path).with_name(f"{name}.c").read_text("utf-8"), name, files)
+    found = functions_of(path.with_name(f"{name}.c").read_text("utf-8"), name, files)
     wanted = {f"{function}{end}" for function in readback for end in ("", "_batch")}
     need({f for f in found if not found[f][0]} == wanted, f"expected the functions {', '.join(wanted)}")
     for function in readback:
@@ -353,7 +367,8 @@ def check(path):
     return f"{name}: {len(files)} hashes, C text of {functions} and batches = formulas, {laws} (bounds not looked at)"
 
 
-REFUSALS = recheck.REFUSALS
+REFUSALS = (ArithmeticError, AttributeError, LookupError, MemoryError, OSError, RecursionError, SyntaxError, TypeError)
+REFUSALS += (ValueError,)
 
 
 def sentence(reason):

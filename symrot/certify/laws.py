@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from sympy import Expr, Rational
+from sympy import Expr, Matrix, Rational, Symbol, sqrt
 from sympy.polys.domains import QQ
 from sympy.polys.orderings import lex
 from sympy.polys.rings import PolyRing
@@ -20,17 +20,19 @@ from sympy.polys.rings import PolyRing
 from symrot.certify.law_proof import Attempt, CaseProof, Choice, Coarse, Full, Undecided
 from symrot.errors import CertificateError
 from symrot.kernels.definition import Definition, Law
-from symrot.kinematics.quaternion import dcm_of
-from symrot.symbols import quaternion, rotation_entries
+from symrot.kinematics.quaternion import dcm_of, rotation_relations
 
-__all__ = ["LawProof", "prove_law", "prove_laws"]
+__all__ = ["LawProof", "hypotheses", "prove_law", "prove_laws"]
 
 FEWEST = 8  # generators of the first attempt at a proof
 
 
 @dataclass(frozen=True)
 class LawProof:
-    """A law of a kernel, what vanishes and what is given as text, and its proof in every case of its choices."""
+    """A law of a kernel, what vanishes as text, and its proof in every case of its choices.
+
+    ``given`` are names of numbers whose squares sum to one, or of the nine entries of a rotation, row by row.
+    """
 
     text: str
     vanishing: tuple[str, ...]
@@ -77,18 +79,39 @@ def prove_law(name: str, law: Law, formulas: Mapping[str, Expr]) -> LawProof:
         except Full:
             fewest *= 2
             waiting.append(decided)
-    given = tuple(map(str, law.relations))
-    return LawProof(law.text, tuple(map(str, law.vanishing)), given, tuple(cases), _witness(name, law, names[1:]))
+    given = _given(name, law)
+    witness = _witness(name, law, given, names[1:])
+    return LawProof(law.text, tuple(map(str, law.vanishing)), given, tuple(cases), witness)
 
 
-ATTITUDE = tuple(Rational(n, 11) for n in (10, 4, 2, 1))  # a unit quaternion
+ENTRIES = 9  # of a rotation
 
 
-def _witness(name: str, law: Law, names: Sequence[str]) -> tuple[tuple[str, str], ...]:
+def hypotheses(given: Sequence[Symbol]) -> tuple[Expr, ...]:
+    """Return what vanishes for numbers whose squares sum to one, or for the nine entries of a rotation, row by row."""
+    if len(given) == ENTRIES:
+        return rotation_relations(Matrix(3, 3, given))
+    return (sum(each**2 for each in given) - 1,) if given else ()
+
+
+def _given(name: str, law: Law) -> tuple[str, ...]:
+    """Return the names that the hypotheses of a law are about."""
+    given = sorted({symbol for relation in law.relations for symbol in relation.free_symbols}, key=str)
+    if hypotheses(given) != law.relations:
+        expected = "numbers whose squares sum to one, or a rotation, as what is given"
+        raise CertificateError(f"{name}: expected {expected} for {law.text!r}")
+    return tuple(map(str, given))
+
+
+UNIT: dict[int, tuple[int, ...]] = {1: (1,), 2: (4, 3), 3: (6, 3, 2), 4: (10, 4, 2, 1)}  # their squares sum to a square
+
+
+def _witness(name: str, law: Law, given: Sequence[str], names: Sequence[str]) -> tuple[tuple[str, str], ...]:
     """Return a point where what is given holds exactly: quaternions are of norm 1, matrices those of an attitude."""
     point: dict[str, Expr] = {each: Rational(2 * k + 3, 7) for k, each in enumerate(names)}
-    point |= {str(symbol): value for symbol, value in zip(quaternion, ATTITUDE, strict=True)}
-    point |= {str(symbol): value for symbol, value in zip(rotation_entries, dcm_of(ATTITUDE), strict=True)}
+    numbers = UNIT.get(4 if len(given) == ENTRIES else len(given), ())
+    unit = tuple(Rational(each) / sqrt(sum(n * n for n in numbers)) for each in numbers)
+    point |= zip(given, dcm_of(unit) if len(given) == ENTRIES else unit, strict=True)
     if any(
         relation.subs({symbol: point[str(symbol)] for symbol in relation.free_symbols}) for relation in law.relations
     ):

@@ -268,11 +268,11 @@ class Files:
     def accepted(self) -> list[str]:
         """Return by whom the files are accepted as they are: "recheck", "exact", "audit"."""
         found = []
-        for judge, module in (("recheck", recheck), ("exact", exact_check)):
+        for judge, module, refusals in (("recheck", recheck, Exception), ("exact", exact_check, exact_check.REFUSALS)):
             try:
                 module.check(self.path)
                 found.append(judge)
-            except module.REFUSALS:
+            except refusals:
                 continue
         try:
             audit(self.path, lambda data: self.said)

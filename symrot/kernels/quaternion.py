@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
-from itertools import pairwise
 
 from sympy import Expr, ImmutableMatrix, Matrix, Symbol, eye, sqrt
 
@@ -15,6 +14,7 @@ from symrot.kinematics.quaternion import (
     norm_squared,
     qmul,
     quaternion_of_dcm,
+    rotation_relations,
     unit_relation,
 )
 from symrot.kinematics.rotations import skew
@@ -93,7 +93,7 @@ def _of_dcm(name: str) -> Definition:
 
     def laws() -> tuple[Law, ...]:
         q = symbols.quaternion
-        return (Law("its dcm is the given one, of a rotation", tuple(dcm_of(q) - matrix), _rotation(matrix)),)
+        return (Law("its dcm is the given one, of a rotation", tuple(dcm_of(q) - matrix), rotation_relations(matrix)),)
 
     return Definition(
         name, "quaternion of a direction cosine matrix dcm_sb, by the branch that divides by its largest component",
@@ -118,16 +118,6 @@ def _larger(left: Branch, right: Branch) -> Branch:
     """Return the branch with the larger square."""
     (a, row_a), (b, row_b) = left, right
     return select_ge(a, b, a, b), [select_ge(a, b, x, y) for x, y in zip(row_a, row_b, strict=True)]
-
-
-def _rotation(matrix: Matrix) -> tuple[Expr, ...]:
-    """Return what vanishes for a rotation: its rows and its columns are right-handed orthonormal frames."""
-    columns = [matrix[:, i] for i in range(3)]
-    cyclic = [*columns, columns[0]]
-    crossed = [a.cross(b) - columns[(k + 2) % 3] for k, (a, b) in enumerate(pairwise(cyclic))]
-    products = [matrix.T * matrix - Matrix.eye(3), matrix * matrix.T - Matrix.eye(3)]
-    normal = [product[i, j] for product in products for i in range(3) for j in range(i, 3)]
-    return (*normal, *(entry for vector in crossed for entry in vector))
 
 
 def _rates(frame: str, name: str) -> Definition:

@@ -6,6 +6,7 @@ A quaternion is an immutable column, shape (4, 1). Proof: ``derivations/quaterni
 
 from collections.abc import Sequence
 from functools import cache, partial
+from itertools import pairwise
 from typing import Any
 
 from sympy import Expr, ImmutableMatrix, Integer, Matrix, Rational, cos, expand, factor, sin, sympify
@@ -27,6 +28,7 @@ __all__ = [
     "quaternion_rate_jacobian",
     "quaternion_rates",
     "right_matrix",
+    "rotation_relations",
     "unit_relation",
 ]
 
@@ -88,6 +90,16 @@ def norm_squared(q: Sequence[Any] | Matrix) -> Expr:
 def unit_relation(q: Sequence[Any] | Matrix = symbols.quaternion) -> Expr:
     """Return the expression that vanishes for a unit quaternion, ``|q|^2 - 1``: a hypothesis for proofs."""
     return norm_squared(q) - 1
+
+
+def rotation_relations(matrix: Matrix) -> tuple[Expr, ...]:
+    """Return what vanishes for a rotation: its rows and its columns are right-handed orthonormal frames."""
+    columns = [matrix[:, i] for i in range(3)]
+    cyclic = [*columns, columns[0]]
+    crossed = [a.cross(b) - columns[(k + 2) % 3] for k, (a, b) in enumerate(pairwise(cyclic))]
+    products = [matrix.T * matrix - Matrix.eye(3), matrix * matrix.T - Matrix.eye(3)]
+    normal = [product[i, j] for product in products for i in range(3) for j in range(i, 3)]
+    return (*normal, *(entry for vector in crossed for entry in vector))
 
 
 def elementary_quaternion(axis: int | str, angle: Any) -> ImmutableMatrix:

@@ -24,7 +24,7 @@ from symrot.scene_file import names_with_kernels
 __all__ = ["certificate_files", "kept_bounds", "kernel_files", "kernel_lines", "stale", "write_all", "write_files"]
 
 SUFFIXES = {"c": (".c", ".h", ".json", ".txt", ".in"), "numpy": (".py",)}
-RECHECK = ("recheck.py", "recheck_c.py", "recheck_formula.py")  # what re-checks certificates without symrot
+RECHECK = "recheck.py"  # re-checks certificates without symrot
 WORKERS = min(os.cpu_count() or 1, 4)
 SCENES = "scenes"  # under the folder of each target: the kernels of shipped scenes; those of the library beside it
 
@@ -120,7 +120,7 @@ def _all_files(targets: Sequence[str], directory: Path, progress: Callable[[str]
             files |= found
     if "c" in targets:
         files |= {f"c/{file}": text for file, text in (build_files() | selftest_files()).items()}
-        files |= {name: Path(recheck.__file__).with_name(name).read_text(encoding="utf-8") for name in RECHECK}
+        files[RECHECK] = Path(recheck.__file__).read_text(encoding="utf-8")
     return files
 
 
