@@ -14,11 +14,12 @@ from symrot.certify import rounding_functions as functions
 from symrot.certify import rounding_intervals as intervals
 from symrot.certify.readback import read_kernel
 from symrot.certify.rounding import STORE, bound_outputs, bound_task, check_section, rounding_section, tasks
-from symrot.certify.rounding_adjoint import Region, evaluate
+from symrot.certify.rounding_adjoint import evaluate
 from symrot.certify.rounding_campaign import compare, loosest
 from symrot.certify.rounding_cone import cone_of
 from symrot.certify.rounding_library import largest_box, operations_of, prepare, problem, resized
 from symrot.certify.rounding_measured import measure
+from symrot.certify.rounding_region import Region
 from symrot.certify.rounding_store import TABLE, method, printed_table, table
 from symrot.certify.rounding_words import in_words, library_section, rounded_up
 from symrot.cli import main

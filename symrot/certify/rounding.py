@@ -21,9 +21,10 @@ from typing import Any
 import numpy as np
 
 from symrot.certify.operations import Operations
-from symrot.certify.rounding_adjoint import EVERYWHERE, LIBM_ULP, Region, evaluate
+from symrot.certify.rounding_adjoint import LIBM_ULP, evaluate
 from symrot.certify.rounding_cone import Cone, cone_of
 from symrot.certify.rounding_intervals import DIGITS, Array
+from symrot.certify.rounding_region import EVERYWHERE, Region
 from symrot.certify.rounding_store import Store
 from symrot.certify.rounding_subdivision import Search, search
 from symrot.errors import CertificateError, InputError

@@ -5,16 +5,18 @@ to the computed one, by one local error at a time. By the mean value theorem,
 
     computed - exact = sum over operations of (derivative of the output by its value) * (its own rounding error),
 
-where the derivatives are taken at values between exact and computed ones. Enclosures of all such values come from
-intervals, the derivatives from one pass backwards over them, the errors from half a unit in the last place. No term
-of second order is left out.
+where the derivatives are taken at values between exact and computed ones, and the errors are those that operations
+make of computed operands. Enclosures of all such values come from intervals, the derivatives from one pass backwards
+over them, the errors from half a unit in the last place. No term of second order is left out.
+
+Choices compare computed numbers: what a branch tells of these narrows the errors, not the derivatives.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from fractions import Fraction
 from functools import cache
-from math import inf, pi
-from typing import Any
+from math import inf, nextafter, pi
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,31 +24,18 @@ from numpy.typing import NDArray
 from symrot.certify import rounding_functions as functions
 from symrot.certify import rounding_intervals as intervals
 from symrot.certify.operations import Node
+from symrot.certify.rounded import meaning
 from symrot.certify.rounding_centred import Centred
+from symrot.certify.rounding_choices import decide, narrow
 from symrot.certify.rounding_cone import Cone, is_short, places_of
 from symrot.certify.rounding_intervals import DIGITS, Array
+from symrot.certify.rounding_region import EVERYWHERE, Region, off_unit
+from symrot.errors import CertificateError
+from symrot.number import PI
 
-__all__ = ["EVERYWHERE", "LIBM_ULP", "UNIT_NORM", "Evaluation", "Region", "evaluate"]
+__all__ = ["LIBM_ULP", "Evaluation", "evaluate"]
 
 LIBM_ULP = 1.0  # error of sin, cos and atan2, in units in the last place of the exact value
-UNIT_NORM = (
-    2.0**-20
-)  # how far the squared norm of a unit quaternion may be from 1: that of rounded components is nearer
-
-
-@dataclass(frozen=True)
-class Region:
-    """What holds in a box beyond its sides.
-
-    ``unit`` are groups of places whose squares add up to 1, but for 2^-20; ``clearance`` is the least length of the
-    arguments (y, x) of every atan2, so that the angle is defined.
-    """
-
-    unit: tuple[tuple[str, ...], ...] = ()
-    clearance: float = 0.0
-
-
-EVERYWHERE = Region()
 
 
 @dataclass(frozen=True)
@@ -109,10 +98,23 @@ def _input(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Ar
 
 def _constant(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Array | None]:
     value = intervals.point(float(node[1]), state.boxes.shape[2])
-    if is_short(node[1]):
+    error = _constant_error(node[1], state.precision)
+    if not error:
         return value, None
-    error = intervals.half_ulp(np.nextafter(intervals.magnitude(value), inf), state.precision)
-    return intervals.widened(value, error), error
+    return intervals.widened(value, error), np.full(value.shape[1], error)
+
+
+@cache
+def _constant_error(written: Fraction, precision: str) -> float:
+    """Return how far a constant is at most from what it stands for: link 3 says what that is."""
+    if is_short(written):
+        return 0.0
+    try:
+        meant = meaning(written, precision)
+    except CertificateError:
+        return float(intervals.half_ulp(np.array([nextafter(abs(float(written)), inf)]), precision)[0])
+    error = abs(written - meant.fraction * (PI if meant.times_pi else 1))
+    return float(error) * (1 + 2.0**-50)
 
 
 def _step(state: _State, index: int) -> Array:
@@ -192,6 +194,15 @@ def _angle(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Ar
     return value, error
 
 
+def _error_of_root(state: _State, taken: Sequence[Array], total: Array) -> Array:
+    """Return what the root of a sum of squares moves by their rounding, half units in the last place each."""
+    squares = [intervals.half_ulp(intervals.magnitude(intervals.square(part)), state.precision) for part in taken]
+    size = intervals.magnitude(total) * (1 + len(taken) * 2.0**-22)  # of a partial sum, its rounding included
+    error = sum(squares, (len(taken) - 1) * intervals.half_ulp(size, state.precision))
+    least = np.sqrt(np.maximum(total[0] - error, 0.0))
+    return np.where(least > 0, error / (2 * least), inf) * (1 + 2.0**-40)
+
+
 def _norm(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Array | None]:
     total = intervals.square(taken[0])
     for part in taken[1:]:
@@ -199,6 +210,7 @@ def _norm(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Arr
     least = {"binary64": 1e-161, "binary32": 1e-22}[state.precision]  # squares below the least normal number
     root = intervals.square_root(total)
     value, error = state.relative(root, node[1] / 2, least)
+    error = np.minimum(error, _error_of_root(state, taken, total))
     rounding = intervals.half_ulp(intervals.magnitude(value), state.precision)
     value = intervals.rounded_to(intervals.widened(value, rounding), state.precision)
     return np.stack([np.maximum(value[0], 0.0), value[1]]), error + rounding
@@ -331,8 +343,7 @@ def _from_cosine(state: _State, index: int, adjoint: Array) -> list[Array]:
 
 def _from_angle(state: _State, index: int, adjoint: Array) -> list[Array]:
     y, x = (state.values[i] for i in state.cone.nodes[index][1:])
-    scaled = intervals.divide(adjoint, intervals.add(intervals.square(y), intervals.square(x)))
-    return [_times(scaled, x), intervals.negative(_times(scaled, y))]
+    return [_times(adjoint, functions.arc_slope(x, y)), intervals.negative(_times(adjoint, functions.arc_slope(y, x)))]
 
 
 def _from_norm(state: _State, index: int, adjoint: Array) -> list[Array]:
@@ -376,15 +387,6 @@ BACKWARD: dict[str, Callable[[_State, int, Array], list[Array]]] = {
     "gap": _from_gap, "select": _from_choice,
 }  # fmt: skip
 
-_POSSIBLE: dict[str, Callable[[Array, Array], Any]] = {  # whether a relation may hold, and whether it may fail
-    "<": lambda a, b: (a[0] < b[1], a[1] >= b[0]),
-    "<=": lambda a, b: (a[0] <= b[1], a[1] > b[0]),
-    ">": lambda a, b: (a[1] > b[0], a[0] <= b[1]),
-    ">=": lambda a, b: (a[1] >= b[0], a[0] < b[1]),
-    "==": lambda a, b: ((a[0] <= b[1]) & (a[1] >= b[0]), (a[0] != a[1]) | (b[0] != b[1]) | (a[0] != b[0])),
-    "!=": lambda a, b: ((a[0] != a[1]) | (b[0] != b[1]) | (a[0] != b[0]), (a[0] <= b[1]) & (a[1] >= b[0])),
-}
-
 
 def evaluate(
     cone: Cone, boxes: Array, decided: NDArray[np.int8], region: Region = EVERYWHERE,
@@ -414,45 +416,34 @@ def evaluate(
     waiting: dict[int, list[int]] = {}
     for number, (_, i, j) in enumerate(cone.conditions):
         waiting.setdefault(max(i, j), []).append(number)
+    computed = replace(state, values=[], outside=state.outside.copy(), cuts={}) if cone.conditions else state
     with np.errstate(all="ignore"):
-        _restrict(state)
+        state.outside |= off_unit(boxes, region, cone.places)
         for index, node in enumerate(cone.nodes):
-            value, error = FORWARD[node[0]](state, node, [state.values[i] for i in places_of(node)])
-            state.values.append(value)
-            state.errors.append(error)
-            if state.centred is not None:
-                state.centred.close(node, places_of(node), error)
+            state.errors.append(_forwards(state, computed, node))
             for number in waiting.get(index, ()):
-                undecided = _decide(state, number, undecided)
+                relation, i, j = cone.conditions[number]
+                beside, open_ = decide(relation, computed.values[i], computed.values[j], state.decided[number])
+                state.outside |= beside
+                undecided = np.where((undecided < 0) & open_, number, undecided)
+                narrow(cone, number, state.decided[number], computed.values)
         bound, obstacle, turns = _backwards(state)
     bound = np.where((obstacle >= 0) | (undecided >= 0), inf, bound)
     bound = np.where(state.outside, -1.0, bound)
     return Evaluation(bound, obstacle, undecided, intervals.magnitude(state.values[-1]), turns & ~state.outside)
 
 
-def _restrict(state: _State) -> None:
-    for group in state.region.unit:
-        numbers = [state.cone.places.index(place) for place in group if place in state.cone.places]
-        if not numbers:
-            continue
-        total = intervals.point(0.0, state.boxes.shape[2])
-        for number in numbers:
-            total = intervals.add(total, intervals.square(state.boxes[:, number]))
-        state.outside |= total[0] > 1 + UNIT_NORM
-        if len(numbers) == len(group):
-            state.outside |= total[1] < 1 - UNIT_NORM
-
-
-def _decide(state: _State, number: int, undecided: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Take the branch that is the only possible one; note where both are."""
-    relation, i, j = state.cone.conditions[number]
-    holds, fails = _POSSIBLE[relation](state.values[i], state.values[j])
-    decision = state.decided[number]
-    state.outside |= ((decision == 1) & ~holds) | ((decision == 0) & ~fails)
-    open_ = decision < 0
-    decision[open_ & holds & ~fails] = 1
-    decision[open_ & fails & ~holds] = 0
-    return np.where((undecided < 0) & open_ & holds & fails, number, undecided)
+def _forwards(state: _State, computed: _State, node: Node) -> Array | None:
+    """Enclose what a node may be on the way from exact to computed, and when computed; return its rounding error."""
+    value, error = FORWARD[node[0]](state, node, [state.values[i] for i in places_of(node)])
+    state.values.append(value)
+    if state.centred is not None:
+        state.centred.close(node, places_of(node), error)
+    if computed is not state:
+        found, error = FORWARD[node[0]](computed, node, [computed.values[i] for i in places_of(node)])
+        both = np.stack([np.maximum(value[0], found[0]), np.minimum(value[1], found[1])])
+        computed.values.append(np.where(both[0] <= both[1], both, value))
+    return error
 
 
 def _backwards(state: _State) -> tuple[Array, NDArray[np.int64], NDArray[np.bool_]]:

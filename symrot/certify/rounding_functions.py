@@ -11,9 +11,18 @@ from math import factorial, pi
 
 import numpy as np
 
-from symrot.certify.rounding_intervals import Array, add, contains_zero, divide, multiply_loosely, negative, widened
+from symrot.certify.rounding_intervals import (
+    Array,
+    add,
+    contains_zero,
+    divide,
+    multiply_loosely,
+    negative,
+    square,
+    widened,
+)
 
-__all__ = ["arc_ratio_terms", "arc_tangent", "cosine", "sinc", "sinc_slope", "sine",
+__all__ = ["arc_ratio_terms", "arc_slope", "arc_tangent", "cosine", "sinc", "sinc_slope", "sine",
            "sine_gap", "sine_gap_slope", "tangent_gap", "tangent_gap_slope"]  # fmt: skip
 
 SLACK = 2e-15  # absolute, many times what the series and the reduction lose
@@ -176,6 +185,29 @@ def arc_tangent(y: Array, x: Array) -> Array:
     quarter = np.where(y[0] > 0, pi / 2, -pi / 2)
     found = np.where(x[0] > 0, sloped[0], np.where(contains_zero(y), np.array([[-pi], [pi]]), quarter - sloped[1]))
     return np.clip(widened(found, 2 * SLACK), -pi - SLACK, pi + SLACK)
+
+
+def arc_slope(a: Array, b: Array) -> Array:
+    """Return the least enclosure of a/(a^2 + b^2), by which atan2 grows; not finite where both hold zero."""
+    return np.stack([-_steepest(negative(a), b), _steepest(a, b)])
+
+
+def _steepest(a: Array, b: Array) -> Array:
+    """Return a bound of a/(a^2 + b^2) from above.
+
+    It is largest at the least |b| where a may be positive, at the largest where not; as a function of a it rises to
+    a = |b| and falls from there on.
+    """
+    size = _size(b)
+    near, far = size
+    positive = np.clip(near, np.maximum(a[0], 0.0), np.maximum(a[1], 0.0))
+    ends = [_slope_at(at, far) for at in a]
+    return np.where(a[1] > 0, _slope_at(positive, near), np.maximum(*ends))
+
+
+def _slope_at(a: Array, b: Array) -> Array:
+    a, b = np.stack([a, a]), np.stack([b, b])
+    return np.asarray(divide(a, add(square(a), square(b)))[1])
 
 
 def arc_ratio_terms(s: Array, c: Array, radius: Array) -> tuple[Array, Array, Array]:

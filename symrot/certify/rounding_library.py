@@ -13,8 +13,9 @@ from math import inf
 from symrot.certify.operations import Operations
 from symrot.certify.readback import read_kernel
 from symrot.certify.rounding import BUDGET, STORE, Box, Task, bound_task, tasks
-from symrot.certify.rounding_adjoint import EVERYWHERE, LIBM_ULP, Region
+from symrot.certify.rounding_adjoint import LIBM_ULP
 from symrot.certify.rounding_cone import cone_of
+from symrot.certify.rounding_region import EVERYWHERE, Region
 from symrot.certify.rounding_subdivision import Search, search
 from symrot.errors import InputError
 from symrot.kernels.definition import Definition

@@ -9,9 +9,9 @@ from fractions import Fraction
 from typing import Any
 
 from symrot.certify.operations import Operations
-from symrot.certify.rounding_adjoint import EVERYWHERE, Region
 from symrot.certify.rounding_cone import cone_of
 from symrot.certify.rounding_library import Problem
+from symrot.certify.rounding_region import EVERYWHERE, Region
 from symrot.certify.rounding_words import region_in_words, region_of, rounded_up
 from symrot.expression import Node
 from symrot.kernel import Argument

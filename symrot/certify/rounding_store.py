@@ -20,7 +20,7 @@ from symrot.codegen import library
 __all__ = ["TABLE", "Store", "method", "printed_table", "table"]
 
 TABLE = Path(__file__).with_name("rounding_bounds.json")
-_METHOD = ("intervals", "functions", "cone", "centred", "adjoint", "subdivision")
+_METHOD = ("intervals", "functions", "cone", "region", "choices", "centred", "adjoint", "subdivision")
 _NUMBERS = ("bound", "pointwise", "largest_value")
 
 

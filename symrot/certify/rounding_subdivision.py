@@ -12,9 +12,10 @@ from math import inf
 import numpy as np
 from numpy.typing import NDArray
 
-from symrot.certify.rounding_adjoint import EVERYWHERE, LIBM_ULP, Evaluation, Region, evaluate
+from symrot.certify.rounding_adjoint import LIBM_ULP, Evaluation, evaluate
 from symrot.certify.rounding_cone import Cone
 from symrot.certify.rounding_intervals import Array
+from symrot.certify.rounding_region import EVERYWHERE, Region, narrowed
 
 __all__ = ["Search", "search"]
 
@@ -100,6 +101,7 @@ class _Search:
 
     def parts(self, boxes: Array, decided: NDArray[np.int8]) -> _Parts:
         """Return the parts of the region among boxes, with their bounds."""
+        boxes = narrowed(boxes, self.region, self.cone.places)
         found = self.evaluate(boxes, decided)
         inside = found.bound >= 0
         self.turns |= bool((found.turns & np.isfinite(found.bound)).any())
@@ -173,7 +175,8 @@ class _Search:
         shrunk = np.repeat(parts.boxes, inputs, axis=2).reshape(2, inputs, count, inputs)
         for k in range(inputs):
             shrunk[:, k, :, k] = middle[:, k]
-        found = self.evaluate(shrunk.reshape(2, inputs, -1), np.repeat(parts.decided, inputs, axis=1))
+        trial = narrowed(shrunk.reshape(2, inputs, -1), self.region, self.cone.places)
+        found = self.evaluate(trial, np.repeat(parts.decided, inputs, axis=1))
         bounds = np.where(relative.T > 0, found.bound.reshape(count, inputs), inf)
         bounds = np.maximum(bounds, 0.0)  # -1: the middle is outside of the region
         least = bounds.min(axis=1)

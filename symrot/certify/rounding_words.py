@@ -12,8 +12,9 @@ from typing import Any
 
 from symrot.certify.operations import Operations
 from symrot.certify.rounding import BUDGET, rounding_section
-from symrot.certify.rounding_adjoint import LIBM_ULP, UNIT_NORM, Region
+from symrot.certify.rounding_adjoint import LIBM_ULP
 from symrot.certify.rounding_library import operations_of, problem
+from symrot.certify.rounding_region import UNIT_NORM, Region
 from symrot.errors import InputError
 from symrot.kernels.library import definition
 

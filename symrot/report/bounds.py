@@ -10,9 +10,9 @@ from typing import Any
 from symrot.certify.operations import Operations
 from symrot.certify.readback import read_kernel
 from symrot.certify.rounding import bound_outputs, rounding_section
-from symrot.certify.rounding_adjoint import UNIT_NORM, Region
 from symrot.certify.rounding_intervals import DIGITS
 from symrot.certify.rounding_library import Problem, largest_box, problem
+from symrot.certify.rounding_region import UNIT_NORM, Region
 from symrot.certify.rounding_scenes import ANY, SceneInputs, scene_problem
 from symrot.certify.rounding_words import region_in_words
 from symrot.errors import InputError
