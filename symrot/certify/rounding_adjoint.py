@@ -98,20 +98,26 @@ def _input(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Ar
 
 def _constant(state: _State, node: Node, taken: Sequence[Array]) -> tuple[Array, Array | None]:
     value = intervals.point(float(node[1]), state.boxes.shape[2])
-    error = _constant_error(node[1], state.precision)
+    series = any(relation == "<" for relation, _, _ in state.cone.conditions)
+    error = _constant_error(node[1], state.precision, not series)
     if not error:
         return value, None
     return intervals.widened(value, error), np.full(value.shape[1], error)
 
 
 @cache
-def _constant_error(written: Fraction, precision: str) -> float:
-    """Return how far a constant is at most from what it stands for: link 3 says what that is."""
+def _constant_error(written: Fraction, precision: str, told: bool) -> float:
+    """Return how far a constant is at most from what it stands for.
+
+    ``told``: that is what link 3 reads; it is not of a series, whose coefficients link 3 takes as those of Taylor.
+    """
     if is_short(written):
         return 0.0
     try:
-        meant = meaning(written, precision)
+        meant = meaning(written, precision) if told else None
     except CertificateError:
+        meant = None
+    if meant is None:
         return float(intervals.half_ulp(np.array([nextafter(abs(float(written)), inf)]), precision)[0])
     error = abs(written - meant.fraction * (PI if meant.times_pi else 1))
     return float(error) * (1 + 2.0**-50)

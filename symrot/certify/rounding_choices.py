@@ -25,8 +25,9 @@ _POSSIBLE: dict[str, Callable[[Array, Array], Any]] = {  # whether a relation ma
     "==": lambda a, b: ((a[0] <= b[1]) & (a[1] >= b[0]), (a[0] != a[1]) | (b[0] != b[1]) | (a[0] != b[0])),
     "!=": lambda a, b: ((a[0] != a[1]) | (b[0] != b[1]) | (a[0] != b[0]), (a[0] <= b[1]) & (a[1] >= b[0])),
 }
-_NOT_LESS = {"<": (0, 1), "<=": (0, 1), ">": (1, 0), ">=": (1, 0), "==": (1, 1), "!=": (0, 0)}
-"""Relation -> the decision with which the left side is at least the right one, and that with which it is at most."""
+_NOT_LESS = {  # the decision with which the left side is at least the right one, and that with which it is at most
+    "<": (0, 1), "<=": (0, 1), ">": (1, 0), ">=": (1, 0), "==": (1, 1), "!=": (0, 0),
+}  # fmt: skip
 
 
 def decide(

@@ -15,9 +15,7 @@ from symrot.certify.rounding_intervals import Array
 
 __all__ = ["EVERYWHERE", "UNIT_NORM", "Region", "narrowed", "off_unit"]
 
-UNIT_NORM = (
-    2.0**-20
-)  # how far the squared norm of a unit quaternion may be from 1: that of rounded components is nearer
+UNIT_NORM = 2.0**-20  # how far the squared norm of a unit quaternion may be from 1: rounded components are nearer
 
 
 @dataclass(frozen=True)
@@ -63,10 +61,9 @@ def narrowed(boxes: Array, region: Region, places: Sequence[str]) -> Array:
             if len(numbers) < len(group):  # others may have any size
                 least = np.zeros_like(least)
             low, high = np.maximum(found[0, number], -most), np.minimum(found[1, number], most)
-            low, high = (
-                np.where(low > -least, np.maximum(low, least), low),
-                np.where(high < least, np.minimum(high, -least), high),
-            )
+            positive, negative = low > -least, high < least  # too near to zero to be of the other sign
+            low = np.where(positive, np.maximum(low, least), low)
+            high = np.where(negative, np.minimum(high, -least), high)
             found = found.copy()
             found[:, number] = np.where(low <= high, np.stack([low, high]), found[:, number])
     return found
