@@ -217,7 +217,8 @@ def _assumptions(libm_ulp: float) -> list[str]:
     return [
         "IEEE 754, rounding to nearest, subnormal numbers kept; operations as written, fused only where it is said",
         f"sin, cos and atan2 within {libm_ulp:g} unit in the last place; sin and cos within [-1, 1], sincos alike",
-        "link 3: constants are rounded to nearest, series leave out at most a quarter of a unit in the last place",
+        "link 3: constants are rounded to nearest from what it reads; "
+        "series leave out at most a quarter of a unit in the last place",
     ]
 
 

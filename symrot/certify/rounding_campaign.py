@@ -40,8 +40,8 @@ class Class:
 
 
 CLASSES = (
-    Class("angles of a quaternion, quaternion of a matrix", inf, ("euler_", "quaternion_"),
-          ("_of_quaternion", "_of_dcm")),
+    Class("angles of a quaternion", 4.0, ("euler_",), ("_of_quaternion",)),
+    Class("other parameters of a quaternion", 4.0, ("rotation_vector_", "rodrigues_", "mrp_"), ("_of_quaternion",)),
     Class("angular acceleration, full tensor", 12.0, ("euler_equations_tensor", "rigid_body_tensor")),
     Class("angular acceleration, other bodies", 4.0, ("euler_equations_",)),
     Class("quaternion kernels", 1.5, ("quaternion_",)),

@@ -47,8 +47,9 @@ class Problem:
 def problem(found: Definition, operations: Operations) -> Problem:
     """Return the box and region of a kernel.
 
-    The region is the whole box, but for kernels that take angles of a quaternion: those are bounded for unit
-    quaternions, at a distance of 1/10 from the points where an angle is not defined.
+    The region is the whole box, rotation or not: a matrix is any nine numbers in [-1, 1], a quaternion any four. But
+    for kernels that take angles of a quaternion: those are bounded for unit quaternions, at a distance of 1/10 from the
+    points where an angle is not defined.
     """
     symbols = {
         (each.name if each.is_scalar else f"{each.name}[{i}]"): component[0]
