@@ -21,7 +21,7 @@ from symrot.certify.rounding_intervals import DIGITS
 from symrot.certify.rounding_region import UNIT_NORM, Region
 from symrot.certify.rounding_replay import FLOAT, Points
 
-__all__ = ["CHAINS", "Field", "climb", "pointwise", "top"]
+__all__ = ["BROOD", "CHAINS", "Field", "climb", "distinct", "pointwise", "top"]
 
 CHAINS = 64  # climbs at once
 BROOD = 8  # points that are tried near each at once
