@@ -81,7 +81,7 @@ def measure(
         middle = {place: float(sum(box[place]) / 2) for place in places} | dict(each.at)
         worst = np.array([[middle[place]] for place in places]).astype(field.kind)
         coarse = _coarse(operations, field, each.output, np.concatenate([worst, scanned[:, :JUDGED]], axis=1), rng)
-        start = distinct([worst, np.concatenate([best, coarse], axis=1)])
+        start = distinct([worst, coarse[:, : CHAINS // 2], best])
         own = behind(operations, each.output)
         climbed = _climbed(own, field, start, rounds, rng)
         every = distinct([climbed[:, :CONFIRMED], best[:, :CONFIRMED]])
@@ -102,7 +102,7 @@ def _climbed(own: Operations, field: Field, start: Points, rounds: int, rng: np.
     def errors(points: Points) -> NDArray[np.float64]:
         return scan(own, field.region, points)[output]
 
-    return climb(errors, field, start[:, top(errors(start))], rounds, rng)
+    return climb(errors, field, start, rounds, rng)
 
 
 def _confirm(operations: Operations, each: OutputBound, points: Points, used: int) -> Measured:
