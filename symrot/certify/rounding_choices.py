@@ -6,6 +6,7 @@ negative and rounding keeps order.
 """
 
 from collections.abc import Callable, Sequence
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from numpy.typing import NDArray
 
 from symrot.certify.operations import Node
 from symrot.certify.rounding_cone import Cone
-from symrot.certify.rounding_intervals import Array
+from symrot.certify.rounding_intervals import Array, negative
 
 __all__ = ["decide", "narrow"]
 
@@ -59,15 +60,22 @@ def _order(nodes: Sequence[Node], i: int, j: int, here: NDArray[np.bool_], compu
     middle = _middle(nodes[i], nodes[j])
     if middle is not None:
         least, most = np.maximum(least, computed[middle][0]), np.minimum(most, computed[middle][1])
-    for k, row, end, tighter in ((i, 0, least, np.maximum), (j, 1, most, np.minimum)):
-        if nodes[k][0] in _FUSED:  # where it is fused, a sum takes the product as it is
-            continue
-        found = computed[k].copy()
-        found[row] = np.where(here, tighter(found[row], end), found[row])
-        computed[k] = np.where(found[0] <= found[1], found, computed[k])
+    _limit(nodes, i, 0, np.where(here, least, -inf), computed)
+    _limit(nodes, j, 1, np.where(here, most, inf), computed)
 
 
-_FUSED = ("mul", "square", "neg")
+def _limit(nodes: Sequence[Node], k: int, row: int, end: Array, computed: list[Array]) -> None:
+    """Narrow what is known of a number from below (row 0) or above (row 1)."""
+    kind = nodes[k][0]
+    if kind in ("mul", "square"):  # where it is fused, a sum takes the product as it is
+        return
+    if kind == "neg":
+        _limit(nodes, nodes[k][1], 1 - row, -end, computed)
+        computed[k] = negative(computed[nodes[k][1]])
+        return
+    found = computed[k].copy()
+    found[row] = np.minimum(found[row], end) if row else np.maximum(found[row], end)
+    computed[k] = np.where(found[0] <= found[1], found, computed[k])
 
 
 def _middle(one: Node, other: Node) -> int | None:
