@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from symrot.certify import rounding_campaign
 from symrot.certify.rounding import bound_outputs
 from symrot.certify.rounding_adversary import Field, climb
 from symrot.certify.rounding_campaign import compare
@@ -36,6 +37,19 @@ def test_a_bound_that_is_too_small_is_caught(name, part, suffix):
     assert all(row.holds and row.tight for row in compare(operations, bounds, found, name))
     small = [replace(each, bound=each.bound * part) for each in bounds]
     assert not any(row.holds for row in compare(operations, small, found, name))
+
+
+def test_the_campaign_refuses_a_bound_that_is_too_small(monkeypatch, capsys):
+    name, bound = "quaternion_of_dcm", rounding_campaign.bound_outputs
+    monkeypatch.setattr(
+        rounding_campaign, "bound_outputs", lambda *given: [replace(x, bound=x.bound / 2) for x in bound(*given)]
+    )
+    found = rounding_campaign.rows(name, text_of(name), 10_000, suffixes="d")
+    assert not any(row.holds for row in found)
+    monkeypatch.setattr(rounding_campaign, "prepare", lambda *given: 0)
+    monkeypatch.setattr(rounding_campaign, "table", lambda *given: [(name, found)])
+    assert rounding_campaign.main([name, "--generated", str(GENERATED.parent)]) == 1
+    assert "BROKEN" in capsys.readouterr().out
 
 
 def test_what_is_measured_is_found_again_and_of_the_region():
