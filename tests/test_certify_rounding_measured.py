@@ -44,7 +44,7 @@ def test_the_campaign_refuses_a_bound_that_is_too_small(monkeypatch, capsys):
     monkeypatch.setattr(
         rounding_campaign, "bound_outputs", lambda *given: [replace(x, bound=x.bound / 2) for x in bound(*given)]
     )
-    found = rounding_campaign.rows(name, text_of(name), 10_000, suffixes="d")
+    found = rounding_campaign.rows(name, text_of(name), 10_000)
     assert not any(row.holds for row in found)
     monkeypatch.setattr(rounding_campaign, "prepare", lambda *given: 0)
     monkeypatch.setattr(rounding_campaign, "table", lambda *given: [(name, found)])
