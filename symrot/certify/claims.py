@@ -88,7 +88,7 @@ class _Claims:
         self.plain |= {("function", name, said["type"]) for name, said in data["readback"].items()}
         self.texts: dict[Any, tuple[str, list[str]]] = {}
         for law in data["laws"]:
-            given = tuple(map(self.read, law["given"]))
+            given = tuple(self.symbols.get(each, each) for each in law["given"])
             self.texts |= {(_primitive(self.read(text)), given): (text, law["given"]) for text in law["vanishing"]}
         self.laws = set(self.texts)
         self.spec = spec
@@ -106,8 +106,11 @@ class _Claims:
             symbol: _expression(ast.parse(each, mode="eval").body, names)
             for symbol, each in (*self.spec["named"], *(item[1:] for item in self.spec["formulas"]))
         }
+        return any(self._follows(Law(text, (vanishing,), each), formulas) for each in ((), relations))
+
+    def _follows(self, law: Law, formulas: Mapping[str, Expr]) -> bool:
         try:
-            prove_law(self.name, Law(text, (vanishing,), relations), formulas)
+            prove_law(self.name, law, formulas)
         except CertificateError:
             return False
         return True

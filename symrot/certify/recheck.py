@@ -75,7 +75,7 @@ def point(given, formulas, functions, number=Decimal):
     rotation = (2 * each + (i == j) * (2 * q[0] * q[0] - 1) for i, j, each in nine)
     names |= zip(given, rotation if len(given) == 9 else q, strict=True)
     try:
-        for name, text in formulas:
+        for *_, name, text in formulas:
             need(name not in names, f"{name} is no new name")
             names[name] = formula(text)(names)
         return names
@@ -95,7 +95,7 @@ def check_c(name, said, real, data, formulas, functions, found):
         functions = [(each, f"x*x < {split} ? {taylor} : {text}" if each == f else text) for each, text in functions]
     names = point([], formulas, functions, Fraction)
     constants = {nearest(formula(written)(names)).value: formula(exact)(names) for written, exact in numbers}
-    inputs = {place: names[place] for place, *_ in data["inputs"]}
+    inputs = {place: names[(place,)] for place, *_ in data["inputs"]}
     need(len({names["pi"], *inputs.values()}) == len(data["inputs"]) + 1, "two inputs are one")
     need(all(nearest(constants[each]).value == each for each in constants), "a constant stands for another number")
 
@@ -126,7 +126,7 @@ def check_c(name, said, real, data, formulas, functions, found):
     for (_, listed, body), frames in (found[name], [""]), (found[f"{name}_batch"], [EACH, PARTS, BLOCKS % bits]):
         loops = re.findall(r"(?<=\+\+k\) \{)[^{}]*(?=\})", body) or [body]
         frame = re.sub(r"(?<=\+\+k\) \{)[^{}]*(?=\})", "", body) if loops != [body] else ""
-        takes = re.findall(r"(\w+)(?:\[\d+\])?(?:, |$)", listed)
+        takes = re.findall(rf"(?:size_t|{real}) (?:\*SYMROT_RESTRICT )?(\w+)(?:\[\d+\])?(?:, |$)", listed)
         need(frame in frames and takes == ["n"] * bool(frame) + [*sizes], f"arguments or loops of {name} are others")
         results = []
         for loop in loops:
@@ -161,18 +161,18 @@ def check(path):
     text = " ".join(re.sub(r"/\*.*?\*/|\(void\)\w+;", " ", raw, flags=re.S).split())
     own = '#include "symrot_math.h" ' * ("symrot_math.h" in files) + f'#include "{name}.h" '
     alone = FUNCTION.sub("", text) in (own, f"#include <math.h> {own}") and not re.search(r"[^\n -~]|\\|\?\?|.#", raw)
-    found = {function: (kind, listed, body) for kind, function, listed, body in FUNCTION.findall(text)}
+    functions = FUNCTION.findall(text)
+    found = {f: (kind, listed, body) for kind, f, listed, body in functions}
     known = {f for f in found if found[f][0] == "void"} == {f + end for f in readback for end in ("", "_batch")}
-    alone = alone and known and len(found) == len(FUNCTION.findall(text))
-    need(alone and readback and data["laws"], "there are no laws, or other functions")
-    formulas = [(place, spec["parameters"].get(symbol, symbol)) for place, symbol, _ in data["inputs"]] + spec["named"]
-    formulas += [item[1:] for item in spec["formulas"]]
+    need(alone and known and readback and data["laws"] and len(found) == len(functions), "laws or functions are others")
+    formulas = [((p,), spec["parameters"].get(s, s)) for p, s, _ in data["inputs"]] + spec["named"] + spec["formulas"]
     need({*spec["parameters"]} <= {symbol for _, symbol, _ in data["inputs"]}, "a parameter is no input")
     with localcontext(Context(prec=90)):
         for law in data["laws"] * (64 if "select_" in str(formulas) else 8):
             laws = [*enumerate(law["vanishing"])]
             left, size = (point(*each, spec["functions"]) for each in ((law["given"], formulas + laws), ([], laws)))
-            need(all(abs(left[k]) <= abs(size[k]) / 10**60 for k, _ in laws), f"the law {law['law']!r} does not follow")
+            holds = all(abs(left[k]) <= max(abs(size[k]) / 10**60, 1e-70) for k, _ in laws)
+            need(holds, f"the law {law['law']!r} does not follow")
         for function, said in readback.items():
             check_c(function, said, said["type"], data, formulas, spec["functions"], found)
     return f"{name}: {len(files)} hashes, C text of {' and '.join(readback)} and batches, laws"
