@@ -312,8 +312,9 @@ def _stores_last(program: Program) -> bool:
     """Tell whether the loops of a batch store behind all that they compute.
 
     They do where they walk along more arrays than share a set of the first cache: what compilers read again after a
-    store is no longer there. Measured with gcc 12 on Zen 3 at n = 512 m: heavy_top 0.9, or 0.7 tuned for Zen 3, of the
-    time of stores in between; with fewer arrays, quaternion_product 1.15 at n = 1000, tuned for Zen 3.
+    store is no longer there. With gcc 12 on Zen 3, the kernels of the library that do so take 0.9 of the time of stores
+    in between at n = 512 m (heavy_top 0.8, but heavy_top_symmetric 1.2) and the same at others; quaternion_product, of
+    12 arrays, would take 1.15 at n = 1000, where gcc tunes for Zen 3 and reads 26 times per sample, not 22.
     """
     return _streams(program) > WAYS
 
