@@ -1,4 +1,4 @@
-"""Batches over many arrays: in each loop over samples nothing is computed after the first store."""
+"""Batches over many arrays: nothing is computed after the first store, what needs the fewest inputs first of all."""
 
 import re
 
@@ -7,6 +7,7 @@ import pytest
 from symrot.certify.readback import read_batch, read_kernel
 from symrot.codegen.banner import Description
 from symrot.codegen.c_source import WAYS, c_source
+from symrot.codegen.library_kernels import kernel_program
 from symrot.interface import emit
 from symrot.kernel import Argument, Program, Signature
 
@@ -24,6 +25,11 @@ def computes_first(statements):
     """Whether statements of a loop are what is computed, then what is stored, then what is asked of angles."""
     kinds = [next((i for i, kind in enumerate((COMPUTED, STORED, ASKED)) if kind.fullmatch(s)), 3) for s in statements]
     return kinds == sorted(kinds) and 1 in kinds and 3 not in kinds
+
+
+def defined(statements, name):
+    """Return which statement of a loop gives a name its value."""
+    return next(i for i, s in enumerate(statements) if re.match(rf"const \w+ {name} =", s))
 
 
 def of_many_arrays():
@@ -50,6 +56,31 @@ def test_nothing_is_computed_after_the_first_store_where_angles_are_asked_for():
     assert len(loops(text)) == 2
     assert all(map(computes_first, loops(text)))
     assert read_batch(text, "f_batch").digest() == read_kernel(text, "f").digest()
+
+
+@pytest.mark.parametrize(
+    "name, early, later",
+    [
+        ("heavy_top", "dq3", ["A", "B", "C", "c_1", "c_2", "c_3", "domega_1"]),
+        ("heavy_top_symmetric", "dq3", ["A", "C", "domega_1"]),
+        ("inertia_tetrahedron", "z", ["I_xx"]),
+    ],
+)
+def test_results_of_the_fewest_inputs_are_computed_first(name, early, later):
+    """Before what only the others need is loaded; arrays are stored to in the order of the arguments."""
+    text = emit(name).source
+    outputs = [a for a in kernel_program(name).signature.arguments if a.role == "out"]
+    for statements in loops(text):
+        assert defined(statements, early) < min(defined(statements, each) for each in later)
+        stores = [s.split(" = ")[0] for s in statements if STORED.fullmatch(s)]
+        assert stores == [f"{a.name}[{i}*n + k]" for a in outputs for i in range(a.size)]
+    for kernel in (name, f"{name}f"):
+        assert read_batch(text, f"{kernel}_batch").digest() == read_kernel(text, kernel).digest()
+
+
+def test_where_all_values_fit_into_registers_results_are_computed_in_the_order_of_the_arguments():
+    for statements in loops(emit("inertia_triangular_prism").source):
+        assert defined(statements, "I_xx") < defined(statements, "x")
 
 
 def test_with_few_arrays_results_are_stored_where_they_are_computed():
