@@ -154,8 +154,8 @@ def _body(
 def _computed_in_turn(program: Program) -> list[Argument]:
     """Return the output arguments as a loop that stores last computes them: the one of the fewest inputs first.
 
-    They stay in their order where all inputs and results fit into registers. With gcc 12 on Zen 3, in the geometric mean
-    over n = 512, 1000, 1024, 4096, 10^6, this takes 0.88 of the time of the order of the arguments for
+    They stay in their order where all inputs and results fit into registers. With gcc 12 on Zen 3 this takes, in the
+    geometric mean over n = 512, 1000, 1024, 4096, 10^6, 0.88 of the time of the order of the arguments for
     inertia_tetrahedron, 0.95 for heavy_top (1.03 at 1000, 0.97 at 10^6), 0.98 for heavy_top_symmetric; of the kernels
     with fewer values, inertia_triangular_prism and inertia_frustum would take 1.06.
     """
