@@ -31,7 +31,7 @@
  * Domain: positive definite inertia.
  * Box: I_xx, I_yy, I_zz in [1, 4]; I_xy, I_xz, I_yz in [-1/4, 1/4]; omega_1, omega_2, omega_3, tau_1, tau_2,
  *     tau_3 in [-10, 10].
- * Errors: on the box at most 1.17e-12 [6.27e-04] rad/s^2 in domega (float functions in brackets).
+ * Errors: on the box at most 1.08e-12 [5.75e-04] rad/s^2 in domega (float functions in brackets).
  * Certificate: euler_equations_tensor.cert.json; re-check it by `python recheck.py
  *     euler_equations_tensor.cert.json` or `symrot audit`.
  * Assumes: IEEE 754 arithmetic, rounding to nearest; outputs do not overlap inputs; for bounds of rounding

@@ -14,7 +14,7 @@
  * Convention: body axes; quaternion scalar first, Hamilton, body to space (symrot conventions).
  * Domain: all quaternions but 0; at lock, where one combination of the first and last angle is left, both are finite.
  * Box: q0, q1, q2, q3 in [-1, 1].
- * Errors: on the box at most 2.67e-15 [1.44e-06] rad in angles (float functions in brackets); q[0], q[1], q[2],
+ * Errors: on the box at most 1.58e-15 [8.91e-07] rad in angles (float functions in brackets); q[0], q[1], q[2],
  *     q[3]: squares add up to 1, but for 2^-20; every atan2 with arguments of length at least 0.1; angles modulo
  *     whole turns.
  * Certificate: euler_extrinsic_xyx_of_quaternion.cert.json; re-check it by `python recheck.py

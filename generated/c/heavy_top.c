@@ -93,12 +93,6 @@ void heavy_top_batch(
     SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const double W_k = W[k];
-        const double A = inertia[0*n + k];
-        const double B = inertia[1*n + k];
-        const double C = inertia[2*n + k];
-        const double c_1 = center_of_mass[0*n + k];
-        const double c_2 = center_of_mass[1*n + k];
-        const double c_3 = center_of_mass[2*n + k];
         const double omega_1 = omega[0*n + k];
         const double omega_2 = omega[1*n + k];
         const double omega_3 = omega[2*n + k];
@@ -106,6 +100,21 @@ void heavy_top_batch(
         const double q1 = q[1*n + k];
         const double q2 = q[2*n + k];
         const double q3 = q[3*n + k];
+        const double half_1 = 0.5*omega_1;
+        const double half_2 = 0.5*omega_2;
+        const double half_3 = 0.5*omega_3;
+
+        const double dq0 = -(q1*half_1 + q2*half_2 + q3*half_3);
+        const double dq1 = q0*half_1 + q2*half_3 - q3*half_2;
+        const double dq2 = q3*half_1 + q0*half_2 - q1*half_3;
+        const double dq3 = q1*half_2 + q0*half_3 - q2*half_1;
+
+        const double A = inertia[0*n + k];
+        const double B = inertia[1*n + k];
+        const double C = inertia[2*n + k];
+        const double c_1 = center_of_mass[0*n + k];
+        const double c_2 = center_of_mass[1*n + k];
+        const double c_3 = center_of_mass[2*n + k];
         const double x0 = 2.0*W_k;
         const double moment_of_weight_3 = c_3*x0;
         const double half_vertical_2 = q0*q1 + q2*q3;
@@ -114,21 +123,20 @@ void heavy_top_batch(
         const double half_vertical_1 = q1*q3 - q0*q2;
         const double moment_of_weight_1 = c_1*x0;
 
-        domega[0*n + k] = (moment_of_weight_3*half_vertical_2 + (B - C)*omega_2*omega_3 -
+        const double domega_1 = (moment_of_weight_3*half_vertical_2 + (B - C)*omega_2*omega_3 -
             moment_of_weight_2*half_vertical_3)/A;
-        domega[1*n + k] = (moment_of_weight_1*half_vertical_3 + (C - A)*omega_1*omega_3 -
+        const double domega_2 = (moment_of_weight_1*half_vertical_3 + (C - A)*omega_1*omega_3 -
             moment_of_weight_3*half_vertical_1)/B;
-        domega[2*n + k] = (moment_of_weight_2*half_vertical_1 + (A - B)*omega_1*omega_2 -
+        const double domega_3 = (moment_of_weight_2*half_vertical_1 + (A - B)*omega_1*omega_2 -
             moment_of_weight_1*half_vertical_2)/C;
 
-        const double half_1 = 0.5*omega_1;
-        const double half_2 = 0.5*omega_2;
-        const double half_3 = 0.5*omega_3;
-
-        dq[0*n + k] = -(q1*half_1 + q2*half_2 + q3*half_3);
-        dq[1*n + k] = q0*half_1 + q2*half_3 - q3*half_2;
-        dq[2*n + k] = q3*half_1 + q0*half_2 - q1*half_3;
-        dq[3*n + k] = q1*half_2 + q0*half_3 - q2*half_1;
+        domega[0*n + k] = domega_1;
+        domega[1*n + k] = domega_2;
+        domega[2*n + k] = domega_3;
+        dq[0*n + k] = dq0;
+        dq[1*n + k] = dq1;
+        dq[2*n + k] = dq2;
+        dq[3*n + k] = dq3;
     }
 }
 
@@ -179,12 +187,6 @@ void heavy_topf_batch(
     SYMROT_INDEPENDENT
     for (size_t k = 0; k < n; ++k) {
         const float W_k = W[k];
-        const float A = inertia[0*n + k];
-        const float B = inertia[1*n + k];
-        const float C = inertia[2*n + k];
-        const float c_1 = center_of_mass[0*n + k];
-        const float c_2 = center_of_mass[1*n + k];
-        const float c_3 = center_of_mass[2*n + k];
         const float omega_1 = omega[0*n + k];
         const float omega_2 = omega[1*n + k];
         const float omega_3 = omega[2*n + k];
@@ -192,6 +194,21 @@ void heavy_topf_batch(
         const float q1 = q[1*n + k];
         const float q2 = q[2*n + k];
         const float q3 = q[3*n + k];
+        const float half_1 = 0.5f*omega_1;
+        const float half_2 = 0.5f*omega_2;
+        const float half_3 = 0.5f*omega_3;
+
+        const float dq0 = -(q1*half_1 + q2*half_2 + q3*half_3);
+        const float dq1 = q0*half_1 + q2*half_3 - q3*half_2;
+        const float dq2 = q3*half_1 + q0*half_2 - q1*half_3;
+        const float dq3 = q1*half_2 + q0*half_3 - q2*half_1;
+
+        const float A = inertia[0*n + k];
+        const float B = inertia[1*n + k];
+        const float C = inertia[2*n + k];
+        const float c_1 = center_of_mass[0*n + k];
+        const float c_2 = center_of_mass[1*n + k];
+        const float c_3 = center_of_mass[2*n + k];
         const float x0 = 2.0f*W_k;
         const float moment_of_weight_3 = c_3*x0;
         const float half_vertical_2 = q0*q1 + q2*q3;
@@ -200,20 +217,19 @@ void heavy_topf_batch(
         const float half_vertical_1 = q1*q3 - q0*q2;
         const float moment_of_weight_1 = c_1*x0;
 
-        domega[0*n + k] = (moment_of_weight_3*half_vertical_2 + (B - C)*omega_2*omega_3 -
+        const float domega_1 = (moment_of_weight_3*half_vertical_2 + (B - C)*omega_2*omega_3 -
             moment_of_weight_2*half_vertical_3)/A;
-        domega[1*n + k] = (moment_of_weight_1*half_vertical_3 + (C - A)*omega_1*omega_3 -
+        const float domega_2 = (moment_of_weight_1*half_vertical_3 + (C - A)*omega_1*omega_3 -
             moment_of_weight_3*half_vertical_1)/B;
-        domega[2*n + k] = (moment_of_weight_2*half_vertical_1 + (A - B)*omega_1*omega_2 -
+        const float domega_3 = (moment_of_weight_2*half_vertical_1 + (A - B)*omega_1*omega_2 -
             moment_of_weight_1*half_vertical_2)/C;
 
-        const float half_1 = 0.5f*omega_1;
-        const float half_2 = 0.5f*omega_2;
-        const float half_3 = 0.5f*omega_3;
-
-        dq[0*n + k] = -(q1*half_1 + q2*half_2 + q3*half_3);
-        dq[1*n + k] = q0*half_1 + q2*half_3 - q3*half_2;
-        dq[2*n + k] = q3*half_1 + q0*half_2 - q1*half_3;
-        dq[3*n + k] = q1*half_2 + q0*half_3 - q2*half_1;
+        domega[0*n + k] = domega_1;
+        domega[1*n + k] = domega_2;
+        domega[2*n + k] = domega_3;
+        dq[0*n + k] = dq0;
+        dq[1*n + k] = dq1;
+        dq[2*n + k] = dq2;
+        dq[3*n + k] = dq3;
     }
 }

@@ -86,8 +86,6 @@ void heavy_top_symmetric_batch(
     for (size_t k = 0; k < n; ++k) {
         const double W_k = W[k];
         const double h_k = h[k];
-        const double A = inertia[0*n + k];
-        const double C = inertia[1*n + k];
         const double omega_1 = omega[0*n + k];
         const double omega_2 = omega[1*n + k];
         const double omega_3 = omega[2*n + k];
@@ -95,24 +93,33 @@ void heavy_top_symmetric_batch(
         const double q1 = q[1*n + k];
         const double q2 = q[2*n + k];
         const double q3 = q[3*n + k];
+        const double half_1 = 0.5*omega_1;
+        const double half_2 = 0.5*omega_2;
+        const double half_3 = 0.5*omega_3;
+
+        const double dq0 = -(q1*half_1 + q2*half_2 + q3*half_3);
+        const double dq1 = q0*half_1 + q2*half_3 - q3*half_2;
+        const double dq2 = q3*half_1 + q0*half_2 - q1*half_3;
+        const double dq3 = q1*half_2 + q0*half_3 - q2*half_1;
+
+        const double A = inertia[0*n + k];
+        const double C = inertia[1*n + k];
         const double moment_of_weight_3 = 2.0*W_k*h_k;
         const double half_vertical_2 = q0*q1 + q2*q3;
         const double x2 = (A - C)*omega_3;
         const double x3 = 1.0/A;
         const double half_vertical_1 = q1*q3 - q0*q2;
 
-        domega[0*n + k] = (moment_of_weight_3*half_vertical_2 + omega_2*x2)*x3;
-        domega[1*n + k] = -((moment_of_weight_3*half_vertical_1 + omega_1*x2)*x3);
+        const double domega_1 = (moment_of_weight_3*half_vertical_2 + omega_2*x2)*x3;
+        const double domega_2 = -((moment_of_weight_3*half_vertical_1 + omega_1*x2)*x3);
+
+        domega[0*n + k] = domega_1;
+        domega[1*n + k] = domega_2;
         domega[2*n + k] = 0.0;
-
-        const double half_1 = 0.5*omega_1;
-        const double half_2 = 0.5*omega_2;
-        const double half_3 = 0.5*omega_3;
-
-        dq[0*n + k] = -(q1*half_1 + q2*half_2 + q3*half_3);
-        dq[1*n + k] = q0*half_1 + q2*half_3 - q3*half_2;
-        dq[2*n + k] = q3*half_1 + q0*half_2 - q1*half_3;
-        dq[3*n + k] = q1*half_2 + q0*half_3 - q2*half_1;
+        dq[0*n + k] = dq0;
+        dq[1*n + k] = dq1;
+        dq[2*n + k] = dq2;
+        dq[3*n + k] = dq3;
     }
 }
 
@@ -158,8 +165,6 @@ void heavy_top_symmetricf_batch(
     for (size_t k = 0; k < n; ++k) {
         const float W_k = W[k];
         const float h_k = h[k];
-        const float A = inertia[0*n + k];
-        const float C = inertia[1*n + k];
         const float omega_1 = omega[0*n + k];
         const float omega_2 = omega[1*n + k];
         const float omega_3 = omega[2*n + k];
@@ -167,23 +172,32 @@ void heavy_top_symmetricf_batch(
         const float q1 = q[1*n + k];
         const float q2 = q[2*n + k];
         const float q3 = q[3*n + k];
+        const float half_1 = 0.5f*omega_1;
+        const float half_2 = 0.5f*omega_2;
+        const float half_3 = 0.5f*omega_3;
+
+        const float dq0 = -(q1*half_1 + q2*half_2 + q3*half_3);
+        const float dq1 = q0*half_1 + q2*half_3 - q3*half_2;
+        const float dq2 = q3*half_1 + q0*half_2 - q1*half_3;
+        const float dq3 = q1*half_2 + q0*half_3 - q2*half_1;
+
+        const float A = inertia[0*n + k];
+        const float C = inertia[1*n + k];
         const float moment_of_weight_3 = 2.0f*W_k*h_k;
         const float half_vertical_2 = q0*q1 + q2*q3;
         const float x2 = (A - C)*omega_3;
         const float x3 = 1.0f/A;
         const float half_vertical_1 = q1*q3 - q0*q2;
 
-        domega[0*n + k] = (moment_of_weight_3*half_vertical_2 + omega_2*x2)*x3;
-        domega[1*n + k] = -((moment_of_weight_3*half_vertical_1 + omega_1*x2)*x3);
+        const float domega_1 = (moment_of_weight_3*half_vertical_2 + omega_2*x2)*x3;
+        const float domega_2 = -((moment_of_weight_3*half_vertical_1 + omega_1*x2)*x3);
+
+        domega[0*n + k] = domega_1;
+        domega[1*n + k] = domega_2;
         domega[2*n + k] = 0.0f;
-
-        const float half_1 = 0.5f*omega_1;
-        const float half_2 = 0.5f*omega_2;
-        const float half_3 = 0.5f*omega_3;
-
-        dq[0*n + k] = -(q1*half_1 + q2*half_2 + q3*half_3);
-        dq[1*n + k] = q0*half_1 + q2*half_3 - q3*half_2;
-        dq[2*n + k] = q3*half_1 + q0*half_2 - q1*half_3;
-        dq[3*n + k] = q1*half_2 + q0*half_3 - q2*half_1;
+        dq[0*n + k] = dq0;
+        dq[1*n + k] = dq1;
+        dq[2*n + k] = dq2;
+        dq[3*n + k] = dq3;
     }
 }

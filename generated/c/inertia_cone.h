@@ -27,7 +27,7 @@
  * Convention: body axes; quaternion scalar first, Hamilton, body to space (symrot conventions).
  * Domain: dimensions of a body that is there.
  * Box: m, R, h in [1/10, 10].
- * Errors: on the box at most 9.97e-14 [5.36e-05] kg m^2 in inertia; 3.01e-320 [3.01e-320] m in center_of_mass
+ * Errors: on the box at most 8.31e-14 [5.06e-05] kg m^2 in inertia; 3.01e-320 [3.01e-320] m in center_of_mass
  *     (float functions in brackets).
  * Certificate: inertia_cone.cert.json; re-check it by `python recheck.py inertia_cone.cert.json` or `symrot
  *     audit`.

@@ -26,7 +26,7 @@
  * Convention: body axes; quaternion scalar first, Hamilton, body to space (symrot conventions).
  * Domain: dimensions of a body that is there.
  * Box: m, R, L in [1/10, 10].
- * Errors: on the box at most 1.63e-13 [8.74e-05] kg m^2 in inertia; 0 [0] m in center_of_mass (float functions
+ * Errors: on the box at most 1.54e-13 [8.25e-05] kg m^2 in inertia; 0 [0] m in center_of_mass (float functions
  *     in brackets).
  * Certificate: inertia_cylinder.cert.json; re-check it by `python recheck.py inertia_cylinder.cert.json` or
  *     `symrot audit`.

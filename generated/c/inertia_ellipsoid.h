@@ -28,7 +28,7 @@
  * Convention: body axes; quaternion scalar first, Hamilton, body to space (symrot conventions).
  * Domain: dimensions of a body that is there.
  * Box: m, a, b, c in [1/10, 10].
- * Errors: on the box at most 1.58e-13 [8.46e-05] kg m^2 in inertia; 0 [0] m in center_of_mass (float functions
+ * Errors: on the box at most 1.52e-13 [7.56e-05] kg m^2 in inertia; 0 [0] m in center_of_mass (float functions
  *     in brackets).
  * Certificate: inertia_ellipsoid.cert.json; re-check it by `python recheck.py inertia_ellipsoid.cert.json` or
  *     `symrot audit`.

@@ -28,7 +28,7 @@
  * Convention: body axes; quaternion scalar first, Hamilton, body to space (symrot conventions).
  * Domain: dimensions of a body that is there.
  * Box: m, R_1, R_2, h in [1/10, 10].
- * Errors: on the box at most 5.60e-13 [3.01e-04] kg m^2 in inertia; 5.43e-15 [2.92e-06] m in center_of_mass
+ * Errors: on the box at most 5.40e-13 [2.97e-04] kg m^2 in inertia; 5.44e-15 [2.92e-06] m in center_of_mass
  *     (float functions in brackets).
  * Certificate: inertia_frustum.cert.json; re-check it by `python recheck.py inertia_frustum.cert.json` or
  *     `symrot audit`.

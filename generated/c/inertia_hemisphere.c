@@ -26,7 +26,7 @@
  * Convention: body axes; quaternion scalar first, Hamilton, body to space (symrot conventions).
  * Domain: dimensions of a body that is there.
  * Box: m, R in [1/10, 10].
- * Errors: on the box at most 1.08e-13 [5.77e-05] kg m^2 in inertia; 2.23e-16 [1.20e-07] m in center_of_mass
+ * Errors: on the box at most 1.02e-13 [4.87e-05] kg m^2 in inertia; 2.23e-16 [1.20e-07] m in center_of_mass
  *     (float functions in brackets).
  * Certificate: inertia_hemisphere.cert.json; re-check it by `python recheck.py inertia_hemisphere.cert.json` or
  *     `symrot audit`.

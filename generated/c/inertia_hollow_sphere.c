@@ -26,7 +26,7 @@
  * Convention: body axes; quaternion scalar first, Hamilton, body to space (symrot conventions).
  * Domain: dimensions of a body that is there.
  * Box: m, R_1, R_2 in [1/10, 10].
- * Errors: on the box at most 6.00e-13 [3.22e-04] kg m^2 in inertia; 0 [0] m in center_of_mass (float functions
+ * Errors: on the box at most 5.91e-13 [3.08e-04] kg m^2 in inertia; 0 [0] m in center_of_mass (float functions
  *     in brackets).
  * Certificate: inertia_hollow_sphere.cert.json; re-check it by `python recheck.py
  *     inertia_hollow_sphere.cert.json` or `symrot audit`.

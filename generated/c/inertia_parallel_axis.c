@@ -98,12 +98,19 @@ void inertia_parallel_axis_batch(
         const double mass_times_d_x = d_x*m_k;
         const double x5 = d_x*mass_times_d_x;
 
-        moved[0*n + k] = I_xx + x1 + x3;
-        moved[1*n + k] = x3 + I_yy + x5;
-        moved[2*n + k] = x1 + x5 + I_zz;
-        moved[3*n + k] = I_xy - mass_times_d_x*d_y;
-        moved[4*n + k] = I_xz - mass_times_d_x*d_z;
-        moved[5*n + k] = I_yz - mass_times_d_y*d_z;
+        const double moved_xx = I_xx + x1 + x3;
+        const double moved_yy = x3 + I_yy + x5;
+        const double moved_zz = x1 + x5 + I_zz;
+        const double moved_xy = I_xy - mass_times_d_x*d_y;
+        const double moved_xz = I_xz - mass_times_d_x*d_z;
+        const double moved_yz = I_yz - mass_times_d_y*d_z;
+
+        moved[0*n + k] = moved_xx;
+        moved[1*n + k] = moved_yy;
+        moved[2*n + k] = moved_zz;
+        moved[3*n + k] = moved_xy;
+        moved[4*n + k] = moved_xz;
+        moved[5*n + k] = moved_yz;
     }
 }
 
@@ -156,11 +163,18 @@ void inertia_parallel_axisf_batch(
         const float mass_times_d_x = d_x*m_k;
         const float x5 = d_x*mass_times_d_x;
 
-        moved[0*n + k] = I_xx + x1 + x3;
-        moved[1*n + k] = x3 + I_yy + x5;
-        moved[2*n + k] = x1 + x5 + I_zz;
-        moved[3*n + k] = I_xy - mass_times_d_x*d_y;
-        moved[4*n + k] = I_xz - mass_times_d_x*d_z;
-        moved[5*n + k] = I_yz - mass_times_d_y*d_z;
+        const float moved_xx = I_xx + x1 + x3;
+        const float moved_yy = x3 + I_yy + x5;
+        const float moved_zz = x1 + x5 + I_zz;
+        const float moved_xy = I_xy - mass_times_d_x*d_y;
+        const float moved_xz = I_xz - mass_times_d_x*d_z;
+        const float moved_yz = I_yz - mass_times_d_y*d_z;
+
+        moved[0*n + k] = moved_xx;
+        moved[1*n + k] = moved_yy;
+        moved[2*n + k] = moved_zz;
+        moved[3*n + k] = moved_xy;
+        moved[4*n + k] = moved_xz;
+        moved[5*n + k] = moved_yz;
     }
 }

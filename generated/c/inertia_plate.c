@@ -26,7 +26,7 @@
  * Convention: body axes; quaternion scalar first, Hamilton, body to space (symrot conventions).
  * Domain: dimensions of a body that is there.
  * Box: m, a, b in [1/10, 10].
- * Errors: on the box at most 6.29e-14 [3.38e-05] kg m^2 in inertia; 0 [0] m in center_of_mass (float functions
+ * Errors: on the box at most 5.83e-14 [3.13e-05] kg m^2 in inertia; 0 [0] m in center_of_mass (float functions
  *     in brackets).
  * Certificate: inertia_plate.cert.json; re-check it by `python recheck.py inertia_plate.cert.json` or `symrot
  *     audit`.

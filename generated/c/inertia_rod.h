@@ -25,7 +25,7 @@
  * Convention: body axes; quaternion scalar first, Hamilton, body to space (symrot conventions).
  * Domain: dimensions of a body that is there.
  * Box: m, L in [1/10, 10].
- * Errors: on the box at most 2.85e-14 [1.53e-05] kg m^2 in inertia; 0 [0] m in center_of_mass (float functions
+ * Errors: on the box at most 2.62e-14 [1.41e-05] kg m^2 in inertia; 0 [0] m in center_of_mass (float functions
  *     in brackets).
  * Certificate: inertia_rod.cert.json; re-check it by `python recheck.py inertia_rod.cert.json` or `symrot
  *     audit`.

@@ -36,7 +36,7 @@
  * Convention: body axes; quaternion scalar first, Hamilton, body to space (symrot conventions).
  * Domain: unit quaternions.
  * Box: q0, q1, q2, q3 in [-1, 1]; I_xx, I_yy, I_zz in [1, 4]; I_xy, I_xz, I_yz in [-1/4, 1/4].
- * Errors: on the box at most 7.88e-14 [4.23e-05] kg m^2 in rotated (float functions in brackets).
+ * Errors: on the box at most 7.87e-14 [4.23e-05] kg m^2 in rotated (float functions in brackets).
  * Certificate: inertia_rotated.cert.json; re-check it by `python recheck.py inertia_rotated.cert.json` or
  *     `symrot audit`.
  * Assumes: IEEE 754 arithmetic, rounding to nearest; outputs do not overlap inputs; for bounds of rounding

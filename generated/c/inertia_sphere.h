@@ -25,7 +25,7 @@
  * Convention: body axes; quaternion scalar first, Hamilton, body to space (symrot conventions).
  * Domain: dimensions of a body that is there.
  * Box: m, R in [1/10, 10].
- * Errors: on the box at most 1.37e-13 [7.31e-05] kg m^2 in inertia; 0 [0] m in center_of_mass (float functions
+ * Errors: on the box at most 1.31e-13 [6.42e-05] kg m^2 in inertia; 0 [0] m in center_of_mass (float functions
  *     in brackets).
  * Certificate: inertia_sphere.cert.json; re-check it by `python recheck.py inertia_sphere.cert.json` or `symrot
  *     audit`.

@@ -25,7 +25,7 @@
  * Convention: body axes; quaternion scalar first, Hamilton, body to space (symrot conventions).
  * Domain: dimensions of a body that is there.
  * Box: m, R in [1/10, 10].
- * Errors: on the box at most 2.28e-13 [1.23e-04] kg m^2 in inertia; 0 [0] m in center_of_mass (float functions
+ * Errors: on the box at most 2.10e-13 [1.13e-04] kg m^2 in inertia; 0 [0] m in center_of_mass (float functions
  *     in brackets).
  * Certificate: inertia_spherical_shell.cert.json; re-check it by `python recheck.py
  *     inertia_spherical_shell.cert.json` or `symrot audit`.

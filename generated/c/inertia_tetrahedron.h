@@ -37,7 +37,7 @@
  * Convention: body axes; quaternion scalar first, Hamilton, body to space (symrot conventions).
  * Domain: dimensions of a body that is there.
  * Box: m, x_1, y_1, z_1, x_2, y_2, z_2, x_3, y_3, z_3, x_4, y_4, z_4 in [1/10, 10].
- * Errors: on the box at most 2.97e-13 [1.36e-04] kg m^2 in inertia; 1.78e-15 [9.54e-07] m in center_of_mass
+ * Errors: on the box at most 2.39e-13 [1.28e-04] kg m^2 in inertia; 1.78e-15 [9.54e-07] m in center_of_mass
  *     (float functions in brackets).
  * Certificate: inertia_tetrahedron.cert.json; re-check it by `python recheck.py inertia_tetrahedron.cert.json`
  *     or `symrot audit`.

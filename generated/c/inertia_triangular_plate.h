@@ -28,7 +28,7 @@
  * Convention: body axes; quaternion scalar first, Hamilton, body to space (symrot conventions).
  * Domain: dimensions of a body that is there.
  * Box: m, b, h, e in [1/10, 10].
- * Errors: on the box at most 5.79e-14 [3.11e-05] kg m^2 in inertia; 1.60e-15 [8.55e-07] m in center_of_mass
+ * Errors: on the box at most 5.71e-14 [2.85e-05] kg m^2 in inertia; 1.41e-15 [7.55e-07] m in center_of_mass
  *     (float functions in brackets).
  * Certificate: inertia_triangular_plate.cert.json; re-check it by `python recheck.py
  *     inertia_triangular_plate.cert.json` or `symrot audit`.

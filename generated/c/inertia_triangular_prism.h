@@ -29,7 +29,7 @@
  * Convention: body axes; quaternion scalar first, Hamilton, body to space (symrot conventions).
  * Domain: dimensions of a body that is there.
  * Box: m, b, h, e, L in [1/10, 10].
- * Errors: on the box at most 7.83e-14 [4.21e-05] kg m^2 in inertia; 1.60e-15 [8.55e-07] m in center_of_mass
+ * Errors: on the box at most 7.74e-14 [3.86e-05] kg m^2 in inertia; 1.41e-15 [7.55e-07] m in center_of_mass
  *     (float functions in brackets).
  * Certificate: inertia_triangular_prism.cert.json; re-check it by `python recheck.py
  *     inertia_triangular_prism.cert.json` or `symrot audit`.

@@ -14,7 +14,7 @@
  * Convention: body axes; quaternion scalar first, Hamilton, body to space (symrot conventions).
  * Domain: all finite parameters.
  * Box: s1, s2, s3 in [-1, 1].
- * Errors: on the box at most 4.72e-16 [2.39e-07] in q (float functions in brackets).
+ * Errors: on the box at most 4.72e-16 [2.46e-07] in q (float functions in brackets).
  * Certificate: mrp_quaternion.cert.json; re-check it by `python recheck.py mrp_quaternion.cert.json` or `symrot
  *     audit`.
  * Assumes: IEEE 754 arithmetic, rounding to nearest; outputs do not overlap inputs; for bounds of rounding

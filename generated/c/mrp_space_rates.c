@@ -17,7 +17,7 @@
  * Convention: body axes; quaternion scalar first, Hamilton, body to space (symrot conventions).
  * Domain: all finite parameters.
  * Box: s1, s2, s3 in [-1, 1]; omega_x, omega_y, omega_z in [-10, 10].
- * Errors: on the box at most 1.03e-14 [5.53e-06] 1/s in rates (float functions in brackets).
+ * Errors: on the box at most 1.03e-14 [5.51e-06] 1/s in rates (float functions in brackets).
  * Certificate: mrp_space_rates.cert.json; re-check it by `python recheck.py mrp_space_rates.cert.json` or
  *     `symrot audit`.
  * Assumes: IEEE 754 arithmetic, rounding to nearest; outputs do not overlap inputs; for bounds of rounding

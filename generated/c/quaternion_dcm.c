@@ -86,15 +86,25 @@ void quaternion_dcm_batch(size_t n, const double *SYMROT_RESTRICT q, double *SYM
         const double x11 = twice_1*q0;
         const double x12 = q2*twice_3;
 
-        dcm[0*n + k] = x3 - x1;
-        dcm[1*n + k] = x5 - x4;
-        dcm[2*n + k] = x6 + x7;
-        dcm[3*n + k] = x4 + x5;
-        dcm[4*n + k] = 1.0 - lost_2;
-        dcm[5*n + k] = x12 - x11;
-        dcm[6*n + k] = x7 - x6;
-        dcm[7*n + k] = x11 + x12;
-        dcm[8*n + k] = x3 - x9;
+        const double R_11 = x3 - x1;
+        const double R_12 = x5 - x4;
+        const double R_13 = x6 + x7;
+        const double R_21 = x4 + x5;
+        const double R_22 = 1.0 - lost_2;
+        const double R_23 = x12 - x11;
+        const double R_31 = x7 - x6;
+        const double R_32 = x11 + x12;
+        const double R_33 = x3 - x9;
+
+        dcm[0*n + k] = R_11;
+        dcm[1*n + k] = R_12;
+        dcm[2*n + k] = R_13;
+        dcm[3*n + k] = R_21;
+        dcm[4*n + k] = R_22;
+        dcm[5*n + k] = R_23;
+        dcm[6*n + k] = R_31;
+        dcm[7*n + k] = R_32;
+        dcm[8*n + k] = R_33;
     }
 }
 
@@ -151,14 +161,24 @@ void quaternion_dcmf_batch(size_t n, const float *SYMROT_RESTRICT q, float *SYMR
         const float x11 = twice_1*q0;
         const float x12 = q2*twice_3;
 
-        dcm[0*n + k] = x3 - x1;
-        dcm[1*n + k] = x5 - x4;
-        dcm[2*n + k] = x6 + x7;
-        dcm[3*n + k] = x4 + x5;
-        dcm[4*n + k] = 1.0f - lost_2;
-        dcm[5*n + k] = x12 - x11;
-        dcm[6*n + k] = x7 - x6;
-        dcm[7*n + k] = x11 + x12;
-        dcm[8*n + k] = x3 - x9;
+        const float R_11 = x3 - x1;
+        const float R_12 = x5 - x4;
+        const float R_13 = x6 + x7;
+        const float R_21 = x4 + x5;
+        const float R_22 = 1.0f - lost_2;
+        const float R_23 = x12 - x11;
+        const float R_31 = x7 - x6;
+        const float R_32 = x11 + x12;
+        const float R_33 = x3 - x9;
+
+        dcm[0*n + k] = R_11;
+        dcm[1*n + k] = R_12;
+        dcm[2*n + k] = R_13;
+        dcm[3*n + k] = R_21;
+        dcm[4*n + k] = R_22;
+        dcm[5*n + k] = R_23;
+        dcm[6*n + k] = R_31;
+        dcm[7*n + k] = R_32;
+        dcm[8*n + k] = R_33;
     }
 }

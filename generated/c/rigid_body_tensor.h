@@ -42,7 +42,7 @@
  * Domain: positive definite inertia.
  * Box: I_xx, I_yy, I_zz in [1, 4]; I_xy, I_xz, I_yz in [-1/4, 1/4]; omega_1, omega_2, omega_3, tau_1, tau_2,
  *     tau_3 in [-10, 10]; q0, q1, q2, q3 in [-1, 1].
- * Errors: on the box at most 1.17e-12 [6.27e-04] rad/s^2 in domega; 3.11e-15 [1.67e-06] 1/s in dq (float
+ * Errors: on the box at most 1.08e-12 [5.75e-04] rad/s^2 in domega; 3.11e-15 [1.67e-06] 1/s in dq (float
  *     functions in brackets).
  * Certificate: rigid_body_tensor.cert.json; re-check it by `python recheck.py rigid_body_tensor.cert.json` or
  *     `symrot audit`.

@@ -15,7 +15,7 @@
  * Convention: body axes; quaternion scalar first, Hamilton, body to space (symrot conventions).
  * Domain: all finite values.
  * Box: omega_1, omega_2, omega_3 in [-10, 10]; quadratic in [0, 1].
- * Errors: on the box at most 7.86e-14 [4.22e-05] N m in torque_b (float functions in brackets).
+ * Errors: on the box at most 7.51e-14 [4.03e-05] N m in torque_b (float functions in brackets).
  * Certificate: torque_damping_quadratic.cert.json; re-check it by `python recheck.py
  *     torque_damping_quadratic.cert.json` or `symrot audit`.
  * Assumes: IEEE 754 arithmetic, rounding to nearest; outputs do not overlap inputs; for bounds of rounding

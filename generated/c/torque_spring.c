@@ -21,7 +21,7 @@
  * Convention: body axes; quaternion scalar first, Hamilton, body to space (symrot conventions).
  * Domain: unit quaternions.
  * Box: q0, q1, q2, q3, attitude_0, attitude_1, attitude_2, attitude_3 in [-1, 1]; stiffness in [0, 1].
- * Errors: on the box at most 9.25e-15 [4.97e-06] N m in torque_b (float functions in brackets).
+ * Errors: on the box at most 8.89e-15 [4.77e-06] N m in torque_b (float functions in brackets).
  * Certificate: torque_spring.cert.json; re-check it by `python recheck.py torque_spring.cert.json` or `symrot
  *     audit`.
  * Assumes: IEEE 754 arithmetic, rounding to nearest; outputs do not overlap inputs; for bounds of rounding

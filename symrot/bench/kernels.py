@@ -3,10 +3,12 @@
     python -m symrot.bench.kernels [--rounds 31] [--many 1000000] [--kernels NAME ..]
 
 All contestants take turns in one run, on one thread, on the same memory, and compute the same numbers, which is
-checked. What makes C is compiled with the same compiler and flags; heyoka's machine code, with its sines of 3.5 ulp, is
-linked to the same loops. CasADi's own evaluation is called from Python. "moves only" reads each input and writes each
-output of a batch with no more than a sum between: about what a batch of 10^6 is from the memory alone, as many samples
-at once ask for it; longer loops, with fewer samples at once in the processor, can be some percent faster.
+checked. For batches of 10^6 rounds take turns in several pieces of memory: where the pages of one lie in the caches of
+the processor is chance, and worth up to 8 % between runs of the same machine code. What makes C is compiled with the
+same compiler and flags; heyoka's machine code, with its sines of 3.5 ulp, is linked to the same loops. CasADi's own
+evaluation is called from Python. "moves only" reads each input and writes each output of a batch with no more than a
+sum between: about what a batch of 10^6 is from the memory alone, as many samples at once ask for it; longer loops, with
+fewer samples at once in the processor, can be some percent faster.
 """
 
 import argparse
@@ -41,6 +43,7 @@ CACHED, MANY = 1000, 1_000_000  # no power of two, at which all arrays would sha
 PROPER = ("zxz", "zyz", "xyx", "xzx", "yxy", "yzy")
 TAIT_BRYAN = ("zyx", "zxy", "xyz", "xzy", "yxz", "yzx")
 PAGE = 4096  # bytes
+PLACES = {"one": 1, "cached": 1, "many": 7}  # pieces of memory that rounds take in turn
 SHORTEST = 1e-3  # s, one measurement
 BAR = 1.05  # of the least time of the others
 FLOOR = "moves only"
@@ -55,7 +58,7 @@ class Contestant:
 
     name: str
     operations: Counter[str]
-    runs: dict[str, Callable[[], float]]  # shape -> run it once, return seconds per sample
+    runs: dict[str, Callable[[int], float]]  # shape -> run it once in a place of memory, return seconds per sample
     seconds: dict[str, list[float]] = field(default_factory=lambda: {shape: [] for shape in SHAPES})
 
     def nanoseconds(self, shape: str) -> float | None:
@@ -75,7 +78,7 @@ def _samples(name: str, count: int) -> list[Floats]:
 
 
 @cache
-def _block(name: str, shape: str, count: int) -> tuple[Floats, Floats]:
+def _block(name: str, shape: str, count: int, place: int) -> tuple[Floats, Floats]:
     """Return inputs and outputs, the same memory for all contestants: one sample in a row, in a batch in a column.
 
     The outputs follow the inputs in one piece that begins on a page and has all been written. Left to the allocator,
@@ -96,11 +99,11 @@ def _block(name: str, shape: str, count: int) -> tuple[Floats, Floats]:
     return inputs, outputs
 
 
-def _addresses(name: str, shape: str, count: int) -> Any:
+def _addresses(name: str, shape: str, count: int, place: int) -> Any:
     """Return the addresses of the arguments of a kernel in that memory."""
     found, offsets = [], {"in": 0, "out": 0}
     for argument in kernel_program(name).signature.arguments:
-        block = _block(name, shape, count)[argument.role == "out"]
+        block = _block(name, shape, count, place)[argument.role == "out"]
         part = slice(offsets[argument.role], None)
         found.append((block[:, part] if shape == "one" else block[part]).ctypes.data)
         offsets[argument.role] += argument.size
@@ -192,49 +195,49 @@ def _moving(signature: Signature) -> str:
     return "\n".join([*lines, _REPEAT_BATCH.format(call=f"batch(n, {arguments})")])
 
 
-def _timed(run: Callable[[int], object], samples: int) -> Callable[[], float]:
-    """Return a measurement: seconds per sample of ``run(repeats)``, repeated until the clock can see it."""
+def _timed(run: Callable[[int, int], object], samples: int) -> Callable[[int], float]:
+    """Return a measurement: seconds per sample of ``run(repeats, place)``, repeated until the clock can see it."""
     repeats, taken = 1, 0.0
     while taken < SHORTEST:  # the first runs find nothing in cache
         repeats *= 2 if taken else 1
         began = perf_counter()
-        run(repeats)
+        run(repeats, 0)
         taken = perf_counter() - began
 
-    def measure() -> float:
+    def measure(place: int) -> float:
         start = perf_counter()
-        run(repeats)
+        run(repeats, place)
         return (perf_counter() - start) / (repeats * samples)
 
     return measure
 
 
-def _runs(name: str, loaded: ctypes.CDLL, shapes: Sequence[str], many: int) -> dict[str, Callable[[], float]]:
+def _runs(name: str, loaded: ctypes.CDLL, shapes: Sequence[str], many: int) -> dict[str, Callable[[int], float]]:
     """Return a measurement for each shape of the functions in a compiled driver."""
     runs = {}
     for shape in shapes:
         count = many if shape == "many" else CACHED
         function = loaded.repeat_one if shape == "one" else loaded.repeat_batch
         function.argtypes = (ctypes.c_size_t, ctypes.c_size_t, ctypes.c_void_p)
-        addresses = _addresses(name, shape, count)
+        addresses = [_addresses(name, shape, count, place) for place in range(PLACES[shape])]
         if count:
             runs[shape] = _timed(partial(_call, function, count, addresses), count)
     return runs
 
 
-def _call(function: Any, count: int, addresses: Any, repeats: int) -> None:
-    function(repeats, count, addresses)
+def _call(function: Any, count: int, addresses: Sequence[Any], repeats: int, place: int) -> None:
+    function(repeats, count, addresses[place])
 
 
 def _in_c(
     name: str, text: str, many: int, shapes: Sequence[str] = SHAPES, prepare: Callable[[Any], object] = id
-) -> tuple[dict[str, Callable[[], float]], Floats]:
+) -> tuple[dict[str, Callable[[int], float]], Floats]:
     """Return the measurements of a text with its drivers, and the numbers that it finds for the batch in cache."""
     loaded = ctypes.CDLL(str(library.build(text, f"bench_{name}", FLAGS)))
     prepare(loaded)
     runs = _runs(name, loaded, shapes, many)
-    runs["cached"]()
-    return runs, _block(name, "cached", CACHED)[1].copy()
+    runs["cached"](0)
+    return runs, _block(name, "cached", CACHED, 0)[1].copy()
 
 
 def _symrot_text(name: str) -> str:
@@ -252,7 +255,7 @@ def contest(name: str, many: int = MANY) -> tuple[list[Contestant], list[str]]:
     runs, reference = _in_c(name, _symrot_text(name) + _drivers(signature, True), many)
     contestants.append(Contestant("symrot", counted(emit(name).source, name), runs))
 
-    def add(tool: str, operations: Counter[str], runs: dict[str, Callable[[], float]], found: Floats) -> None:
+    def add(tool: str, operations: Counter[str], runs: dict[str, Callable[[int], float]], found: Floats) -> None:
         error = float(np.max(np.abs(found - reference)) / np.max(np.abs(reference)))
         if not error < 1e-11:
             raise AssertionError(f"{tool}: expected the numbers of symrot for {name}, differs by {error:.1e}")
@@ -282,13 +285,13 @@ def contest(name: str, many: int = MANY) -> tuple[list[Contestant], list[str]]:
     return contestants, missing
 
 
-def _casadi_machine(name: str, function: Any) -> tuple[dict[str, Callable[[], float]], Floats]:
+def _casadi_machine(name: str, function: Any) -> tuple[dict[str, Callable[[int], float]], Floats]:
     """Return CasADi's own evaluation of a batch, by its map over samples."""
     import casadi
 
-    def run(count: int) -> Callable[[int], object]:
+    def run(count: int) -> Callable[[int, int], object]:
         mapped, given = function.map(count), casadi.DM(np.concatenate(_samples(name, count)))
-        return lambda repeats: [mapped(given) for _ in range(repeats)]
+        return lambda repeats, place: [mapped(given) for _ in range(repeats)]
 
     found = np.array(function.map(CACHED)(casadi.DM(np.concatenate(_samples(name, CACHED)))))
     return {"cached": _timed(run(CACHED), CACHED)}, found
@@ -321,10 +324,10 @@ def _casadi_text(name: str, function: Any) -> str:
 def measure(contestants: Sequence[Contestant], rounds: int) -> None:
     """Let all contestants take their turns, in another order each round: what ran before decides what is in cache."""
     draw = Random(5)
-    for _ in range(rounds):
+    for number in range(rounds):
         for contestant in draw.sample(contestants, len(contestants)):
             for shape, run in contestant.runs.items():
-                contestant.seconds[shape].append(run())
+                contestant.seconds[shape].append(run(number % PLACES[shape]))
 
 
 def _line(contestant: Contestant) -> str:
@@ -411,6 +414,7 @@ def main(arguments: list[str] | None = None) -> None:
         print("\n".join(_table(name, contestants)), flush=True)
         cells += 1 + len(_ratios(contestants))
         over += _missed(name, contestants)
+        _block.cache_clear()
     print(f"not installed, left out: {', '.join(sorted(absent))}" if absent else "every tool took part")
     print(f"{cells - len(over)} of {cells} cells within the bar (operations no more than the best of the others, ns "
           f"{BAR} of it); over it: {'; '.join(over) or 'none'}")  # fmt: skip

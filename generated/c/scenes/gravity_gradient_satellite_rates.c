@@ -109,12 +109,20 @@ void gravity_gradient_satellite_rates_batch(
         const double radius_3 = (-2.0)*((q0*q1 - q3*q2)*x5 - (q0*q2 + q3*q1)*x3);
         const double radius_1 = 2.0*(x0 + x1)*x5 + (1.0 - 2.0*(q2*q2 + x4))*x3;
 
-        dy[0*n + k] = p1*omega_2*omega_3 - p2*radius_2*radius_3;
-        dy[1*n + k] = p3*radius_1*radius_3 - p4*omega_3*omega_1;
-        dy[2*n + k] = p5*omega_2*omega_1 - p6*radius_1*radius_2;
-        dy[3*n + k] = (-0.5)*(q1*omega_1 + q2*omega_2 + q3*omega_3);
-        dy[4*n + k] = 0.5*(q0*omega_1 + q2*omega_3 - q3*omega_2);
-        dy[5*n + k] = 0.5*(q3*omega_1 + q0*omega_2 - q1*omega_3);
-        dy[6*n + k] = 0.5*(q1*omega_2 + q0*omega_3 - q2*omega_1);
+        const double domega_1 = p1*omega_2*omega_3 - p2*radius_2*radius_3;
+        const double domega_2 = p3*radius_1*radius_3 - p4*omega_3*omega_1;
+        const double domega_3 = p5*omega_2*omega_1 - p6*radius_1*radius_2;
+        const double dq0 = (-0.5)*(q1*omega_1 + q2*omega_2 + q3*omega_3);
+        const double dq1 = 0.5*(q0*omega_1 + q2*omega_3 - q3*omega_2);
+        const double dq2 = 0.5*(q3*omega_1 + q0*omega_2 - q1*omega_3);
+        const double dq3 = 0.5*(q1*omega_2 + q0*omega_3 - q2*omega_1);
+
+        dy[0*n + k] = domega_1;
+        dy[1*n + k] = domega_2;
+        dy[2*n + k] = domega_3;
+        dy[3*n + k] = dq0;
+        dy[4*n + k] = dq1;
+        dy[5*n + k] = dq2;
+        dy[6*n + k] = dq3;
     }
 }

@@ -77,12 +77,19 @@ void spin_up_rates_batch(
         const double p1 = p[1];
         const double x0 = p0*omega_3;
 
-        dy[0*n + k] = omega_2*x0;
-        dy[1*n + k] = -(omega_1*x0);
+        const double domega_1 = omega_2*x0;
+        const double domega_2 = -(omega_1*x0);
+        const double dq0 = (-0.5)*(omega_1*q1 + omega_2*q2 + omega_3*q3);
+        const double dq1 = 0.5*(omega_1*q0 + omega_3*q2 - omega_2*q3);
+        const double dq2 = 0.5*(omega_1*q3 + omega_2*q0 - omega_3*q1);
+        const double dq3 = 0.5*(omega_2*q1 + omega_3*q0 - omega_1*q2);
+
+        dy[0*n + k] = domega_1;
+        dy[1*n + k] = domega_2;
         dy[2*n + k] = p1;
-        dy[3*n + k] = (-0.5)*(omega_1*q1 + omega_2*q2 + omega_3*q3);
-        dy[4*n + k] = 0.5*(omega_1*q0 + omega_3*q2 - omega_2*q3);
-        dy[5*n + k] = 0.5*(omega_1*q3 + omega_2*q0 - omega_3*q1);
-        dy[6*n + k] = 0.5*(omega_2*q1 + omega_3*q0 - omega_1*q2);
+        dy[3*n + k] = dq0;
+        dy[4*n + k] = dq1;
+        dy[5*n + k] = dq2;
+        dy[6*n + k] = dq3;
     }
 }

@@ -79,12 +79,20 @@ void tumbling_prism_largest_rates_batch(
         const double p1 = p[1];
         const double p2 = p[2];
 
-        dy[0*n + k] = p0*omega_2*omega_3;
-        dy[1*n + k] = -(p1*omega_3*omega_1);
-        dy[2*n + k] = p2*omega_2*omega_1;
-        dy[3*n + k] = (-0.5)*(omega_1*q1 + omega_2*q2 + omega_3*q3);
-        dy[4*n + k] = 0.5*(omega_1*q0 + omega_3*q2 - omega_2*q3);
-        dy[5*n + k] = 0.5*(omega_1*q3 + omega_2*q0 - omega_3*q1);
-        dy[6*n + k] = 0.5*(omega_2*q1 + omega_3*q0 - omega_1*q2);
+        const double domega_1 = p0*omega_2*omega_3;
+        const double domega_2 = -(p1*omega_3*omega_1);
+        const double domega_3 = p2*omega_2*omega_1;
+        const double dq0 = (-0.5)*(omega_1*q1 + omega_2*q2 + omega_3*q3);
+        const double dq1 = 0.5*(omega_1*q0 + omega_3*q2 - omega_2*q3);
+        const double dq2 = 0.5*(omega_1*q3 + omega_2*q0 - omega_3*q1);
+        const double dq3 = 0.5*(omega_2*q1 + omega_3*q0 - omega_1*q2);
+
+        dy[0*n + k] = domega_1;
+        dy[1*n + k] = domega_2;
+        dy[2*n + k] = domega_3;
+        dy[3*n + k] = dq0;
+        dy[4*n + k] = dq1;
+        dy[5*n + k] = dq2;
+        dy[6*n + k] = dq3;
     }
 }
