@@ -1,6 +1,6 @@
 """Measure kernels against those of other tools: operations, ns for one sample, in a batch in cache, in one of 10^6.
 
-    python -m symrot.bench.kernels [--rounds 31] [--many 1000000] [--kernels NAME ..]
+    python -m symrot.bench.kernels [--rounds 63] [--many 1000000] [--kernels NAME ..]
 
 All contestants take turns in one run, on one thread, on the same memory, and compute the same numbers, which is
 checked. For batches of 10^6 rounds take turns in several pieces of memory: where the pages of one lie in the caches of
@@ -391,7 +391,7 @@ def _missed(name: str, contestants: Sequence[Contestant]) -> list[str]:
 def main(arguments: list[str] | None = None) -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(prog="python -m symrot.bench.kernels", description=(__doc__ or "").split("\n")[0])
-    parser.add_argument("--rounds", type=int, default=31)
+    parser.add_argument("--rounds", type=int, default=63)
     parser.add_argument("--many", type=int, default=MANY, help="samples of the large batch; 0 leaves it out")
     parser.add_argument(
         "--kernels", nargs="+", metavar="NAME", help="kernels to compare, in the place of those of the table"
