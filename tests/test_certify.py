@@ -464,8 +464,7 @@ def test_certificates_are_the_same_bytes_whatever_the_seed_of_hashes():
     assert done.stdout.decode() == "".join(emit(name).certificate for name in names) + "\n"
 
 
-@pytest.mark.parametrize("name", ["sin", "cos", "tan", "asin", "acos", "atan", "exp", "log", "sinh", "cosh", "tanh", "sqrt",
-                                  "atan2", "sinc", "sine_gap", "tangent_gap", "arc_ratio", "pi"])  # fmt: skip
+@pytest.mark.parametrize("name", ["sin", "cos", "sqrt", "atan2", "sinc", "sine_gap", "tangent_gap", "arc_ratio", "pi"])
 def test_recheck_evaluates_functions_to_what_mpmath_finds(name, kernels):
     """To 80 digits of 90: laws are refused from 60 on."""
     jacobian = json.loads(emit("rotation_vector_body_jacobian").certificate)
@@ -485,7 +484,7 @@ def test_recheck_evaluates_functions_to_what_mpmath_finds(name, kernels):
     oracle = own.get(name) or getattr(mp, name)
     with localcontext(Context(prec=90)), mp.workdps(110):
         names = recheck.point([], [], list(dict(defined).items()))
-        scale = 1 if name in ("asin", "acos") else 30
+        scale = 30
         for x, y in ((Decimal("0.7301"), Decimal("-0.21")), (Decimal("0.013"), Decimal("0.9"))):
             arguments = [x * scale, y][: 2 if name in ("atan2", "arc_ratio") else name != "pi"]
             found = names[name](*arguments) if arguments else names[name]

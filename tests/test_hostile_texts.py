@@ -22,6 +22,7 @@ SUM, TURN = (
     "dangles[1] = omega_2*cos_psi - sin_psi*omega_3;",
     "const double turning = (omega_2*sin_psi + omega_3*cos_psi)/cos_theta;",
 )
+EACH, GUARD = SUM.replace("[1]", "[1*n + k]"), "SYMROT_ROTATION_VECTOR_OF_QUATERNION_H"
 PSI, FAR = "const double psi = angles[2];", "beyond += symrot_far(psi) + symrot_far(theta);"
 HOSTILE = {  # what it is: kernel, what is replaced in the text of it, by what
     "integer division": (R, SUM, SUM.replace("cos_psi -", "cos_psi + 1/2 -")),
@@ -101,6 +102,19 @@ HOSTILE = {  # what it is: kernel, what is replaced in the text of it, by what
     "too small to matter": (R, SUM, SUM.replace(";", " + 1e-300;")),
     "attribute": (R, "cos_psi - sin_psi", "cos_psi.real - sin_psi"),
     "import": (R, SUM, SUM.replace("= omega_2", "= __import__('os').getpid()")),
+    "number of the sample": (R, EACH, EACH.replace(";", " + k;")),
+    "name of Python": (R, SUM, SUM.replace(";", " + False;")),
+    "name of the compiler": (R, SUM, SUM.replace(";", "*__debug__;")),
+    "number without a digit before its point": (R, SUM, SUM.replace(";", "*(.9/.9);")),
+    "comma behind a choice": (S, "return s == 0.0 ? 1.0/c : atan2(s, c)/s;", "return fabs(s == 0.0 ? 1.0/c : c), fabs, s, c;"),
+    "macro among arguments": (R, "(const double angles[3],", "(\n#define sin cos\nconst double angles[3],"),
+    "digraph among arguments": (R, "(const double angles[3],", "(\n%:define sin cos\nconst double angles[3],"),
+    "comment among arguments": (S, "symrot_arc_ratio(double s, double c)", "symrot_arc_ratio(double c, double // s, double\n s)"),
+    "guard of the header as a name": (S, "symrot_arc_ratio(double s, double c)\n{\n    return s == 0.0 ? 1.0/c",
+                                      f"symrot_arc_ratio(double s, double {GUARD} c)\n{{\n    return s == 0.0 ? {GUARD} -c"),
+    "choice by a name of the checker": (R, "\nvoid", "\nstatic inline double if_(double a)\n{\n    return a;\n}\n\nvoid"),
+    "square root of another type": (S, "\nstatic", "\nstatic inline long sqrt(double x)\n{\n    return 3;\n}\n\nstatic"),
+    "range asked in a quotient": (R, SUM, SUM.replace(";", "*(symrot_far(psi)/symrot_far(psi));")),
     "nested comments": (R, SUM, "/* /* */ " + SUM.replace(" - ", " + ") + " /* */"),
 }  # fmt: skip
 
@@ -192,6 +206,12 @@ FORGED = {  # what it is: kernel, part of its readback or law, what takes its pl
     "pi by another number": (Z, "constants", lambda each: [each[0], "22/7"]),
     "twice pi": (Z, "constants", lambda each: [each[0], "2*pi"]),
     "another number of pi": (Z, "constants", lambda each: ["3", each[1]]),
+    "a whole number for one beside it": (Z, "constants", lambda each: ["8", "8 + 1/10**20"]),
+    "a bump between points": (
+        V,
+        "series",
+        lambda each: [*each[:2], [each[2][0] + " + 10**9*(x**2 - 1)", *each[2][1:]], each[3]],
+    ),
     "a split further out": (V, "series", lambda each: [each[0], "5/2", *each[2:]]),
     "a term more": (V, "series", lambda each: [*each[:2], [*each[2], "1/10**30"], each[3]]),
     "a term less": (V, "series", lambda each: [*each[:2], each[2][:-1], each[3]]),
@@ -233,7 +253,41 @@ def test_what_is_given_is_a_rotation_or_of_length_one(kernels, refused, given):
     assert refused(Q, kernels[Q].source, laws=changed)
 
 
-@pytest.mark.parametrize("vanishing", ["q0/10**60", "q0 - q0**2/q0 + 1/10**50", "q0**2 + q1**2 + q2**2 + q3**2 - 2"])
+def test_a_law_of_nothing_is_refused(kernels, refused):
+    (law, *laws) = kernels[S].data["laws"]
+    for nothing in ([], "00"):
+        assert refused(S, kernels[S].source, laws=[law | {"vanishing": nothing}, *laws])
+    assert refused(S, kernels[S].source, laws=[])
+
+
+def test_an_input_is_a_name_and_a_parameter_has_its_own_place(kernels, refused):
+    (first, *inputs), spec = kernels[R].data["inputs"], kernels[R].data["spec"]
+    for symbol in ("0", "1/2", "theta*psi", ""):
+        assert refused(R, kernels[R].source, inputs=[[first[0], symbol, first[2]], *inputs])
+    assert refused(R, kernels[R].source, spec=spec | {"parameters": {first[1]: "0"}})
+
+
+def test_a_name_that_a_certificate_says_twice_is_refused(kernels):
+    """Who reads it sees the first, programs the last."""
+    files = kernels[R]
+    text = files.path.read_text(encoding="utf-8")
+    files.path.write_text(text.replace('"laws":', '"laws": [],\n "laws":', 1), encoding="utf-8")
+    with pytest.raises(Exception):  # noqa: B017 - whatever it is, it is a refusal
+        recheck.check(files.path)
+    with pytest.raises(CertificateError, match="twice"):
+        audit(files.path, lambda data: files.said)
+    files.restore()
+
+
+@pytest.mark.parametrize(
+    "vanishing",
+    [
+        "(q0 - 5)*(q0**2 + q1**2 + q2**2 + q3**2)**90",
+        "q0/10**60",
+        "q0 - q0**2/q0 + 1/10**50",
+        "q0**2 + q1**2 + q2**2 + q3**2 - 2",
+    ],
+)
 def test_a_law_that_is_nearly_true_is_refused(kernels, refused, vanishing):
     (law, *laws) = kernels[S].data["laws"]
     assert refused(S, kernels[S].source, laws=[law | {"vanishing": [vanishing, *law["vanishing"][1:]]}, *laws])

@@ -167,7 +167,9 @@ class Kernel:
         self.calls |= {f"symrot_choose_ge{end}": "select_ge"} if ranged else {}
         self.calls |= self.own
         inputs = {place: self.spec["parameters"].get(symbol, symbol) for place, symbol, _ in data["inputs"]}
-        need({*self.spec["parameters"]} <= {symbol for _, symbol, _ in data["inputs"]}, "a parameter is no input")
+        parameters = {symbol for place, symbol, _ in data["inputs"] if place.startswith("p[")}
+        need({*self.spec["parameters"]} == parameters, "a parameter is no input")
+        need(all(symbol.isidentifier() for _, symbol, _ in data["inputs"]), "an input is no name")
         need(len({*inputs.values(), "pi"}) == len(data["inputs"]) + 1, "two inputs are one")
         formula = Reader(self.symbols, self.functions)
         self.inputs = {place: formula.read(text) for place, text in inputs.items()}
