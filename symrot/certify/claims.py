@@ -101,12 +101,14 @@ class _Claims:
         names: dict[str, Symbol] = {}
         text, given = self.texts[law]
         vanishing = _expression(ast.parse(text.strip(), mode="eval").body, names)
-        relations = hypotheses([names.get(each, Symbol(each, real=True)) for each in given])
         formulas = {
             symbol: _expression(ast.parse(each, mode="eval").body, names)
             for symbol, each in (*self.spec["named"], *(item[1:] for item in self.spec["formulas"]))
         }
-        return any(self._follows(Law(text, (vanishing,), each), formulas) for each in ((), relations))
+        if self._follows(Law(text, (vanishing,)), formulas):  # whatever is given
+            return True
+        relations = hypotheses([names.get(each, Symbol(each, real=True)) for each in given])
+        return self._follows(Law(text, (vanishing,), relations), formulas)
 
     def _follows(self, law: Law, formulas: Mapping[str, Expr]) -> bool:
         try:
