@@ -65,7 +65,7 @@ def point(given, formulas, functions, number=Decimal):
         way = names[sign, a, b] if number is Fraction else {"<": a < b, ">=": a >= b, "==": a == b}[sign]
         return x * way + y * (1 - way)
 
-    names = defaultdict(lambda: number(randbelow(2**99) - 2**98) / 2 ** (88 + randbelow(11)), PLAIN, if_=choose)
+    s, names = 2 ** randbelow(11), defaultdict(lambda: s * number(randbelow(2**99) - 2**98) / 2**98, PLAIN, if_=choose)
     names |= {f: lambda *x, f=f: names[(f, *x)] for f in (*OTHERS, *PLAIN) if f in OTHERS or number is Fraction}
     for function, text in [*MEANS.items(), *functions]:
         need(function not in names, f"{function} is no new function")
@@ -90,9 +90,9 @@ def check_c(name, said, real, data, formulas, functions, found):
     numbers = said["constants"] + [[each.strip("-")] * 2 for _, _, series, _ in said["series"] for each in series]
     for f, split, series, rest in said["series"]:
         names, taylor = point([], [], functions), " + ".join(f"{Fraction(c)}*x**{2 * k}" for k, c in enumerate(series))
-        within = [names | {"x": formula(split)(names).sqrt() * randbelow(2**64) / 2**64} for _ in range(64)]
+        within = [names | {"x": Decimal(float(Fraction(split))).sqrt() * randbelow(2**64) / 2**64} for _ in range(64)]
         left_out = max(abs(formula(f"({taylor})/{f}(x) - 1")(each)) for each in within)
-        need(left_out <= min(formula(rest)(names), least), f"the series of {f} leaves out {left_out:.3}")
+        need(left_out <= min(Fraction(rest), least), f"the series of {f} leaves out {left_out:.3}")
         functions = [(each, f"x*x < {split} ? {taylor} : {text}" if each == f else text) for each, text in functions]
     names = point([], formulas, functions, Fraction)
     constants = {nearest(formula(written)(names)).value: formula(exact)(names) for written, exact in numbers}
@@ -128,7 +128,7 @@ def check_c(name, said, real, data, formulas, functions, found):
     for (_, listed, body), frames in (found[name], [""]), (found[f"{name}_batch"], [EACH, PARTS, BLOCKS % bits]):
         loops = re.findall(r"(?<=\+\+k\) \{)[^{}]*(?=\})", body) or [body]
         frame = re.sub(r"(?<=\+\+k\) \{)[^{}]*(?=\})", "", body) if loops != [body] else ""
-        takes = re.findall(rf"(?:size_t|{real}) (?:\*SYMROT_RESTRICT )?(\w+)(?:\[\d+\])?(?:, |$)", listed)
+        takes = [re.sub(rf" ?(const )?(size_t|{real}) (\*SYMROT_RESTRICT )?|\[\d+]$", "", a) for a in listed.split(",")]
         need(frame in frames and takes == ["n"] * bool(frame) + [*sizes], f"arguments or loops of {name} are others")
         results = []
         for loop in loops:
@@ -144,9 +144,8 @@ def check_c(name, said, real, data, formulas, functions, found):
 def certified(path):
     """Return what a certificate says, after its seal and the hashes of all its files."""
     data = json.loads(path.read_bytes(), object_pairs_hook=lambda pairs: len(dict(pairs)) == len(pairs) and dict(pairs))
-    bare = json.dumps({k: v for k, v in data.items() if k != "seal"}, sort_keys=True, separators=(",", ":"))
-    sealed = data["schema"] == "symrot.certificate/1" and sha256(bare.encode()).hexdigest() == data["seal"]
-    need(sealed, "the schema is another, or the certificate is not as it was printed")
+    seal = data.pop("seal") == sha256(json.dumps(data, sort_keys=True, separators=(",", ":")).encode()).hexdigest()
+    need(seal and data["schema"] == "symrot.certificate/1", "the schema is another, or the text that was sealed")
     name, files = data["kernel"], data["files"]
     need(path.name == f"{name}.cert.json" and {f"{name}.c", f"{name}.h"} <= {*files}, "it is that of another file")
     for file, digest in files.items():
@@ -160,22 +159,23 @@ def check(path):
     data = certified(path)
     name, files, spec, readback = data["kernel"], data["files"], data["spec"], data["readback"]
     raw = path.with_name(f"{name}.c").read_text("utf-8")
-    text = " ".join(re.sub(r'/\*.*?\*/|\(void\)\w+;|#include (<math.h>|"\w+.h")', " ", raw, flags=re.S).split())
-    rest, count = re.subn(FUNCTION, "", text)
-    odd = rest or "**" in text or re.search(r"[^\n -~]|\\|\?\?|.#", raw) or {*re.findall('#.+ "(.+)"', raw)} - {*files}
+    text = re.sub(r'/\*.*?\*/|\(void\)\w+;|#include (<math\.h>|"\w+\.h")(?=\n)', " ", raw, flags=re.S)
+    rest, count = re.subn(FUNCTION, "", text := " ".join(text.split()))
+    odd = rest or re.search(r"\*\*|['\"#%]", text) or re.search(r"[^\n -~]|\\|\?\?|//", raw)
     found = {f: (kind, listed, body) for kind, f, listed, body in re.findall(FUNCTION, text)}
     known = {f for f in found if found[f][0] == "void"} == {f + end for f in readback for end in ("", "_batch")}
-    need(known and not odd and readback and data["laws"] and len(found) == count, "laws or functions are others")
+    known = known and readback and {*re.findall('#.+ "(.+)"', raw)} <= {*files} and len(found) == count
+    need(known and not odd and data["laws"], "laws or functions are others")
     formulas = [((p,), spec["parameters"].get(s, s)) for p, s, _ in data["inputs"]] + spec["named"] + spec["formulas"]
-    need({s for p, s, _ in data["inputs"] if p[:2] == "p["} == {*spec["parameters"]}, "a parameter is no input")
-    with localcontext(Context(prec=90)):
-        for law in data["laws"] * (64 if "select_" in str(formulas) else 8):
+    need({s for p, s, _ in data["inputs"] + spec["formulas"] if p[:2] == "p["} == {*spec["parameters"]}, "p is another")
+    with localcontext(Context(prec=190, Emax=120)):
+        for law in data["laws"] * (64 if re.search("select_|Abs|copysign|[?]", str([spec, data["laws"]])) else 8):
             laws = [*enumerate(law["vanishing"])]
             left, size = (point(*each, spec["functions"]) for each in ((law["given"], formulas + laws), ([], laws)))
             holds = all(abs(left[k]) <= min(max(abs(size[k]) / 10**60, 1e-70), 1e-40) for k, _ in laws)
             need(holds and law["vanishing"][:0] == [] != laws, f"the law {law['law']!r} does not follow")
         for function, said in readback.items():
-            check_c(function, said, said["type"], data, formulas, spec["functions"], found)
+            check_c(function, said, "float" if function != name else "double", data, formulas, spec["functions"], found)
     return f"{name}: {len(files)} hashes, C text of {' and '.join(readback)} and batches, laws"
 
 
