@@ -115,6 +115,13 @@ HOSTILE = {  # what it is: kernel, what is replaced in the text of it, by what
     "choice by a name of the checker": (R, "\nvoid", "\nstatic inline double if_(double a)\n{\n    return a;\n}\n\nvoid"),
     "square root of another type": (S, "\nstatic", "\nstatic inline long sqrt(double x)\n{\n    return 3;\n}\n\nstatic"),
     "range asked in a quotient": (R, SUM, SUM.replace(";", "*(symrot_far(psi)/symrot_far(psi));")),
+    "text behind an include": (R, SUM, SUM.replace(" - ", f'\n#include "{R}.h" - ')),
+    "comment of later C around one": (R, SUM, SUM.replace(";", " + 1.0 - 2.0 //**/ 2.0\n;")),
+    "macro in a function that nobody calls": (R, "\nvoid", "\nstatic inline double symrot_unused(double x)\n{\n    return x;\n"
+                                              "#define sin(x) (7.0*(x))\n}\n\nvoid"),
+    "quotes in a function that nobody calls": (R, "\nvoid", "\nstatic inline double symrot_unused(double x)\n{\n    return '{';\n"
+                                               "}\n\nvoid"),
+    "argument of another type": (R, "(const double angles[3],", "(const long double angles[3],"),
     "nested comments": (R, SUM, "/* /* */ " + SUM.replace(" - ", " + ") + " /* */"),
 }  # fmt: skip
 
@@ -212,6 +219,7 @@ FORGED = {  # what it is: kernel, part of its readback or law, what takes its pl
         "series",
         lambda each: [*each[:2], [each[2][0] + " + 10**9*(x**2 - 1)", *each[2][1:]], each[3]],
     ),
+    "a split by functions": (V, "series", lambda each: [each[0], "1/(10**12*exp(-100)**2)", *each[2:]]),
     "a split further out": (V, "series", lambda each: [each[0], "5/2", *each[2:]]),
     "a term more": (V, "series", lambda each: [*each[:2], [*each[2], "1/10**30"], each[3]]),
     "a term less": (V, "series", lambda each: [*each[:2], each[2][:-1], each[3]]),
@@ -283,6 +291,7 @@ def test_a_name_that_a_certificate_says_twice_is_refused(kernels):
     "vanishing",
     [
         "(q0 - 5)*(q0**2 + q1**2 + q2**2 + q3**2)**90",
+        "(q0 - 5 + 10**95) - 10**95",
         "q0/10**60",
         "q0 - q0**2/q0 + 1/10**50",
         "q0**2 + q1**2 + q2**2 + q3**2 - 2",

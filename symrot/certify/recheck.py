@@ -4,8 +4,8 @@ Every hash. Link 3, C text = formulas: exactly, at a random point of fractions, 
 choices any means of their two ways; what series leave out is computed at 64 random points. Link 1, formulas obey laws:
 to 60 digits at 8 random points where what is given holds, of numbers up to 1000, at 64 if they choose. What fails by
 less, or only near few points or far out, is not noticed: `symrot audit` proves. Headers are known by hash alone. What
-else is said (proofs, titles, operations, flags, theorems, rounding errors, object code) is not looked at, nor where C
-is defined. Names that end in _ are of this file alone.
+else is said (proofs, titles, operations, flags, theorems, object code) is not looked at, nor rounding errors, however
+large, nor where C is defined. Names that end in _ are of this file alone.
 """
 
 # mypy: ignore-errors
