@@ -337,7 +337,8 @@ def complete(cases):
 
 def functions_of(text, name, files):
     """Return name -> (static, type, arguments, body) of the functions of a C file that holds nothing else."""
-    need(not re.search(r"\\|\?\?|[\0-\x09\x0b-\x1f]", text), "there is a backslash, a trigraph or a control character")
+    odd = re.search(r"\\|\?\?|//|[\0-\x09\x0b-\x1f]", text)
+    need(not odd, "there is a backslash, a trigraph, a comment of later C or a control character")
     known = ["#include <math.h>", f'#include "{name}.h"', *['#include "symrot_math.h"'] * ("symrot_math.h" in files)]
     lines = [line for line in re.sub(r"/\*.*?\*/", " ", text, flags=re.S).split("\n") if line.strip() not in known]
     found, (*chunks, end) = {}, re.split(r"^\}$", "\n".join(lines), flags=re.M)
