@@ -42,11 +42,17 @@ def of_many_arrays():
     return Program(signature, (sine,), tuple(zip(results, [*nodes, ("symbol", "a2")], strict=True)))
 
 
-@pytest.mark.parametrize("name, count", [("heavy_top", 2), ("rigid_body_tensor", 4), ("inertia_tetrahedron", 2)])
+@pytest.mark.parametrize("name, count", [("heavy_top", 2), ("inertia_tetrahedron", 2)])
 def test_nothing_is_computed_after_the_first_store(name, count):
     found = loops(emit(name).source)
     assert len(found) == count
     assert all(map(computes_first, found))
+
+
+def test_a_loop_of_a_part_stores_last_where_it_walks_along_many_arrays_itself():
+    """The accelerations take twelve arrays and give three; the rates of the quaternion eleven in all."""
+    found = loops(emit("rigid_body_tensor").source)
+    assert [computes_first(each) for each in found] == [True, False, True, False]
 
 
 def test_nothing_is_computed_after_the_first_store_where_angles_are_asked_for():

@@ -98,13 +98,9 @@ void rigid_body_principal_batch(
             const double tau_2 = torque[1*n + k];
             const double tau_3 = torque[2*n + k];
 
-            const double domega_1 = (tau_1 + (B - C)*omega_2*omega_3)/A;
-            const double domega_2 = (tau_2 + (C - A)*omega_1*omega_3)/B;
-            const double domega_3 = (tau_3 + (A - B)*omega_1*omega_2)/C;
-
-            domega[0*n + k] = domega_1;
-            domega[1*n + k] = domega_2;
-            domega[2*n + k] = domega_3;
+            domega[0*n + k] = (tau_1 + (B - C)*omega_2*omega_3)/A;
+            domega[1*n + k] = (tau_2 + (C - A)*omega_1*omega_3)/B;
+            domega[2*n + k] = (tau_3 + (A - B)*omega_1*omega_2)/C;
         }
         SYMROT_INDEPENDENT
         for (size_t k = start; k < end; ++k) {
@@ -119,15 +115,10 @@ void rigid_body_principal_batch(
             const double half_2 = 0.5*omega_2;
             const double half_3 = 0.5*omega_3;
 
-            const double dq0 = -(half_1*q1 + half_2*q2 + half_3*q3);
-            const double dq1 = half_1*q0 + half_3*q2 - half_2*q3;
-            const double dq2 = half_1*q3 + half_2*q0 - half_3*q1;
-            const double dq3 = half_2*q1 + half_3*q0 - half_1*q2;
-
-            dq[0*n + k] = dq0;
-            dq[1*n + k] = dq1;
-            dq[2*n + k] = dq2;
-            dq[3*n + k] = dq3;
+            dq[0*n + k] = -(half_1*q1 + half_2*q2 + half_3*q3);
+            dq[1*n + k] = half_1*q0 + half_3*q2 - half_2*q3;
+            dq[2*n + k] = half_1*q3 + half_2*q0 - half_3*q1;
+            dq[3*n + k] = half_2*q1 + half_3*q0 - half_1*q2;
         }
     }
 }
@@ -183,13 +174,9 @@ void rigid_body_principalf_batch(
             const float tau_2 = torque[1*n + k];
             const float tau_3 = torque[2*n + k];
 
-            const float domega_1 = (tau_1 + (B - C)*omega_2*omega_3)/A;
-            const float domega_2 = (tau_2 + (C - A)*omega_1*omega_3)/B;
-            const float domega_3 = (tau_3 + (A - B)*omega_1*omega_2)/C;
-
-            domega[0*n + k] = domega_1;
-            domega[1*n + k] = domega_2;
-            domega[2*n + k] = domega_3;
+            domega[0*n + k] = (tau_1 + (B - C)*omega_2*omega_3)/A;
+            domega[1*n + k] = (tau_2 + (C - A)*omega_1*omega_3)/B;
+            domega[2*n + k] = (tau_3 + (A - B)*omega_1*omega_2)/C;
         }
         SYMROT_INDEPENDENT
         for (size_t k = start; k < end; ++k) {
@@ -204,15 +191,10 @@ void rigid_body_principalf_batch(
             const float half_2 = 0.5f*omega_2;
             const float half_3 = 0.5f*omega_3;
 
-            const float dq0 = -(half_1*q1 + half_2*q2 + half_3*q3);
-            const float dq1 = half_1*q0 + half_3*q2 - half_2*q3;
-            const float dq2 = half_1*q3 + half_2*q0 - half_3*q1;
-            const float dq3 = half_2*q1 + half_3*q0 - half_1*q2;
-
-            dq[0*n + k] = dq0;
-            dq[1*n + k] = dq1;
-            dq[2*n + k] = dq2;
-            dq[3*n + k] = dq3;
+            dq[0*n + k] = -(half_1*q1 + half_2*q2 + half_3*q3);
+            dq[1*n + k] = half_1*q0 + half_3*q2 - half_2*q3;
+            dq[2*n + k] = half_1*q3 + half_2*q0 - half_3*q1;
+            dq[3*n + k] = half_2*q1 + half_3*q0 - half_1*q2;
         }
     }
 }

@@ -162,15 +162,10 @@ void rigid_body_tensor_batch(
             const double half_2 = 0.5*omega_2;
             const double half_3 = 0.5*omega_3;
 
-            const double dq0 = -(half_1*q1 + half_2*q2 + half_3*q3);
-            const double dq1 = half_1*q0 + half_3*q2 - half_2*q3;
-            const double dq2 = half_1*q3 + half_2*q0 - half_3*q1;
-            const double dq3 = half_2*q1 + half_3*q0 - half_1*q2;
-
-            dq[0*n + k] = dq0;
-            dq[1*n + k] = dq1;
-            dq[2*n + k] = dq2;
-            dq[3*n + k] = dq3;
+            dq[0*n + k] = -(half_1*q1 + half_2*q2 + half_3*q3);
+            dq[1*n + k] = half_1*q0 + half_3*q2 - half_2*q3;
+            dq[2*n + k] = half_1*q3 + half_2*q0 - half_3*q1;
+            dq[3*n + k] = half_2*q1 + half_3*q0 - half_1*q2;
         }
     }
 }
@@ -281,15 +276,10 @@ void rigid_body_tensorf_batch(
             const float half_2 = 0.5f*omega_2;
             const float half_3 = 0.5f*omega_3;
 
-            const float dq0 = -(half_1*q1 + half_2*q2 + half_3*q3);
-            const float dq1 = half_1*q0 + half_3*q2 - half_2*q3;
-            const float dq2 = half_1*q3 + half_2*q0 - half_3*q1;
-            const float dq3 = half_2*q1 + half_3*q0 - half_1*q2;
-
-            dq[0*n + k] = dq0;
-            dq[1*n + k] = dq1;
-            dq[2*n + k] = dq2;
-            dq[3*n + k] = dq3;
+            dq[0*n + k] = -(half_1*q1 + half_2*q2 + half_3*q3);
+            dq[1*n + k] = half_1*q0 + half_3*q2 - half_2*q3;
+            dq[2*n + k] = half_1*q3 + half_2*q0 - half_3*q1;
+            dq[3*n + k] = half_2*q1 + half_3*q0 - half_1*q2;
         }
     }
 }

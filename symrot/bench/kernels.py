@@ -219,8 +219,8 @@ def _runs(name: str, loaded: ctypes.CDLL, shapes: Sequence[str], many: int) -> d
         count = many if shape == "many" else CACHED
         function = loaded.repeat_one if shape == "one" else loaded.repeat_batch
         function.argtypes = (ctypes.c_size_t, ctypes.c_size_t, ctypes.c_void_p)
-        addresses = [_addresses(name, shape, count, place) for place in range(PLACES[shape])]
         if count:
+            addresses = [_addresses(name, shape, count, place) for place in range(PLACES[shape])]
             runs[shape] = _timed(partial(_call, function, count, addresses), count)
     return runs
 

@@ -259,7 +259,9 @@ def _batch(program: Program, real: Real, near: bool) -> list[str]:
     parts = _split(program)
     late = _stores_last(program)
     if len(parts) > 1:
-        loops = [_loop(part, real, ("start", "end"), (), "        ", late, INDEPENDENT, near) for part in parts]
+        loops = [
+            _loop(part, real, ("start", "end"), (), "        ", _stores_last(part), INDEPENDENT, near) for part in parts
+        ]
         return [*head, *_blocks(SPAN), *(line for loop in loops for line in loop), "    }", "}"]
     if not angles:
         return [*head, *_loop(of_sample, real, ("0", "n"), loaded, "    ", late, INDEPENDENT, near), "}"]
@@ -326,7 +328,7 @@ def _streams(program: Program) -> int:
 def _stores_last(program: Program) -> bool:
     """Tell whether the loops of a batch store behind all that they compute.
 
-    They do where they walk along more arrays than share a set of the first cache: what compilers read again after a
+    They do where they, or one part of them, walk along more arrays than share a set of the first cache: what compilers read again after a
     store is no longer there. With gcc 12 on Zen 3, the kernels of the library that do so take 0.9 of the time of stores
     in between at n = 512 m (heavy_top 0.7, but heavy_top_symmetric 1.1) and the same at others; quaternion_product, of
     12 arrays, would take 1.15 at n = 1000, where gcc tunes for Zen 3: 26 loads a turn, not 22.
