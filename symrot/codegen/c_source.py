@@ -328,10 +328,10 @@ def _streams(program: Program) -> int:
 def _stores_last(program: Program) -> bool:
     """Tell whether the loops of a batch store behind all that they compute.
 
-    They do where they, or one part of them, walk along more arrays than share a set of the first cache: what compilers read again after a
-    store is no longer there. With gcc 12 on Zen 3, the kernels of the library that do so take 0.9 of the time of stores
-    in between at n = 512 m (heavy_top 0.7, but heavy_top_symmetric 1.1) and the same at others; quaternion_product, of
-    12 arrays, would take 1.15 at n = 1000, where gcc tunes for Zen 3: 26 loads a turn, not 22.
+    They do where they, or a part of them, walk along more arrays than share a set of the first cache: what compilers
+    read again after a store is no longer there. With gcc 12 on Zen 3, the kernels of the library that do so take 0.9 of
+    the time of stores in between at n = 512 m (heavy_top 0.7, but heavy_top_symmetric 1.1) and the same at others;
+    quaternion_product, of 12 arrays, would take 1.15 at n = 1000, where gcc tunes for Zen 3: 26 loads a turn, not 22.
     """
     return _streams(program) > WAYS
 
