@@ -120,7 +120,7 @@ def check_c(name, said, real, data, formulas, functions, found):
     own |= {f"symrot_{f}{end}": names[f] for f in ("select_lt", "select_eq", "atan2")}
     own |= {f"symrot_{f}{end}": lambda x, f=f: near.add(x) or names[f](x) for f in ("sin", "cos")}
     own |= {f"symrot_choose_ge{end}": names["select_ge"], f"symrot_far{end}": lambda x: [x]}
-    need(not own.keys() & found.keys(), "a function is defined that has another meaning")
+    need(not own.keys() & found.keys() and name == data["kernel"] + end, "a function has another meaning, or type")
     own |= {f: partial(call, *found[f][1:]) for f in found if found[f][0] == f"static inline {real}"}
     places = [place for place, *_ in data["inputs"] + data["spec"]["formulas"]]
     sizes = Counter(place.partition("[")[0] for place in places)
@@ -175,7 +175,7 @@ def check(path):
             holds = all(abs(left[k]) <= min(max(abs(size[k]) / 10**60, 1e-70), 1e-40) for k, _ in laws)
             need(holds and law["vanishing"][:0] == [] != laws, f"the law {law['law']!r} does not follow")
         for function, said in readback.items():
-            check_c(function, said, "float" if function != name else "double", data, formulas, spec["functions"], found)
+            check_c(function, said, said["type"], data, formulas, spec["functions"], found)
     return f"{name}: {len(files)} hashes, C text of {' and '.join(readback)} and batches, laws"
 
 
