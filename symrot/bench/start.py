@@ -35,7 +35,7 @@ def main(arguments: list[str]) -> int:
         source = Path(directory) / "motion.c"
         found = plan(scene)
         kernel = scene_kernel(found)
-        source.write_text(library_source(found, kernel.source, len(kernel.rate_parameters)), encoding="utf-8")
+        source.write_text(library_source(found, kernel), encoding="utf-8")
         compile_it = [*library.compiler().command, *library.FLAGS, str(source), "-o", f"{directory}/motion.so", "-lm"]
         run = [sys.executable, "-m", "symrot", "run", scene]
         rows = {

@@ -249,7 +249,7 @@ def _contestants(problem: _Problem, settings: bool) -> list[tuple[str, float, Ta
     tolerances = [10.0 ** (-k / 2) for k in range(2, 29)]  # two for each decade of the table
     orders = {e: taylor.order_for(e, problem.kernel.rates) for e in tolerances}
     ours = {order: problem.taylor_library(order) for order in set(orders.values())}
-    hairer = library.build(library_source(problem.plan, problem.kernel.source, len(problem.p)), "motion")
+    hairer = library.build(library_source(problem.plan, problem.kernel), "motion")
     p, q = problem.taylor_p, problem.p
     tasks: list[tuple[str, float, Task]] = []
     tasks += [("taylor", e, _stepper(taylor.task, ours[orders[e]], p, problem, e)) for e in tolerances]

@@ -70,17 +70,17 @@ def _quantities(equations: Equations, found: Mapping[str, Expr]) -> Lowered:
 
 
 def derive_scene_kernel(
-    structure: Mapping[str, Any], on_source: Callable[[str, int], object] = lambda source, parameters: None
+    structure: Mapping[str, Any], on_rates: Callable[[Program, str], object] = lambda rates, source: None
 ) -> SceneKernel:
     """Return the kernels of a plan's structure, with its conserved quantities proven.
 
-    ``on_source`` gets the C text of the rates and the number of their parameters as soon as they are there, so that
-    a compiler can work while the rest is derived.
+    ``on_rates`` gets the rates and their C text as soon as they are derived, so that a compiler can work while the rest
+    is derived.
     """
     equations = equations_of_motion(structure)
     rates = rates_program(equations, RATES)
     source = rates_source(rates)
-    on_source(source, len(rates.parameters))
+    on_rates(rates.program, source)
     invariants = find_invariants(equations, structure)
     kept = {f"conserved_{i}": item.value for i, item in enumerate(invariants) if item.kept}
     quantities = _quantities(equations, kept)

@@ -8,6 +8,7 @@
  *     SYMROT_BLOCKS       edges of the blocks of states whose errors are judged apart, e.g. {0, 3, 7}
  *     SYMROT_SCALES       per block: 0 judges the error against the block's own size (a rate),
  *                         a positive number against that number (an attitude of unit norm: 1)
+ *     SYMROT_ENCLOSED     whether some terms of the rates may hide a feature: enclosure.h is put in here then
  * and included dop853_tableau.h. C99 that is also valid C++; no malloc, no globals, no input or output, reentrant.
  *
  * States are padded to a multiple of 4 so that every sum over stages is a few full vectors. A stage's own sum is taken
@@ -56,7 +57,9 @@ typedef struct {
     double tolerance;    /* of one step of length `pace` or more; a shorter one is allowed its share of it */
     double pace;
     double max_step;     /* positive */
+    double proven;       /* the last step, if the enclosure held it back, or 0 */
     double epoch;        /* the kernel counts its time from here */
+    int64_t reach;       /* number of the disc that proved most in the last step */
     int64_t next;        /* first sample not yet written */
     int64_t accepted, rejected, evaluations, recorded;
     double y[SYMROT_STATES], carry[SYMROT_STATES], dy[SYMROT_STATES];
@@ -93,6 +96,10 @@ enum { SYMROT_COUNT = (int)(sizeof(symrot_scales)/sizeof(symrot_scales[0])) };
 
 static const double SYMROT_SAFETY = 0.9, SYMROT_GROWTH = 6.0;           /* factors on the step when it is accepted, */
 static const double SYMROT_SHRINK = 1.0/3.0, SYMROT_COLLAPSE = 0.1;      /* rejected, not finite; after dop853.f */
+#if SYMROT_ENCLOSED
+static const double SYMROT_SLACK = 1e4;   /* what enclosures exceed errors by, and less: see tests/test_enclosure.py */
+static const double SYMROT_REGAIN = 1.5;  /* most that a step grows after one that was held back */
+#endif
 static const double SYMROT_ROUND_OFF = 2.0*DBL_EPSILON;  /* no step can be asked to be better than that */
 static const double SYMROT_RATE_FLOOR = 1e-3;  /* a rate below this over h turns the body by less than this in a step */
 
@@ -204,6 +211,20 @@ static inline void symrot_dense_value(const double *term, int stride, double s, 
     }
 }
 
+#if SYMROT_ENCLOSED
+typedef double (*symrot_path)[SYMROT_WIDTH];  /* coefficients of the dense output */
+
+static void symrot_radii(symrot_path term, double part, double *radius)
+{
+    const double s = part, r = 1.0 + part;  /* bounds of the two factors of the dense output */
+    EACH_STATE(i) radius[i] = !symrot_encloses[i] ? 0.0 : s*(fabs(term[1][i]) + r*(fabs(term[2][i])
+        + s*(fabs(term[3][i]) + r*(fabs(term[4][i]) + s*(fabs(term[5][i]) + r*(fabs(term[6][i])
+        + s*fabs(term[7][i])))))));
+}
+
+/* ENCLOSURE */
+#endif
+
 /* Tell the caller the numbers of states and parameters that this library was built for. */
 SYMROT_EXPORT void symrot_dop853_sizes(int64_t sizes[2])
 {
@@ -250,7 +271,7 @@ SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *
     const double stop = run->stop, side = stop < run->t ? -1.0 : 1.0;
     const double epoch = run->epoch, pace = run->pace, tiny = 1e-30*fabs(stop - run->t);
     double t = run->t, h = run->h, growth = run->growth;
-    int64_t next = run->next, accepted = 0, rejected = 0, dense = 0, recorded = 0;
+    int64_t next = run->next, accepted = 0, rejected = 0, proofs = 0, dense = 0, recorded = 0;
     int status = SYMROT_PAUSED, broken = 0;
 
     memset(k, 0, sizeof k);
@@ -318,6 +339,28 @@ SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *
         }
         const double factor = SYMROT_SAFETY*symrot_inverse_root_16(worst);
 
+#if SYMROT_ENCLOSED
+        if (worst <= 1.0) {
+            double bars[SYMROT_COUNT];
+            for (int b = 0; b < SYMROT_COUNT; ++b)
+                bars[b] = SYMROT_SLACK*allowed*sqrt(symrot_scale_squared(y, y1, h, b));
+            if (SYMROT_DEPENDS) {  /* on the states, whose path must be known */
+                symrot_rate(last, y1, p, k[13]);
+                symrot_dense_coefficients(at, h, y, step, p, k, term);
+                ++dense;
+            }
+            const double followed = symrot_followed(term, at, h, h, y, bars, p, &run->reach);
+            if (followed != h) {
+                ++rejected;
+                proofs += SYMROT_DEPENDS;
+                h = followed;
+                growth = 1.0;
+                run->proven = fabs(h);
+                continue;
+            }
+            run->proven = run->proven > 0.0 && fabs(h) <= SYMROT_REGAIN*run->proven ? fabs(h) : 0.0;
+        }
+#endif
         if (!(worst <= 1.0)) {
             ++rejected;
             broken = !(worst < INFINITY);
@@ -326,10 +369,10 @@ SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *
             continue;
         }
         ++accepted;
-        symrot_rate(last, y1, p, k[13]);
+        if (!SYMROT_DEPENDS) symrot_rate(last, y1, p, k[13]);
 
         const int sampled = next < count && (times[next] - t1)*side <= 0.0;
-        if (room > 0 || (sampled && times[next] != t1)) {
+        if (!SYMROT_DEPENDS && (room > 0 || (sampled && times[next] != t1))) {
             symrot_dense_coefficients(at, h, y, step, p, k, term);
             ++dense;
         }
@@ -358,6 +401,9 @@ SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *
         h *= factor < growth ? (factor > SYMROT_SHRINK ? factor : SYMROT_SHRINK) : growth;
         if (fabs(h) > run->max_step) h = side*run->max_step;
         growth = SYMROT_GROWTH;
+#if SYMROT_ENCLOSED
+        if (run->proven > 0.0 && fabs(h) > SYMROT_REGAIN*run->proven) h = side*SYMROT_REGAIN*run->proven;
+#endif
     }
 
     run->t = t;
@@ -366,7 +412,7 @@ SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *
     run->next = next;
     run->accepted += accepted;
     run->rejected += rejected;
-    run->evaluations += 12*accepted + 11*rejected + 3*dense;
+    run->evaluations += 12*accepted + 11*rejected + proofs + 3*dense;
     run->recorded = recorded;
     EACH_STATE(i) { run->y[i] = y[i]; run->carry[i] = carry[i]; run->dy[i] = k[1][i]; }
     return status;

@@ -39,6 +39,11 @@ __all__ = ["MAX_STEPS", "Recording", "Stats", "integrate", "record", "step_toler
 
 STEP_SHARE, NATURAL_TIMES = 0.14, 0.16  # of the tolerance; of the span, see step_tolerance
 TERMS = 8  # of the dense output
+DENSE_ORDER = 7  # to which it follows the states
+NO_ENCLOSURE = "#define SYMROT_ENCLOSED 0\n#define SYMROT_DEPENDS 0\n"
+ENCLOSURE = "/* ENCLOSURE */\n"  # where dop853.c takes enclosure.h
+ROUGH = "#define SYMROT_ROUGH\n"  # corners, as of a root at zero, are left to the control of errors: see disc.h
+MIDDLE_REACH = 3  # of the discs of symrot.codegen.enclosure.REACHES: the one to begin with
 
 Clock = Callable[[float], tuple[PathLike, Sequence[float]]]
 """From an epoch, s, to the library of a kernel that counts its time from there, and the parameters of that kernel."""
@@ -69,6 +74,7 @@ def translation_unit(
     parameters: int,
     blocks: Sequence[int] = (0, 3, 7),
     scales: Sequence[float] = (0.0, 1.0),
+    enclosure: str = NO_ENCLOSURE,
 ) -> str:
     """Return the C source of a library: the kernel and the stepper around it.
 
@@ -85,6 +91,9 @@ def translation_unit(
     scales : sequence of float
         One per block: 0 judges its error against the block's own size (a rate), a positive number against that number
         (1 for a unit quaternion, or for an angle in rad).
+    enclosure : str
+        What :func:`symrot.codegen.enclosure.enclosure_source` prints of the kernel for order :data:`DENSE_ORDER`:
+        steps are held to what it proves.
     """
     edges = list(blocks)
     if edges[:1] != [0] or edges[-1] != states or edges != sorted(set(edges)) or len(scales) != len(edges) - 1:
@@ -93,6 +102,7 @@ def translation_unit(
             f"scales {list(scales)}"
         )
     here = Path(__file__).parent
+    bounds = (here / "enclosure.h").read_text(encoding="utf-8")
     return "\n".join(
         (
             kernel,
@@ -102,7 +112,10 @@ def translation_unit(
             f"#define SYMROT_BLOCKS {{{', '.join(map(str, edges))}}}",
             f"#define SYMROT_SCALES {{{', '.join(map(repr, map(float, scales)))}}}",
             (here / "dop853_tableau.h").read_text(encoding="utf-8"),
-            (here / "dop853.c").read_text(encoding="utf-8"),
+            ROUGH,
+            (here / "disc.h").read_text(encoding="utf-8"),
+            enclosure,
+            (here / "dop853.c").read_text(encoding="utf-8").replace(ENCLOSURE, bounds),
         )
     )
 
@@ -216,8 +229,8 @@ class _Stepper(Stepper):
     """A library of :func:`translation_unit`."""
 
     name = "dop853"
-    reals = ("t", "h", "growth", "stop", "first", "last", "tolerance", "pace", "max_step", "epoch")
-    integers = ("next", "accepted", "rejected", "evaluations", "recorded")
+    reals = ("t", "h", "growth", "stop", "first", "last", "tolerance", "pace", "max_step", "proven", "epoch")
+    integers = ("reach", "next", "accepted", "rejected", "evaluations", "recorded")
     vectors = ("y", "carry", "dy")
     steps_per_call, rows_per_call = 100_000, 256
     reasons: ClassVar = {
@@ -232,6 +245,7 @@ class _Stepper(Stepper):
 
     def enter(self, run: Any, stretch: Stretch, allowed: float) -> None:
         run.h, run.first, run.last, run.tolerance = 0.0, stretch.first, stretch.last, allowed
+        run.proven, run.reach = 0.0, MIDDLE_REACH
 
     @staticmethod
     def tried(run: Any) -> int:

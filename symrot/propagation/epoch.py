@@ -22,7 +22,7 @@ from symrot.codegen import library
 from symrot.expression import Node, children, evaluate, names
 from symrot.planner import Plan
 from symrot.propagation.dop853 import Clock
-from symrot.propagation.kernels import kernel_key, library_source
+from symrot.propagation.kernels import kernel_key, motion_library
 from symrot.propagation.stepping import NOT_FINITE_SENTENCE, CutOff
 from symrot.scene_kernel import EPOCH, EXACT_FUNCTIONS, SceneKernel
 
@@ -111,4 +111,4 @@ def _folded(node: Node, known: Mapping[str, Fraction]) -> Node:
 
 def compiled(plan: Plan, kernel: SceneKernel) -> Path:
     """Return the library of a moved plan: kernel and stepper of DOP853."""
-    return library.build(library_source(plan, kernel.source, len(kernel.rate_parameters)), "motion")
+    return motion_library(plan, kernel)

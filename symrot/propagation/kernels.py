@@ -5,21 +5,30 @@ compiler works on the rates, the invariants are proven.
 """
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cache
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from symrot.codegen import library
+from symrot.errors import InputError
+from symrot.kernel import Program
 from symrot.planner import Plan
-from symrot.propagation.dop853 import translation_unit
+from symrot.propagation.dop853 import DENSE_ORDER, translation_unit
 from symrot.scene_kernel import SceneKernel
+
+if TYPE_CHECKING:
+    from symrot.propagation.enclosure import Deviations
 
 __all__ = [
     "compiled",
     "error_blocks",
+    "formula_deviations",
+    "has_formulas",
     "kernel_key",
     "library_source",
     "missing_compiler",
+    "motion_library",
     "scene_kernel",
     "taylor_library",
 ]
@@ -27,8 +36,11 @@ __all__ = [
 PACKAGE = Path(__file__).parents[1]
 TAYLOR = tuple(
     f"propagation/{name}"
-    for name in ("taylor.py", "taylor.h", "series.h", "taylor.c", "pairs.h", "projection.c", "invariants.py")
-)  # kept together with the recurrences
+    for name in (
+        "taylor.py", "taylor.h", "series.h", "taylor.c", "pairs.h", "projection.c", "disc.h", "enclosure.h",
+        "invariants.py",
+    )
+)  # fmt: skip  # kept together with the recurrences
 MODULES = ("expression.py", "kernel.py", "scene_kernel.py", "symbols.py")
 DERIVING = ("codegen", "dynamics", "exact", "kernels", "kinematics", *MODULES, *TAYLOR)
 ATTITUDE_SCALE = 1.0  # a quaternion has unit norm; an error of an angle counts in rad
@@ -52,19 +64,17 @@ def kernel_key(plan: Plan) -> str:
     return f"scene kernel\n{json.dumps(plan.structure, sort_keys=True)}\n{_version()}"
 
 
-def scene_kernel(plan: Plan, on_source: Callable[[str, int], object] = lambda source, parameters: None) -> SceneKernel:
+def scene_kernel(plan: Plan, on_rates: Callable[[Program, str], object] = lambda rates, source: None) -> SceneKernel:
     """Return the kernel of a plan, from the cache or derived.
 
-    ``on_source`` gets the C text of the rates and the number of their parameters as soon as they are known.
+    ``on_rates`` gets the rates and their C text as soon as they are derived; not those of a kernel from the cache.
     """
     saved = library.fetch(kernel_key(plan))
     if saved is not None:
-        kernel = SceneKernel(json.loads(saved))
-        on_source(kernel.source, len(kernel.rate_parameters))
-        return kernel
+        return SceneKernel(json.loads(saved))
     from symrot.codegen.scene_kernels import derive_scene_kernel
 
-    kernel = derive_scene_kernel(plan.structure, on_source)
+    kernel = derive_scene_kernel(plan.structure, on_rates)
     library.store(kernel_key(plan), json.dumps(kernel.data))
     return kernel
 
@@ -82,15 +92,24 @@ def compiled(plan: Plan) -> tuple[SceneKernel, Path]:
     """
     started: list[library.Building] = []
 
-    def start(source: str, parameters: int) -> None:
-        started.append(library.Building(library_source(plan, source, parameters), "motion"))
+    def start(rates: Program, source: str) -> None:
+        started.append(library.Building(_unit(plan, source, _parameter_count(rates), lambda: rates), "motion"))
 
     try:
         kernel = scene_kernel(plan, start)
     finally:
         for building in started:
             building.wait()
-    return kernel, started[0].path()
+    return kernel, started[0].path() if started else motion_library(plan, kernel)
+
+
+def _parameter_count(rates: Program) -> int:
+    return sum(argument.size for argument in rates.signature.arguments if argument.name == "p")
+
+
+def motion_library(plan: Plan, kernel: SceneKernel) -> Path:
+    """Return the library that steps a plan by DOP853."""
+    return library.build(library_source(plan, kernel), "motion")
 
 
 def taylor_library(plan: Plan, kernel: SceneKernel, tolerance: float) -> Path:
@@ -109,7 +128,7 @@ def taylor_library(plan: Plan, kernel: SceneKernel, tolerance: float) -> Path:
     source = library.fetch(key)
     if source is None:
         invariants = invariant_source(kernel, plan.states)
-        source = taylor.translation_unit(kernel.rates, *error_blocks(plan), order, invariants)
+        source = taylor.translation_unit(kernel.rates, *error_blocks(plan), order, invariants, has_formulas(plan))
         library.store(key, source)
     return library.build(source, "taylor", taylor.FLAGS)
 
@@ -122,6 +141,45 @@ def error_blocks(plan: Plan) -> tuple[list[int], list[float]]:
     return edges, [RATE_SCALE] * (rates > 0) + [ATTITUDE_SCALE] * (count > rates)
 
 
-def library_source(plan: Plan, source: str, parameters: int) -> str:
-    """Return the C text of a library: kernel and stepper."""
-    return translation_unit(source, "symrot_rates", len(plan.states), parameters, *error_blocks(plan))
+def library_source(plan: Plan, kernel: SceneKernel) -> str:
+    """Return the C text of a library that steps a plan by DOP853: kernel and stepper."""
+    return _unit(plan, kernel.source, len(kernel.rate_parameters), lambda: kernel.rates)
+
+
+def _unit(plan: Plan, source: str, parameters: int, rates: Callable[[], Program]) -> str:
+    edges, scales = error_blocks(plan)
+    bounds = (enclosure_text(plan, rates, edges),) if has_formulas(plan) else ()
+    return translation_unit(source, "symrot_rates", len(plan.states), parameters, edges, scales, *bounds)
+
+
+def has_formulas(plan: Plan) -> bool:
+    """Return whether a torque is given by formulas, which may have features that no step sees."""
+    return any(torque["kind"] == "expression" for torque in plan.structure["torques"])
+
+
+def formula_deviations(plan: Plan, kernel: SceneKernel, parameters: Sequence[float]) -> "Deviations | None":
+    """Return what steps in Python must be held to, or None where no torque is given by formulas that hide something."""
+    if not has_formulas(plan):
+        return None
+    from symrot.codegen.enclosure import enclosure
+    from symrot.codegen.recurrences import recurrences
+    from symrot.propagation.enclosure import Deviations
+
+    try:
+        terms = enclosure(recurrences(kernel.rates))
+    except InputError:  # no Taylor series, as of abs
+        return None
+    names = [name for name, _ in kernel.rate_parameters]
+    return None if terms is None else Deviations(terms, dict(zip(names, parameters, strict=True)))
+
+
+def enclosure_text(plan: Plan, rates: Callable[[], Program], edges: Sequence[int]) -> str:
+    """Return the C text of the enclosure of a plan's rates, from the cache or printed."""
+    key = f"enclosure {DENSE_ORDER}\n{kernel_key(plan)}"
+    text = library.fetch(key)
+    if text is None:
+        from symrot.codegen.enclosure import enclosure_source
+
+        text = enclosure_source(rates(), DENSE_ORDER, edges)
+        library.store(key, text)
+    return text

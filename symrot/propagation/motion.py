@@ -15,7 +15,7 @@ from symrot.planner import Plan, Row, general_structure
 from symrot.propagation import dop853, epoch, taylor
 from symrot.propagation.dop853 import Stats
 from symrot.propagation.invariants import invariant_parameters
-from symrot.propagation.kernels import compiled, error_blocks, scene_kernel, taylor_library
+from symrot.propagation.kernels import compiled, error_blocks, formula_deviations, scene_kernel, taylor_library
 from symrot.propagation.method import Choice
 from symrot.propagation.stepping import CutOff, Recording, Task
 from symrot.propagation.trajectory import ARRAY_FUNCTIONS, Trajectory
@@ -52,6 +52,7 @@ class Motion:
 
     epoch = 0.0
     movable = True  # whether another clock may be taken
+    warnings: tuple[str, ...] = ()  # on what cannot be guaranteed
 
     def __init__(self, plan: Plan, choice: Choice, tolerance: float) -> None:
         self.plan, self.choice, self.tolerance = plan, choice, tolerance
@@ -208,7 +209,8 @@ class Motion:
         """How the fallback judges errors, and by which of SciPy's methods it steps."""
         blocks, scales = error_blocks(self.plan)
         solver = self.choice.method.partition(":")[2]
-        return {"blocks": blocks, "scales": scales, **({"method": solver} if solver else {})}
+        deviations = formula_deviations(self.plan, self.kernel, self.rate_parameters)
+        return {"blocks": blocks, "scales": scales, "deviations": deviations, **({"method": solver} if solver else {})}
 
 
 class _FromStart(Motion):

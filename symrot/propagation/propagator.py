@@ -13,7 +13,7 @@ from symrot.errors import InputError, PropagationError
 from symrot.planner import Plan, make_plan
 from symrot.propagation.method import choose_method
 from symrot.propagation.motion import Motion
-from symrot.propagation.stepping import rising
+from symrot.propagation.stepping import Samples, Stats, rising
 from symrot.propagation.trajectory import Trajectory
 from symrot.scene import Initial, Scene, load_scene
 from symrot.scene_kernel import SceneKernel
@@ -98,7 +98,7 @@ class Propagator:
         InputError
             For times or states that are not finite or have the wrong shape.
         PropagationError
-            If the motion cannot be followed to the last time.
+            If the motion cannot be followed to the last time; its ``trajectory`` holds the samples before.
         """
         times = self.sample_times if t is None else _times(t)
         rise = _in_order(times)
@@ -114,9 +114,24 @@ class Propagator:
                 found = follow(motion, times, read_events(events))
                 return Trajectory(motion, found.t, found.states, motion.choice.method, found.stats, message, found)
             states, stats = motion.follow(times, rise)
-        except PropagationError as error:
-            raise PropagationError(f"{self.scene.name}: {error}") from None
+        except (PropagationError, KeyboardInterrupt) as error:
+            raise self._cut_off(error, motion, times) from None
         return Trajectory(motion, times, states, motion.choice.method, stats, message)
+
+    def _cut_off(self, error: BaseException, motion: Motion, times: Floats) -> BaseException:
+        """Return what ends a motion early, with the trajectory of the samples before."""
+        samples: Samples | None = getattr(error, "samples", None)
+        ended: BaseException = error
+        if isinstance(error, PropagationError):
+            ended = PropagationError(f"{self.scene.name}: {error}")
+        if samples is not None:
+            numbers = np.argsort(samples.numbers)  # as they were asked for
+            states, stats = samples.states[numbers], Stats(0, 0, 0, 0.0)
+            message = str(ended) or "interrupted"
+            part = Trajectory(motion, times[samples.numbers[numbers]], states, motion.choice.method, stats, message)
+            part.status = -1
+            ended.trajectory = part  # type: ignore[attr-defined]
+        return ended
 
 
 def _times(t: ArrayLike) -> Floats:

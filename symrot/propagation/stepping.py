@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from symrot.codegen.address import address
 from symrot.errors import CompilerError, InputError, PropagationError
+from symrot.propagation import progress
 
 __all__ = [
     "DONE",
@@ -32,20 +33,25 @@ __all__ = [
     "Floats",
     "PathLike",
     "Recording",
+    "Samples",
     "Stats",
     "SteppedRecording",
     "Stepper",
     "Stretch",
     "Task",
+    "add_samples",
     "both_sides",
     "check_longest_step",
     "check_tolerance",
     "rising",
     "stretches",
+    "why_hopeless",
     "why_stuck",
 ]
 
-MAX_STEPS = 1_000_000_000
+MAX_STEPS = 100_000_000  # of a motion, unless another limit is given: a minute or two
+PATIENCE = 1_000_000  # steps after each of which the pace is judged
+HOPELESS = 10.0  # times the limit: a motion is given up that needs so many more steps at its pace
 FEW = 40  # sample times
 SLIVER = 2.0**-100  # of a stretch: a time that no formula tells from its end
 MANY_TICKS = 2**20  # of the clock between two ends: with fewer, it is the clock that ends short steps
@@ -92,10 +98,28 @@ class CutOff(PropagationError):
         way = "" if stop is None else f" on the way to {stop!r} s"
         super().__init__(f"the motion cannot be followed beyond t = {t!r} s{way}: {reason}")
         self.t, self.reason, self.stop = t, reason, stop
+        self.samples: Samples | None = None  # those before t
 
     def later(self, epoch: float) -> "CutOff":
         """Return the error for a clock that shows ``epoch`` where this one shows 0."""
-        return CutOff(self.t + epoch, self.reason, None if self.stop is None else self.stop + epoch)
+        later = CutOff(self.t + epoch, self.reason, None if self.stop is None else self.stop + epoch)
+        later.samples = self.samples
+        return later
+
+
+class Samples(NamedTuple):
+    """The samples that were computed before a motion was cut off: their numbers, shape (k,), and states, (k, N)."""
+
+    numbers: NDArray[np.intp]
+    states: Floats
+
+
+def add_samples(error: BaseException, numbers: NDArray[np.intp], states: Floats) -> None:
+    """Have an error, or an interrupt, carry the samples computed before it in ``samples``."""
+    before: Samples | None = getattr(error, "samples", None)
+    if before is not None:  # of one side: the other side was finished first
+        numbers, states = np.concatenate([numbers, before.numbers]), np.concatenate([states, before.states])
+    error.samples = Samples(numbers, states)  # type: ignore[attr-defined]
 
 
 def why_stuck(reason: str, t: float, t0: float, stop: float) -> str:
@@ -106,6 +130,14 @@ def why_stuck(reason: str, t: float, t0: float, stop: float) -> str:
     return (
         f"the clock is too coarse for its steps: numbers lie {apart:.3g} s apart there; count the time from nearer by"
     )
+
+
+def why_hopeless(steps: int, way: float, left: float, limit: int) -> str:
+    """Return why a motion is given up, or nothing; it took the steps for the last ``way``, s, with ``left`` to go."""
+    if steps * left <= HOPELESS * limit * way:
+        return ""
+    more = f"{steps * left / way:.0e} of them, far" if way > 0.0 else "endlessly many,"
+    return f"steps of {way / steps:.1e} s would take {more} more than the limit of {limit}"
 
 
 def _numbers(what: str, values: ArrayLike, length: int) -> list[float]:
@@ -341,6 +373,7 @@ class Task:
         check_longest_step(self.max_step)
         self.allowed, self.pace = stepper.allowance(tolerance)
         self.accepted = self.rejected = self.evaluations = 0
+        self.mark = (0, self.t0)  # steps and time when the pace was judged last
         self.fields: dict[str, int] = {}  # of the run in C: what a method sets beside the rest
 
     def again(self) -> "Task":
@@ -349,6 +382,7 @@ class Task:
         other.__dict__.update(self.__dict__)
         other.began = perf_counter()
         other.accepted = other.rejected = other.evaluations = 0
+        other.mark = (0, self.t0)
         return other
 
     def stats(self) -> Stats:
@@ -372,10 +406,19 @@ class Task:
             return states, self.stats()
         if not bool(np.isfinite(times).all()):
             raise InputError(f"sample times must be finite, got {times[~np.isfinite(times)][0]}")
+        done = np.empty(0, dtype=np.intp)
         for part in both_sides(times, self.t0):
             found = np.empty((len(part), self.stepper.states))
-            self.follow(times[part], found)
+            try:
+                self.follow(times[part], found)
+            except (CutOff, KeyboardInterrupt) as error:
+                own = getattr(error, "samples", None)
+                if own is not None:
+                    error.samples = Samples(part[own.numbers], own.states)  # type: ignore[union-attr]
+                add_samples(error, done, states[done])
+                raise
             states[part] = found
+            done = np.concatenate([done, part])
         return states, self.stats()
 
     def once(self, times: Floats, rise: bool) -> tuple[Floats, Stats]:
@@ -391,8 +434,13 @@ class Task:
         run.pace, run.stop = (end - self.t0) * self.pace, end
         stepper.enter(run, Stretch(self.t0, end, self.t0, end), self.allowed)
         first, out = address(times), address(states)
-        while self.advance(run, first, count, out, None, 0) != DONE:
-            pass
+        self.mark = (0, self.t0)
+        try:
+            while self.advance(run, first, count, out, None, 0) != DONE:
+                pass
+        except (CutOff, KeyboardInterrupt) as error:
+            add_samples(error, np.arange(run.next), states[: run.next])
+            raise
         return states, Stats(*stepper.cost(run), perf_counter() - began)
 
     @cached_property
@@ -415,8 +463,13 @@ class Task:
         count, done, first, out = len(times), 0, address(times), address(states)
         row = 8 * self.stepper.states
         for run in self.runs(float(times[-1])):
-            while self.advance(run, first + 8 * done, count - done, out + row * done, None, 0) != DONE:
-                pass
+            try:
+                while self.advance(run, first + 8 * done, count - done, out + row * done, None, 0) != DONE:
+                    pass
+            except (CutOff, KeyboardInterrupt) as error:
+                done += run.next
+                add_samples(error, np.arange(done), states[:done])
+                raise
             done += run.next
 
     def keep(self, end: float) -> list[Floats]:
@@ -462,6 +515,17 @@ class Task:
             reason = stepper.reasons[status]
             reason = why_stuck(reason, run.t, self.t0, run.stop) if status == UNDERFLOW else reason
             raise CutOff(run.t, reason, run.stop)
-        if stepper.tried(run) >= self.max_steps:
+        tried = stepper.tried(run)
+        if tried >= self.max_steps:
             raise CutOff(run.t, stepper.reasons[PAUSED].format(steps=self.max_steps, run=run), run.stop)
+        progress.report(run.t, self.t0, run.stop)
+        if tried - self.mark[0] >= PATIENCE:
+            self.judge_pace(tried, run)
         return status
+
+    def judge_pace(self, tried: int, run: Any) -> None:
+        """Give the motion up if its steps have become so short that the rest would take far more than the limit."""
+        reason = why_hopeless(tried - self.mark[0], abs(run.t - self.mark[1]), abs(run.stop - run.t), self.max_steps)
+        if reason:
+            raise CutOff(run.t, reason, run.stop)
+        self.mark = (tried, run.t)

@@ -11,13 +11,15 @@
  *     SYMROT_CONSTANTS, symrot_constants, symrot_jet           constants from parameters; coefficients of the states
  *     SYMROT_INVARIANTS                  number of invariants; if not 0, their text comes before, see projection.c,
  *     SYMROT_INVARIANT_PARAMETERS        and the numbers of their parameters, which follow those of the system
+ *     SYMROT_ENCLOSED                    whether some terms may hide a feature: see enclosure.h, which is put in here then
  * C99 that is also valid C++; no malloc, no globals, no input or output, reentrant.
  *
  * Coefficients are those of the series in (time)/(unit), where the unit is a power of two near the last step: nothing
  * over- or underflows whatever the unit of time of the problem is, and no bit depends on it.
  *
- * The step is the longest at which the last two terms of the series are below the accepted tail of each block. A step
- * is never tried again. Source: A. Jorba, M. Zou, Experimental Mathematics 14 (2005) 99-117, with the order fixed.
+ * The step is the longest at which the last two terms of the series are below the accepted tail of each block; where
+ * terms are enclosed, it is shortened until the enclosure proves that their series goes on as its coefficients show.
+ * No jet is computed again. Source: A. Jorba, M. Zou, Experimental Mathematics 14 (2005) 99-117, with the order fixed.
  */
 #ifdef __cplusplus
 extern "C" {
@@ -39,8 +41,10 @@ typedef struct {
     double tail;         /* of one step of length `pace` or more, relative; a shorter one is allowed less of it */
     double pace;
     double max_step;     /* positive */
+    double proven;       /* the last step, if the enclosure held it back, or 0 */
     int64_t next;        /* first sample not yet written */
     int64_t accepted, jets, recorded;
+    int64_t reach;       /* number of the disc that proved most in the last step */
     int64_t every, since, projected;  /* steps from one projection to the next or 0 for none, since the last; how many */
     double y[SYMROT_STATES], carry[SYMROT_STATES];
     double kept[2*SYMROT_INVARIANTS + 1];  /* the invariants, in pairs, and whether they are known */
@@ -60,6 +64,10 @@ enum { SYMROT_BLOCK_COUNT = (int)(sizeof(symrot_scales)/sizeof(symrot_scales[0])
 #define EACH_BLOCK(b) SYMROT_UNROLLED for (int b = 0; b < SYMROT_BLOCK_COUNT; ++b)
 
 static const double SYMROT_LEAST_TAIL = 1e-18;   /* below round-off nothing is gained */
+#if SYMROT_ENCLOSED
+static const double SYMROT_SLACK = 100.0;        /* what enclosures exceed by, in the middle: see tests/test_enclosure.py */
+static const double SYMROT_GROWTH = 1.5;         /* most that a step grows after one that was held back */
+#endif
 static const double SYMROT_RATE_FLOOR = 1e-3;    /* a rate turns the body by less than this in a step: no need to see it */
 
 /* Return log2(a/b) to 0.09, for a, b >= 0: the bits of a number are nearly its logarithm, and no unit matters. */
@@ -119,6 +127,22 @@ static inline double symrot_step_log(symrot_v4 (*x)[SYMROT_ORDER + 1], double ta
     }
     return shortest > -60.0 ? shortest : -60.0;
 }
+
+#if SYMROT_ENCLOSED
+typedef symrot_v4 (*symrot_path)[SYMROT_ORDER + 1];
+
+static void symrot_radii(symrot_path x, double part, double *radius)
+{
+    EACH_ROW(r) for (int i = 0; i < symrot_sizes[r]; ++i) {
+        double sum = 0.0;
+        if (symrot_encloses[symrot_starts[r] + i])
+            for (int n = SYMROT_ORDER; n > 0; --n) sum = (sum + fabs(V_LANE(x[r][n], i)))*part;
+        radius[symrot_starts[r] + i] = sum;
+    }
+}
+
+/* ENCLOSURE */
+#endif
 
 static inline void symrot_set_unit(double unit, double *step)
 {
@@ -301,18 +325,35 @@ SYMROT_EXPORT int symrot_taylor(symrot_run *run, const double *p, const double *
             allowed = symrot_allowed(run, unit);
             continue;
         }
-        const double logarithm = symrot_step_log(x, allowed, fabs(unit));
+        double logarithm = symrot_step_log(x, allowed, fabs(unit));
         double s = symrot_exp2(logarithm), h = s*unit;
         if (fabs(h) > run->max_step) {
             h = side*run->max_step;
             s = h/unit;
         }
         const double left = (stop - t) - t_low;
-        const int at_stop = (1.01*h - left)*side >= 0.0;
+        int at_stop = (1.01*h - left)*side >= 0.0;
         if (at_stop) {
             h = left;
             s = h/unit;
-        } else if (fabs(h) <= tiny + 4.0*DBL_EPSILON*fabs(t)) {
+        }
+#if SYMROT_ENCLOSED
+        const double most = SYMROT_GROWTH*run->proven;  /* after a step that was held back */
+        const int longer = most > 0.0 && fabs(h) > most;
+        h = longer ? side*most : h;
+        double y[SYMROT_STATES], bars[SYMROT_BLOCK_COUNT];
+        EACH_BLOCK(b) bars[b] = SYMROT_SLACK*allowed*symrot_reference(x, fabs(unit), b);
+        EACH_ROW(r) for (int i = 0; i < symrot_sizes[r]; ++i) y[symrot_starts[r] + i] = V_LANE(x[r][0], i);
+        const double followed = symrot_followed(x, t, unit, h, y, bars, p, &run->reach);
+        run->proven = longer || followed != h ? fabs(followed) : 0.0;
+        if (run->proven > 0.0) {
+            at_stop = 0;
+            h = followed;
+            s = h/unit;
+            logarithm = symrot_log2(s, 1.0);
+        }
+#endif
+        if (!at_stop && fabs(h) <= tiny + 4.0*DBL_EPSILON*fabs(t)) {
             status = SYMROT_UNDERFLOW;
             break;
         }

@@ -40,9 +40,12 @@ __all__ = ["FLAGS", "integrate", "order_for", "record", "refusal", "step_tail", 
 
 FLAGS = (*compiled.FLAGS, *compiled.SCHEDULED)
 STEPS_OF_ALL = 4.0  # a span of so many steps allows each of them the whole tolerance, see step_tail
-FILES = ("taylor.h", "series.h", "pairs.h", "projection.c", "taylor.c")
+FILES = ("taylor.h", "series.h", "pairs.h", "projection.c", "disc.h", "enclosure.h", "taylor.c")
 PROJECTION = "/* PROJECTION */\n"  # where taylor.c takes projection.c
+ENCLOSURE = "/* ENCLOSURE */\n"  # and enclosure.h
 NO_INVARIANTS = "#define SYMROT_INVARIANTS 0\n#define SYMROT_INVARIANT_PARAMETERS 0\n"
+NO_ENCLOSURE = "#define SYMROT_ENCLOSED 0\n"
+MIDDLE_REACH = 3  # of the discs of symrot.codegen.enclosure.REACHES: the one to begin with
 PROJECTED_EVERY = 16  # steps: by measurement, seldom enough to cost a few percent and often enough to lose nothing
 MANY_PRODUCTS = 40  # of a right-hand side: from there on the work of a step is in its sums, which grow as order squared
 ORDERS = {  # by whether there are many: from which tolerance on which order is fastest, see order_for
@@ -91,6 +94,7 @@ def translation_unit(
     scales: Sequence[float] = (0.0, 1.0),
     order: int | None = None,
     invariants: str = "",
+    enclosed: bool = True,
 ) -> str:
     """Return the C source of a library: the jet of a right-hand side and the stepper around it.
 
@@ -105,22 +109,29 @@ def translation_unit(
     invariants : str
         What :func:`symrot.codegen.invariant_source.invariant_definitions` prints: the motion is projected onto them.
         Their parameters follow those of the program.
+    enclosed : bool
+        Whether steps are held to what an enclosure of the rates proves, see :mod:`symrot.codegen.enclosure`.
 
     Raises
     ------
     InputError
         For a right-hand side that is not smooth (abs).
     """
+    from symrot.codegen.enclosure import enclosure_source
     from symrot.codegen.taylor_source import ORDER, taylor_definitions
 
+    order = ORDER if order is None else order
     own = {name: (Path(__file__).parent / name).read_text(encoding="utf-8") for name in FILES}
-    definitions = taylor_definitions(program, blocks, scales, ORDER if order is None else order)
+    definitions = taylor_definitions(program, blocks, scales, order)
     if not invariants:
         invariants, projection = NO_INVARIANTS, ""
     else:
         projection = own["projection.c"]
     stepper = own["taylor.c"].replace(PROJECTION, projection)
-    return "\n".join([own["taylor.h"], own["pairs.h"], definitions, own["series.h"], invariants, stepper])
+    bounds = enclosure_source(program, order, blocks) if enclosed else NO_ENCLOSURE
+    stepper = stepper.replace(ENCLOSURE, own["enclosure.h"])
+    parts = (own["taylor.h"], own["pairs.h"], definitions, own["series.h"], invariants, own["disc.h"], bounds, stepper)
+    return "\n".join(parts)
 
 
 def integrate(
@@ -197,8 +208,8 @@ class _Stepper(Stepper):
     """A library of :func:`translation_unit`."""
 
     name = "taylor"
-    reals = ("t", "t_low", "unit", "stop", "tail", "pace", "max_step")
-    integers = ("next", "accepted", "jets", "recorded", "every", "since", "projected")
+    reals = ("t", "t_low", "unit", "stop", "tail", "pace", "max_step", "proven")
+    integers = ("next", "accepted", "jets", "recorded", "reach", "every", "since", "projected")
     vectors = ("y", "carry")
     tail = ("kept",)
     steps_per_call, rows_per_call = 50_000, 64
@@ -220,7 +231,7 @@ class _Stepper(Stepper):
         return 4 + (self.order + 1) * self.states
 
     def enter(self, run: Any, stretch: Stretch, allowed: float) -> None:
-        run.unit, run.tail = 0.0, allowed
+        run.unit, run.proven, run.tail, run.reach = 0.0, 0.0, allowed, MIDDLE_REACH
 
     @staticmethod
     def tried(run: Any) -> int:

@@ -53,14 +53,15 @@ class Trajectory:
     method, stats : str, Stats
         How it was propagated, and what that cost: steps, evaluations, seconds.
     status, message, success : int, str, bool
-        As of solve_ivp: 1 where a terminal event ended the motion, else 0; a motion that cannot be followed raises.
+        As of solve_ivp: 1 where a terminal event ended the motion, else 0. A motion that cannot be followed raises a
+        PropagationError; its ``trajectory`` holds the samples before, with status -1 and ``success`` false.
+    warnings : tuple of str
+        Sentences on what cannot be guaranteed, such as the accuracy under a torque without a formula.
     t_events, y_events : list of arrays or None
         Per event that was asked for: its times, shape (k,), and the states there, shape (k, N).
     event_kinds : list of lists of str, or None
         Per event: ``"rising"``, ``"falling"`` or ``"touching"`` for each of its times.
     """
-
-    success = True
 
     def __init__(
         self,
@@ -78,6 +79,7 @@ class Trajectory:
         self.y_events = events and events.y_events
         self.event_kinds = events and events.kinds
         self.status = int(events is not None and events.ended)
+        self.warnings: tuple[str, ...] = motion.warnings
 
     def __len__(self) -> int:
         return len(self.t)
@@ -85,6 +87,11 @@ class Trajectory:
     def __repr__(self) -> str:
         name = self._motion.plan.scene.name
         return f"<Trajectory of {name}: {len(self.t)} samples, {self.method}, {self.stats.accepted} steps>"
+
+    @property
+    def success(self) -> bool:
+        """Whether the motion was followed to the end that was asked for, or to a terminal event."""
+        return self.status >= 0
 
     @property
     def plan(self) -> Any:

@@ -110,7 +110,7 @@ def s41(long):
     plan = make_plan(scene)
     kernel = scene_kernel(plan)
     sets, ends, runs = _instruction_sets(), {}, []
-    hairer_source = library_source(plan, kernel.source, len(kernel.rate_parameters))
+    hairer_source = library_source(plan, kernel)
     p = bind(kernel.rate_parameters, plan.constants)
     for name, flags in sets.items():
         flags = tuple(flag for flag in library.FLAGS if not flag.startswith("-march")) + flags

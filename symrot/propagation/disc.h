@@ -1,0 +1,111 @@
+/*
+ * Discs with a real centre in the complex plane: where a formula can lie when its variables lie in such discs.
+ *
+ * A formula that is analytic on the disc |s| <= rho around a time and deviates there from a constant by at most D has
+ * Taylor coefficients |f_n| <= D/rho^n (Cauchy). So one evaluation over discs bounds what no coefficient shows: a pulse
+ * ahead, a switch, a pole. Each rule holds the image of the disc; a rule that cannot be met (a pole or a branch point
+ * in the disc) gives an infinite radius. Rounding is not bounded: it is 1e-16 of the radius.
+ */
+#include <math.h>
+
+typedef struct { double c, r; } symrot_disc;  /* |z - c| <= r */
+
+static inline symrot_disc symrot_disc_of(double c, double r)
+{
+    symrot_disc d;
+    d.c = c;
+    d.r = r;
+    return d;
+}
+
+static inline symrot_disc symrot_disc_product(symrot_disc a, symrot_disc b)
+{
+    return symrot_disc_of(a.c*b.c, fabs(a.c)*b.r + fabs(b.c)*a.r + a.r*b.r);
+}
+
+static inline symrot_disc symrot_disc_square(symrot_disc a) { return symrot_disc_product(a, a); }
+
+/* The image of a disc under 1/z is a disc again. */
+static inline symrot_disc symrot_disc_inverse(symrot_disc a)
+{
+    const double inner = fabs(a.c) - a.r, power = inner*(fabs(a.c) + a.r);
+    return inner > 0.0 ? symrot_disc_of(a.c/power, a.r/power) : symrot_disc_of(0.0, INFINITY);
+}
+
+/* Where a disc meets the branch point the root has a corner: no series goes past it, a bound of its size may. */
+static inline symrot_disc symrot_disc_sqrt(symrot_disc a)
+{
+    const double root = sqrt(a.c > 0.0 ? a.c : 0.0);
+#if defined(SYMROT_ROUGH)
+    const double corner = root + sqrt(fabs(a.c) + a.r);
+#else
+    const double corner = INFINITY;
+#endif
+    return symrot_disc_of(root, a.c > a.r ? a.r/(root + sqrt(a.c - a.r)) : corner);
+}
+
+static inline symrot_disc symrot_disc_exp(symrot_disc a)
+{
+    const double value = exp(a.c);
+    return symrot_disc_of(value, a.r < 1.0 ? value*expm1(a.r) : exp(a.c + a.r) - value);
+}
+
+static inline symrot_disc symrot_disc_log(symrot_disc a)
+{
+    return a.c > a.r ? symrot_disc_of(log(a.c), -log1p(-a.r/a.c)) : symrot_disc_of(0.0, INFINITY);
+}
+
+/* sin(c + z) - sin(c) = cos(c) sin(z) + sin(c) (cos(z) - 1), |sin(z)| <= sinh(r), |cos(z) - 1| <= cosh(r) - 1. */
+static inline symrot_disc symrot_disc_wave(double value, double slope, double r)
+{
+    const double half = sinh(0.5*r);
+    return symrot_disc_of(value, fabs(slope)*sinh(r) + 2.0*fabs(value)*half*half);
+}
+
+static inline symrot_disc symrot_disc_sin(symrot_disc a) { return symrot_disc_wave(sin(a.c), cos(a.c), a.r); }
+static inline symrot_disc symrot_disc_cos(symrot_disc a) { return symrot_disc_wave(cos(a.c), sin(a.c), a.r); }
+static inline symrot_disc symrot_disc_sinh(symrot_disc a) { return symrot_disc_wave(sinh(a.c), cosh(a.c), a.r); }
+static inline symrot_disc symrot_disc_cosh(symrot_disc a) { return symrot_disc_wave(cosh(a.c), sinh(a.c), a.r); }
+
+/* tan(c + z) - tan(c) = sec(c)^2 tan(z)/(1 - tan(c) tan(z)), |tan(z)| <= tan(r). */
+static inline symrot_disc symrot_disc_tan(symrot_disc a)
+{
+    const double value = tan(a.c), most = a.r < 1.5 ? tan(a.r) : INFINITY, rest = 1.0 - fabs(value)*most;
+    return symrot_disc_of(value, rest > 0.0 ? (1.0 + value*value)*most/rest : INFINITY);
+}
+
+/* As for the tangent; far from zero |tanh(z) - 1| = |2 e/(1 + e)| with |e| <= exp(-2 (c - r)). */
+static inline symrot_disc symrot_disc_tanh(symrot_disc a)
+{
+    const double value = tanh(a.c), tail = exp(-2.0*fabs(a.c)), slope = 4.0*tail/((1.0 + tail)*(1.0 + tail));
+    const double most = a.r < 1.5 ? tan(a.r) : INFINITY, rest = 1.0 - fabs(value)*most;
+    const double near = rest > 0.0 ? slope*most/rest : INFINITY;
+    const double beyond = exp(-2.0*(fabs(a.c) - a.r));
+    const double far = beyond < 1.0 ? 2.0*beyond/(1.0 - beyond) : INFINITY;
+    if (near <= far) return symrot_disc_of(value, near);
+    return symrot_disc_of(a.c > 0.0 ? 1.0 : -1.0, far);
+}
+
+/* The coefficients of the arc sine at |c| are all positive, so that it grows most along the real axis. */
+static inline double symrot_disc_arc(symrot_disc a)
+{
+    const double low = fabs(a.c), high = low + a.r;
+    return high < 1.0 ? asin(high) - asin(low) : INFINITY;
+}
+
+static inline symrot_disc symrot_disc_asin(symrot_disc a) { return symrot_disc_of(asin(a.c), symrot_disc_arc(a)); }
+static inline symrot_disc symrot_disc_acos(symrot_disc a) { return symrot_disc_of(acos(a.c), symrot_disc_arc(a)); }
+
+/* atan(c + z) - atan(c) = atan(z/(1 + c (c + z))), |atan(w)| <= artanh|w|. */
+static inline symrot_disc symrot_disc_atan(symrot_disc a)
+{
+    const double rest = 1.0 + a.c*a.c - fabs(a.c)*a.r;
+    return symrot_disc_of(atan(a.c), a.r < rest ? atanh(a.r/rest) : INFINITY);
+}
+
+/* atan2(y, x) = (log(x + i y) - log(x - i y))/(2 i), continued where it is cut. */
+static inline symrot_disc symrot_disc_atan2(symrot_disc y, symrot_disc x)
+{
+    const double size = hypot(x.c, y.c), off = x.r + y.r;
+    return symrot_disc_of(atan2(y.c, x.c), off < size ? -log1p(-off/size) : INFINITY);
+}
