@@ -12,11 +12,14 @@ import re
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from fractions import Fraction
+from functools import reduce
 from typing import Any
 
 from symrot.errors import InputError
 
-__all__ = ["FUNCTIONS", "Node", "children", "evaluate", "names", "operations", "parse", "rename", "text"]
+__all__ = [
+    "FUNCTIONS", "LOGIC", "SWITCHING", "Node", "children", "evaluate", "names", "operations", "parse", "rename", "text",
+]  # fmt: skip
 
 Node = tuple[Any, ...]
 
@@ -24,6 +27,11 @@ FUNCTIONS: dict[str, int] = {  # name -> number of arguments
     "sqrt": 1, "sin": 1, "cos": 1, "tan": 1, "exp": 1, "log": 1, "abs": 1, "sinh": 1, "cosh": 1, "tanh": 1,
     "asin": 1, "acos": 1, "atan": 1, "atan2": 2,
 }  # fmt: skip
+SWITCHING: dict[str, int] = {  # functions that jump or bend, of formulas of torques; min and max take two or more
+    "step": 1, "sign": 1, "min": 2, "max": 2, "clip": 3, "floor": 1, "mod": 2, "where": 3,
+}  # fmt: skip
+COMPARISONS = {"<": False, "<=": False, ">": True, ">=": True}  # in the condition of where; whether the sides change
+LOGIC = {"or": 2, "and": 4}  # how tightly they bind, below all operators
 LONGEST_TEXT = 10_000
 DEEPEST_NESTING = 100
 LONGEST_NUMBER = 1000
@@ -31,17 +39,21 @@ LARGEST_POWER = 64
 LARGEST_EXPONENT = 400  # of ten, in a written number: beyond any double
 
 _TOKEN = re.compile(
-    r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[A-Za-z_]\w*)|(?P<mark>\*\*|[-+*/(),]))", re.ASCII
+    r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[A-Za-z_]\w*)"
+    r"|(?P<mark>\*\*|<=|>=|[-+*/(),<>]))",
+    re.ASCII,
 )
-_BINDING = {"+": 10, "-": 10, "*": 20, "/": 20, "**": 40}
+_BINDING = {**LOGIC, **dict.fromkeys(COMPARISONS, 6), "+": 10, "-": 10, "*": 20, "/": 20, "**": 40}
+_NOT = 5
 _UNARY = 30  # -x**2 is -(x**2), -x*y is (-x)*y
 
 
 class _Reader:
     """Precedence climbing over the tokens of one formula."""
 
-    def __init__(self, source: str, where: str) -> None:
+    def __init__(self, source: str, where: str, switching: bool) -> None:
         self.source, self.where, self.depth = source, f"{where}: " if where else "", 0
+        self.switching, self.functions = switching, FUNCTIONS | SWITCHING if switching else FUNCTIONS
         self.tokens = list(self._split())
         self.index = 0
 
@@ -53,7 +65,7 @@ class _Reader:
         position = 0
         while position < len(self.source.rstrip()):
             match = _TOKEN.match(self.source, position)
-            if match is None:
+            if match is None or (match["mark"] in COMPARISONS and not self.switching):
                 blank = len(self.source[position:]) - len(self.source[position:].lstrip())
                 raise self.fail("a number, a name, an operator or a bracket", position + blank)
             kind = str(match.lastgroup)
@@ -81,12 +93,23 @@ class _Reader:
         left = self.operand()
         while _BINDING.get(self.peek(), 0) > binding:
             _, mark, position = self.next()
-            left = (mark, left, self.power(position) if mark == "**" else self.expression(_BINDING[mark]))
+            if mark in COMPARISONS or mark in LOGIC:
+                left = self.condition(mark, left)
+            else:
+                left = (mark, left, self.power(position) if mark == "**" else self.expression(_BINDING[mark]))
         self.depth -= 1
         return left
 
+    def condition(self, mark: str, left: Node) -> Node:
+        right = self.expression(_BINDING[mark])
+        if mark in LOGIC:
+            return ("call", mark, (left, right))
+        return ("call", "less", (right, left) if COMPARISONS[mark] else (left, right))
+
     def operand(self) -> Node:
         kind, found, position = self.next()
+        if self.switching and found == "not":
+            return ("call", "not", (self.expression(_NOT),))
         if kind == "number":
             return ("number", self.number(found, position))
         if found == "(":
@@ -101,16 +124,18 @@ class _Reader:
             raise self.fail("a number, a name or '('", position)
         if self.peek() != "(":
             return ("symbol", found)
-        if found not in FUNCTIONS:
-            raise self.fail(f"one of the functions {', '.join(FUNCTIONS)} instead of '{found}'", position)
+        if found not in self.functions:
+            raise self.fail(f"one of the functions {', '.join(self.functions)} instead of '{found}'", position)
         self.next()
         arguments = [self.expression()]
         while self.peek() == ",":
             self.next()
             arguments.append(self.expression())
         self.expect(")")
-        if len(arguments) != FUNCTIONS[found]:
-            raise self.fail(f"{FUNCTIONS[found]} argument(s) for '{found}' instead of {len(arguments)}", position)
+        if found in ("min", "max") and len(arguments) > 2:
+            return reduce(lambda left, right: ("call", found, (left, right)), arguments)
+        if len(arguments) != self.functions[found]:
+            raise self.fail(f"{self.functions[found]} argument(s) for '{found}' instead of {len(arguments)}", position)
         return ("call", found, tuple(arguments))
 
     def number(self, found: str, position: int) -> Fraction:
@@ -139,7 +164,7 @@ class _Reader:
         return sign * int(found)
 
 
-def parse(source: str, where: str = "") -> Node:
+def parse(source: str, where: str = "", switching: bool = False) -> Node:
     """Return the tree of a formula.
 
     Parameters
@@ -148,6 +173,9 @@ def parse(source: str, where: str = "") -> Node:
         Numbers, names, ``+ - * / **`` (whole exponents), brackets and the functions of :data:`FUNCTIONS`.
     where : str
         The place of the text (file and key), put in front of every complaint.
+    switching : bool
+        Whether the functions of :data:`SWITCHING` may stand in it too, and comparisons, ``and``, ``or`` and ``not`` in
+        the condition of ``where``: calls of ``less``, ``and``, ``or``, ``not``. See :mod:`symrot.switches`.
 
     Raises
     ------
@@ -162,7 +190,7 @@ def parse(source: str, where: str = "") -> Node:
     if len(source) > LONGEST_TEXT:
         place = f"{where}: " if where else ""
         raise InputError(f"{place}expected a formula of at most {LONGEST_TEXT} characters, got {len(source)}")
-    reader = _Reader(source, where)
+    reader = _Reader(source, where, switching)
     node = reader.expression()
     kind, _, position = reader.next()
     if kind != "end":
@@ -276,6 +304,12 @@ def text(node: Node, binding: int = 0, literal: Callable[[Fraction], str] = str)
         return f"({shown})" if loose else shown
     if kind == "symbol":
         return str(node[1])
+    if kind == "call" and node[1] in ("less", *LOGIC):
+        mark = "<" if node[1] == "less" else node[1]
+        inner = f" {mark} ".join(text(child, _BINDING[mark] + 1, literal) for child in node[2])
+        return f"({inner})" if binding > _BINDING[mark] else inner
+    if kind == "call" and node[1] == "not":
+        return f"not {text(node[2][0], _NOT, literal)}"
     if kind == "call":
         return f"{node[1]}({', '.join(text(child, 0, literal) for child in node[2])})"
     if kind == "neg":

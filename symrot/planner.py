@@ -15,8 +15,9 @@ from symrot import expression
 from symrot.errors import InputError
 from symrot.number import equal
 from symrot.scene import Initial, Scene
+from symrot.switches import has_switches, smooth
 
-__all__ = ["ATTITUDE_QUANTITIES", "RULES", "Plan", "Row", "general_structure", "make_plan"]
+__all__ = ["ATTITUDE_QUANTITIES", "RULES", "Plan", "Row", "general_structure", "make_plan", "switched"]
 
 Structure = dict[str, Any]
 
@@ -55,7 +56,7 @@ class Plan:
 
     @cached_property
     def constants(self) -> dict[str, Fraction]:
-        """The physical constants of the structure by name, exact."""
+        """The physical constants of the structure by name, exact; modes of switches are 1."""
         return _constants(self.scene, self.structure)
 
     @cached_property
@@ -84,7 +85,7 @@ class Plan:
         return explanation(self)
 
 
-def make_plan(scene: Scene, initial: Initial | None = None, driven: bool = False) -> Plan:
+def make_plan(scene: Scene, initial: Initial | None = None, driven: bool = False, switched: bool = False) -> Plan:
     """Return the plan of a scene, perhaps with another initial state.
 
     Parameters
@@ -95,11 +96,14 @@ def make_plan(scene: Scene, initial: Initial | None = None, driven: bool = False
         Instead of the scene's own.
     driven : bool
         Whether a torque acts too that is no formula: nothing is left out that it could change.
+    switched : bool
+        Whether the plan may have modes, which whoever follows it changes where a switch is passed.
 
     Raises
     ------
     InputError
-        If the scene has a table of samples and ``driven`` is false: it is no formula to derive a kernel from.
+        If a torque has switches (step, sign, min, ..) and ``switched`` is false: there are no equations that hold all
+        along. If the scene has a table of samples and ``driven`` is false: it is no formula to derive a kernel from.
     """
     if scene.table is not None and not driven:
         raise InputError(
@@ -108,7 +112,12 @@ def make_plan(scene: Scene, initial: Initial | None = None, driven: bool = False
         )
     if initial is not None:
         scene = replace(scene, initial=initial)
-    structure = general_structure(scene)
+    if not switched and (name := _switching_function(scene)):
+        raise InputError(
+            f"{scene.name}: expected torques without switches, got the function {name}: the equations change from one "
+            "mode to the next; symrot run, symrot.propagator and symrot.propagate_ensemble follow them"
+        )
+    structure = general_structure(scene, switched)
     rows = []
     for item, rule in _RULES_WHEN_DRIVEN if driven else RULES:
         structure, skipped, why, derivation = rule(scene, structure)
@@ -119,12 +128,36 @@ def make_plan(scene: Scene, initial: Initial | None = None, driven: bool = False
 # --- the general structure --------------------------------------------------------------------------------------------
 
 
-def general_structure(scene: Scene) -> Structure:
+def switched(scene: Scene) -> bool:
+    """Return whether a torque of a scene jumps or bends where what changes passes some value."""
+    return any(
+        has_switches(expression.parse(formula, switching=True))
+        for torque in scene.torques
+        if torque.kind == "expression"
+        for formula in torque.values["torque"]
+    )
+
+
+def _switching_function(scene: Scene) -> str:
+    """Return a function in the torques of a scene that is known to those alone who follow switches, or nothing."""
+    calls = {
+        name
+        for torque in scene.torques
+        if torque.kind == "expression"
+        for formula in torque.values["torque"]
+        for name in expression.operations(expression.parse(formula, switching=True))
+    }
+    return min(calls & set(expression.SWITCHING), default="")
+
+
+def general_structure(scene: Scene, switched: bool = False) -> Structure:
     """Return the structure before any rule: full tensor, every constant of every torque free, full attitude."""
     taken: set[str] = set(RESERVED)
     return {
         "inertia": {"form": "tensor", "entries": sorted([*MOMENTS, *PRODUCTS])},
-        "torques": [_general_torque(number, torque, taken) for number, torque in enumerate(scene.torques, start=1)],
+        "torques": [
+            _general_torque(number, torque, taken, switched) for number, torque in enumerate(scene.torques, start=1)
+        ],
         "attitude": True,
         "planar": None,
         "initial_quaternion": None,
@@ -132,12 +165,20 @@ def general_structure(scene: Scene) -> Structure:
     }
 
 
-def _general_torque(number: int, torque: Any, taken: set[str]) -> Structure:
+def _general_torque(number: int, torque: Any, taken: set[str], switched: bool) -> Structure:
     if torque.kind == "expression":
-        names = list(torque.values["parameters"])
-        found: Structure = {
-            "formulas": list(torque.values["torque"]), "parameters": names, "frame": torque.values["frame"]
-        }  # fmt: skip
+        names, formulas = list(torque.values["parameters"]), list(torque.values["torque"])
+        found: Structure = {"formulas": formulas, "parameters": names, "frame": torque.values["frame"]}
+        if switched and any(has_switches(expression.parse(text, switching=True)) for text in formulas):
+            form = smooth(tuple(formulas))
+            names += [switch.mode for switch in form.switches]
+            found |= {
+                "formulas": [expression.text(node) for node in form.formulas],
+                "switches": [
+                    {**each._asdict(), "guard": expression.text(each.guard), "where": each.where and [*each.where]}
+                    for each in form.switches
+                ],
+            }
     else:
         fields = {
             name: ["*"] * len(value) if isinstance(value, tuple) else "*"
@@ -176,6 +217,7 @@ def _constants(scene: Scene, structure: Structure) -> dict[str, Fraction]:
         prefix = torque["prefix"]
         if given.kind == "expression":
             found |= {f"{prefix}{name}": value for name, value in given.values["parameters"].items()}
+            found |= {f"{prefix}{switch['mode']}": Fraction(1) for switch in torque.get("switches", ())}
             continue
         for name, pattern in torque["fields"].items():
             value = given.values[name]
@@ -247,7 +289,8 @@ def _special_constants(scene: Scene, structure: Structure) -> Outcome:
 
 def _depends_on_attitude(torque: Structure) -> bool:
     if torque["kind"] == "expression":
-        used = set().union(*(expression.names(expression.parse(source)) for source in torque["formulas"]))
+        sources = [*torque["formulas"], *(switch["guard"] for switch in torque.get("switches", ()))]
+        used = set().union(*(expression.names(expression.parse(source)) for source in sources))
         return torque["frame"] == "space" or bool(used & {"q0", "q1", "q2", "q3"})
     return torque["kind"] not in NEVER_NEEDS_ATTITUDE
 

@@ -11,6 +11,7 @@ from symrot.number import PI, read, show, sqrt
 from symrot.scene_attitude import Vector, read_attitude
 from symrot.scene_body import Body
 from symrot.scene_reader import Entry, Reader, choice, expected, nearest, number, read_table, table, under, vector
+from symrot.switches import condition_error
 
 __all__ = ["Torque", "read_torque"]
 
@@ -24,7 +25,8 @@ class Torque(NamedTuple):
 
     Vectors are tuples of three Fractions, an attitude a unit quaternion, ``linear`` of a damping three numbers. Gravity
     holds ``weight``, ``center_of_mass`` and a unit ``direction``. An expression holds ``torque`` as three texts that
-    :func:`symrot.expression.parse` reads, ``parameters`` by name (pi among them, if a formula uses it) and ``frame``.
+    :func:`symrot.expression.parse` reads, switches allowed, ``parameters`` by name (with pi, if a formula uses it) and
+    ``frame``.
     """
 
     kind: str
@@ -66,7 +68,9 @@ def _formula(value: Any, where: str) -> str:
         return str(read(value, where, 'a formula as text, such as "-k*omega_1", or a number'))
     if len(value) > LONGEST_FORMULA:
         expected(where, f"a formula of at most {LONGEST_FORMULA} characters", value, f"it has {len(value)}")
-    node = expression.parse(value, where)
+    node = expression.parse(value, where, switching=True)
+    if error := condition_error(node):
+        expected(where, error, value)
     if _depth(node) > DEEPEST_FORMULA:
         expected(where, f"a formula of at most {DEEPEST_FORMULA} levels", value, "put brackets around groups of terms")
     if _divides_by_zero(node):
@@ -100,7 +104,7 @@ def _parameters(value: Any, where: str) -> dict[str, Fraction]:
     found = table(value, where, "a table of numbers by name, such as {k = 0.1}")
     if len(found) > MOST_PARAMETERS:
         expected(where, f"at most {MOST_PARAMETERS} parameters", len(found))
-    taken = {*EXPRESSION_NAMES, *expression.FUNCTIONS, "pi"}
+    taken = {*EXPRESSION_NAMES, *expression.FUNCTIONS, *expression.SWITCHING, *expression.LOGIC, "not", "pi"}
     for name in found:
         if not isinstance(name, str) or not (name.isascii() and name.isidentifier()) or len(name) > 40 or name in taken:
             expected(under(where, name), "a parameter named by letters, digits and underscores, and not as what a "
@@ -171,7 +175,10 @@ def _fit_expression(values: dict[str, Any], body: Body, where: str) -> dict[str,
     parameters = dict(values["parameters"])
     known = {*EXPRESSION_NAMES, *parameters, "pi"}
     for index, formula in enumerate(values["torque"]):
-        for name in sorted(expression.names(expression.parse(formula))):
+        node = expression.parse(formula, switching=True)
+        if "atan2" in expression.operations(node):  # which is continued where it is cut
+            parameters["pi"] = PI
+        for name in sorted(expression.names(node)):
             if name not in known:
                 allowed = ", ".join([*EXPRESSION_NAMES, *parameters])
                 reason = ", ".join(filter(None, (f"'{name}' has no number in parameters", nearest(name, known))))

@@ -64,6 +64,7 @@ def _quantities(equations: Equations, found: Mapping[str, Expr]) -> Lowered:
         momentum_s = dcm_of(equations.motion.quaternion) * momentum
         outputs += [(f"momentum_{axis}", "kg m^2/s", value) for axis, value in zip("xyz", momentum_s, strict=True)]
     outputs += [(name, "", value) for name, value in found.items()]
+    outputs += [(f"{mode} of t", "1", value) for mode, value in equations.modes]
     results = Argument("out", "out", tuple((name, unit, "") for name, unit, _ in outputs))
     signature = Signature("quantities", (TIME, _state_argument(equations), results))
     return lower(signature, [(name, value) for name, _, value in outputs])

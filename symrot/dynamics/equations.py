@@ -6,7 +6,7 @@ Proof: ``derivations/euler_equations.md``, ``derivations/quaternion_rates.md``.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import reduce
 from operator import add
 from typing import Any
@@ -14,8 +14,9 @@ from typing import Any
 from sympy import Expr, Integer, Matrix, S, Symbol, cos, diag, eye, sin, zeros
 
 from symrot import symbols
-from symrot.dynamics.torques import Motion, TorqueLaw, collected_cross, torque_law
+from symrot.dynamics.torques import Motion, TorqueLaw, collected_cross, formula, formula_values, torque_law
 from symrot.errors import InputError
+from symrot.expression import parse
 from symrot.kinematics.euler import dcm, quaternion_of_euler, rate_jacobian
 from symrot.kinematics.quaternion import qmul, quaternion_rates, unit_relation
 from symrot.symbols import constant
@@ -48,6 +49,7 @@ class Equations:
     laws: tuple[TorqueLaw, ...]
     momentum_b: Matrix  # I omega + h, kg m^2/s, body components
     relations: tuple[Expr, ...]  # what is zero whatever the motion: unit norms
+    modes: tuple[tuple[Symbol, Expr], ...] = ()  # modes of the guards that the motion slides along, see sliding()
 
     @property
     def explicit_rates(self) -> tuple[Expr, ...]:
@@ -190,7 +192,8 @@ def equations_of_motion(structure: Mapping[str, Any]) -> Equations:
         :func:`symrot.dynamics.torques.torque_law`), ``attitude`` (whether it is computed), ``planar`` (the axis
         number of a motion about one body axis, else None, with ``initial_quaternion``), ``constant`` (for the numbers
         of the components of omega_b that keep their value, ``"*"`` or, where that is zero, ``"0"``); ``sequence``, if
-        the attitude is to be Euler angles of that sequence in place of a quaternion.
+        the attitude is to be Euler angles of that sequence in place of a quaternion. A torque with ``switches`` may
+        have ``held``, the modes whose guards stay at zero.
     """
     motion, attitude, relations = _motion(structure)
     laws = tuple(torque_law(torque, motion) for torque in structure["torques"])
@@ -214,4 +217,34 @@ def equations_of_motion(structure: Mapping[str, Any]) -> Equations:
         rates += list(quaternion_rates("body") * motion.omega_b) if attitude else []
     elif attitude:
         rates.append(motion.omega_b[structure["planar"]])
-    return Equations((*states, *attitude), tuple(rates), definitions, motion, laws, momentum_b, tuple(relations))
+    found = Equations((*states, *attitude), tuple(rates), definitions, motion, laws, momentum_b, tuple(relations))
+    held = [(torque, mode) for torque in structure["torques"] for mode in torque.get("held", ())]
+    return sliding(found, held) if held else found
+
+
+def sliding(equations: Equations, held: list[tuple[Mapping[str, Any], str]]) -> Equations:
+    """Return the equations of a motion that slides along the guards of some modes: each guard stays at zero.
+
+    The modes take the values that keep them there: with rates linear in the modes s, ``dg/dt = a + B s = 0`` gives
+    ``s = -B^-1 a`` (V. I. Utkin's equivalent control; for one guard, A. F. Filippov's convex combination). They are
+    definitions that the rates use.
+
+    Raises
+    ------
+    InputError
+        If the rates of the guards do not determine the modes.
+    """
+    rates = dict(zip(equations.states, equations.explicit_rates, strict=True))
+    names, pace = [], []
+    for torque, mode in held:
+        values = formula_values(torque, equations.motion)
+        guard = formula(parse(next(each["guard"] for each in torque["switches"] if each["mode"] == mode)), values)
+        names.append(values[mode])
+        pace.append(guard.diff(symbols.t) + reduce(add, (guard.diff(y) * rate for y, rate in rates.items()), S.Zero))
+    matrix = Matrix([[entry.diff(name) for name in names] for entry in pace])
+    rest = Matrix(pace).subs(dict.fromkeys(names, S.Zero))
+    determinant = matrix.det().expand()
+    if matrix.free_symbols & set(names) or determinant == 0:
+        raise InputError("torque: expected switches that hold their guards at zero in one way alone")
+    modes = tuple(zip(names, -(matrix.adjugate() * rest) / determinant, strict=True))
+    return replace(equations, definitions=(*modes, *equations.definitions), modes=modes)

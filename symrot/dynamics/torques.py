@@ -154,13 +154,19 @@ def torque_law(structure: Mapping[str, Any], motion: Motion) -> TorqueLaw:
     """
     prefix = structure["prefix"]
     if structure["kind"] == "expression":
-        values = dict(zip(EXPRESSION_NAMES[:4], (symbols.t, *motion.omega_b), strict=True))
-        values.update(zip(EXPRESSION_NAMES[4:], motion.quaternion or (), strict=False))
-        values.update({name: constant(f"{prefix}{name}") for name in structure["parameters"]})
+        values = formula_values(structure, motion)
         torque = Matrix([_finite_formula(source, values) for source in structure["formulas"]])
         return _expression(motion, torque, structure["frame"])
     arguments = {name: field_value(f"{prefix}{name}", pattern) for name, pattern in structure["fields"].items()}
     return LAWS[structure["kind"]](motion, **arguments)
+
+
+def formula_values(structure: Mapping[str, Any], motion: Motion) -> dict[str, Expr]:
+    """Return what the names in the formulas of an expression stand for."""
+    values = dict(zip(EXPRESSION_NAMES[:4], (symbols.t, *motion.omega_b), strict=True))
+    values.update(zip(EXPRESSION_NAMES[4:], motion.quaternion or (), strict=False))
+    values.update({name: constant(f"{structure['prefix']}{name}") for name in structure["parameters"]})
+    return values
 
 
 def _finite_formula(source: str, values: Mapping[str, Expr]) -> Expr:

@@ -135,11 +135,18 @@ def event_library_source(
     quantities: Program, events: Sequence[Event], states: Sequence[str], edges: Sequence[int], scales: Sequence[float]
 ) -> str:
     """Return the C source of a library that finds events; its parameters are those of the quantities."""
+    return guard_library_source(quantities, [_with_pi(event.node) for event in events], states, edges, scales)
+
+
+def guard_library_source(
+    quantities: Program, formulas: Sequence[Node], states: Sequence[str], edges: Sequence[int], scales: Sequence[float]
+) -> str:
+    """Return the C source of a library that finds zeros of formulas in t, omega, q and parameters of the quantities."""
     from symrot.codegen.event_source import event_definitions
 
     columns = {name: f"{name} of t" for name in KNOWN if name != "t"}
-    formulas = [rename(_with_pi(event.node), columns) for event in events]
-    definitions = event_definitions(quantities, formulas, states, edges, scales)
+    columned = [rename(formula, columns) for formula in formulas]
+    definitions = event_definitions(quantities, columned, states, edges, scales)
     head = "#include <float.h>\n#include <math.h>\n#include <stdint.h>\n\n"
     head += "static const double SYMROT_ROUNDING = 0.5*DBL_EPSILON, SYMROT_STATE_ERROR = 4.0*DBL_EPSILON;\n\n"
     return head + definitions + "\n" + Path(__file__).with_name("events.c").read_text(encoding="utf-8")
@@ -202,6 +209,22 @@ def search(
         stop = _settled(library, values, dense, previous, events, held, t0, left, found)
         return found, stop
     return found, None
+
+
+def guard_sign(path: Path | str, formula: int, dense: Dense, piece: Piece, p: Sequence[float]) -> int:
+    """Return the sign that a formula has from the start of a piece on: the first one that is beyond rounding."""
+    library, values = _library(str(path)), (ctypes.c_double * len(p))(*p)
+    first, last = float(piece.edges[0]), float(piece.edges[-1])
+    width, side = 4 * NEAR * max(abs(first), abs(last - first)), 1.0 if last >= first else -1.0
+    while width < abs(last - first):
+        record = piece.record
+        sign: int = library.sign(
+            formula, first + side * width, dense, record.ctypes.data, len(record), ctypes.addressof(values)
+        )
+        if sign:
+            return sign
+        width *= 2
+    return 0
 
 
 def _entries(library: _Library, p: Any, dense: Dense, piece: Piece) -> list[list[float]]:

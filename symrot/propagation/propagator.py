@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from symrot import number
 from symrot.errors import InputError, PropagationError
-from symrot.planner import Plan, make_plan
+from symrot.planner import Plan, make_plan, switched
 from symrot.propagation.method import choose_method
 from symrot.propagation.motion import Motion
 from symrot.propagation.stepping import Samples, Stats, rising
@@ -243,6 +243,10 @@ def propagator(
 
         return EulerPropagator(scene, method, aim, state, switching)
     if torque is None:
+        if switched(scene):
+            from symrot.propagation.switched import SwitchedPropagator
+
+            return SwitchedPropagator(scene, method, aim)
         return Propagator(scene, method, aim)
     if method not in ("auto", "dop853"):
         raise InputError(f"method: expected 'auto' or 'dop853' for a torque that is no formula, got {method!r}")

@@ -66,7 +66,8 @@ NOT_FINITE_SENTENCE = "its rate of change is not finite there"
 class Stats(NamedTuple):
     """What a propagation cost: steps kept and tried again, evaluations of the kernel, seconds in all.
 
-    ``switches`` counts changes of the sequence of Euler angles, where angles are the state.
+    ``switches`` counts changes of the sequence of Euler angles, where angles are the state, and those of torques with
+    switches, whose times, s, are ``switching_times``.
     """
 
     accepted: int
@@ -74,6 +75,7 @@ class Stats(NamedTuple):
     evaluations: int
     seconds: float
     switches: int = 0
+    switching_times: tuple[float, ...] = ()
 
 
 # ------------------------------------------------------------------------------------------------ checks and sentences
@@ -374,6 +376,7 @@ class Task:
         self.allowed, self.pace = stepper.allowance(tolerance)
         self.accepted = self.rejected = self.evaluations = 0
         self.mark = (0, self.t0)  # steps and time when the pace was judged last
+        self.way = 0.0  # the whole of which this is a part, s; 0: this is all
         self.fields: dict[str, int] = {}  # of the run in C: what a method sets beside the rest
 
     def again(self) -> "Task":
@@ -486,7 +489,8 @@ class Task:
     def runs(self, end: float) -> Iterator[Any]:
         """Yield the C side's run, set up for each stretch between switching times, and count what it cost."""
         stepper = self.stepper
-        run = stepper.new_run(t=self.t0, pace=abs(end - self.t0) * self.pace, max_step=self.max_step, **self.fields)
+        pace = (self.way or abs(end - self.t0)) * self.pace
+        run = stepper.new_run(t=self.t0, pace=pace, max_step=self.max_step, **self.fields)
         run.y[:] = self.y0
         try:
             for stretch in stretches(self.t0, end, self.breaks):
