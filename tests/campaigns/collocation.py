@@ -9,6 +9,7 @@ coefficients of its derivative are at rounding level.
 from collections.abc import Callable, Sequence
 from functools import cache
 from itertools import pairwise
+from time import perf_counter
 from typing import Any, NamedTuple
 
 import mpmath
@@ -21,6 +22,7 @@ __all__ = ["Dense", "Feature", "follow", "matrices", "time_mesh"]
 NODES = 16
 MOST_ITERATIONS = 60
 MOST_STEPS = 60_000
+MOST_SECONDS = 25.0
 NEAR, FAR = 0.5, 1 / 3  # of the width of a feature, of the distance to it
 
 
@@ -159,7 +161,7 @@ def follow(
     ArithmeticError
         If the steps shrink to nothing or become too many: the case is none for this reference.
     """
-    basis, dense = matrices(), Dense()
+    basis, dense, deadline = matrices(), Dense(), perf_counter() + MOST_SECONDS
     y = np.asarray(y0, dtype=EXTENDED)
     in_time = [f for f in features if f.value is None]
     in_state = [f for f in features if f.value is not None]
@@ -173,7 +175,7 @@ def follow(
             now = left if left <= 1.1 * h else h
             step = _step(rates, basis, t, sign * now, y, scales, accuracy)
             steps += 1
-            if steps > MOST_STEPS or now < 1e-17 * max(1.0, abs(float(t))):
+            if steps > MOST_STEPS or perf_counter() > deadline or now < 1e-17 * max(1.0, abs(float(t))):
                 raise ArithmeticError(f"the reference came to t = {float(t)!r} s in {steps} steps")
             if step is None:
                 h = now / 2
@@ -206,28 +208,35 @@ def _step(rates: Any, basis: Basis, t: Any, h: Any, y: Any, scales: Any, accurac
     """Return (rates at the nodes, coefficients, whether it was easy), or None where the step is too long."""
     times = (t + h * basis.nodes)[:, None]
     values = np.broadcast_to(rates(EXTENDED(t) + h / 1000, y), (NODES, *y.shape))
-    size = np.asarray(scales, dtype=EXTENDED)
-    last, stalled = np.inf, 0
+    size = np.asarray(scales, dtype=EXTENDED) / abs(h)
+    last, stalled, noise = np.inf, 0, 0.0
     for iteration in range(MOST_ITERATIONS):
         states = y + h * np.tensordot(basis.integral, values, axes=(1, 0))
         found = rates(times, states)
         if not np.isfinite(found).all():
             return None
-        change = float(np.max(np.abs(found - values) / size) * abs(h))
+        change = float(np.max(np.abs(found - values) / size))
         values = found
-        if change <= accuracy / 4:
+        if change <= max(accuracy / 4, noise):
             break
         stalled += change > 0.7 * last
-        if iteration > 3 and stalled > 2 and change < 4 * accuracy:
-            break
+        if stalled and not noise:
+            noise = _noise(rates, times, states, values, size)
         if iteration > 3 and (change > 1e3 or stalled > 4):
             return None
         last = change
     else:
         return None
     coefficients = np.tensordot(basis.analysis, values, axes=(1, 0))
-    tail = float(np.max(np.abs(coefficients[-2:]) / size) * abs(h))
-    if tail > 20 * accuracy:
+    tail = float(np.max(np.abs(coefficients[-2:]) / size))
+    if tail > 20 * accuracy and tail > (noise or _noise(rates, times, states, values, size)):
         return None
-    easy = float(np.max(np.abs(coefficients[-6:]) / size) * abs(h)) < accuracy and iteration < 20
+    easy = float(np.max(np.abs(coefficients[-6:]) / size)) < accuracy and iteration < 20
     return values, coefficients, easy
+
+
+def _noise(rates: Any, times: Any, states: Any, values: Any, size: Any) -> float:
+    """Return what the last bits of times and states change the rates by: below that nothing can be resolved."""
+    ulps = 1 + 2 * np.finfo(EXTENDED).eps
+    moved = max(np.max(np.abs(rates(times * t, states * y) - values) / size) for t, y in ((ulps, 1), (1, ulps)))
+    return 4 * float(moved)

@@ -9,11 +9,12 @@ from typing import Any
 __all__ = ["run_all"]
 
 STARTING = 60.0  # s that the first case of a process is given for imports and compilers
+PREPARING = 120.0  # s for what comes before the part of a case that has a limit
 
 
-def _serve(work: Callable[[Any], Any], connection: Any) -> None:
+def _serve(work: Callable[..., Any], connection: Any) -> None:
     while (job := connection.recv()) is not None:
-        connection.send(work(job))
+        connection.send((True, work(job, lambda: connection.send((False, None)))))
 
 
 class _Worker:
@@ -23,12 +24,15 @@ class _Worker:
         self.process.start()
         other.close()
         self.job: Any = None
-        self.deadline, self.first = 0.0, True
+        self.deadline, self.first, self.judged = 0.0, True, False
 
-    def give(self, job: Any, limit: float) -> None:
-        self.job, self.deadline = job, time.monotonic() + limit + (STARTING if self.first else 0.0)
-        self.first = False
+    def give(self, job: Any) -> None:
+        self.job, self.judged, self.deadline = job, False, time.monotonic() + PREPARING
         self.connection.send(job)
+
+    def started(self, limit: float) -> None:
+        self.judged, self.deadline = True, time.monotonic() + limit + (STARTING if self.first else 0.0)
+        self.first = False
 
     def end(self) -> None:
         self.process.kill()
@@ -37,15 +41,18 @@ class _Worker:
 
 
 def run_all(
-    work: Callable[[Any], Any], jobs: list[Any], workers: int, limit: float, broken: Callable[[Any, str], Any]
+    work: Callable[..., Any], jobs: list[Any], workers: int, limit: float, broken: Callable[[Any, str], Any]
 ) -> Iterator[Any]:
-    """Yield ``work(job)`` for each job, in the order in which they end; ``broken(job, why)`` for one that does not."""
+    """Yield ``work(job, started)`` for each job, in the order in which they end; ``broken(job, why)`` for one that does not.
+
+    The job calls ``started`` when the part begins that has the limit, s.
+    """
     context = multiprocessing.get_context("spawn")
     waiting = list(reversed(jobs))
     pool = [_Worker(context, work) for _ in range(min(workers, len(jobs)))]
     try:
         for worker in pool:
-            worker.give(waiting.pop(), limit)
+            worker.give(waiting.pop())
         while busy := [worker for worker in pool if worker.job is not None]:
             next_deadline = min(worker.deadline for worker in busy)
             ready = wait([worker.connection for worker in busy], max(0.0, next_deadline - time.monotonic()))
@@ -53,11 +60,15 @@ def run_all(
                 result, dead = None, ""
                 if worker.connection in ready:
                     try:
-                        result = worker.connection.recv()
+                        done, result = worker.connection.recv()
                     except EOFError:
                         dead = "traceback"
+                    else:
+                        if not done:
+                            worker.started(limit)
+                            continue
                 elif time.monotonic() > worker.deadline:
-                    dead = "no end"
+                    dead = "no end" if worker.judged else "doubt"
                 else:
                     continue
                 job, worker.job = worker.job, None
@@ -66,7 +77,7 @@ def run_all(
                     pool[pool.index(worker)] = worker = _Worker(context, work)
                 yield broken(job, dead) if dead else result
                 if waiting:
-                    worker.give(waiting.pop(), limit)
+                    worker.give(waiting.pop())
     finally:
         for worker in pool:
             worker.end()

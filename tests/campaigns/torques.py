@@ -9,6 +9,7 @@ import argparse
 import sys
 import time
 from collections import Counter
+from collections.abc import Callable
 from functools import partial
 
 import numpy as np
@@ -34,13 +35,18 @@ def case_of(family: str, index: int, seed: int, methods: tuple[str, ...] = ()) -
     return case
 
 
-def _work(job: tuple[str, int], seed: int, methods: tuple[str, ...]) -> Result:
-    return judge(case_of(*job, seed, methods))
+def _work(job: tuple[str, int], started: Callable[[], None], seed: int, methods: tuple[str, ...]) -> Result:
+    return judge(case_of(*job, seed, methods), started)
 
 
 def _broken(job: tuple[str, int], why: str, seed: int, methods: tuple[str, ...], limit: float) -> Result:
     case = case_of(*job, seed, methods)
-    detail = f"not ended after {limit:g} s" if why == "no end" else "the process died"
+    details = {
+        "no end": f"not ended after {limit:g} s",
+        "doubt": "the reference did not end",
+        "traceback": "the process died",
+    }
+    detail = details[why]
     return Result(case.key, case.family, case.method, case.shape, why, detail, 0.0, 1.0, limit)
 
 

@@ -5,17 +5,21 @@ import re
 import time
 import traceback
 import warnings
+from collections.abc import Callable
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from tests.campaigns.cases import Case, scene_of
+from tests.campaigns.checks import contradiction
 from tests.campaigns.formulas import torque_function
 from tests.campaigns.references import Truth, attitude_apart, reference
 
 __all__ = ["ALLOWED", "OUTCOMES", "Answer", "Result", "judge", "measure", "run"]
 
 ALLOWED = 20.0  # tolerances
+CHECKED_AGAIN = 8  # every so many-th case that no law decides is followed twice
 LARGEST_ERROR = 0.1  # where growth allows more than this share of the motion, nothing is asked any more
 
 OUTCOMES = {
@@ -54,7 +58,7 @@ class Result(NamedTuple):
     seconds: float  # of symrot
 
 
-def run(case: Case, problem: Any = None) -> list[Answer]:
+def run(case: Case) -> list[Answer]:
     """Return symrot's answers: one, or one for each motion of an ensemble."""
     import symrot
 
@@ -148,20 +152,21 @@ def measure(answer: Answer, truth: Truth, tolerance: float) -> tuple[str, float,
     return outcome, worst, growth, answer.sentence if outcome == "sentence" else detail
 
 
-def judge(case: Case) -> Result:
-    """Return the outcome of a case."""
+def judge(case: Case, started: Callable[[], None] = lambda: None) -> Result:
+    """Return the outcome of a case; ``started`` is called when the truth is known and symrot's turn comes."""
 
     def result(outcome: str, detail: str, worst: float = 0.0, growth: float = 1.0, seconds: float = 0.0) -> Result:
         return Result(case.key, case.family, case.method, case.shape, outcome, detail, worst, growth, seconds)
 
     try:
         truths = [reference(case.problem)]
+        if reason := contradiction(case.problem, truths[0], again=case.index % CHECKED_AGAIN == 0):
+            return result("doubt", reason)
         for omega in case.others:
-            from dataclasses import replace
-
             truths.append(reference(replace(case.problem, omega=omega)))
     except ArithmeticError as reason:
         return result("doubt", str(reason))
+    started()
     began = time.perf_counter()
     try:
         answers = run(case)
