@@ -1,0 +1,230 @@
+"""Torques with narrow features, in time and in the states: no step passes over them, and dense output agrees.
+
+Momentum gives omega under a torque of time about the axis of rotation; work gives it under a torque of the angle. The
+bodies that tumble are followed by the reference of the campaign, which is told where the features are.
+"""
+
+import subprocess
+import sys
+from math import cosh, erf, exp, log, pi, sqrt
+
+import numpy as np
+import pytest
+from scipy.special import erf as erfs
+from scipy.special import ive
+
+import symrot
+from symrot.errors import PropagationError
+from tests.campaigns.collocation import Feature
+from tests.campaigns.references import Problem, attitude_apart, reference
+
+ALLOWED = 20  # tolerances, as promised
+STEPPED = ("auto", "taylor", "dop853")
+
+
+def scene(torque, parameters=None, omega=(0, 0, 0), stop=4.0, moments=(1, 2, 3)):
+    torque = ["0", "0", torque] if isinstance(torque, str) else list(torque)
+    return symrot.Scene.from_dict({
+        "schema": 1, "body": {"principal": list(moments)}, "initial": {"omega": list(omega)}, "span": {"t": [0, stop]},
+        "torque": [{"kind": "expression", "torque": torque, "parameters": parameters or {}}],
+    })  # fmt: skip
+
+
+def rates(trajectory, times):
+    """omega_3 at the samples and, by dense output, at more times: the times and the rates."""
+    dense = np.sort(np.random.default_rng(5).uniform(times[0], times[-1], 200))
+    return np.concatenate([trajectory.t, dense]), np.concatenate([trajectory.omega[:, 2], trajectory.sol(dense)[2]])
+
+
+def log_cosh(x):
+    x = np.abs(x)
+    return x + np.log1p(np.exp(-2 * x)) - log(2)
+
+
+IMPULSES = {  # torque of t, c and w -> its integral from 0
+    "(1+tanh((t-c)/w))/2": lambda t, c, w: (t + w * (log_cosh((t - c) / w) - log_cosh(c / w))) / 2,
+    "exp(-((t-c)/w)**2)": lambda t, c, w: w * sqrt(pi) / 2 * (erfs((t - c) / w) + erf(c / w)),
+    "1/cosh((t-c)/w)**2": lambda t, c, w: w * (np.tanh((t - c) / w) + np.tanh(c / w)),
+    "(t-c)/w*exp(-((t-c)/w)**2)": lambda t, c, w: -w / 2 * (np.exp(-(((t - c) / w) ** 2)) - exp(-((c / w) ** 2))),
+    "1/(1+((t-c)/w)**2)": lambda t, c, w: w * (np.arctan((t - c) / w) + np.arctan(c / w)),
+}
+
+
+@pytest.mark.parametrize("method", STEPPED)
+@pytest.mark.parametrize(
+    ("torque", "start", "c", "w", "stop", "tolerance"),
+    [
+        ("(1+tanh((t-c)/w))/2", 0.0, 1.0, 0.01, 4.0, 1e-12),  # the first scene of the report
+        ("(1+tanh((t-c)/w))/2", 0.0, 1.0, 0.05, 10.0, 1e-12),
+        ("(1+tanh((t-c)/w))/2", 0.0, 5.0, 0.1, 100.0, 1e-12),
+        ("(1+tanh((t-c)/w))/2", 0.3, 1.0, 1e-5, 4.0, 1e-8),
+        ("exp(-((t-c)/w)**2)", 0.0, 500.0, 30.0, 1000.0, 1e-10),
+        ("exp(-((t-c)/w)**2)", 0.0, 50.0, 1.0, 100.0, 1e-12),
+        ("exp(-((t-c)/w)**2)", 0.0, 2.0, 0.1, 10.0, 1e-12),
+        ("exp(-((t-c)/w)**2)", 0.0, 2.0, 0.05, 10.0, 1e-12),
+        ("exp(-((t-c)/w)**2)", 0.0, 2.0, 0.02, 10.0, 1e-12),
+        ("exp(-((t-c)/w)**2)", 0.2, 7.0, 1e-4, 10.0, 1e-9),
+        ("1/cosh((t-c)/w)**2", 0.0, 3.3, 0.003, 10.0, 1e-10),
+        ("(t-c)/w*exp(-((t-c)/w)**2)", 0.0, 6.1, 0.01, 10.0, 1e-10),
+        ("1/(1+((t-c)/w)**2)", 0.0, 2.0, 0.01, 10.0, 1e-12),
+    ],
+)
+def test_the_momentum_is_the_impulse_of_a_torque_of_time(method, torque, start, c, w, stop, tolerance):
+    """3 (omega_3 - start) is the integral of the torque, at samples and by dense output.
+
+    The torque is scaled to an impulse of 3 N m s, relative to which the tolerance is meant.
+    """
+    impulse = IMPULSES[torque]
+    grid = np.linspace(0, stop, 10001)
+    size = max(1e-300, float(np.abs(impulse(np.append(grid, c), c, w)).max()))
+    made = scene(f"m*({torque})", {"c": c, "w": w, "m": 3 / size}, (0, 0, start), stop)
+    times = np.linspace(0, stop, 6)
+    t, omega = rates(symrot.propagator(made, method, tolerance)(times), times)
+    blurred = 4 * 2**-52 * stop / w / 3  # the last bit of t, times the steepest torque
+    assert np.abs(omega - start - impulse(t, c, w) / size).max() < ALLOWED * tolerance * (1 + start) + blurred
+
+
+@pytest.mark.parametrize("method", ["scipy:DOP853", "scipy:LSODA"])
+def test_scipy_sees_the_pulse_too(method):
+    t, omega = rates(
+        symrot.propagator(scene("exp(-(t-50)**2)", None, (0, 0, 0), 100.0, (1, 1, 1)), method, 1e-8)([0.0, 100.0]),
+        [0, 100],
+    )
+    assert np.abs(omega - sqrt(pi) / 2 * (erfs(t - 50) + 1)).max() < ALLOWED * 1e-8 * sqrt(pi)
+
+
+@pytest.mark.parametrize("method", STEPPED)
+def test_a_periodic_pulse_is_seen_every_time(method):
+    """The integral of exp(k*(cos(t)-1)) is a series of Bessel functions."""
+    k, stop = 200.0, 100.0
+    t, omega = rates(
+        symrot.propagator(scene("exp(k*(cos(t)-1))", {"k": k}, stop=stop), method, 1e-12)([0.0, stop]), [0, stop]
+    )
+    n = np.arange(1, 200)
+    true = ive(0, k) * t + 2 * (ive(n, k) / n * np.sin(np.outer(t, n))).sum(axis=1)
+    assert np.abs(omega - true / 3).max() < ALLOWED * 1e-12 * true.max() / 3 + 4 * 2**-52 * k
+
+
+@pytest.mark.parametrize("method", ["taylor", "dop853"])
+@pytest.mark.parametrize("omega", [(0.01, 0.02, 0.03), (0.1, 0, 0.2)], ids=str)
+@pytest.mark.parametrize(
+    ("torque", "parameters", "features", "stop"),
+    [
+        ("m*(tanh((t-2)/w)-tanh((t-4)/w))/2", {"m": 0.05, "w": 0.05}, [(2.0, 0.05), (4.0, 0.05)], 100.0),
+        ("(1+tanh((t-1)/w))/2", {"w": 0.02}, [(1.0, 0.02)], 10.0),
+        ("exp(-((t-2)/w)**2)", {"w": 0.02}, [(2.0, 0.02)], 10.0),
+        ("m*exp(k*(cos(t)-1))", {"m": 0.01, "k": 200.0}, [(0.0, 0.1)], 40.0),
+    ],
+)
+def test_a_tumbling_body_meets_every_pulse(method, omega, torque, parameters, features, stop):
+    period = 2 * pi if "cos" in torque else 0.0
+    told = [Feature(c, w, period=period) for c, w in features]
+    problem = Problem((1, 2, 3), omega, (1, 0, 0, 0), 0.0, 0.0, stop, ("0", "0", torque), parameters, told, speed=1.0)
+    truth = reference(problem)
+    trajectory = symrot.propagator(scene(torque, parameters, omega, stop), method, 1e-10)([0.0, stop / 2, stop])
+    times = np.random.default_rng(3).uniform(0, stop, 50)
+    true, states = truth.motion(times), trajectory.sol(times).T
+    limit = ALLOWED * 1e-10
+    assert np.abs(states[:, :3] - true[:, :3]).max() < limit * max(1, truth.growth[0]) * truth.omega_scale
+    assert attitude_apart(states[:, 3:], true[:, 3:]).max() < limit * max(1, truth.growth[1])
+
+
+@pytest.mark.parametrize("method", STEPPED)
+@pytest.mark.parametrize("w", [0.03, 0.003, 0.001, 0.0001])
+def test_a_bump_of_the_angle_does_its_work(method, w):
+    """C (omega^2 - 4)/2 is the work of m*exp(-((angle - c)/w)^2), wherever the body is; every angle is below a turn."""
+    c, m = 1.3, 0.3 * 4 / w
+    made = scene("m*exp(-((2*atan2(q3, q0)-c)/w)**2)", {"c": c, "w": w, "m": m}, (0, 0, 2), 1.4)
+    times = np.random.default_rng(2).uniform(0, 1.4, 40)
+    states = symrot.propagator(made, method, 1e-10)([0.0, 1.4]).sol(times)
+    angle = 2 * np.arctan2(states[6], states[3])
+    work = m * w * sqrt(pi) / 2 * (erfs((angle - c) / w) + erf(c / w))
+    blurred = ALLOWED * 1e-10 * m / 2 / 3  # where the angle may be off by 20 tolerances, inside the bump
+    inside = np.abs(angle - c) < 6 * w
+    assert (np.abs(states[2] - np.sqrt(4 + 2 * work / 3)) < ALLOWED * 1e-10 * 2.4 + blurred * inside).all()
+    assert (angle > 2 * c).any()
+
+
+@pytest.mark.parametrize("method", STEPPED)
+def test_a_soft_stop_sends_the_body_back(method):
+    """A torque of the angle alone that turns the body round gives back its rate."""
+    text = "-m*(1+tanh((2*atan2(q3, q0)-c)/w))/2"
+    made = scene(text, {"c": 1.0, "w": 1e-3, "m": 400.0}, (0, 0, 2), 0.9)
+    last = symrot.propagator(made, method, 1e-10)([0.0, 0.9])
+    assert abs(last.omega[-1, 2] + 2) < ALLOWED * 1e-10 * 2
+    assert 0 < 2 * np.arctan2(last.quaternion[-1, 3], last.quaternion[-1, 0]) < 0.9
+
+
+@pytest.mark.parametrize("method", STEPPED)
+def test_an_ensemble_meets_the_pulse(method):
+    starts = [(0, 0, 0), (0, 0, 0.1), (0, 0, -3)]
+    made = scene("m*exp(-((t-c)/w)**2)", {"c": 2.0, "w": 0.01, "m": 300.0}, stop=10.0)
+    ensemble = symrot.propagate_ensemble(made, omega=starts, t=[0.0, 1.9, 10.0], method=method, tolerance=1e-10)
+    assert ensemble.success
+    assert np.abs(ensemble.omega[:, 2, 2] - np.array(starts)[:, 2] - sqrt(pi)).max() < ALLOWED * 1e-10 * 1.8
+
+
+@pytest.mark.parametrize("torque", ["exp(t**3)", "exp(exp(t))", "cosh(100*t)", "1/(t-1/3)**3"])
+def test_overflow_and_poles_end_in_a_sentence(torque):
+    """Every method says how far it came, within a time that only a run without an end exceeds."""
+    code = f"""
+import symrot
+from symrot.errors import PropagationError
+scene = symrot.Scene.from_dict({{"schema": 1, "body": {{"principal": [1, 2, 3]}}, "initial": {{"omega": [0, 0, 1]}},
+    "span": {{"t": [0, 20]}}, "torque": [{{"kind": "expression", "torque": ["0", "0", {torque!r}]}}]}})
+for method in ("auto", "taylor", "dop853"):
+    try:
+        symrot.propagator(scene, method, 1e-10)([20.0])
+    except PropagationError as error:
+        print(error)
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=20)
+    assert done.returncode == 0, done.stderr
+    assert len([line for line in done.stdout.splitlines() if "t =" in line]) == 3
+
+
+@pytest.mark.parametrize("method", STEPPED)
+@pytest.mark.parametrize("torque", ["step(t-c)", "(1+sign(t-c))/2", "where(t < c, 0, 1)", "(1+(t-c)/abs(t-c))/2"])
+def test_a_switch_is_located_to_the_last_bits(method, torque):
+    """omega_3 is (t - c)/3 behind the switch, to rounding of the tolerance 1e-12."""
+    c = 1.2345678901234567
+    times = [0.0, 4.0]
+    t, omega = rates(symrot.propagator(scene(torque, {"c": c}), method, 1e-12)(times), times)
+    assert np.abs(omega - np.maximum(t - c, 0) / 3).max() < ALLOWED * 1e-12
+
+
+@pytest.mark.parametrize("method", STEPPED)
+def test_a_thruster_fires_a_thousand_times(method):
+    """1000 pulses of 10 ms in 1000 s add up to m times 10 s."""
+    made = scene("where(mod(t, 1) < 0.01, m, 0)", {"m": 0.3}, stop=1000.0)
+    t, omega = rates(symrot.propagator(made, method, 1e-10)([0.0, 1000.0]), [0, 1000])
+    on = np.floor(t) * 0.01 + np.minimum(t - np.floor(t), 0.01)
+    assert np.abs(omega - 0.1 * on).max() < ALLOWED * 1e-10
+
+
+@pytest.mark.parametrize("method", STEPPED)
+def test_dry_friction_stops_and_holds_the_body(method):
+    """-sign(omega_3) stops a body with C = 3 that turns at 1 rad/s after 3 s, and 3/2 rad."""
+    trajectory = symrot.propagator(scene("-sign(omega_3)", None, (0, 0, 1), 10.0), method, 1e-10)(
+        np.linspace(0, 10, 11)
+    )
+    assert np.abs(trajectory.omega[:, 2] - np.maximum(1 - trajectory.t / 3, 0)).max() < ALLOWED * 1e-10
+    angle = 2 * np.arctan2(trajectory.quaternion[-1, 3], trajectory.quaternion[-1, 0])
+    assert abs(angle - 1.5) < ALLOWED * 1e-10
+
+
+def test_a_motion_that_breaks_off_says_when():
+    with pytest.raises(PropagationError, match=r"t = 0\.333"):
+        symrot.propagator(scene("1/(t-1/3)", None, (0, 0, 1), 1.0), "dop853", 1e-8)([1.0])
+
+
+def test_the_closed_forms_are_integrals_of_the_torques():
+    """Each antiderivative of this file, by Gauss's rule on pieces of a width."""
+    x, weights = np.polynomial.legendre.leggauss(30)
+    c, w = 1.1, 0.07
+    edges = np.arange(0, 3, w / 2)
+    t = edges[:-1, None] + w / 4 * (x + 1)
+    for torque, impulse in IMPULSES.items():
+        values = eval(torque, {"t": t, "c": c, "w": w, "tanh": np.tanh, "exp": np.exp, "cosh": np.cosh})
+        assert abs((values * weights).sum() * w / 4 - impulse(edges[-1], c, w)) < 1e-14, torque
+    assert abs(log_cosh(3.0) - log(cosh(3.0))) < 1e-15
