@@ -69,10 +69,10 @@ def _formula(value: Any, where: str) -> str:
     if len(value) > LONGEST_FORMULA:
         expected(where, f"a formula of at most {LONGEST_FORMULA} characters", value, f"it has {len(value)}")
     node = expression.parse(value, where, switching=True)
-    if error := condition_error(node):
-        expected(where, error, value)
     if _depth(node) > DEEPEST_FORMULA:
         expected(where, f"a formula of at most {DEEPEST_FORMULA} levels", value, "put brackets around groups of terms")
+    if error := condition_error(node):
+        expected(where, error, value)
     if _divides_by_zero(node):
         expected(where, "a formula with finite values", value, "it divides by zero")
     return value.strip()

@@ -335,7 +335,7 @@ CHOICES = {
     "spun up, attitude asked for": ("taylor", lambda: spun_up(["omega", "quaternion"])),
     "spun up without damping, attitude asked for": ("exact", lambda: spun_up(["omega", "quaternion"], damped=False)),
     "drag at rest": ("dop853", lambda: torque("damping", quadratic=0.1)),
-    "a size": ("dop853", lambda: torque("expression", torque=["0", "0", "-abs(omega_3)"])),
+    "a size": ("taylor", lambda: torque("expression", torque=["0", "0", "-abs(omega_3)"])),
     "a root": ("dop853", lambda: torque("expression", torque=["0", "0", "sqrt(omega_1**2 + omega_2**2)"])),
 }  # fmt: skip
 

@@ -9,7 +9,7 @@ series, and a product is the only rule with a sum over n terms besides those sol
 product ``w = u v``    ``w[n] = sum(u[k] v[n-k], k = 0..n)``; a square adds each pair once and doubles it
 quotient ``w v = u``   ``w[n] = (u[n] - sum(v[k] w[n-k], k = 1..n))/v[0]``
 root ``w w = u``       ``w[n] = (u[n] - sum(w[k] w[n-k], k = 1..n-1))/(2 w[0])``
-driven                 ``n w[n] = s sum(e[k] v[n-k], k = 1..n)``: ``t w' = s e v``, ``e = t u'``; exp, sin, tan, ...
+driven                 ``n w[n] = s sum(e[k] v[n-k], k = 1..n)``: ``t w' = s e v``, ``e = t u'``; exp, sin, tan, sech
 primitive              ``n w[n] = (g[n] - sum(e[k] v[n-k], k = 1..n-1))/v[0]``: ``v e = g``, ``e = t w'``; log, atan
 clock                  ``n w[n] = s a v[n-1]``: exp, sin, cos, sinh, cosh of ``a t + b``
 =====================  ====================================================================================
@@ -99,6 +99,7 @@ class _Builder:
         self.states, self.parameters = inputs["y"], inputs.get("p", ())
         self.series: list[Series] = []
         self.known: dict[tuple[Any, ...], int] = {}
+        self.cosh_arguments: dict[int, _Linear] = {}
         self.values: dict[str, _Linear] = {name: _Linear(("symbol", name), {}) for name in self.parameters}
         for i, name in enumerate(self.states):
             self.values[name] = _alone(self.add(Series("state", number=i)))
@@ -110,7 +111,7 @@ class _Builder:
         for name, node in self.program.temporaries:
             self.values[name] = self.read(node)
         rates = tuple(self.sum_of(self.read(node)) for _, node in self.program.outputs)
-        return Recurrences(self.states, self.parameters, tuple(self.series), rates)
+        return _without_unused(Recurrences(self.states, self.parameters, tuple(self.series), rates))
 
     def add(self, series: Series) -> int:
         if series not in self.known:
@@ -175,10 +176,34 @@ class _Builder:
         if not right.terms:
             return _scaled(left, _folded(("/", ONE, _value(right))))
         b, v = self.factored(right)
+        over = self.reciprocal(v)
+        if over is not None:
+            return _scaled(self.product(left, over), _folded(("/", ONE, b)))
         if left.terms:
             a, u = self.factored(left)
             return _Linear(None, {self.add(Series("quotient", (u, v))): _folded(("/", a, b))})
         return _Linear(None, {self.add(Series("quotient", (v,))): _folded(("/", _value(left), b))})
+
+    def reciprocal(self, number: int) -> _Linear | None:
+        """Return 1/v as series of its own where v is a product of hyperbolic cosines, which overflow; else None."""
+        series = self.series[number]
+        if series.rule == "product":
+            left, right = map(self.reciprocal, series.operands)
+            return None if left is None or right is None else self.product(left, right)
+        if number not in self.cosh_arguments:
+            return None
+        return self.secant(self.cosh_arguments[number])
+
+    def secant(self, argument: _Linear) -> _Linear:
+        """Return sech: t w' = -tanh(u) w t u'."""
+        u = self.series_of(argument)
+        if ("sech", u) not in self.known:
+            ((tangent, _),) = self.tangent("tanh", argument).terms.items()
+            drive, own = self.theta(u), len(self.series)
+            self.known[("sech", u)] = own
+            self.series.append(Series("driven", (drive, own + 1, u), (), "sech", -1))
+            self.add(Series("product", (tangent, own)))
+        return _alone(self.known[("sech", u)])
 
     def power(self, base: _Linear, exponent: int) -> _Linear:
         if exponent < 0:
@@ -226,6 +251,8 @@ class _Builder:
         """Add both of a pair that drive each other: sin and cos, sinh and cosh."""
         sine, cosine, *signs = HALF_TURNS[name]
         first = self.driven(((sine, signs[0]), (cosine, signs[1])), (1, 0), argument)
+        if cosine == "cosh":
+            self.cosh_arguments[first + 1] = argument
         return _alone(first + (name == cosine))
 
     def exponential(self, name: str, argument: _Linear) -> _Linear:
@@ -284,6 +311,27 @@ class _Builder:
 
     def theta_form(self, form: _Linear) -> _Linear:
         return _alone(self.theta(self.series_of(form))) if form.terms else _Linear(ZERO, {})
+
+
+def _without_unused(system: Recurrences) -> Recurrences:
+    """Return a system without the series that neither a rate nor another series needs; states stay."""
+    needed = {i for i, series in enumerate(system.series) if series.rule == "state"}
+    waiting = [operand for rate in system.rates for operand in rate.operands]
+    while waiting:
+        number = waiting.pop()
+        if number not in needed:
+            needed.add(number)
+            waiting += system.series[number].operands
+    if len(needed) == len(system.series):
+        return system
+    place = {old: new for new, old in enumerate(sorted(needed))}
+
+    def moved(series: Series) -> Series:
+        return series._replace(operands=tuple(place[operand] for operand in series.operands))
+
+    return system._replace(
+        series=tuple(moved(system.series[old]) for old in place), rates=tuple(map(moved, system.rates))
+    )
 
 
 def _alone(series: int) -> _Linear:

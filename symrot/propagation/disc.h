@@ -67,6 +67,15 @@ static inline symrot_disc symrot_disc_cos(symrot_disc a) { return symrot_disc_wa
 static inline symrot_disc symrot_disc_sinh(symrot_disc a) { return symrot_disc_wave(sinh(a.c), cosh(a.c), a.r); }
 static inline symrot_disc symrot_disc_cosh(symrot_disc a) { return symrot_disc_wave(cosh(a.c), sinh(a.c), a.r); }
 
+/* Far from zero |sech(z)| <= 2 e/(1 - e^2) with e = exp(-(|c| - r)); near it, one over the hyperbolic cosine. */
+static inline symrot_disc symrot_disc_sech(symrot_disc a)
+{
+    const double far = exp(a.r - fabs(a.c));
+    const symrot_disc near = fabs(a.c) < 350.0 ? symrot_disc_inverse(symrot_disc_cosh(a)) : symrot_disc_of(0.0, INFINITY);
+    const double bound = far < 1.0 ? 2.0*far/(1.0 - far*far) : INFINITY;
+    return near.r <= bound ? near : symrot_disc_of(0.0, bound);
+}
+
 /* tan(c + z) - tan(c) = sec(c)^2 tan(z)/(1 - tan(c) tan(z)), |tan(z)| <= tan(r). */
 static inline symrot_disc symrot_disc_tan(symrot_disc a)
 {

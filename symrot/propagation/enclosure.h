@@ -26,11 +26,12 @@ static SYMROT_APART double symrot_excess(symrot_path path, double t, double unit
     for (int b = 0; b < SYMROT_BORDERS; ++b)
         for (int i = symrot_borders[b]; i < symrot_borders[b + 1]; ++i) {
             const double lack = share*deviation[i];
-            if (!(lack/allowed[b] <= worst)) worst = lack/allowed[b];
-            if (b + 1 < SYMROT_BORDERS && !(size*lack/allowed[b + 1] <= worst))  /* a rate that is off turns the body */
+            if (!(lack < INFINITY)) return INFINITY;  /* no bound, or none that is a number */
+            if (lack/allowed[b] > worst) worst = lack/allowed[b];
+            if (b + 1 < SYMROT_BORDERS && size*lack/allowed[b + 1] > worst)  /* a rate that is off turns the body */
                 worst = size*lack/allowed[b + 1];
         }
-    return worst < INFINITY ? worst : INFINITY;
+    return worst;
 }
 
 /*

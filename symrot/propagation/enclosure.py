@@ -60,6 +60,15 @@ def _wave(value: Callable[[float], float], slope: Callable[[float], float]) -> C
     return rule
 
 
+def _sech(a: Disc) -> Disc:
+    far = math.exp(min(a.radius - abs(a.centre), 1.0))
+    bound = 2.0 * far / (1.0 - far * far) if far < 1.0 else math.inf
+    if abs(a.centre) + a.radius > 350.0:
+        return Disc(0.0, bound)
+    near = _inverse(FUNCTIONS["cosh"](a))
+    return near if near.radius <= bound else Disc(0.0, bound)
+
+
 def _tan(a: Disc) -> Disc:
     value = math.tan(a.centre)
     most = math.tan(a.radius) if a.radius < 1.5 else math.inf
@@ -99,7 +108,7 @@ FUNCTIONS: dict[str, Callable[..., Disc]] = {
     "sqrt": _sqrt, "exp": _exp, "log": _log, "tan": _tan, "tanh": _tanh, "atan": _atan, "atan2": _atan2,
     "sin": _wave(math.sin, math.cos), "cos": _wave(math.cos, math.sin),
     "sinh": _wave(math.sinh, math.cosh), "cosh": _wave(math.cosh, math.sinh),
-    "asin": _arc(math.asin), "acos": _arc(math.acos),
+    "asin": _arc(math.asin), "acos": _arc(math.acos), "sech": _sech,
 }  # fmt: skip
 
 
@@ -158,7 +167,9 @@ class Deviations:
         return FUNCTIONS[series.function](*own)
 
 
-_MATH: dict[str, Callable[..., float]] = {name: getattr(math, name) for name in FUNCTIONS} | {"abs": abs}
+_MATH: dict[str, Callable[..., float]] = {name: getattr(math, name) for name in FUNCTIONS if name != "sech"} | {
+    "abs": abs
+}
 
 
 def longest_followed(

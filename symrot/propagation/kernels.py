@@ -178,7 +178,7 @@ def enclosure_text(plan: Plan, rates: Callable[[], Program], edges: Sequence[int
     key = f"enclosure {DENSE_ORDER}\n{kernel_key(plan)}"
     text = library.fetch(key)
     if text is None:
-        from symrot.codegen.enclosure import enclosure_source
+        from symrot.codegen.enclosure_source import enclosure_source
 
         text = enclosure_source(rates(), DENSE_ORDER, edges)
         library.store(key, text)

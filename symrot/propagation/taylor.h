@@ -21,6 +21,10 @@
 #else
 #define SYMROT_RESTRICT restrict
 #endif
+
+/* The hyperbolic secant, which is 0 where the cosine overflows. */
+static inline double sech(double x) { return 1.0/cosh(x); }
+
 #if defined(__GNUC__)
 #define SYMROT_APART __attribute__((noinline))  /* code of its own: registers are given out for its loops alone */
 #define SYMROT_ALIGNED __attribute__((aligned(32)))

@@ -117,7 +117,7 @@ def translation_unit(
     InputError
         For a right-hand side that is not smooth (abs).
     """
-    from symrot.codegen.enclosure import enclosure_source
+    from symrot.codegen.enclosure_source import enclosure_source
     from symrot.codegen.taylor_source import ORDER, taylor_definitions
 
     order = ORDER if order is None else order
