@@ -51,7 +51,7 @@ __all__ = [
 
 MAX_STEPS = 100_000_000  # of a motion, unless another limit is given: a minute or two
 PATIENCE = 200_000  # steps after each of which the pace is judged
-HOPELESS = 10.0  # times the limit: a motion is given up that needs so many more steps at its pace
+HOPELESS = 3.0  # times the limit: a motion is given up that needs so many more steps at its pace
 FEW = 40  # sample times
 SLIVER = 2.0**-100  # of a stretch: a time that no formula tells from its end
 MANY_TICKS = 2**20  # of the clock between two ends: with fewer, it is the clock that ends short steps
