@@ -1,6 +1,6 @@
 """Follow a motion with events: their times, the states there, and the samples up to a terminal one."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Generator, Sequence
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -9,18 +9,9 @@ from numpy.typing import NDArray
 
 from symrot.codegen import library
 from symrot.errors import InputError, PropagationError
-from symrot.propagation.events import (
-    Event,
-    Found,
-    even_pieces,
-    event_library_source,
-    exact_dense,
-    search,
-    stepped,
-    timed,
-    uses_attitude,
-)
+from symrot.propagation.events import Event, Found, event_library_source, search, stepped, timed, uses_attitude
 from symrot.propagation.kernels import error_blocks
+from symrot.propagation.polynomials import Piece, fitted, fitted_pieces
 from symrot.propagation.stepping import CutOff, Stats, both_sides
 from symrot.scene_kernel import bind
 
@@ -31,7 +22,7 @@ __all__ = ["Eventful", "follow"]
 
 Floats = NDArray[np.float64]
 
-TURN_PER_PIECE = 1.0  # rad: how far a motion without steps turns in one piece that is searched
+TURN_PER_PIECE = 2.0  # rad: how far a motion without steps rotates in the first pieces that are fitted
 SAMPLES_OF_RATE = 257  # by which the largest rate of such a motion is judged
 
 
@@ -62,8 +53,7 @@ class Eventful(NamedTuple):
 class _Side(NamedTuple):
     """A motion to one side of its start: how to take it piece by piece, and its states at times on the way."""
 
-    pieces: Any
-    dense: Any
+    pieces: Generator[Piece, None, None]
     states: Callable[[Floats], Floats]
     broken: list[PropagationError]
     cost: Callable[[], tuple[int, int, int]]
@@ -101,9 +91,7 @@ def follow(motion: "Motion", times: Floats, events: Sequence[Event]) -> Eventful
     for part in both_sides(times, motion.start):
         end = float(times[part[-1]])
         side = _side(motion, end)
-        listed, stop = (
-            search(path, events, p, side.dense, side.pieces, motion.start) if end != motion.start else ([], None)
-        )
+        listed, stop = search(path, events, p, side.pieces, motion.start) if end != motion.start else ([], None)
         if side.broken and stop is None:
             error = side.broken[0]
             raise error.later(zero) if isinstance(error, CutOff) else error
@@ -151,32 +139,32 @@ def _side(motion: "Motion", end: float) -> _Side:
         task = motion.stepping.again()
         rows: list[Floats] = []
 
-        def pieces() -> Any:
-            for piece in stepped(task, end, broken):
-                rows.append(piece.record)
-                yield piece
-
         def states(times: Floats) -> Floats:
             found = task.stepper.dense(np.concatenate(rows), times) if rows else np.empty((len(times), len(y0)))
             found[times == start] = y0
             return found
 
-        stepper = task.stepper
-        return _Side(pieces(), stepper.dense_address, states, broken, lambda: _cost(task))
+        return _Side(stepped(task, end, broken, rows), states, broken, lambda: _cost(task))
+    blocks = error_blocks(plan)
     if method == "scipy":
         from symrot.propagation import fallback
 
         recording = fallback.record(
             motion.rates, motion.rate_parameters, y0, start, (start, end), motion.tolerance, **motion.scipy_options
         )
-        anywhere: Callable[[Floats], Floats] = recording
-        cost = recording.stats[:3]
-    else:
-        anywhere, cost = (lambda times: motion.integrate(times)[0]), (0, 0, 0)
-    rates = anywhere(np.linspace(start, end, SAMPLES_OF_RATE))[:, : error_blocks(plan)[0][1]]
-    longest = TURN_PER_PIECE / max(float(np.abs(rates).max()), 1e-300)
-    dense = exact_dense(anywhere, len(y0))
-    return _Side(even_pieces(start, end, longest), dense, anywhere, broken, lambda: cost)
+
+        def steps() -> Generator[Piece, None, None]:
+            for edges in recording.edges(start, end):
+                yield fitted(recording, edges, *blocks)
+
+        return _Side(steps(), recording, broken, lambda: recording.stats[:3])
+
+    def anywhere(times: Floats) -> Floats:
+        return motion.integrate(times)[0]
+
+    rates = anywhere(np.linspace(start, end, SAMPLES_OF_RATE))[:, : blocks[0][1]]
+    longest = min(TURN_PER_PIECE / max(float(np.abs(rates).max()), 1e-300), abs(end - start))
+    return _Side(fitted_pieces(anywhere, start, end, longest, *blocks), anywhere, broken, lambda: (0, 0, 0))
 
 
 def _cost(task: Any) -> tuple[int, int, int]:
