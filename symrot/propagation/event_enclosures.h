@@ -19,15 +19,16 @@
 typedef struct { double lo, hi; } symrot_range;
 typedef struct { double c, r; } symrot_disc;
 
-static const double SYMROT_WIDER = 8.0*DBL_EPSILON, SYMROT_LEAST = 1e-305;  /* of exp */
+static const double SYMROT_WIDER = 8.0*DBL_EPSILON, SYMROT_TINY = 1e-322;
+static const double SYMROT_LEAST = 1e-305, SYMROT_LOG_LEAST = -702.2;  /* of exp */
 
 /* ---------------------------------------------------------------------------------------------- intervals */
 
 static inline symrot_range symrot_outward(double lo, double hi)
 {
     symrot_range x;
-    x.lo = fmin(lo - SYMROT_WIDER*fabs(lo) - DBL_MIN, DBL_MAX);
-    x.hi = fmax(hi + SYMROT_WIDER*fabs(hi) + DBL_MIN, -DBL_MAX);
+    x.lo = fmin(lo - SYMROT_WIDER*fabs(lo) - SYMROT_TINY, DBL_MAX);
+    x.hi = fmax(hi + SYMROT_WIDER*fabs(hi) + SYMROT_TINY, -DBL_MAX);
     if (lo != lo || hi != hi) x.lo = x.hi = NAN;
     return x;
 }
@@ -189,7 +190,7 @@ static inline symrot_disc symrot_disc_of(double c, double r)
 {
     symrot_disc x;
     x.c = c;
-    x.r = r*(1.0 + 64.0*DBL_EPSILON) + SYMROT_WIDER*fabs(c) + DBL_MIN;
+    x.r = r*(1.0 + 64.0*DBL_EPSILON) + SYMROT_WIDER*fabs(c) + SYMROT_TINY;
     return x;
 }
 
@@ -234,6 +235,7 @@ static inline symrot_disc symrot_disc_sqrt(symrot_disc a)
 
 static inline symrot_disc symrot_disc_exp(symrot_disc a)
 {
+    if (a.c + a.r < SYMROT_LOG_LEAST) return symrot_disc_point(SYMROT_LEAST);
     const double value = symrot_exp(a.c);
     return symrot_disc_of(value, value*expm1(a.r) + SYMROT_LEAST);
 }

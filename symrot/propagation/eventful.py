@@ -1,4 +1,4 @@
-"""Follow a motion with events: their times, the states there, and the samples up to a terminal one."""
+"""Follow a motion with events: their times, the states there, and the samples up to and at a terminal one."""
 
 from collections.abc import Callable, Generator, Sequence
 from time import perf_counter
@@ -32,7 +32,7 @@ class Eventful(NamedTuple):
     Attributes
     ----------
     t, states : arrays, shapes (n,) and (n, N)
-        Samples as they were asked for, without those beyond a terminal event.
+        Samples as they were asked for; in place of those beyond a terminal event, one at the event.
     t_events, y_events : lists of arrays, shapes (k,) and (k, N)
         Per event, in rising order of time: when it happened, and the states there.
     kinds : list of lists of str
@@ -81,7 +81,7 @@ def follow(motion: "Motion", times: Floats, events: Sequence[Event]) -> Eventful
         raise InputError(f"events: expected a motion with states that change, got the scene {plan.scene.name!r}")
     quantities = motion.kernel.quantities
     motion = motion if timed(quantities, events) else motion.on_clock(times)
-    zero, asked = motion.epoch, times
+    zero, asked = motion.epoch, times.copy()
     times = times - zero if zero else times
     source = event_library_source(quantities, events, plan.states, *error_blocks(plan))
     path, p = library.build(source, "events"), bind(motion.kernel.quantity_parameters, plan.constants)
@@ -100,6 +100,9 @@ def follow(motion: "Motion", times: Floats, events: Sequence[Event]) -> Eventful
         kept[inside] = True
         states[inside] = side.states(times[inside])
         rows = side.states(np.array([each.t for each in listed]))
+        if stop is not None and times[inside[-1:]].tolist() != [stop]:
+            last = part[len(inside)]  # the first sample beyond becomes the one at the event
+            kept[last], asked[last], states[last] = True, stop + zero, rows[-1]
         found = _joined(found, list(zip(listed, rows, strict=True)), motion.start)
         side.pieces.close()
         counts += side.cost()

@@ -108,7 +108,8 @@ static int symrot_bounded(symrot_range x) { return x.lo >= -DBL_MAX && x.hi <= D
 /* Count operations: some evaluations of an event. */
 static void symrot_spend(symrot_search *search, int evaluations)
 {
-    search->work += evaluations*(double)(SYMROT_COST + 2*search->terms);
+    const int *span = symrot_spans[search->event];
+    search->work += evaluations*(double)(SYMROT_COST + 2*search->terms*(span[1] - span[0]));
 }
 
 static void symrot_add(symrot_search *search, int event, double from, double to, int before, int after)
@@ -232,8 +233,9 @@ static void symrot_shortest(symrot_search *search, int event, double a, double b
     symrot_spend(search, SYMROT_TOUCHES);
     for (int i = 0; i < SYMROT_TOUCHES; ++i) {  /* a kink that touches zero */
         const double t = a + (b - a)*((double)i/(SYMROT_TOUCHES - 1)), value = symrot_value(search, event, t, &own);
-        if (fabs(value) - SYMROT_TOUCHING*own < least) {
-            least = fabs(value) - SYMROT_TOUCHING*own;
+        const double above = value == 0.0 ? 0.0 : fabs(value) - SYMROT_TOUCHING*own;
+        if (above < least) {
+            least = above;
             place = t;
         }
     }

@@ -43,8 +43,8 @@ FIELDS = 5  # of an entry in events.c
 ROOM = 1024  # entries per call
 LONG = 1e-3  # of the motion: an event that stays zero for longer, up to an end, is none
 OPERATIONS_PER_CALL = 2e7  # some 20 ms, after which Python can see an interrupt
-MOST_OPERATIONS, OPERATIONS_PER_ROW = 2e10, 1e6  # of a search; each row of a motion earns more
-MOST_ENTRIES = 2_000_000
+MOST_OPERATIONS, OPERATIONS_PER_ROW = 4e9, 2e5  # of a search; each row of a motion earns more
+MOST_ENTRIES = 500_000
 
 
 class Event(NamedTuple):
@@ -230,7 +230,8 @@ class _Search:
 
     def terms(self, rows: Floats) -> int:
         """Return the number of terms of the polynomials in rows."""
-        return (rows.shape[1] - HEAD) // int(self.library.states)
+        count: int = (rows.shape[1] - HEAD) // self.library.states
+        return count
 
     def sign(self, event: int, t: float, piece: Piece) -> int:
         """Return the sign of an event at a time of a piece, 0 within its rounding errors."""
@@ -238,7 +239,8 @@ class _Search:
         place = int(np.searchsorted(side * edges, side * t, "left")) - 1
         row = np.ascontiguousarray(piece.rows[min(max(place, 0), len(piece.rows) - 1)])
         given = event, t, row.ctypes.data, self.terms(piece.rows), ctypes.addressof(self.p)
-        return int(self.library.sign(*given))
+        value: int = self.library.sign(*given)
+        return value
 
 
 def search(
