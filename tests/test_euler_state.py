@@ -68,6 +68,20 @@ def test_one_of_two_partners_is_always_regular():
         assert (least[1][least[0] < SWITCH] >= math.sqrt(1 - SWITCH**2) - 1e-12).all()
 
 
+@pytest.mark.parametrize("sequence", SEQUENCES)
+def test_torques_odd_in_q_see_one_sign_of_it_in_every_sequence(sequence):
+    """A change of sequence keeps the sign of q, which such a torque sees; so does a start at -q."""
+    body = scene(
+        "4/5", ("1/2", 1, "7/10"), (1, 2, "5/2"), ({"kind": "expression", "torque": ["q1/5", "q0/5", "q3*q1*q2/3"]},)
+    )
+    times = np.linspace(-10, 20, 31)
+    for start in ([1, 0, 0, 0], [-1, 0, 0, 0], [-0.1, 0.7, -0.1, 0.7]):
+        expected = symrot.propagator(body, method="taylor", tolerance=1e-13)(times, quaternion=start)
+        motion = symrot.propagator(body, "taylor", 1e-13, state=sequence)(times, quaternion=start)
+        assert np.abs(motion.omega - expected.omega).max() < 1e-11
+        assert np.abs(motion.quaternion - expected.quaternion).max() < 1e-11
+
+
 @pytest.mark.parametrize("theta", ["1/10", "1/100000", "1/10000000000", 0])
 def test_s34_switching_keeps_error_and_steps_through_the_lock(theta):
     """However near the pass, and through the lock itself: the same error, nearly the same number of steps."""

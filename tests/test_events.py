@@ -150,7 +150,8 @@ def test_a_terminal_event_ends_the_motion(method):
     event = symrot.Event("omega_2", terminal=2, direction=0)
     trajectory = run(scene(), [event, "omega_1"], method, t=np.linspace(0, 30, 301))
     assert trajectory.status == 1 and len(trajectory.t_events[0]) == 2
-    assert trajectory.t[-1] <= trajectory.t_events[0][-1] < trajectory.t[-1] + 0.1
+    assert trajectory.t[-1] == trajectory.t_events[0][-1] and (np.diff(trajectory.t) > 0).all()
+    assert trajectory.t[-2] > trajectory.t[-1] - 0.1 and (trajectory.y[:, -1] == trajectory.y_events[0][-1]).all()
     assert (trajectory.t_events[1] <= trajectory.t_events[0][-1]).all()
     whole = run(scene(), ["omega_1"], method, t=trajectory.t)
     assert abs(whole.omega - trajectory.omega).max() < 1e-14 and whole.status == 0
@@ -167,7 +168,9 @@ def test_directions_and_backward_motion():
     assert (np.diff(two_sided.t_events[0]) > 0).all()
     assert list(two_sided.t_events[1]) == [0.0]
     assert len(two_sided.t_events[2]) == 2 and two_sided.t_events[2][0] < 0 < two_sided.t_events[2][1]
-    assert list(two_sided.t) == [0.0]
+    assert list(two_sided.t) == [two_sided.t_events[2][0], 0.0, two_sided.t_events[2][1]]
+    reverse = run(scene(), [symrot.Event("omega_2", terminal=True)], t=t[::-1])
+    assert list(reverse.t) == list(two_sided.t[::-1]) and (reverse.y == two_sided.y[:, ::-1]).all()
 
 
 def test_an_event_at_the_start_is_listed_and_ends_nothing():

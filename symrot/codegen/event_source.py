@@ -1,16 +1,19 @@
-"""Print formulas whose zeros are sought as C: the value, and a bound of what rounding may have done to it.
+"""Print formulas whose zeros are sought as C: the value with a bound of its rounding errors, and enclosures.
 
 The bound is carried along the tape with the value, operation by operation, to first order: it tells a curve that
 touches zero from one that comes near it, and says below which size a sign means nothing.
 
-The text stands before :file:`events.c`.
+The enclosures, by real intervals and by complex discs, hold all values over an interval of time, from those of the
+states: they show where there is no zero, and bound what samples of the formula cannot see.
+
+The text stands between :file:`event_enclosures.h` and :file:`events.c`.
 """
 
 from collections.abc import Sequence
 from itertools import pairwise
 
 from symrot.codegen.c_source import c_expression
-from symrot.codegen.tape import Operation, tape_of
+from symrot.codegen.tape import Operation, Tape, tape_of
 from symrot.expression import FUNCTIONS, Node
 from symrot.kernel import Program
 
@@ -22,6 +25,10 @@ SLOPES = {  # function -> a bound of its slope, from argument a and value v
     "acos": "1.0/sqrt(1.0 - {a}*{a})", "atan": "1.0/(1.0 + {a}*{a})", "atan2": "1.0/sqrt({a}*{a} + {b}*{b})",
 }  # fmt: skip
 assert set(SLOPES) == set(FUNCTIONS)
+ENCLOSURES = {  # kind -> how a number with an error becomes one, and what nothing is
+    "range": ("symrot_range_around", "symrot_nowhere()"), "disc": ("symrot_disc_of", "symrot_disc_unknown()"),
+}  # fmt: skip
+OPERATIONS = {"+": "add", "-": "sub", "*": "mul", "/": "div", "neg": "neg"}
 
 
 def event_definitions(
@@ -44,30 +51,69 @@ def event_definitions(
     for argument in program.signature.arguments:
         if argument.name == "p":
             places |= {name: f"p[{i}]" for i, (name, *_) in enumerate(argument.components)}
-    known = {"t": "0.0"}
+    known, sizes = {"t": "0.0"}, []
+    for b, (low, high) in enumerate(pairwise(edges)):
+        size = _number(scales[b]) if scales[b] > 0.0 else _largest([f"fabs(y[{i}])" for i in range(low, high)])
+        sizes += [f"    const double size{b} = SYMROT_STATE_ERROR*{size};", f"    (void)size{b};"]
+        known |= {states[i]: f"size{b}" for i in range(low, high)}
+    tapes = [tape_of(program, (), [formula]) for formula in formulas]
+    spans = [_span(tape, states, edges) for tape in tapes]
+    cost = max((len(tape.operations) for tape in tapes), default=1)
+    values = [
+        [text for i, op in enumerate(tape.operations) for text in _statements(i, op, places, known)] for tape in tapes
+    ]
     lines = [
         f"#define SYMROT_STATES {len(states)}",
         f"#define SYMROT_EVENTS {len(formulas)}",
+        f"#define SYMROT_COST {cost}  /* operations in the longest formula */",
+        "",
+        "/* The states that each event depends on: the first, and the one behind the last. */",
+        f"static const int symrot_spans[][2] = {{{', '.join(f'{{{a}, {b}}}' for a, b in [*spans, (0, 0)])}}};",
         "",
         "static double symrot_event(int which, double t, const double *y, const double *p, double *noise)",
-        "{",
-        "    (void)t;",
-        "    (void)y;",
-        "    (void)p;",
+        *_switch(sizes, tapes, values, ["*noise = e{last};", "return v{last};"]),
+        "    *noise = 0.0;",
+        "    return 0.0;",
+        "}",
     ]
-    for b, (low, high) in enumerate(pairwise(edges)):
-        size = _number(scales[b]) if scales[b] > 0.0 else _largest([f"fabs(y[{i}])" for i in range(low, high)])
-        lines += [f"    const double size{b} = SYMROT_STATE_ERROR*{size};", f"    (void)size{b};"]
-        known |= {states[i]: f"size{b}" for i in range(low, high)}
-    lines += ["    switch (which) {"]
-    for number, formula in enumerate(formulas):
-        tape = tape_of(program, (), [formula])
-        lines.append(f"    case {number}: {{")
-        for index, op in enumerate(tape.operations):
-            lines += [f"        const double {text};" for text in _statements(index, op, places, known)]
-        last = tape.outputs[0]
-        lines += [f"        *noise = e{last};", f"        return v{last};", "    }"]
-    return "\n".join([*lines, "    }", "    *noise = 0.0;", "    return 0.0;", "}", ""])
+    for kind, (around, ending) in ENCLOSURES.items():
+        texts = [
+            [f"x{i} = {_enclosed(kind, around, op, places, known)}" for i, op in enumerate(tape.operations)]
+            for tape in tapes
+        ]
+        lines += [
+            "",
+            f"static symrot_{kind} symrot_event_{kind}(",
+            "    int which, double t, double h, const double *y, const double *r, const double *p)",
+            *_switch(["    (void)h;", "    (void)r;", *sizes], tapes, texts, ["return x{last};"], f"symrot_{kind}"),
+            f"    return {ending};",
+            "}",
+        ]
+    return "\n".join([*lines, ""])
+
+
+def _switch(
+    head: Sequence[str],
+    tapes: Sequence[Tape],
+    texts: Sequence[Sequence[str]],
+    ends: Sequence[str],
+    kind: str = "double",
+) -> list[str]:
+    """Return the body of a function of all events, up to what is returned for none."""
+    lines = ["{", "    (void)t;", "    (void)y;", "    (void)p;", *head, "    switch (which) {"]
+    for number, (tape, statements) in enumerate(zip(tapes, texts, strict=True)):
+        lines += [f"    case {number}: {{", *(f"        const {kind} {text};" for text in statements)]
+        lines += [*(f"        {end.format(last=tape.outputs[0])}" for end in ends), "    }"]
+    return [*lines, "    }"]
+
+
+def _span(tape: Tape, states: Sequence[str], edges: Sequence[int]) -> tuple[int, int]:
+    """Return the first state that a formula depends on, and the one behind the last, whole blocks at a time."""
+    used = {op.value for op in tape.operations if op.kind == "symbol"}
+    places = [i for i, name in enumerate(states) if name in used]
+    if not places:
+        return 0, 0
+    return max(edge for edge in edges if edge <= places[0]), min(edge for edge in edges if edge > places[-1])
 
 
 def _number(value: float) -> str:
@@ -97,8 +143,27 @@ def _statements(index: int, op: Operation, places: dict[str, str], known: dict[s
     if op.kind == "/":
         shares = f"({errors[0]} + fabs({v})*{errors[1]})/fabs({values[1]})"
         return f"{v} = {values[0]}/{values[1]}", f"{e} = {shares} + {own}"
+    if op.kind == "exp":
+        return f"{v} = symrot_exp({values[0]})", f"{e} = {v}*{errors[0]} + 2.0*{own}"
     slope = SLOPES[op.kind].format(v=v, a=values[0], b=values[-1])
     return (
         f"{v} = {c_expression(('call', op.kind, tuple(('symbol', name) for name in values)))}",
         f"{e} = fabs({slope})*({' + '.join(errors)}) + 2.0*{own}",
     )
+
+
+def _enclosed(kind: str, around: str, op: Operation, places: dict[str, str], known: dict[str, str]) -> str:
+    """Return the enclosure of an operation: a call of a function of :file:`event_enclosures.h`."""
+    if op.kind == "number":
+        return f"symrot_{kind}_point({c_expression(('number', op.value))})"
+    if op.kind == "symbol":
+        place = places[op.value]
+        if place == "t":
+            return f"{around}(t, h)"
+        if op.value in known:
+            return f"{around}({place}, {place.replace('y', 'r')} + {known[op.value]})"
+        return f"symrot_{kind}_point({place})"
+    if op.kind == "*" and op.operands[0] == op.operands[1]:
+        return f"symrot_{kind}_square(x{op.operands[0]})"
+    name = OPERATIONS.get(op.kind, op.kind)
+    return f"symrot_{kind}_{name}({', '.join(f'x{i}' for i in op.operands)})"

@@ -14,6 +14,7 @@ from symrot.dynamics.torque_kinds import TORQUE_KINDS
 from symrot.errors import InputError
 from symrot.inertia.principal import principal_axes, require_admissible, why_not_propagable
 from symrot.planner import Plan, general_structure, make_plan
+from symrot.propagation.real_array import real_array
 from symrot.propagation.stepping import Floats
 from symrot.scene import Initial, Scene
 
@@ -201,10 +202,7 @@ def read_times(t: ArrayLike | None, scene: Scene, n: int) -> Floats:
     if t is None:
         span = scene.span
         return np.linspace(float(span.start), float(span.stop), span.samples)
-    try:
-        times = np.array(t, dtype=np.float64, ndmin=1)
-    except (TypeError, ValueError):
-        raise InputError(f"t: expected times in s, got {number.show(t)}") from None
+    times = real_array(t, "t", "times in s", ndmin=1)
     if times.ndim > 2 or (times.ndim == 2 and len(times) != n):
         raise InputError(
             f"t: expected times in s, shape (m,) for all trajectories or ({n}, m) for each, got shape {times.shape}"
@@ -216,10 +214,7 @@ def read_times(t: ArrayLike | None, scene: Scene, n: int) -> Floats:
 
 def _array(values: ArrayLike, shape: tuple[int, ...], name: str, unit: str) -> Floats:
     wanted = "(" + ", ".join(["n", *map(str, shape)]) + ("," if not shape else "") + ")"
-    try:
-        array = np.array(values, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise InputError(f"{name}: expected an array of shape {wanted} in {unit}, got {number.show(values)}") from None
+    array = real_array(values, name, f"an array of shape {wanted} in {unit}")
     if array.ndim != 1 + len(shape) or array.shape[1:] != shape:
         raise InputError(f"{name}: expected an array of shape {wanted} in {unit}, got shape {array.shape}")
     if not np.isfinite(array).all():

@@ -25,6 +25,7 @@ from symrot.propagation.kernels import error_blocks, scene_kernel
 from symrot.propagation.method import DRIVEN
 from symrot.propagation.motion import Motion
 from symrot.propagation.propagator import Propagator
+from symrot.propagation.real_array import real_array
 from symrot.propagation.stepping import MAX_STEPS, Recording, Stats, Task
 from symrot.scene import Initial, Scene
 from symrot.scene_kernel import SceneKernel
@@ -105,10 +106,8 @@ class _Table:
     most_steps = MOST_STEPS
 
     def __init__(self, times: Any, samples: Any, switching: Sequence[float]) -> None:
-        try:
-            t, values = np.array(times, dtype=np.float64), np.array(samples, dtype=np.float64)
-        except (TypeError, ValueError):
-            raise InputError(f"torque: expected {FORMS}, got {number.show((times, samples))}") from None
+        t = real_array(times, "torque", f"{FORMS}, with times in s")
+        values = real_array(samples, "torque", f"{FORMS}, with samples in N m")
         if t.ndim != 1 or len(t) < 2 or values.shape != (len(t), 3):
             raise InputError(
                 "torque: expected a table of n times in s and samples in N m of shape (n, 3), n from 2 on, got shapes "
@@ -279,10 +278,7 @@ class DrivenPropagator(Propagator):
     def __init__(
         self, scene: Scene, tolerance: float, torque: Any, switching_times: ArrayLike = (), frame: str = "body"
     ) -> None:
-        try:
-            switching = np.array(switching_times, dtype=np.float64, ndmin=1).ravel()
-        except (TypeError, ValueError):
-            switching = np.array([np.nan])
+        switching = real_array(switching_times, "switching_times", "finite times in s", ndmin=1).ravel()
         if not np.isfinite(switching).all():
             raise InputError(f"switching_times: expected finite times in s, got {number.show(switching_times)}")
         if frame not in ("body", "space"):

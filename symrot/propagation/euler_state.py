@@ -8,6 +8,7 @@ The result is an ordinary trajectory, its quaternion rebuilt from the angles: wh
 """
 
 import json
+import math
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import closing
 from dataclasses import replace
@@ -34,7 +35,7 @@ from symrot.propagation.trajectory import Trajectory
 from symrot.scene import Scene
 from symrot.scene_kernel import SceneKernel, bind
 
-__all__ = ["SWITCH", "EulerMotion", "EulerPropagator", "partner", "regularity"]
+__all__ = ["SWITCH", "EulerMotion", "EulerPropagator", "angles_of", "partner", "regularity"]
 
 Floats = NDArray[np.float64]
 
@@ -63,6 +64,18 @@ def regularity(sequence: str, angles: ArrayLike) -> Floats:
     middle = np.asarray(angles, dtype=np.float64)[..., 1]
     found: Floats = np.abs(np.sin(middle) if axes[0] == axes[2] else np.cos(middle))
     return found
+
+
+def angles_of(quaternion: Floats, sequence: str) -> Floats:
+    """Return the angles, rad, that give a quaternion back with its sign, shape (3,).
+
+    A full rotation more about the first axis changes that sign. Torques that are odd in q see it: the sign must
+    survive every change of sequence.
+    """
+    angles: Floats = conversions.quaternion_to_euler(quaternion, sequence)[0]
+    if conversions.euler_to_quaternion(angles, sequence) @ quaternion < 0.0:
+        angles[0] -= math.copysign(2.0 * math.pi, angles[0])
+    return angles
 
 
 class _Kernel(NamedTuple):
@@ -139,15 +152,14 @@ class EulerMotion(Motion):
         count, t, sequence = self._moving, self.start, self.sequence
         whole = np.array(self.plan.initial_state)
         while t != end:
-            angles = conversions.quaternion_to_euler(whole[count:], sequence)[0]
+            angles = angles_of(whole[count:], sequence)
             if self.switching and regularity(sequence, angles) < SWITCH:
                 sequence = partner(sequence)
                 self._count[3] += 1
-                angles = conversions.quaternion_to_euler(whole[count:], sequence)[0]
-            sign = 1.0 if conversions.euler_to_quaternion(angles, sequence) @ whole[count:] > 0.0 else -1.0
+                angles = angles_of(whole[count:], sequence)
             task = self._task(sequence, t, np.concatenate([whole[:count], angles]))
             for first, last, rows in self._steps(task, sequence, end):
-                block = _Block(first, last, self._states_of(task, sequence, sign, rows))
+                block = _Block(first, last, self._states_of(task, sequence, rows))
                 yield block
                 t = last
             if t != end:
@@ -184,12 +196,12 @@ class EulerMotion(Motion):
         hint = f"the Euler angles {sequence} are the state, which fail at gimbal lock"
         return PropagationError(f"{error} ({hint}{'' if self.switching else '; switching=True goes around it'})")
 
-    def _states_of(self, task: Task, sequence: str, sign: float, rows: Floats) -> Callable[[Floats], Floats]:
+    def _states_of(self, task: Task, sequence: str, rows: Floats) -> Callable[[Floats], Floats]:
         count = self._moving
 
         def states(times: Floats) -> Floats:
             found = task.stepper.dense(rows, times)
-            quaternion = sign * conversions.euler_to_quaternion(found[:, count:], sequence)
+            quaternion = conversions.euler_to_quaternion(found[:, count:], sequence)
             return np.hstack([found[:, :count], quaternion])
 
         return states

@@ -1,37 +1,29 @@
-"""Follow a motion with events: their times, the states there, and the samples up to a terminal one."""
+"""Follow a motion with events: their times, the states there, and the samples up to and at a terminal one."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Generator, Sequence
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from symrot.codegen import library
 from symrot.errors import InputError, PropagationError
-from symrot.propagation.events import (
-    Event,
-    Found,
-    even_pieces,
-    event_library_source,
-    exact_dense,
-    search,
-    stepped,
-    timed,
-    uses_attitude,
-)
+from symrot.propagation.events import Event, Found, event_library_source, search, stepped, timed, uses_attitude
 from symrot.propagation.kernels import error_blocks
+from symrot.propagation.polynomials import Piece, fitted, fitted_pieces
 from symrot.propagation.stepping import CutOff, Stats, both_sides
 from symrot.scene_kernel import bind
 
 if TYPE_CHECKING:
     from symrot.propagation.motion import Motion
+    from symrot.propagation.switched import SwitchedMotion
 
 __all__ = ["Eventful", "follow"]
 
 Floats = NDArray[np.float64]
 
-TURN_PER_PIECE = 1.0  # rad: how far a motion without steps turns in one piece that is searched
+TURN_PER_PIECE = 2.0  # rad: how far a motion without steps rotates in the first pieces that are fitted
 SAMPLES_OF_RATE = 257  # by which the largest rate of such a motion is judged
 
 
@@ -41,7 +33,7 @@ class Eventful(NamedTuple):
     Attributes
     ----------
     t, states : arrays, shapes (n,) and (n, N)
-        Samples as they were asked for, without those beyond a terminal event.
+        Samples as they were asked for; in place of those beyond a terminal event, one at the event.
     t_events, y_events : lists of arrays, shapes (k,) and (k, N)
         Per event, in rising order of time: when it happened, and the states there.
     kinds : list of lists of str
@@ -62,8 +54,7 @@ class Eventful(NamedTuple):
 class _Side(NamedTuple):
     """A motion to one side of its start: how to take it piece by piece, and its states at times on the way."""
 
-    pieces: Any
-    dense: Any
+    pieces: Generator[Piece, None, None]
     states: Callable[[Floats], Floats]
     broken: list[PropagationError]
     cost: Callable[[], tuple[int, int, int]]
@@ -91,7 +82,7 @@ def follow(motion: "Motion", times: Floats, events: Sequence[Event]) -> Eventful
         raise InputError(f"events: expected a motion with states that change, got the scene {plan.scene.name!r}")
     quantities = motion.kernel.quantities
     motion = motion if timed(quantities, events) else motion.on_clock(times)
-    zero, asked = motion.epoch, times
+    zero, asked = motion.epoch, times.copy()
     times = times - zero if zero else times
     source = event_library_source(quantities, events, plan.states, *error_blocks(plan))
     path, p = library.build(source, "events"), bind(motion.kernel.quantity_parameters, plan.constants)
@@ -101,9 +92,7 @@ def follow(motion: "Motion", times: Floats, events: Sequence[Event]) -> Eventful
     for part in both_sides(times, motion.start):
         end = float(times[part[-1]])
         side = _side(motion, end)
-        listed, stop = (
-            search(path, events, p, side.dense, side.pieces, motion.start) if end != motion.start else ([], None)
-        )
+        listed, stop = search(path, events, p, side.pieces, motion.start) if end != motion.start else ([], None)
         if side.broken and stop is None:
             error = side.broken[0]
             raise error.later(zero) if isinstance(error, CutOff) else error
@@ -112,6 +101,9 @@ def follow(motion: "Motion", times: Floats, events: Sequence[Event]) -> Eventful
         kept[inside] = True
         states[inside] = side.states(times[inside])
         rows = side.states(np.array([each.t for each in listed]))
+        if stop is not None and times[inside[-1:]].tolist() != [stop]:
+            last = part[len(inside)]  # the first sample beyond becomes the one at the event
+            kept[last], asked[last], states[last] = True, stop + zero, rows[-1]
         found = _joined(found, list(zip(listed, rows, strict=True)), motion.start)
         side.pieces.close()
         counts += side.cost()
@@ -147,36 +139,39 @@ def _side(motion: "Motion", end: float) -> _Side:
     method, plan = motion.choice.method.partition(":")[0], motion.plan
     start, y0 = motion.start, np.array(plan.initial_state, dtype=np.float64)
     broken: list[PropagationError] = []
+    if motion.switched:
+        pieces, path = cast("SwitchedMotion", motion).parts(end, broken)
+        return _Side((piece for piece in pieces), path, broken, lambda: path.stats[:3])
     if method in ("taylor", "dop853"):
         task = motion.stepping.again()
         rows: list[Floats] = []
-
-        def pieces() -> Any:
-            for piece in stepped(task, end, broken):
-                rows.append(piece.record)
-                yield piece
 
         def states(times: Floats) -> Floats:
             found = task.stepper.dense(np.concatenate(rows), times) if rows else np.empty((len(times), len(y0)))
             found[times == start] = y0
             return found
 
-        stepper = task.stepper
-        return _Side(pieces(), stepper.dense_address, states, broken, lambda: _cost(task))
+        return _Side(stepped(task, end, broken, rows), states, broken, lambda: _cost(task))
+    blocks = error_blocks(plan)
     if method == "scipy":
         from symrot.propagation import fallback
 
         recording = fallback.record(
             motion.rates, motion.rate_parameters, y0, start, (start, end), motion.tolerance, **motion.scipy_options
         )
-        anywhere: Callable[[Floats], Floats] = recording
-        cost = recording.stats[:3]
-    else:
-        anywhere, cost = (lambda times: motion.integrate(times)[0]), (0, 0, 0)
-    rates = anywhere(np.linspace(start, end, SAMPLES_OF_RATE))[:, : error_blocks(plan)[0][1]]
-    longest = TURN_PER_PIECE / max(float(np.abs(rates).max()), 1e-300)
-    dense = exact_dense(anywhere, len(y0))
-    return _Side(even_pieces(start, end, longest), dense, anywhere, broken, lambda: cost)
+
+        def steps() -> Generator[Piece, None, None]:
+            for edges in recording.edges(start, end):
+                yield fitted(recording, edges, *blocks)
+
+        return _Side(steps(), recording, broken, lambda: recording.stats[:3])
+
+    def anywhere(times: Floats) -> Floats:
+        return motion.integrate(times)[0]
+
+    rates = anywhere(np.linspace(start, end, SAMPLES_OF_RATE))[:, : blocks[0][1]]
+    longest = min(TURN_PER_PIECE / max(float(np.abs(rates).max()), 1e-300), abs(end - start))
+    return _Side(fitted_pieces(anywhere, start, end, longest, *blocks), anywhere, broken, lambda: (0, 0, 0))
 
 
 def _cost(task: Any) -> tuple[int, int, int]:

@@ -1,13 +1,14 @@
 """Events: the times at which a formula of the motion is zero, all of them, located to the last bits.
 
 An event is a formula in t, omega_1..3, q0..q3, or an equation between two. It is read by the safe reader, printed as C
-together with a bound of its rounding errors, and searched along the steps of a stepper (:file:`events.c`). Sign changes
-are told from touches, and both are found however close they stand, several in one step too.
+together with a bound of its rounding errors and with enclosures of its values, and searched along the polynomials of a
+motion (:file:`events.c`). Sign changes are told from touches, and both are located however close they stand, several in
+one step too; no zero is so short that it hides between samples. Poles, jumps past zero and zeros at the edge of the
+domain of a formula are no events.
 """
 
 import ctypes
-import math
-from collections.abc import Callable, Generator, Iterable, Sequence
+from collections.abc import Generator, Iterable, Sequence
 from contextlib import closing
 from functools import cache
 from pathlib import Path
@@ -20,17 +21,30 @@ from symrot import number
 from symrot.errors import InputError, PropagationError
 from symrot.expression import Node, names, parse, rename
 from symrot.kernel import Program
+from symrot.propagation.polynomials import HEAD, Piece, rows_of
 
-__all__ = ["Event", "Found", "Piece", "event_library_source", "read_events", "search", "timed", "uses_attitude"]
+__all__ = [
+    "Event",
+    "Found",
+    "Piece",
+    "event_library_source",
+    "read_events",
+    "search",
+    "stepped",
+    "timed",
+    "uses_attitude",
+]
 
 Floats = NDArray[np.float64]
-Dense = Any  # a function in C: record, steps, times, count, states
-
 ATTITUDE = frozenset(f"q{i}" for i in range(4))
 KNOWN = {"t", "omega_1", "omega_2", "omega_3", *ATTITUDE}
 NEAR = 64 * float(np.finfo(float).eps)  # of the time: entries so close are one
 FIELDS = 5  # of an entry in events.c
-ROOM = 256  # entries per call, before it is made again with more
+ROOM = 1024  # entries per call
+LONG = 1e-3  # of the motion: an event that stays zero for longer, up to an end, is none
+OPERATIONS_PER_CALL = 2e7  # some 20 ms, after which Python can see an interrupt
+MOST_OPERATIONS, OPERATIONS_PER_ROW = 4e9, 2e5  # of a search; each row of a motion earns more
+MOST_ENTRIES = 500_000
 
 
 class Event(NamedTuple):
@@ -66,13 +80,6 @@ class Found(NamedTuple):
     event: int
     t: float
     kind: str
-
-
-class Piece(NamedTuple):
-    """A part of a motion: edges in its order, and a record for ``dense``."""
-
-    edges: Floats
-    record: Floats
 
 
 def read_events(events: Any) -> tuple[Event, ...]:
@@ -147,9 +154,10 @@ def guard_library_source(
     columns = {name: f"{name} of t" for name in KNOWN if name != "t"}
     columned = [rename(formula, columns) for formula in formulas]
     definitions = event_definitions(quantities, columned, states, edges, scales)
-    head = "#include <float.h>\n#include <math.h>\n#include <stdint.h>\n\n"
-    head += "static const double SYMROT_ROUNDING = 0.5*DBL_EPSILON, SYMROT_STATE_ERROR = 4.0*DBL_EPSILON;\n\n"
-    return head + definitions + "\n" + Path(__file__).with_name("events.c").read_text(encoding="utf-8")
+    here = Path(__file__)
+    head = here.with_name("event_enclosures.h").read_text(encoding="utf-8")
+    head += "\nstatic const double SYMROT_ROUNDING = 0.5*DBL_EPSILON, SYMROT_STATE_ERROR = 4.0*DBL_EPSILON;\n\n"
+    return head + definitions + "\n" + here.with_name("events.c").read_text(encoding="utf-8")
 
 
 def _with_pi(node: Node) -> Node:
@@ -165,21 +173,85 @@ class _Library:
     """A loaded library of :func:`event_library_source`."""
 
     def __init__(self, path: str) -> None:
-        library = ctypes.CDLL(path)
+        library: Any = ctypes.CDLL(path)
         pointer, integer, real = ctypes.c_void_p, ctypes.c_int64, ctypes.c_double
-        self.find = library.symrot_events
-        self.find.restype = integer
-        self.find.argtypes = (pointer, integer, pointer, pointer, integer, pointer, pointer, integer)
+        self.begin = library.symrot_events_begin
+        self.begin.restype = None
+        self.begin.argtypes = (pointer, pointer, integer, pointer, integer, pointer, ctypes.c_int)
+        self.next = library.symrot_events_next
+        self.next.restype = real
+        self.next.argtypes = (pointer, pointer, integer, real, pointer)
         self.sign = library.symrot_events_sign
         self.sign.restype = ctypes.c_int
-        self.sign.argtypes = (ctypes.c_int, real, pointer, pointer, integer, pointer)
+        self.sign.argtypes = (ctypes.c_int, real, pointer, integer, pointer)
+        sizes = (integer * 3)()
+        library.symrot_events_sizes(sizes)
+        self.states, self.events, self.bytes = sizes
 
 
 _library = cache(_Library)
 
 
+class _Search:
+    """A search along one motion: its state in C, and the operations it spent."""
+
+    def __init__(self, path: Path | str, p: Sequence[float], formulas: Sequence[str]) -> None:
+        self.library, self.formulas = _library(str(path)), formulas
+        self.p = (ctypes.c_double * len(p))(*p)
+        self.state = ctypes.create_string_buffer(self.library.bytes)
+        self.again, self.spent, self.allowed = False, 0.0, MOST_OPERATIONS
+
+    def entries(self, piece: Piece) -> list[list[float]]:
+        """Return the entries of a piece, see :file:`events.c`.
+
+        Raises
+        ------
+        PropagationError
+            If the search takes more operations than a motion of so many rows may.
+        """
+        edges, rows = np.ascontiguousarray(piece.edges), np.ascontiguousarray(piece.rows)
+        count, listed, answer = len(rows), [], (ctypes.c_int64 * 3)()
+        self.allowed += OPERATIONS_PER_ROW * count * self.library.events
+        self.library.begin(
+            self.state,
+            rows.ctypes.data,
+            self.terms(rows),
+            edges.ctypes.data,
+            count,
+            ctypes.addressof(self.p),
+            self.again,
+        )
+        self.again = True
+        batch = np.empty((ROOM, FIELDS))
+        while not answer[1]:
+            self.spent += self.library.next(self.state, batch.ctypes.data, ROOM, OPERATIONS_PER_CALL, answer)
+            listed += batch[: answer[0]].tolist()
+            if self.spent > self.allowed or len(listed) > MOST_ENTRIES:
+                t = float(edges[min(answer[2], count)])
+                shown = ", ".join(map(repr, self.formulas))
+                raise PropagationError(
+                    f"events: expected formulas whose zeros can be told apart, but beyond t = {t!r} s those of {shown} "
+                    f"are not settled after {self.spent:.1g} operations and {len(listed)} entries"
+                )
+        return listed
+
+    def terms(self, rows: Floats) -> int:
+        """Return the number of terms of the polynomials in rows."""
+        count: int = (rows.shape[1] - HEAD) // self.library.states
+        return count
+
+    def sign(self, event: int, t: float, piece: Piece) -> int:
+        """Return the sign of an event at a time of a piece, 0 within its rounding errors."""
+        edges, side = piece.edges, 1.0 if piece.edges[-1] >= piece.edges[0] else -1.0
+        place = int(np.searchsorted(side * edges, side * t, "left")) - 1
+        row = np.ascontiguousarray(piece.rows[min(max(place, 0), len(piece.rows) - 1)])
+        given = event, t, row.ctypes.data, self.terms(piece.rows), ctypes.addressof(self.p)
+        value: int = self.library.sign(*given)
+        return value
+
+
 def search(
-    path: Path | str, events: Sequence[Event], p: Sequence[float], dense: Dense, pieces: Iterable[Piece], t0: float
+    path: Path | str, events: Sequence[Event], p: Sequence[float], pieces: Iterable[Piece], t0: float
 ) -> tuple[list[Found], float | None]:
     """Return the zeros along a motion in its order, and the time of the terminal one or None.
 
@@ -187,58 +259,59 @@ def search(
 
     Parameters
     ----------
-    dense : function in C
-        Gives the states at times inside a record; its address is handed to the library.
+    path : Path
+        The library of :func:`event_library_source` for these events.
+    p : sequence of float
+        The parameters of its quantities.
     pieces : iterable of Piece
-        Taken one after the other until a terminal event.
+        The motion from t0 on as polynomials (:mod:`symrot.propagation.polynomials`), in its order, one Piece going on
+        where the one before ends. They are asked for one after the other, until a terminal event.
+
+    Raises
+    ------
+    PropagationError
+        If the zeros cannot be told apart with the operations that a motion of such a length may take.
     """
-    library, values = _library(str(path)), (ctypes.c_double * len(p))(*p)
+    task = _Search(path, p, [event.formula for event in events])
     left = [int(event.terminal) for event in events]
     found: list[Found] = []
     held: list[list[float]] = []  # entries at the last edge, which the next piece may go on with
     previous: Piece | None = None
     for piece in pieces:
-        entries = held + _entries(library, values, dense, piece)
+        if not len(piece.rows):
+            continue
+        entries = held + task.entries(piece)
         last = float(piece.edges[-1])
         whole, held = _merged(entries, last)
-        stop = _settled(library, values, dense, piece, events, whole, t0, left, found)
+        stop = _settled(task, piece, events, whole, t0, left, found)
         if stop is not None:
             return found, stop
         previous = piece
     if previous is not None and held:
-        stop = _settled(library, values, dense, previous, events, held, t0, left, found)
+        stop = _settled(task, previous, events, held, t0, left, found)
         return found, stop
     return found, None
 
 
-def guard_sign(path: Path | str, formula: int, dense: Dense, piece: Piece, p: Sequence[float]) -> int:
-    """Return the sign that a formula has from the start of a piece on: the first one that is beyond rounding."""
-    library, values = _library(str(path)), (ctypes.c_double * len(p))(*p)
+def signs_at_ends(
+    path: Path | str, formulas: Sequence[str], p: Sequence[float], piece: Piece
+) -> tuple[list[int], list[int]]:
+    """Return the signs that formulas have from the start of a piece on, and at its end; 0 within rounding of zero."""
+    task, numbers = _Search(path, p, formulas), range(len(formulas))
+    last = float(piece.edges[-1])
+    return [_first_sign(task, number, piece) for number in numbers], [task.sign(n, last, piece) for n in numbers]
+
+
+def _first_sign(task: _Search, number: int, piece: Piece) -> int:
+    """Return the first sign of a formula after the start of a piece that is beyond rounding."""
     first, last = float(piece.edges[0]), float(piece.edges[-1])
     width, side = 4 * NEAR * max(abs(first), abs(last - first)), 1.0 if last >= first else -1.0
     while width < abs(last - first):
-        record = piece.record
-        sign: int = library.sign(
-            formula, first + side * width, dense, record.ctypes.data, len(record), ctypes.addressof(values)
-        )
+        sign = task.sign(number, first + side * width, piece)
         if sign:
             return sign
         width *= 2
     return 0
-
-
-def _entries(library: _Library, p: Any, dense: Dense, piece: Piece) -> list[list[float]]:
-    room = ROOM
-    while True:
-        rows = np.empty((room, FIELDS))
-        count = library.find(
-            piece.edges.ctypes.data, len(piece.edges) - 1, dense, piece.record.ctypes.data, len(piece.record),
-            ctypes.addressof(p), rows.ctypes.data, room,
-        )  # fmt: skip
-        if count <= room:
-            listed: list[list[float]] = rows[:count].tolist()
-            return listed
-        room = int(count)
 
 
 def _merged(entries: list[list[float]], last: float) -> tuple[list[list[float]], list[list[float]]]:
@@ -251,7 +324,7 @@ def _merged(entries: list[list[float]], last: float) -> tuple[list[list[float]],
         if (
             before is not None
             and side * (entry[1] - before[2]) <= NEAR * abs(last)
-            and (before[4] == 0 or entry[3] == 0)
+            and (before[4] == 0 or entry[3] == 0 or (before[3] == before[4] == entry[3] == entry[4]))
         ):
             before[2] = max(before[2], entry[2], key=lambda t: side * t)
             before[4] = entry[4]
@@ -264,8 +337,8 @@ def _merged(entries: list[list[float]], last: float) -> tuple[list[list[float]],
 
 
 def _settled(
-    library: _Library, p: Any, dense: Dense, piece: Piece, events: Sequence[Event], entries: list[list[float]],
-    t0: float, left: list[int], found: list[Found],
+    task: _Search, piece: Piece, events: Sequence[Event], entries: list[list[float]], t0: float, left: list[int],
+    found: list[Found],
 ) -> float | None:  # fmt: skip
     """Add what entries stand for, in the order of the motion; return the time at which it ends, or None."""
     first, last = float(piece.edges[0]), float(piece.edges[-1])
@@ -275,9 +348,7 @@ def _settled(
         """Return the sign away from a zero, the first one that is beyond rounding."""
         width = 4 * NEAR * max(abs(t), abs(last - first))
         while width < abs(end - t):
-            value: int = library.sign(
-                event, t + step * width, dense, piece.record.ctypes.data, len(piece.record), ctypes.addressof(p)
-            )
+            value = task.sign(event, t + step * width, piece)
             if value:
                 return value
             width *= 2
@@ -289,6 +360,8 @@ def _settled(
         after = after or sign(event, end, last, side)
         if not before and not after:
             continue  # zero all along: no event
+        if not (before and after) and abs(end - start) > LONG * abs(last - t0):
+            continue  # zero all along up to an end of what is known: it passes through nothing
         t = t0 if at_start else end if start == end else 0.5 * (start + end)
         kind = "rising" if after > before else "falling" if after < before else "touching"
         if events[event].direction and kind != {1: "rising", -1: "falling"}[events[event].direction]:
@@ -301,8 +374,13 @@ def _settled(
     return None
 
 
-def stepped(task: Any, end: float, broken: list[PropagationError]) -> Generator[Piece, None, None]:
-    """Yield the steps of a task from its start to an end, as they are made; what cuts it off goes into ``broken``."""
+def stepped(
+    task: Any, end: float, broken: list[PropagationError], records: list[Floats]
+) -> Generator[Piece, None, None]:
+    """Yield the steps of a task from its start to an end, as they are made.
+
+    What the stepper records is added to ``records``; what cuts the motion off, to ``broken``.
+    """
     room = task.stepper.rows_per_call
     with closing(task.runs(end)) as runs:
         for run in runs:
@@ -314,29 +392,7 @@ def stepped(task: Any, end: float, broken: list[PropagationError]) -> Generator[
                     broken.append(error)
                 rows = rows[: run.recorded]
                 if len(rows):
-                    yield Piece(np.append(rows[:, 0], run.t), rows)
+                    records.append(rows)
+                    yield Piece(np.append(rows[:, 0], run.t), rows_of(task.stepper, rows))
                 if broken:
                     return
-
-
-def exact_dense(states: Callable[[Floats], Floats], count: int) -> Dense:
-    """Return a function in C around one in Python that gives the states, shape (n, count), at times."""
-
-    def call(record: int, steps: int, times: int, n: int, out: int) -> None:
-        asked = np.ctypeslib.as_array(ctypes.cast(times, ctypes.POINTER(ctypes.c_double)), (n,))
-        given = np.ctypeslib.as_array(ctypes.cast(out, ctypes.POINTER(ctypes.c_double)), (n, count))
-        given[:] = states(asked.copy())
-
-    pointer, integer = ctypes.c_void_p, ctypes.c_int64
-    return ctypes.CFUNCTYPE(None, pointer, integer, pointer, integer, pointer)(call)
-
-
-def even_pieces(t0: float, end: float, longest: float) -> Generator[Piece, None, None]:
-    """Yield pieces of a motion that has no steps, none longer than ``longest``; 64 to each."""
-    count = max(1, math.ceil(abs(end - t0) / longest))
-    for low in range(0, count, 64):
-        share = np.arange(low, min(low + 64, count) + 1) / count
-        edges = t0 + (end - t0) * share
-        if low + 64 >= count:
-            edges[-1] = end
-        yield Piece(edges, np.empty((1, 1)))

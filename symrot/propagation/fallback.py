@@ -149,6 +149,16 @@ class FallbackRecording(Recording):
         self._pieces = [*task.solutions(low), *task.solutions(high)]
         super().__init__(task.t0, task.y0, (low, high), task.stats())
 
+    def edges(self, start: float, end: float) -> list[Floats]:
+        """Return the ends of SciPy's steps from a start to an end, one array for each stretch, in that order."""
+        side = 1.0 if end >= start else -1.0
+        chosen = [
+            np.sort(np.asarray(solution.ts, dtype=np.float64) * side) * side
+            for low, high, solution in self._pieces
+            if low >= min(start, end) and high <= max(start, end)
+        ]
+        return sorted(chosen, key=lambda edges: side * float(edges[0]))
+
     def _fill(self, times: Floats, states: Floats) -> None:
         _evaluate(self._pieces, times, states)
 

@@ -52,6 +52,7 @@ class Motion:
 
     epoch = 0.0
     movable = True  # whether another clock may be taken
+    switched = False  # whether its torques have switches
     warnings: tuple[str, ...] = ()  # on what cannot be guaranteed
 
     def __init__(self, plan: Plan, choice: Choice, tolerance: float) -> None:

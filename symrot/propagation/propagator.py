@@ -13,6 +13,7 @@ from symrot.errors import InputError, PropagationError
 from symrot.planner import Plan, make_plan, switched
 from symrot.propagation.method import choose_method
 from symrot.propagation.motion import Motion
+from symrot.propagation.real_array import real_array
 from symrot.propagation.stepping import Samples, Stats, rising
 from symrot.propagation.trajectory import Trajectory
 from symrot.scene import Initial, Scene, load_scene
@@ -91,7 +92,7 @@ class Propagator:
             Another initial attitude, scalar first; it is normalised.
         events : sequence, optional
             Formulas whose zeros are sought: text, :class:`symrot.propagation.events.Event` or mappings with its fields;
-            see ``t_events`` of the trajectory. Samples beyond a terminal event are left out.
+            see ``t_events`` of the trajectory. Samples end with one at a terminal event.
 
         Raises
         ------
@@ -135,10 +136,7 @@ class Propagator:
 
 
 def _times(t: ArrayLike) -> Floats:
-    try:
-        times = np.array(t, dtype=np.float64, ndmin=1)
-    except (TypeError, ValueError):
-        raise InputError(f"t: expected an array of times in s, got {number.show(t)}") from None
+    times = real_array(t, "t", "an array of times in s", ndmin=1)
     if times.ndim != 1:
         raise InputError(f"t: expected a one-dimensional array of times in s, got shape {times.shape}")
     return times
@@ -156,10 +154,7 @@ def _in_order(times: Floats) -> bool:
 
 
 def _vector(values: ArrayLike, size: int, name: str, unit: str) -> list[float]:
-    try:
-        array = np.asarray(values, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise InputError(f"{name}: expected {size} numbers in {unit}, got {number.show(values)}") from None
+    array = real_array(values, name, f"{size} numbers in {unit}")
     if array.shape != (size,) or not np.isfinite(array).all():
         raise InputError(f"{name}: expected {size} finite numbers in {unit}, got {number.show(array.tolist())}")
     found: list[float] = array.tolist()

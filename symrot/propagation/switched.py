@@ -21,16 +21,17 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from symrot.codegen import library
-from symrot.errors import InputError
+from symrot.errors import InputError, PropagationError
 from symrot.expression import evaluate, names, parse, rename, text
 from symrot.kernel import Argument, Program
 from symrot.number import PI
 from symrot.planner import Plan, make_plan
 from symrot.propagation import dop853, taylor
-from symrot.propagation.events import Event, Piece, exact_dense, guard_library_source, guard_sign, search
+from symrot.propagation.events import Event, guard_library_source, search, signs_at_ends
 from symrot.propagation.kernels import error_blocks, formula_deviations
 from symrot.propagation.method import choose_method
 from symrot.propagation.motion import Motion
+from symrot.propagation.polynomials import Piece, fitted, rows_of
 from symrot.propagation.propagator import Propagator
 from symrot.propagation.stepping import CutOff, Floats, Recording, Stats, add_samples, both_sides
 from symrot.scene import Initial
@@ -42,17 +43,17 @@ MOST_SWITCHES = 1_000_000
 CHATTER, CHATTERING = 50, 1e-9  # so many switches within that part of the span are endlessly many
 ROOM = 4  # steps in the first piece after a switch; twice as many in each piece after it
 WINDOWS = 64  # pieces of the span that SciPy follows at a time, at first
-WINDOW_EDGES = 33
 Modes = dict[str, int]
 Consumer = Callable[["Chunk"], None]
 
 
 class Chunk(NamedTuple):
-    """A part of a motion from ``start`` to ``stop``, s, and its states there at any time."""
+    """A part of a motion from ``start`` to ``stop``, s: its states there at any time, and as polynomials."""
 
     start: float
     stop: float
     states: Callable[[Floats], Floats]
+    piece: Piece
 
 
 class _Guard(NamedTuple):
@@ -78,6 +79,7 @@ class SwitchedMotion(Motion):
     """A motion under torques with switches."""
 
     movable = False  # guards name the time of the scene
+    switched = True
 
     @cached_property
     def switches(self) -> list[dict[str, Any]]:
@@ -157,6 +159,19 @@ class SwitchedMotion(Motion):
         seconds, times_of = perf_counter() - began, tuple(sorted(switching))
         return states, Stats(accepted, rejected, evaluations, seconds, len(switching), times_of)
 
+    def parts(self, end: float, broken: list[PropagationError]) -> "tuple[list[Piece], Recording]":
+        """Return the motion from its start to an end as polynomials and at any time; what cut it off in ``broken``."""
+        chunks: list[Chunk] = []
+        run = _Run(self, end)
+        try:
+            run.follow(chunks.append)
+        except CutOff as error:
+            broken.append(error)
+        accepted, rejected, evaluations = map(int, run.cost)
+        stats = Stats(accepted, rejected, evaluations, 0.0, len(run.switching), tuple(sorted(run.switching)))
+        states = _SwitchedRecording(self.start, self.plan.initial_state, (self.start, end), stats, chunks)
+        return [chunk.piece for chunk in chunks], states
+
     def dense(self, span: tuple[float, float]) -> Recording:
         """Return the states as a function of time."""
         chunks: list[Chunk] = []
@@ -190,7 +205,9 @@ class _SwitchedRecording(Recording):
     def _fill(self, times: Floats, states: Floats) -> None:
         places = np.searchsorted(self._ends, times)
         for place in np.unique(places):
-            if place < len(self._chunks):
+            if place == len(self._chunks):
+                states[places == place] = np.nan  # beyond where the motion was cut off
+            else:
                 chosen = places == place
                 states[chosen] = self._chunks[place].states(times[chosen])
 
@@ -287,19 +304,24 @@ class _Run:
 
         def watched() -> Generator[Piece, None, None]:
             for piece, states in source.pieces():
-                if passed[-1] == start and not violated:
-                    violated.extend(self._violated(regime, active, values, source.dense, piece))
-                    if violated:
-                        return
+                first, last = self._negative(regime, active, values, piece)
+                if passed[-1] == start and first:
+                    violated.extend(first)
+                    return
                 current[:] = [(piece, states)]
                 yield piece
-                consume(Chunk(passed[-1], float(piece.edges[-1]), states))
+                if last:  # though no crossing was seen: within rounding it was there from the start of the piece
+                    violated.extend(last)
+                    if passed[-1] != start:
+                        self.t, self.y, self.flipped = passed[-1], states(np.array(passed[-1:]))[0], {}
+                    return
+                consume(Chunk(passed[-1], float(piece.edges[-1]), states, piece))
                 passed.append(float(piece.edges[-1]))
 
         current: list[tuple[Piece, Callable[[Floats], Floats]]] = []
         watching = watched()
         try:
-            found, stop = search(regime.path, events, values, source.dense, watching, start)
+            found, stop = search(regime.path, events, values, watching, start)
         finally:
             watching.close()
             self.cost += source.cost()
@@ -308,21 +330,26 @@ class _Run:
         if stop is None:
             self.t = self.end
             return None
-        _, states = current[0]
+        piece, states = current[0]
         if abs(stop - self.motion.start) > abs(passed[-1] - self.motion.start):
-            consume(Chunk(passed[-1], stop, states))
+            rows = int((np.abs(piece.edges[:-1] - start) < abs(stop - start)).sum())
+            consume(Chunk(passed[-1], stop, states, Piece(np.append(piece.edges[:rows], stop), piece.rows[:rows])))
         self.y = states(np.array([stop]))[0]
         self.t = stop
         self.flipped = {}
         ended = next(each.event for each in reversed(found) if each.t == stop and active[each.event])
         return regime.guards[ended]
 
-    def _violated(
-        self, regime: _Regime, active: list[bool], values: list[float], dense: Any, piece: Piece
-    ) -> list[_Guard]:
-        """Return the guards that are on the wrong side from the start of a piece on."""
-        signs = (guard_sign(regime.path, number, dense, piece, values) if on else 0 for number, on in enumerate(active))
-        return [guard for guard, sign in zip(regime.guards, signs, strict=True) if sign < 0]
+    def _negative(
+        self, regime: _Regime, active: list[bool], values: list[float], piece: Piece
+    ) -> tuple[list[_Guard], list[_Guard]]:
+        """Return the guards that are on the wrong side from the start of a piece on, and those that are at its end."""
+        formulas = [guard.formula for guard in regime.guards]
+        first, last = (
+            [guard for guard, on, sign in zip(regime.guards, active, signs, strict=True) if on and sign < 0]
+            for signs in signs_at_ends(regime.path, formulas, values, piece)
+        )
+        return first, last
 
     def _switch(self, regime: _Regime, guard: _Guard) -> None:
         """Change the mode of a guard; hold the guard at zero where both sides send the motion back."""
@@ -380,7 +407,6 @@ class _Stepped:
         stepping = taylor if motion.choice.method == "taylor" else dop853
         self.task = stepping.task(motion.library, rates, run.y, run.t, motion.tolerance)
         self.task.way, self.end = run.span, run.end
-        self.dense = self.task.stepper.dense_address
 
     def pieces(self) -> Iterator[tuple[Piece, Callable[[Floats], Floats]]]:
         task, room = self.task, ROOM
@@ -400,7 +426,7 @@ class _Stepped:
                         inside: Floats = task.stepper.dense(rows, times)
                         return inside
 
-                    yield Piece(np.append(rows[:, 0], run.t), rows), states
+                    yield Piece(np.append(rows[:, 0], run.t), rows_of(task.stepper, rows)), states
                 if stuck is not None:
                     raise stuck
                 room = min(2 * room, task.stepper.rows_per_call)
@@ -414,8 +440,6 @@ class _Windows:
 
     def __init__(self, run: _Run, regime: _Regime, rates: list[float]) -> None:
         self.run, self.motion, self.rates, self.counts = run, regime.motion, rates, np.zeros(3, dtype=np.int64)
-        self.recording: Any = None
-        self.dense = exact_dense(lambda times: self.recording(times), len(run.y))
 
     def pieces(self) -> Iterator[tuple[Piece, Callable[[Floats], Floats]]]:
         from symrot.propagation import fallback
@@ -428,12 +452,12 @@ class _Windows:
             share = max(abs(stop - t) / run.span, 1e-3)
             options = self.motion.scipy_options
             options["deviations"] = formula_deviations(self.motion.plan, self.motion.kernel, self.rates)
-            self.recording = recording = fallback.record(
+            recording = fallback.record(
                 self.motion.rates, self.rates, y, t, (t, stop), run.motion.tolerance * share, **options
             )
             self.counts += recording.stats[:3]
-            edges = np.linspace(t, stop, WINDOW_EDGES)
-            yield Piece(edges, np.empty((1, 1))), recording
+            for edges in recording.edges(t, stop):
+                yield fitted(recording, edges, *error_blocks(self.motion.plan)), recording
             y, t, length = recording(stop), stop, 2.0 * length
 
     def cost(self) -> Any:

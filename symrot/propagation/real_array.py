@@ -1,0 +1,55 @@
+"""Arrays of real numbers as they may be given: nothing that NumPy would silently read as one."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symrot import number
+from symrot.errors import InputError
+
+__all__ = ["real_array"]
+
+ADVICE = {  # NumPy's kind -> what to write instead
+    "M": "write ({0} - {0}[0])/numpy.timedelta64(1, 's') for dates",
+    "m": "write {0}/numpy.timedelta64(1, 's') for differences of dates",
+    "c": "write {0}.real for complex numbers that are real",
+    "b": "write numbers for true and false",
+    "O": "write float(x) for objects",
+    "S": "write float(x) for text",
+    "U": "write float(x) for text",
+}
+
+
+NO_NUMBERS = (bool, np.bool_, np.datetime64, np.timedelta64, np.complexfloating, str, bytes)
+
+
+def real_array(values: Any, place: str, expected: str, ndmin: int = 0) -> NDArray[np.float64]:
+    """Return an array of doubles of its own.
+
+    Parameters
+    ----------
+    place, expected : str
+        Where the values are given and what they should be, such as ``"t"`` and ``"times in s"``, for the error.
+    ndmin : int
+        Fewest dimensions.
+
+    Raises
+    ------
+    InputError
+        For dates, differences of dates, complex numbers, true and false, text, objects that are no real numbers (as
+        fractions are), and what is no array.
+    """
+    try:
+        given = np.asarray(values)
+        kind = given.dtype.kind
+        if kind in "iuf" or (kind == "O" and all(map(_is_number, given.ravel()))):
+            return np.array(given, dtype=np.float64, ndmin=ndmin)
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(f"{place}: expected {expected}, got {number.show(values)}") from None
+    advice = ADVICE.get(kind, "write numbers").format(place)
+    raise InputError(f"{place}: expected {expected}, got an array of type {given.dtype}; {advice}")
+
+
+def _is_number(item: Any) -> bool:
+    return hasattr(item, "__float__") and not isinstance(item, NO_NUMBERS)
