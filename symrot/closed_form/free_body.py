@@ -9,15 +9,15 @@ Source: Whittaker, Analytical Dynamics, 4th ed., section 69; van Zon & Schofield
 Proof: ``derivations/free_body_attitude.md``, ``derivations/free_body_separatrix.md``.
 """
 
-from collections.abc import Sequence
-from fractions import Fraction
+from collections.abc import Callable, Sequence
 
 from symrot.closed_form.frames import quaternion_of
 from symrot.closed_form.motion import ExactMotion, prepared
 from symrot.closed_form.pairs import SMALLEST, Number, common, numbers, quotient, spread
 from symrot.inertia.principal import principal_axes
+from symrot.scene import Initial
 
-__all__ = ["motion", "motion_of_tensor"]
+__all__ = ["motion", "motion_of_tensor", "starts_of_tensor"]
 
 _NEGLIGIBLE = 200  # bits: what is smaller is taken for zero, as in number.equal
 
@@ -63,33 +63,65 @@ def motion_of_tensor(
     The principal axes are found to 110 digits and turn into the constants of the motion before anything is rounded to a
     double. Arguments as :func:`motion`, but ``inertia`` is a symmetric 3x3 tensor (kg m^2).
     """
-    body = principal_axes([list(row) for row in inertia])
-    given = [Fraction(x) for x in numbers("omega", omega0, 3)]
-    attitude = numbers("quaternion", quaternion0, 4)
-    rates = [sum((body.axes[i][k] * given[i] for i in range(3)), Fraction(0)) for k in range(3)]
-    largest = max(map(abs, given))
-    rates = [Fraction(0) if abs(x) * 2**_NEGLIGIBLE < largest else x for x in rates]
-    exact = _differences(body.moments, rates)
-    axes = None if body.given_axes else spread([*(x for row in body.axes for x in row), *quaternion_of(body.axes)])
-    return _prepared(spread(body.moments), spread(rates), spread(attitude), exact, axes)
+    return _Body(inertia).motion(omega0, quaternion0)
+
+
+def starts_of_tensor(inertia: Sequence[Sequence[Number]]) -> Callable[[Initial], ExactMotion]:
+    """Return what gives the motion from an initial state; the principal axes are found once. See :func:`motion`."""
+    body = _Body(inertia)
+    return lambda start: body.motion(start.omega_b, start.quaternion)
+
+
+class _Body:
+    """A free body with what its motions share: integers and pairs of doubles of its moments and axes."""
+
+    def __init__(self, inertia: Sequence[Sequence[Number]]) -> None:
+        body = principal_axes([list(row) for row in inertia])
+        self._integers, shared = common(body.moments)
+        self._moments, self._gaps = spread(body.moments), _gaps(self._integers, shared)
+        entries = [x for row in body.axes for x in row]
+        self._given_axes = body.given_axes
+        self._axes, self._unit = common(entries)
+        self._spread = None if body.given_axes else spread([*entries, *quaternion_of(body.axes)])
+
+    def motion(self, omega0: Sequence[Number], quaternion0: Sequence[Number]) -> ExactMotion:
+        """Return the motion from an initial state along the given axes."""
+        rates, shared = common(numbers("omega", omega0, 3))
+        attitude = numbers("quaternion", quaternion0, 4)
+        largest = max(map(abs, rates)) * self._unit
+        if not self._given_axes:
+            axes = self._axes
+            rates = [sum([axes[3 * i + k] * rates[i] for i in range(3)]) for k in range(3)]
+            shared *= self._unit
+        rates = [0 if abs(x) << _NEGLIGIBLE < largest else x for x in rates]
+        omega = [part for x in rates for part in quotient(x, shared)]
+        exact = [*self._gaps, *_defect(self._integers, rates)]
+        return _prepared(self._moments, omega, spread(attitude), exact, self._spread)
 
 
 def _differences(moments: Sequence[Number], omega: Sequence[Number]) -> list[float]:
     """Return I2 - I3, I3 - I1, I1 - I2 and the defect |L|^2 - 2 T I_mid, scaled as free_body.c takes it, as hi, lo."""
-    i, shared = common(moments)
-    w, _ = common(omega)
+    integers, shared = common(moments)
+    return [*_gaps(integers, shared), *_defect(integers, common(omega)[0])]
+
+
+def _gaps(i: list[int], shared: int) -> list[float]:
     found: list[float] = []
     for k in range(3):
         difference = i[(k + 1) % 3] - i[(k + 2) % 3]
         if abs(difference) << _NEGLIGIBLE < max(i[(k + 1) % 3], i[(k + 2) % 3]):
             difference = 0
         found += quotient(difference, shared)
+    return found
+
+
+def _defect(i: list[int], w: list[int]) -> tuple[float, float]:
     middle = sorted(i)[1]
     shares = [moment * (moment - middle) * rate * rate for moment, rate in zip(i, w, strict=True)]
     defect, largest = sum(shares), max(i) * max(map(abs, w))
     if abs(defect) << _NEGLIGIBLE < max(map(abs, shares)) or not largest:
-        defect, largest = 0, 1
-    return [*found, *quotient(defect, largest * largest)]
+        return 0.0, 0.0
+    return quotient(defect, largest * largest)
 
 
 def _prepared(

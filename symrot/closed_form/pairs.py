@@ -18,6 +18,8 @@ LARGEST = 1e205
 SMALLEST = 1e-205
 """Of the moments of inertia, kg m^2."""
 
+_BITS = 600  # 2^600 and its inverse lie inside these bounds
+
 
 def quotient(numerator: int, denominator: int) -> tuple[float, float]:
     """Return numerator/denominator as hi, lo. An integer division of Python's rounds correctly."""
@@ -63,6 +65,8 @@ def numbers(what: str, values: Sequence[Number], length: int, least: float = -LA
     if {*map(type, found)} == {float} and all(map(isfinite, found)) and max(found) <= LARGEST and min(found) >= least:
         return found
     for index, value in enumerate(found):
+        if type(value) is Fraction and _moderate(value, least):
+            continue
         if isinstance(value, bool) or not isinstance(value, float | int | Fraction):
             found[index] = value = _double(what, value)
         if not abs(value) <= LARGEST:
@@ -70,6 +74,13 @@ def numbers(what: str, values: Sequence[Number], length: int, least: float = -LA
         if value < least:
             raise InputError(f"{what}: expected positive numbers, {least:g} at least, got {show(value)}")
     return found
+
+
+def _moderate(value: Fraction, least: float) -> bool:
+    """Return whether a fraction surely lies within the bounds of :func:`numbers`, by its length in bits alone."""
+    top, bottom = value.numerator, value.denominator
+    size = top.bit_length() - bottom.bit_length()  # of the power of two next to it, or one more
+    return size < _BITS and (least < 0 or (top > 0 and size > -_BITS))
 
 
 def _listed(what: str, values: Sequence[Number], length: int) -> list[Any]:

@@ -130,9 +130,8 @@ def _changed(old: Any, entry: int | str | None, value: Fraction) -> Any:
 
 def _unit(row: list[float]) -> tuple[Fraction, Fraction, Fraction, Fraction]:
     """Return a quaternion divided by its norm."""
-    q = [Fraction(value) for value in row]
-    norm = number.sqrt(sum((value * value for value in q), start=Fraction(0)))
-    return q[0] / norm, q[1] / norm, q[2] / norm, q[3] / norm
+    q0, q1, q2, q3 = number.unit([Fraction(value) for value in row])
+    return q0, q1, q2, q3
 
 
 def _representative(column: Floats) -> Fraction:
