@@ -17,7 +17,7 @@ from symrot.number import equal
 from symrot.scene import Initial, Scene
 
 __all__ = [
-    "ATTITUDE_QUANTITIES", "RULES", "START_CONSTANTS", "Plan", "Row", "general_structure", "make_plan",
+    "ATTITUDE_QUANTITIES", "RULES", "START_CONSTANTS", "STATES", "Plan", "Row", "general_structure", "make_plan",
     "structure_key",
 ]  # fmt: skip
 

@@ -13,13 +13,13 @@ from collections.abc import Callable, Sequence
 
 from symrot.closed_form.frames import quaternion_of
 from symrot.closed_form.motion import ExactMotion, prepared
-from symrot.closed_form.pairs import SMALLEST, Number, common, numbers, quotient, spread
+from symrot.closed_form.pairs import SMALLEST, Number, attitude, common, numbers, quotient, spread
 from symrot.inertia.principal import principal_axes
 from symrot.scene import Initial
 
-__all__ = ["motion", "motion_of_tensor", "starts_of_tensor"]
+__all__ = ["NEGLIGIBLE", "Body", "defect_of", "motion", "motion_of_tensor", "starts_of_tensor"]
 
-_NEGLIGIBLE = 200  # bits: what is smaller is taken for zero, as in number.equal
+NEGLIGIBLE = 200  # bits: what is smaller is taken for zero, as in number.equal
 
 
 def motion(
@@ -48,9 +48,9 @@ def motion(
     [[0.0, 0.0, 1.0]]
     """
     moments, rates = numbers("inertia", inertia, 3, SMALLEST), numbers("omega", omega0, 3)
-    attitude = numbers("quaternion", quaternion0, 4)
+    start = attitude(numbers("quaternion", quaternion0, 4))
     exact = None if all(isinstance(x, float) for x in (*moments, *rates)) else _differences(moments, rates)
-    return _prepared(spread(moments), spread(rates), spread(attitude), exact, None)
+    return _prepared(spread(moments), spread(rates), start, exact, None)
 
 
 def motion_of_tensor(
@@ -63,75 +63,78 @@ def motion_of_tensor(
     The principal axes are found to 110 digits and turn into the constants of the motion before anything is rounded to a
     double. Arguments as :func:`motion`, but ``inertia`` is a symmetric 3x3 tensor (kg m^2).
     """
-    return _Body(inertia).motion(omega0, quaternion0)
+    return Body(inertia).motion(omega0, quaternion0)
 
 
 def starts_of_tensor(inertia: Sequence[Sequence[Number]]) -> Callable[[Initial], ExactMotion]:
     """Return what gives the motion from an initial state; the principal axes are found once. See :func:`motion`."""
-    body = _Body(inertia)
+    body = Body(inertia)
     return lambda start: body.motion(start.omega_b, start.quaternion)
 
 
-class _Body:
-    """A free body with what its motions share: integers and pairs of doubles of its moments and axes."""
+class Body:
+    """A free body with what its motions share: moments, their differences, and axes where they are not principal."""
 
     def __init__(self, inertia: Sequence[Sequence[Number]]) -> None:
         body = principal_axes([list(row) for row in inertia])
-        self._integers, shared = common(body.moments)
-        self._moments, self._gaps = spread(body.moments), _gaps(self._integers, shared)
+        self.integers, shared = common(body.moments)
+        self.moments, self.gaps = spread(body.moments), _gaps(self.integers, shared)
         entries = [x for row in body.axes for x in row]
-        self._given_axes = body.given_axes
         self._axes, self._unit = common(entries)
-        self._spread = None if body.given_axes else spread([*entries, *quaternion_of(body.axes)])
+        self.axes = None if body.given_axes else spread([*entries, *quaternion_of(body.axes)])
 
-    def motion(self, omega0: Sequence[Number], quaternion0: Sequence[Number]) -> ExactMotion:
-        """Return the motion from an initial state along the given axes."""
-        rates, shared = common(numbers("omega", omega0, 3))
-        attitude = numbers("quaternion", quaternion0, 4)
+    def along(self, omega0: Sequence[Number]) -> tuple[list[int], int]:
+        """Return angular velocity along the principal axes, as integers over one denominator."""
+        rates, shared = common(omega0)
         largest = max(map(abs, rates)) * self._unit
-        if not self._given_axes:
+        if self.axes is not None:
             axes = self._axes
             rates = [sum([axes[3 * i + k] * rates[i] for i in range(3)]) for k in range(3)]
             shared *= self._unit
-        rates = [0 if abs(x) << _NEGLIGIBLE < largest else x for x in rates]
+        return [0 if abs(x) << NEGLIGIBLE < largest else x for x in rates], shared
+
+    def motion(self, omega0: Sequence[Number], quaternion0: Sequence[Number]) -> ExactMotion:
+        """Return the motion from an initial state along the given axes."""
+        rates, shared = self.along(numbers("omega", omega0, 3))
+        start = attitude(numbers("quaternion", quaternion0, 4))
         omega = [part for x in rates for part in quotient(x, shared)]
-        exact = [*self._gaps, *_defect(self._integers, rates)]
-        return _prepared(self._moments, omega, spread(attitude), exact, self._spread)
+        return _prepared(self.moments, omega, start, [*self.gaps, *defect_of(self.integers, rates)], self.axes)
 
 
 def _differences(moments: Sequence[Number], omega: Sequence[Number]) -> list[float]:
     """Return I2 - I3, I3 - I1, I1 - I2 and the defect |L|^2 - 2 T I_mid, scaled as free_body.c takes it, as hi, lo."""
     integers, shared = common(moments)
-    return [*_gaps(integers, shared), *_defect(integers, common(omega)[0])]
+    return [*_gaps(integers, shared), *defect_of(integers, common(omega)[0])]
 
 
 def _gaps(i: list[int], shared: int) -> list[float]:
     found: list[float] = []
     for k in range(3):
         difference = i[(k + 1) % 3] - i[(k + 2) % 3]
-        if abs(difference) << _NEGLIGIBLE < max(i[(k + 1) % 3], i[(k + 2) % 3]):
+        if abs(difference) << NEGLIGIBLE < max(i[(k + 1) % 3], i[(k + 2) % 3]):
             difference = 0
         found += quotient(difference, shared)
     return found
 
 
-def _defect(i: list[int], w: list[int]) -> tuple[float, float]:
+def defect_of(i: list[int], w: list[int]) -> tuple[float, float]:
+    """Return |L|^2 - 2 T I_mid over the square of the largest moment times the largest rate, of integers, as hi, lo."""
     middle = sorted(i)[1]
     shares = [moment * (moment - middle) * rate * rate for moment, rate in zip(i, w, strict=True)]
     defect, largest = sum(shares), max(i) * max(map(abs, w))
-    if abs(defect) << _NEGLIGIBLE < max(map(abs, shares)) or not largest:
+    if abs(defect) << NEGLIGIBLE < max(map(abs, shares)) or not largest:
         return 0.0, 0.0
     return quotient(defect, largest * largest)
 
 
 def _prepared(
-    moments: list[float], omega: list[float], attitude: list[float], exact: list[float] | None, axes: list[float] | None
+    moments: list[float], omega: list[float], start: list[float], exact: list[float] | None, axes: list[float] | None
 ) -> ExactMotion:
     return prepared(
         "free_body",
-        (moments, omega, attitude, exact, axes),
+        (moments, omega, start, exact, axes),
         lambda: (
             "a free body has three positive moments of inertia (kg m^2), a finite angular velocity (rad/s) and a "
-            f"quaternion that is not zero; got moments {moments[::2]}, omega {omega[::2]}, quaternion {attitude[::2]}"
+            f"quaternion that is not zero; got moments {moments[::2]}, omega {omega[::2]}, quaternion {start[::2]}"
         ),
     )

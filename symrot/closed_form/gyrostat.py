@@ -8,11 +8,11 @@ Proof: ``derivations/symmetric_gyrostat.md``.
 from collections.abc import Callable, Sequence
 
 from symrot.closed_form.motion import ExactMotion, prepared
-from symrot.closed_form.pairs import SMALLEST, Number, numbers, same, spread
+from symrot.closed_form.pairs import SMALLEST, Number, attitude, numbers, same, spread
 from symrot.errors import InputError
 from symrot.scene import Initial
 
-__all__ = ["motion", "starts"]
+__all__ = ["Gyrostat", "motion", "starts"]
 
 
 def motion(
@@ -37,16 +37,16 @@ def motion(
     InputError
         If the body is not symmetric about the rotor's axis, or a number is not of this domain.
     """
-    return _Gyrostat(inertia, rotor).motion(omega0, quaternion0)
+    return Gyrostat(inertia, rotor).motion(omega0, quaternion0)
 
 
 def starts(inertia: Sequence[Number], rotor: Sequence[Number]) -> Callable[[Initial], ExactMotion]:
     """Return what gives the motion from an initial state; see :func:`motion`."""
-    body = _Gyrostat(inertia, rotor)
+    body = Gyrostat(inertia, rotor)
     return lambda start: body.motion(start.omega_b, start.quaternion)
 
 
-class _Gyrostat:
+class Gyrostat:
     """A gyrostat with what its motions share."""
 
     def __init__(self, inertia: Sequence[Number], rotor: Sequence[Number]) -> None:
@@ -60,16 +60,16 @@ class _Gyrostat:
                 f"moments {[float(x) for x in moments]} kg m^2 and rotor {[float(x) for x in momentum]} kg m^2/s"
             )
         axis = fitting[0]
-        self._named = [(axis + 1) % 3, (axis + 2) % 3, axis]
-        self._moments, self._rotor = spread([moments[axis - 2], moments[axis]]), spread([momentum[axis]])
+        self.named = [(axis + 1) % 3, (axis + 2) % 3, axis]
+        self.moments, self.rotor = spread([moments[axis - 2], moments[axis]]), spread([momentum[axis]])
 
     def motion(self, omega0: Sequence[Number], quaternion0: Sequence[Number]) -> ExactMotion:
         """Return the motion from an initial state."""
-        rates, attitude = numbers("omega", omega0, 3), numbers("quaternion", quaternion0, 4)
-        named = spread([rates[k] for k in self._named])
+        rates, start = numbers("omega", omega0, 3), attitude(numbers("quaternion", quaternion0, 4))
+        named = spread([rates[k] for k in self.named])
         return prepared(
             "gyrostat",
-            (self._moments, self._rotor, named, spread(attitude), [*map(float, self._named), 0.0]),
+            (self.moments, self.rotor, named, start, [*map(float, self.named), 0.0]),
             lambda: (
                 "a gyrostat has positive moments (kg m^2), a finite angular velocity (rad/s) and a quaternion that is "
                 f"not zero, got moments {[float(x) for x in self._given]}, omega {[float(x) for x in rates]}"

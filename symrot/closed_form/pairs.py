@@ -2,13 +2,15 @@
 
 from collections.abc import Sequence
 from fractions import Fraction
-from math import isfinite, lcm
+from math import isfinite, lcm, ulp
 from typing import Any
 
 from symrot.errors import InputError
 from symrot.number import equal, show
 
-__all__ = ["LARGEST", "SMALLEST", "Number", "common", "numbers", "pair", "quotient", "same", "spread"]
+__all__ = [
+    "GRID", "LARGEST", "SMALLEST", "Number", "attitude", "common", "numbers", "pair", "quotient", "same", "spread",
+]  # fmt: skip
 
 Number = float | int | Fraction
 
@@ -17,6 +19,9 @@ LARGEST = 1e205
 
 SMALLEST = 1e-205
 """Of the moments of inertia, kg m^2."""
+
+GRID = 2.0**-33
+"""Of the last bit of hi: what lo of an attitude is a multiple of."""
 
 _BITS = 600  # 2^600 and its inverse lie inside these bounds
 
@@ -38,6 +43,19 @@ def spread(values: Sequence[Number]) -> list[float]:
     result: list[float] = []
     for value in values:
         result += (value, 0.0) if isinstance(value, float) else quotient(value.numerator, value.denominator)
+    return result
+
+
+def attitude(values: Sequence[Number]) -> list[float]:
+    """Return hi, lo of each component of a quaternion in one list, to 2^-86 of the component.
+
+    An attitude needs no more, and arithmetic in pairs of doubles finds the same numbers for many attitudes at once.
+    """
+    result = spread(values)
+    for k in range(1, len(result), 2):
+        step = ulp(result[k - 1]) * GRID
+        if result[k] and step:
+            result[k] = round(result[k] / step) * step
     return result
 
 

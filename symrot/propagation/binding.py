@@ -12,7 +12,7 @@ from symrot.expression import Node, evaluate, names
 from symrot.planner import START_CONSTANTS, Plan
 from symrot.scene_kernel import EXACT_FUNCTIONS, Parameters
 
-__all__ = ["Binding", "one_double", "two_doubles"]
+__all__ = ["Binding", "folded", "one_double", "two_doubles", "value_of"]
 
 
 def one_double(value: Fraction) -> list[float]:
@@ -55,9 +55,9 @@ class Binding:
     ) -> None:
         constants = {"pi": number.PI, **(known or {}), **plan.constants}
         fixed = {name: value for name, value in constants.items() if name not in START_CONSTANTS}
-        self._rounded, self._numbers = rounded, [rounded(_value(node, constants)) for _, node in parameters]
+        self._rounded, self._numbers = rounded, [rounded(value_of(node, constants)) for _, node in parameters]
         self._moving = [
-            (k, _folded(node, fixed)) for k, (_, node) in enumerate(parameters) if names(node) & START_CONSTANTS
+            (k, folded(node, fixed)) for k, (_, node) in enumerate(parameters) if names(node) & START_CONSTANTS
         ]
 
     def __call__(self, plan: Plan) -> list[float]:
@@ -66,18 +66,19 @@ class Binding:
         if self._moving:
             found, constants = list(found), plan.constants
             for k, node in self._moving:
-                found[k] = self._rounded(_value(node, constants))
+                found[k] = self._rounded(value_of(node, constants))
         return [value for values in found for value in values]
 
 
-def _value(formula: Node, constants: Mapping[str, Fraction]) -> Fraction:
+def value_of(formula: Node, constants: Mapping[str, Fraction]) -> Fraction:
+    """Return the exact value of a formula of constants."""
     return Fraction(evaluate(formula, constants, EXACT_FUNCTIONS))
 
 
-def _folded(node: Node, known: Mapping[str, Fraction]) -> Node:
+def folded(node: Node, known: Mapping[str, Fraction]) -> Node:
     """Return a formula with each largest part that holds known constants alone as a number."""
     if names(node) <= known.keys():
-        return ("number", _value(node, known))
+        return ("number", value_of(node, known))
     if node[0] == "call":
-        return ("call", node[1], tuple(_folded(child, known) for child in node[2]))
-    return tuple(_folded(part, known) if isinstance(part, tuple) else part for part in node)
+        return ("call", node[1], tuple(folded(child, known) for child in node[2]))
+    return tuple(folded(part, known) if isinstance(part, tuple) else part for part in node)
