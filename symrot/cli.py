@@ -5,7 +5,7 @@ Exit codes: 0 good, 1 a check failed, 2 bad usage or input, 130 interrupted, 141
 
 import os
 import sys
-from argparse import ArgumentParser, Namespace
+from argparse import ArgumentParser, HelpFormatter, Namespace
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from time import perf_counter
@@ -27,8 +27,30 @@ PAGES: dict[str, Callable[[Any], str]] = {
 }
 
 
+class _Formatter(HelpFormatter):
+    """Help as wide as the terminal; argparse makes one for every argument, and asks shutil, which is slow to import."""
+
+    def __init__(self, prog: str) -> None:
+        super().__init__(prog, width=_columns() - 2)
+
+
+def _columns() -> int:
+    """Return the width of the terminal, as :func:`shutil.get_terminal_size` does."""
+    try:
+        columns = int(os.environ.get("COLUMNS", "0"))
+    except ValueError:
+        columns = 0
+    try:
+        return columns if columns > 0 else os.get_terminal_size(sys.__stdout__.fileno()).columns or 80  # type: ignore[union-attr]
+    except (AttributeError, ValueError, OSError):
+        return 80
+
+
 class _Parser(ArgumentParser):
     """A parser whose complaints are errors of ours, one sentence each."""
+
+    def __init__(self, **given: Any) -> None:
+        super().__init__(**given, formatter_class=_Formatter)
 
     def error(self, message: str) -> NoReturn:
         raise InputError(f"{message} (see `{self.prog} --help`)")
@@ -344,7 +366,8 @@ def _nowhere() -> TextIO:
     return Path(os.devnull).open("w", encoding="utf-8")
 
 
-def _parser() -> _Parser:
+def _parser(only: str = "") -> _Parser:
+    """Return the parser of the command line; of one command alone where its name is known, which saves the others."""
     parser = _Parser(
         prog="symrot",
         description="Rigid-body rotation: derived, specialised, compiled, propagated.",
@@ -352,8 +375,10 @@ def _parser() -> _Parser:
         allow_abbrev=False,
     )
     parser.add_argument("--version", action="version", version=f"symrot {symrot.__version__}")
-    commands = parser.add_subparsers(metavar="COMMAND", dest="command", required=True)
+    commands = parser.add_subparsers(metavar="COMMAND", dest="command", required=True, prog=parser.prog)
     for name, (about, function, declare) in COMMANDS.items():
+        if only not in ("", name):
+            continue
         spoken = f"{about[0].upper()}{about[1:]}."
         command = commands.add_parser(name, help=about, description=spoken, allow_abbrev=False)
         declare(command)
@@ -394,7 +419,7 @@ def main(argv: Sequence[str] | None = None) -> int:
             _parser().print_help(sys.stderr)
             return BAD
         _known(arguments)
-        options = _parser().parse_args(arguments)
+        options = _parser(arguments[0] if arguments[0] in COMMANDS else "").parse_args(arguments)
         code: int = options.function(options)
         sys.stdout.flush()
         return code

@@ -4,13 +4,13 @@ A rational value is exact: ``"1/3"``, ``"0.6375"`` (51/80), ``1e-3`` (1/1000). W
 and the circular functions) is rounded once, to a relative error below 2^-300. Standard library only.
 """
 
-__all__ = ["PI", "Angle", "cos", "equal", "read", "read_angle", "show", "sin", "sqrt", "tan", "without_turns"]
+__all__ = ["PI", "Angle", "cos", "equal", "read", "read_angle", "show", "sin", "sqrt", "tan", "unit", "without_turns"]
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from decimal import Decimal
 from fractions import Fraction
 from functools import cache
-from math import isfinite, isqrt
+from math import isfinite, isqrt, lcm
 from typing import NamedTuple, NoReturn, SupportsFloat
 
 from symrot import expression
@@ -94,6 +94,21 @@ def sqrt(value: Fraction) -> Fraction:
         return Fraction(numerator, denominator)
     shift = max(0, BITS + 2 - value.numerator.bit_length() // 2 + value.denominator.bit_length() // 2)
     return Fraction(isqrt((value.numerator << 2 * shift) // value.denominator), 1 << shift)
+
+
+def unit(vector: Sequence[Fraction]) -> tuple[Fraction, ...]:
+    """Return a vector divided by its norm, which must not be zero: exact where the norm is rational, else to 2^-320.
+
+    All in integers over one denominator: fractions would take a greatest common divisor for each sum and product.
+    """
+    shared = lcm(*[x.denominator for x in vector])
+    tops = [x.numerator * (shared // x.denominator) for x in vector]
+    square = sum([x * x for x in tops])
+    norm, shift = isqrt(square), 0
+    if norm * norm != square:
+        shift = max(0, BITS + 2 - square.bit_length() // 2)
+        norm = isqrt(square << 2 * shift)
+    return tuple([Fraction(x << shift, norm) for x in tops])
 
 
 def _sin_first_quadrant(value: Fraction, bits: int) -> Fraction:

@@ -5,7 +5,7 @@ rules. Each rule looks at exact numbers, changes the structure or leaves it, and
 it. The structure, not the numbers, decides which kernel is needed: a second scene of the same structure has it already.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
@@ -17,7 +17,10 @@ from symrot.number import equal
 from symrot.scene import Initial, Scene
 from symrot.switches import has_switches, smooth
 
-__all__ = ["ATTITUDE_QUANTITIES", "RULES", "Plan", "Row", "general_structure", "make_plan", "switched"]
+__all__ = [
+    "ATTITUDE_QUANTITIES", "RULES", "START_CONSTANTS", "STATES", "Plan", "Row", "general_structure", "make_plan",
+    "structure_key", "switched",
+]  # fmt: skip
 
 Structure = dict[str, Any]
 
@@ -27,12 +30,18 @@ ATTITUDE_QUANTITIES = frozenset(
 PRODUCTS = {"I_xy": (0, 1), "I_xz": (0, 2), "I_yz": (1, 2)}
 MOMENTS = {"I_xx": (0, 0), "I_yy": (1, 1), "I_zz": (2, 2)}
 NEVER_NEEDS_ATTITUDE = ("constant_body", "damping", "rotor")
+DIRECTED = {"constant_space": "torque", "gravity": "direction"}  # fixed in space: the field that says along what
 UNIT_FIELDS = ("direction", "attitude")  # fields whose components may be exactly one
+START_CONSTANTS = frozenset({f"omega_{i}" for i in (1, 2, 3)} | {f"initial_q{i}" for i in range(4)})
+"""The constants of a structure that are numbers of the initial state; all others are the scene's."""
 RESERVED = frozenset(
     {"t", "theta", "pi", *"ABC", *MOMENTS, *PRODUCTS}
     | {f"{name}_{i}" for name in ("omega", "L", "M", "radius", "initial_q") for i in range(4)}
     | {f"q{i}" for i in range(4)} | {f"initial_q{i}" for i in range(4)}
 )  # fmt: skip
+
+
+STATES = ("omega_1", "omega_2", "omega_3", "q0", "q1", "q2", "q3", "theta")
 
 
 @dataclass(frozen=True)
@@ -57,7 +66,12 @@ class Plan:
     @cached_property
     def constants(self) -> dict[str, Fraction]:
         """The physical constants of the structure by name, exact; modes of switches are 1."""
-        return _constants(self.scene, self.structure)
+        return self.scene_constants | _start_constants(self.scene.initial, self.structure)
+
+    @cached_property
+    def scene_constants(self) -> dict[str, Fraction]:
+        """Those of :attr:`constants` that do not depend on the initial state."""
+        return _scene_constants(self.scene, self.structure)
 
     @cached_property
     def states(self) -> tuple[str, ...]:
@@ -74,9 +88,24 @@ class Plan:
     def initial_state(self) -> tuple[float, ...]:
         """The initial values of :attr:`states`."""
         start = self.scene.initial
-        values = {f"omega_{i + 1}": value for i, value in enumerate(start.omega_b)}
-        values |= {f"q{i}": value for i, value in enumerate(start.quaternion)} | {"theta": Fraction(0)}
-        return tuple(float(values[name]) for name in self.states)
+        values = (*start.omega_b, *start.quaternion, 0)
+        return tuple([float(values[place]) for place in self._places])
+
+    @cached_property
+    def _places(self) -> tuple[int, ...]:
+        """Where each state stands among omega, attitude and the angle of a planar rotation."""
+        return tuple([STATES.index(name) for name in self.states])
+
+    def from_start(self, initial: Initial) -> "Plan":
+        """Return the plan of the same scene and structure from another initial state.
+
+        ``initial`` must have the :func:`structure_key` of the plan's own: nothing is decided anew.
+        """
+        scene, plan = object.__new__(Scene), object.__new__(Plan)
+        scene.__dict__.update(self.scene.__dict__, initial=initial)
+        shared = {name: getattr(self, name) for name in ("structure", "rows", "scene_constants", "states", "_places")}
+        plan.__dict__.update(shared, scene=scene)
+        return plan
 
     def explain(self) -> str:
         """Return the plan as a table for people: item, kept or skipped, rule, derivation, operations saved."""
@@ -123,6 +152,24 @@ def make_plan(scene: Scene, initial: Initial | None = None, driven: bool = False
         structure, skipped, why, derivation = rule(scene, structure)
         rows.append(Row(item, skipped, why, derivation, structure))
     return Plan(scene, structure, tuple(rows))
+
+
+# --- which starts have one structure ----------------------------------------------------------------------------------
+
+
+def structure_key(scene: Scene, initial: Initial) -> Hashable:
+    """Return what the rules look at in an initial state: starts of one key have plans that differ in numbers alone.
+
+    That is which components of omega are zero. A body that may rotate about one axis only is looked at more closely: by
+    the components of its attitude that are zero or one, and by the axes along which torques fixed in space lie.
+    """
+    turning = tuple([x != 0 for x in initial.omega_b])
+    if turning.count(True) > 1:
+        return turning
+    pattern = tuple([_pattern(q, unit=True) for q in initial.quaternion])
+    fixed = [torque for torque in scene.torques if torque.kind in DIRECTED]
+    lying = tuple([_small_components(torque.values[DIRECTED[torque.kind]], initial) for torque in fixed])
+    return turning, pattern, lying
 
 
 # --- the general structure --------------------------------------------------------------------------------------------
@@ -204,7 +251,7 @@ def _pattern(value: Fraction, unit: bool) -> str:
     return "0" if value == 0 else str(value) if unit and abs(value) == 1 else "*"
 
 
-def _constants(scene: Scene, structure: Structure) -> dict[str, Fraction]:
+def _scene_constants(scene: Scene, structure: Structure) -> dict[str, Fraction]:
     inertia = scene.body.inertia
     found: dict[str, Fraction] = {}
     if structure["inertia"]["form"] == "principal":
@@ -226,12 +273,13 @@ def _constants(scene: Scene, structure: Structure) -> dict[str, Fraction]:
                 continue
             for component, entry, mark in zip(_component_names(name, pattern), value, pattern, strict=True):
                 found |= {f"{prefix}{component}": entry} if mark == "*" else {}
-    for number, mark in structure["constant"].items():
-        if mark == "*":
-            found[f"omega_{number + 1}"] = scene.initial.omega_b[number]
-    for number, mark in enumerate(structure["initial_quaternion"] or ()):
-        found |= {f"initial_q{number}": scene.initial.quaternion[number]} if mark == "*" else {}
     return found
+
+
+def _start_constants(initial: Initial, structure: Structure) -> dict[str, Fraction]:
+    kept, start = structure["constant"].items(), enumerate(structure["initial_quaternion"] or ())
+    found = {f"omega_{i + 1}": initial.omega_b[i] for i, mark in kept if mark == "*"}
+    return found | {f"initial_q{i}": initial.quaternion[i] for i, mark in start if mark == "*"}
 
 
 # --- the rules --------------------------------------------------------------------------------------------------------
@@ -317,14 +365,14 @@ def _torque_along(torque: Structure, axis: int, scene: Scene, given: Any) -> boo
     if torque["kind"] == "constant_space":
         return _lies_along(given.values["torque"], axis, scene)
     if torque["kind"] == "gravity":  # a pendulum: level axis, centre of mass beside it
-        direction = _in_body(given.values["direction"], scene)
-        return _negligible(direction[axis], direction) and fields["center_of_mass"][axis] == "0"
+        level = _small_components(given.values["direction"], scene.initial)[axis]
+        return level and fields["center_of_mass"][axis] == "0"
     return bool(torque["kind"] == "damping")
 
 
-def _in_body(vector_s: tuple[Fraction, ...], scene: Scene) -> tuple[Fraction, ...]:
+def _in_body(vector_s: tuple[Fraction, ...], initial: Initial) -> tuple[Fraction, ...]:
     """Return the body components, at the start, of a vector in space components."""
-    q0, *q = scene.initial.quaternion
+    q0, *q = initial.quaternion
     twice = [2 * sum(a * b for a, b in zip(q, vector_s, strict=True)) * c for c in q]
     turned = (
         q[1] * vector_s[2] - q[2] * vector_s[1], q[2] * vector_s[0] - q[0] * vector_s[2],
@@ -338,9 +386,15 @@ def _negligible(value: Fraction, vector: tuple[Fraction, ...]) -> bool:
     return abs(value) <= max(map(abs, vector)) / 2**200
 
 
+def _small_components(vector_s: tuple[Fraction, ...], initial: Initial) -> tuple[bool, ...]:
+    """Return which body components of a vector in space components are zero at the start, to 2^-200."""
+    vector = _in_body(vector_s, initial)
+    return tuple([_negligible(component, vector) for component in vector])
+
+
 def _lies_along(vector_s: tuple[Fraction, ...], axis: int, scene: Scene) -> bool:
-    vector = _in_body(vector_s, scene)
-    return all(_negligible(vector[i], vector) for i in range(3) if i != axis)
+    small = _small_components(vector_s, scene.initial)
+    return all(small[i] for i in range(3) if i != axis)
 
 
 def _one_axis(scene: Scene, structure: Structure) -> Outcome:

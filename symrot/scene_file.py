@@ -21,7 +21,7 @@ _KEY = re.compile(r"[A-Za-z0-9_-]+|\"[^\"\n]*\"|'[^'\n]*'")
 
 def shipped_names() -> list[str]:
     """Return the names of the scenes that come with symrot, sorted."""
-    return sorted(path.stem for path in SHIPPED.glob("*.toml"))
+    return sorted(path.stem for path in SHIPPED.iterdir() if path.suffix == ".toml")
 
 
 def names_with_kernels() -> list[str]:

@@ -315,7 +315,7 @@ def test_every_trajectory_is_that_of_its_own_scene(torque, parameters):
     assert found.methods == ("taylor",) * 3
     variation = read_variation(scene(torque=[torque]), start["omega"], start["quaternion"], parameters)
     for i in (0, 2):
-        alone = symrot.propagator(variation.scenes[i], "dop853", 1e-12)()
+        alone = symrot.propagator(variation.scene_of(i), "dop853", 1e-12)()
         assert abs(alone.omega - found.omega[i]).max() < 1e-10
         assert abs(alone.quaternion - found.quaternion[i]).max() < 1e-10
 

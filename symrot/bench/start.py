@@ -1,7 +1,12 @@
-"""How long the first result takes: `symrot run` from a cold and from a warm start, beside what it cannot do without.
+"""How long the first result takes: `symrot run` from a warm and from a cold start, beside what it cannot do without.
 
-``python -m symrot.bench.start [ROUNDS] [SCENE]`` runs the rounds interleaved and prints medians and ratios. A compiler
-call is that of the scene's own library: kernel and stepper, with symrot's flags.
+    python -m symrot.bench.start [ROUNDS] [SCENE]
+
+As a caller measures it: whole processes, from the shell's view, the installed ``symrot`` if there is one. Every round
+runs ``python -c 'import numpy'`` and a warm ``symrot run`` one after the other; the ratio is the median of those pairs,
+so that a machine that grows slower or faster meanwhile slows both. A cold start has an empty cache of kernels; it comes
+every tenth round, beside an import of SymPy and a compiler call: that of the scene's own library, kernel and stepper,
+with symrot's flags.
 """
 
 import os
@@ -18,6 +23,9 @@ from symrot.propagation.kernels import library_source, scene_kernel
 
 __all__ = ["main"]
 
+ROUNDS = 21
+COLD_EVERY = 10
+
 
 def _seconds(command: list[str], environment: dict[str, str]) -> float:
     began = perf_counter()
@@ -25,9 +33,15 @@ def _seconds(command: list[str], environment: dict[str, str]) -> float:
     return perf_counter() - began
 
 
+def _symrot() -> list[str]:
+    """Return what a caller types: the installed script beside this Python, else the module."""
+    script = Path(sys.executable).with_name("symrot")
+    return [str(script)] if script.exists() else [sys.executable, "-m", "symrot"]
+
+
 def main(arguments: list[str]) -> int:
     """Print the table; arguments are the number of rounds and the scene."""
-    rounds = int(arguments[0]) if arguments else 7
+    rounds = int(arguments[0]) if arguments else ROUNDS
     scene = arguments[1] if len(arguments) > 1 else "tumbling_prism"
     with TemporaryDirectory(prefix="symrot-") as directory:
         warm = os.environ | {"SYMROT_CACHE": str(Path(directory) / "warm")}
@@ -37,26 +51,24 @@ def main(arguments: list[str]) -> int:
         kernel = scene_kernel(found)
         source.write_text(library_source(found, kernel), encoding="utf-8")
         compile_it = [*library.compiler().command, *library.FLAGS, str(source), "-o", f"{directory}/motion.so", "-lm"]
-        run = [sys.executable, "-m", "symrot", "run", scene]
-        rows = {
-            "import numpy": ([sys.executable, "-c", "import numpy"], warm),
-            "import sympy": ([sys.executable, "-c", "import sympy"], warm),
-            "compiler call": (compile_it, warm),
-            "symrot run, warm": (run, warm),
-            "symrot run, cold": (run, warm),
-        }
-        times: dict[str, list[float]] = {name: [] for name in rows}
+        numpy, run = [sys.executable, "-c", "import numpy"], [*_symrot(), "run", scene]
+        rows: dict[str, list[float]] = {"import numpy": [], "symrot run, warm": []}
+        rows |= {"import sympy": [], "compiler call": [], "symrot run, cold": []}
         _seconds(run, warm)
         for number in range(rounds):
-            for name, (command, environment) in rows.items():
-                if name.endswith("cold"):
-                    environment = environment | {"SYMROT_CACHE": str(Path(directory) / f"cold-{number}")}
-                times[name].append(_seconds(command, environment))
-    middle = {name: median(values) for name, values in times.items()}
-    print(f"{scene}, {rounds} interleaved rounds, median (least) seconds")
-    for name, values in times.items():
+            rows["import numpy"].append(_seconds(numpy, warm))
+            rows["symrot run, warm"].append(_seconds(run, warm))
+            if number % COLD_EVERY == 0:
+                cold = warm | {"SYMROT_CACHE": str(Path(directory) / f"cold-{number}")}
+                rows["import sympy"].append(_seconds([sys.executable, "-c", "import sympy"], warm))
+                rows["compiler call"].append(_seconds(compile_it, warm))
+                rows["symrot run, cold"].append(_seconds(run, cold))
+    middle = {name: median(values) for name, values in rows.items()}
+    print(f"{scene}, {rounds} rounds: median (least) seconds of `{' '.join(run)}` and others")
+    for name, values in rows.items():
         print(f"  {name:<18} {middle[name]:.3f} ({min(values):.3f})")
-    print(f"  warm / import numpy                       {middle['symrot run, warm'] / middle['import numpy']:.2f}")
+    pairs = zip(rows["symrot run, warm"], rows["import numpy"], strict=True)
+    print(f"  warm / import numpy, median of pairs      {median(one / other for one, other in pairs):.2f}")
     both = middle["import sympy"] + middle["compiler call"]
     print(f"  cold / (import sympy + compiler call)     {middle['symrot run, cold'] / both:.2f}")
     return 0

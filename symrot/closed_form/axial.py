@@ -13,7 +13,7 @@ Proof: ``derivations/driven_rotation.md``.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from typing import NoReturn
 
@@ -27,8 +27,9 @@ from symrot.closed_form.double_double import two_product
 from symrot.closed_form.library import Floats, times_of
 from symrot.closed_form.pairs import LARGEST, SMALLEST, Number, common, numbers, pair
 from symrot.errors import InputError
+from symrot.scene import Initial
 
-__all__ = ["AxialMotion", "motion"]
+__all__ = ["AxialMotion", "motion", "starts"]
 
 _BITS = 200  # of a norm
 _LARGEST = 700.0  # the exponential of more leaves the doubles
@@ -176,33 +177,55 @@ def motion(
     InputError
         If the body turns across the axis and is not symmetric about it, or a number is not of this domain.
     """
-    moments = [Fraction(x) for x in numbers("inertia", inertia, 3, SMALLEST)]
-    rates = [Fraction(x) for x in numbers("omega", omega0, 3)]
-    attitude, _ = common(numbers("quaternion", quaternion0, 4))
-    push, drag, slowing = (Fraction(x) for x in numbers("torque and damping", [torque, damping, damping_across], 3))
-    square = sum(x * x for x in attitude)
-    if not isinstance(axis, int) or axis not in (0, 1, 2) or not square:
-        raise InputError(
-            "expected an axis 0, 1 or 2 and a quaternion that is not zero, got axis "
-            f"{number.show(axis)} and quaternion {list(quaternion0)}"
-        )
-    across, other, own = moments[axis - 2], moments[axis - 1], moments[axis]
-    if (rates[axis - 2] or rates[axis - 1]) and not number.equal(across, other):
-        raise InputError(
-            "a body that turns across the driven axis must be symmetric about it, got moments "
-            f"{[float(x) for x in moments]} kg m^2 and omega {[float(x) for x in rates]} rad/s"
-        )
-    turning = (own - across) / across, slowing / across
-    quotients = push / own, drag / own, *turning
-    if max(map(abs, quotients)) > LARGEST:
-        raise InputError(
-            f"expected torque, damping and moments with quotients up to {LARGEST:g}, got moments "
-            f"{[float(x) for x in moments]} kg m^2, torque {float(push)!r} N m, damping {float(drag)!r} and "
-            f"{float(slowing)!r} N m s"
-        )
-    norm = math.isqrt(square << 2 * _BITS)
-    start = [(x << _BITS) / norm for x in attitude]
-    turned = [0.0] * 4  # the product of the start and the axis
-    turned[0], turned[axis + 1] = -start[axis + 1], start[0]
-    turned[(axis + 1) % 3 + 1], turned[(axis + 2) % 3 + 1] = start[(axis + 2) % 3 + 1], -start[(axis + 1) % 3 + 1]
-    return AxialMotion(axis, (rates[axis], push / own, drag / own), rates, turning, (start, turned))
+    return _Driven(inertia, axis, torque, damping, damping_across).motion(omega0, quaternion0)
+
+
+def starts(
+    inertia: Sequence[Number], axis: int, torque: Number, damping: Number = 0.0, damping_across: Number = 0.0
+) -> Callable[[Initial], AxialMotion]:
+    """Return what gives the motion from an initial state; see :func:`motion`."""
+    body = _Driven(inertia, axis, torque, damping, damping_across)
+    return lambda start: body.motion(start.omega_b, start.quaternion)
+
+
+class _Driven:
+    """A driven body with what its motions share: the quotients of its constants, exact."""
+
+    def __init__(
+        self, inertia: Sequence[Number], axis: int, torque: Number, damping: Number, damping_across: Number
+    ) -> None:
+        self._moments = moments = [Fraction(x) for x in numbers("inertia", inertia, 3, SMALLEST)]
+        given = numbers("torque and damping", [torque, damping, damping_across], 3)
+        push, drag, slowing = (Fraction(x) for x in given)
+        if not isinstance(axis, int) or axis not in (0, 1, 2):
+            raise InputError(f"expected an axis 0, 1 or 2, got {number.show(axis)}")
+        self._axis = axis
+        across, other, own = moments[axis - 2], moments[axis - 1], moments[axis]
+        self._symmetric = number.equal(across, other)
+        self._turning = (own - across) / across, slowing / across
+        self._driven = push / own, drag / own
+        if max(map(abs, (*self._driven, *self._turning))) > LARGEST:
+            raise InputError(
+                f"expected torque, damping and moments with quotients up to {LARGEST:g}, got moments "
+                f"{[float(x) for x in moments]} kg m^2, torque {float(push)!r} N m, damping {float(drag)!r} and "
+                f"{float(slowing)!r} N m s"
+            )
+
+    def motion(self, omega0: Sequence[Number], quaternion0: Sequence[Number]) -> AxialMotion:
+        """Return the motion from an initial state."""
+        axis, rates = self._axis, [Fraction(x) for x in numbers("omega", omega0, 3)]
+        attitude, _ = common(numbers("quaternion", quaternion0, 4))
+        square = sum([x * x for x in attitude])
+        if not square:
+            raise InputError(f"expected a quaternion that is not zero, got {list(quaternion0)}")
+        if (rates[axis - 2] or rates[axis - 1]) and not self._symmetric:
+            raise InputError(
+                "a body that turns across the driven axis must be symmetric about it, got moments "
+                f"{[float(x) for x in self._moments]} kg m^2 and omega {[float(x) for x in rates]} rad/s"
+            )
+        norm = math.isqrt(square << 2 * _BITS)
+        start = [(x << _BITS) / norm for x in attitude]
+        turned = [0.0] * 4  # the product of the start and the axis
+        turned[0], turned[axis + 1] = -start[axis + 1], start[0]
+        turned[(axis + 1) % 3 + 1], turned[(axis + 2) % 3 + 1] = start[(axis + 2) % 3 + 1], -start[(axis + 1) % 3 + 1]
+        return AxialMotion(axis, (rates[axis], *self._driven), rates, self._turning, (start, turned))

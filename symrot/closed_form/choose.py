@@ -10,7 +10,7 @@ from symrot.closed_form.library import Floats
 from symrot.codegen import library
 from symrot.number import equal
 from symrot.planner import ATTITUDE_QUANTITIES
-from symrot.scene import Scene
+from symrot.scene import Initial, Scene
 
 __all__ = ["FORMS", "Exact", "Form", "exact_form"]
 
@@ -25,6 +25,7 @@ class Exact(Protocol):
 
 
 Vector = tuple[Fraction, ...]
+Starts = Callable[[Initial], Exact]
 
 
 class Form(NamedTuple):
@@ -32,9 +33,13 @@ class Form(NamedTuple):
 
     name: str
     fits: Callable[[Scene], bool]
-    motion: Callable[[Scene], Exact]
+    starts: Callable[[Scene], Starts]  # with all that motions from different starts share
     library: str  # what it evaluates, see symrot.closed_form.library; "" for none
     derivation: str  # what proves it
+
+    def motion(self, scene: Scene) -> Exact:
+        """Return the motion of a scene."""
+        return self.starts(scene)(scene.initial)
 
     def begin(self) -> None:
         """Start what compiles the form, if it must be compiled; other work can be done meanwhile."""
@@ -68,10 +73,10 @@ def _is_free(scene: Scene) -> bool:
     return not scene.torques
 
 
-def _free_body(scene: Scene) -> Exact:
+def _free_body(scene: Scene) -> Starts:
     from symrot.closed_form import free_body
 
-    return free_body.motion_of_tensor(scene.body.inertia, scene.initial.omega_b, scene.initial.quaternion)
+    return free_body.starts_of_tensor(scene.body.inertia)
 
 
 def _is_symmetric_top(scene: Scene) -> bool:
@@ -81,13 +86,11 @@ def _is_symmetric_top(scene: Scene) -> bool:
     return axis is not None and _symmetric_about(scene, axis)
 
 
-def _heavy_top(scene: Scene) -> Exact:
+def _heavy_top(scene: Scene) -> Starts:
     from symrot.closed_form import heavy_top
 
-    given, start = scene.torques[0].values, scene.initial
-    return heavy_top.motion(
-        _moments(scene), given["weight"], given["center_of_mass"], start.omega_b, start.quaternion, given["direction"]
-    )
+    given = scene.torques[0].values
+    return heavy_top.starts(_moments(scene), given["weight"], given["center_of_mass"], given["direction"])
 
 
 def _is_symmetric_gyrostat(scene: Scene) -> bool:
@@ -97,13 +100,10 @@ def _is_symmetric_gyrostat(scene: Scene) -> bool:
     return axis is not None and _symmetric_about(scene, axis)
 
 
-def _gyrostat(scene: Scene) -> Exact:
+def _gyrostat(scene: Scene) -> Starts:
     from symrot.closed_form import gyrostat
 
-    start = scene.initial
-    return gyrostat.motion(
-        _moments(scene), scene.torques[0].values["angular_momentum"], start.omega_b, start.quaternion
-    )
+    return gyrostat.starts(_moments(scene), scene.torques[0].values["angular_momentum"])
 
 
 def _push_and_drag(scene: Scene) -> tuple[Vector, Vector]:
@@ -149,27 +149,27 @@ def _driven_symmetry_axis(scene: Scene) -> int | None:
     return None
 
 
-def _axial(scene: Scene) -> Exact:
+def _axial(scene: Scene) -> Starts:
     from symrot.closed_form import axial
 
     axis = _driven_axis(scene)
     axis = _driven_symmetry_axis(scene) if axis is None else axis
     assert axis is not None
-    start, (push, drag) = scene.initial, _push_and_drag(scene)
-    return axial.motion(_moments(scene), axis, push[axis], start.omega_b, start.quaternion, drag[axis], drag[axis - 1])
+    push, drag = _push_and_drag(scene)
+    return axial.starts(_moments(scene), axis, push[axis], drag[axis], drag[axis - 1])
 
 
 def _is_spun_up(scene: Scene) -> bool:
     return bool(set(scene.output.quantities) & ATTITUDE_QUANTITIES) and _driven_symmetry_axis(scene) is not None
 
 
-def _spin_up(scene: Scene) -> Exact:
+def _spin_up(scene: Scene) -> Starts:
     from symrot.closed_form import spin_up
 
     axis = _driven_symmetry_axis(scene)
     assert axis is not None
-    start, (push, _) = scene.initial, _push_and_drag(scene)
-    return spin_up.motion(_moments(scene), axis, push[axis], start.omega_b, start.quaternion)
+    moments, torque = _moments(scene), _push_and_drag(scene)[0][axis]
+    return lambda start: spin_up.motion(moments, axis, torque, start.omega_b, start.quaternion)
 
 
 FORMS = (

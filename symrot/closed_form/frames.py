@@ -2,11 +2,13 @@
 
 from collections.abc import Sequence
 from fractions import Fraction
+from typing import TypeVar
 
-from symrot import number
+from symrot.number import unit
 
-__all__ = ["Rows", "product", "quaternion_of", "to_axis", "unit"]
+__all__ = ["Rows", "product", "quaternion_of", "to_axis"]
 
+Exact = TypeVar("Exact", int, Fraction)
 Rows = Sequence[Sequence[Fraction]]
 
 
@@ -22,14 +24,8 @@ def quaternion_of(r: Rows) -> tuple[Fraction, ...]:
     return unit(max(candidates, key=lambda row: sum(x * x for x in row)))
 
 
-def unit(vector: Sequence[Fraction]) -> tuple[Fraction, ...]:
-    """Return a vector divided by its norm, which must not be zero."""
-    norm = number.sqrt(sum((x * x for x in vector), Fraction(0)))
-    return tuple(x / norm for x in vector)
-
-
-def product(a: Sequence[Fraction], b: Sequence[Fraction]) -> tuple[Fraction, ...]:
-    """Return the product of two quaternions, scalar first."""
+def product(a: Sequence[Exact], b: Sequence[Exact]) -> tuple[Exact, Exact, Exact, Exact]:
+    """Return the product of two quaternions, scalar first, of integers or of fractions."""
     a0, a1, a2, a3 = a
     b0, b1, b2, b3 = b
     return (

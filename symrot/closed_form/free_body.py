@@ -9,17 +9,17 @@ Source: Whittaker, Analytical Dynamics, 4th ed., section 69; van Zon & Schofield
 Proof: ``derivations/free_body_attitude.md``, ``derivations/free_body_separatrix.md``.
 """
 
-from collections.abc import Sequence
-from fractions import Fraction
+from collections.abc import Callable, Sequence
 
 from symrot.closed_form.frames import quaternion_of
 from symrot.closed_form.motion import ExactMotion, prepared
-from symrot.closed_form.pairs import SMALLEST, Number, common, numbers, quotient, spread
+from symrot.closed_form.pairs import SMALLEST, Number, attitude, common, numbers, quotient, spread
 from symrot.inertia.principal import principal_axes
+from symrot.scene import Initial
 
-__all__ = ["motion", "motion_of_tensor"]
+__all__ = ["NEGLIGIBLE", "Body", "defect_of", "motion", "motion_of_tensor", "starts_of_tensor"]
 
-_NEGLIGIBLE = 200  # bits: what is smaller is taken for zero, as in number.equal
+NEGLIGIBLE = 200  # bits: what is smaller is taken for zero, as in number.equal
 
 
 def motion(
@@ -48,9 +48,9 @@ def motion(
     [[0.0, 0.0, 1.0]]
     """
     moments, rates = numbers("inertia", inertia, 3, SMALLEST), numbers("omega", omega0, 3)
-    attitude = numbers("quaternion", quaternion0, 4)
+    start = attitude(numbers("quaternion", quaternion0, 4))
     exact = None if all(isinstance(x, float) for x in (*moments, *rates)) else _differences(moments, rates)
-    return _prepared(spread(moments), spread(rates), spread(attitude), exact, None)
+    return _prepared(spread(moments), spread(rates), start, exact, None)
 
 
 def motion_of_tensor(
@@ -63,43 +63,78 @@ def motion_of_tensor(
     The principal axes are found to 110 digits and turn into the constants of the motion before anything is rounded to a
     double. Arguments as :func:`motion`, but ``inertia`` is a symmetric 3x3 tensor (kg m^2).
     """
-    body = principal_axes([list(row) for row in inertia])
-    given = [Fraction(x) for x in numbers("omega", omega0, 3)]
-    attitude = numbers("quaternion", quaternion0, 4)
-    rates = [sum((body.axes[i][k] * given[i] for i in range(3)), Fraction(0)) for k in range(3)]
-    largest = max(map(abs, given))
-    rates = [Fraction(0) if abs(x) * 2**_NEGLIGIBLE < largest else x for x in rates]
-    exact = _differences(body.moments, rates)
-    axes = None if body.given_axes else spread([*(x for row in body.axes for x in row), *quaternion_of(body.axes)])
-    return _prepared(spread(body.moments), spread(rates), spread(attitude), exact, axes)
+    return Body(inertia).motion(omega0, quaternion0)
+
+
+def starts_of_tensor(inertia: Sequence[Sequence[Number]]) -> Callable[[Initial], ExactMotion]:
+    """Return what gives the motion from an initial state; the principal axes are found once. See :func:`motion`."""
+    body = Body(inertia)
+    return lambda start: body.motion(start.omega_b, start.quaternion)
+
+
+class Body:
+    """A free body with what its motions share: moments, their differences, and axes where they are not principal."""
+
+    def __init__(self, inertia: Sequence[Sequence[Number]]) -> None:
+        body = principal_axes([list(row) for row in inertia])
+        self.integers, shared = common(body.moments)
+        self.moments, self.gaps = spread(body.moments), _gaps(self.integers, shared)
+        entries = [x for row in body.axes for x in row]
+        self._axes, self._unit = common(entries)
+        self.axes = None if body.given_axes else spread([*entries, *quaternion_of(body.axes)])
+
+    def along(self, omega0: Sequence[Number]) -> tuple[list[int], int]:
+        """Return angular velocity along the principal axes, as integers over one denominator."""
+        rates, shared = common(omega0)
+        largest = max(map(abs, rates)) * self._unit
+        if self.axes is not None:
+            axes = self._axes
+            rates = [sum([axes[3 * i + k] * rates[i] for i in range(3)]) for k in range(3)]
+            shared *= self._unit
+        return [0 if abs(x) << NEGLIGIBLE < largest else x for x in rates], shared
+
+    def motion(self, omega0: Sequence[Number], quaternion0: Sequence[Number]) -> ExactMotion:
+        """Return the motion from an initial state along the given axes."""
+        rates, shared = self.along(numbers("omega", omega0, 3))
+        start = attitude(numbers("quaternion", quaternion0, 4))
+        omega = [part for x in rates for part in quotient(x, shared)]
+        return _prepared(self.moments, omega, start, [*self.gaps, *defect_of(self.integers, rates)], self.axes)
 
 
 def _differences(moments: Sequence[Number], omega: Sequence[Number]) -> list[float]:
     """Return I2 - I3, I3 - I1, I1 - I2 and the defect |L|^2 - 2 T I_mid, scaled as free_body.c takes it, as hi, lo."""
-    i, shared = common(moments)
-    w, _ = common(omega)
+    integers, shared = common(moments)
+    return [*_gaps(integers, shared), *defect_of(integers, common(omega)[0])]
+
+
+def _gaps(i: list[int], shared: int) -> list[float]:
     found: list[float] = []
     for k in range(3):
         difference = i[(k + 1) % 3] - i[(k + 2) % 3]
-        if abs(difference) << _NEGLIGIBLE < max(i[(k + 1) % 3], i[(k + 2) % 3]):
+        if abs(difference) << NEGLIGIBLE < max(i[(k + 1) % 3], i[(k + 2) % 3]):
             difference = 0
         found += quotient(difference, shared)
+    return found
+
+
+def defect_of(i: list[int], w: list[int]) -> tuple[float, float]:
+    """Return |L|^2 - 2 T I_mid over the square of the largest moment times the largest rate, of integers, as hi, lo."""
     middle = sorted(i)[1]
     shares = [moment * (moment - middle) * rate * rate for moment, rate in zip(i, w, strict=True)]
     defect, largest = sum(shares), max(i) * max(map(abs, w))
-    if abs(defect) << _NEGLIGIBLE < max(map(abs, shares)) or not largest:
-        defect, largest = 0, 1
-    return [*found, *quotient(defect, largest * largest)]
+    if abs(defect) << NEGLIGIBLE < max(map(abs, shares)) or not largest:
+        return 0.0, 0.0
+    return quotient(defect, largest * largest)
 
 
 def _prepared(
-    moments: list[float], omega: list[float], attitude: list[float], exact: list[float] | None, axes: list[float] | None
+    moments: list[float], omega: list[float], start: list[float], exact: list[float] | None, axes: list[float] | None
 ) -> ExactMotion:
     return prepared(
         "free_body",
-        (moments, omega, attitude, exact, axes),
+        (moments, omega, start, exact, axes),
         lambda: (
             "a free body has three positive moments of inertia (kg m^2), a finite angular velocity (rad/s) and a "
-            f"quaternion that is not zero; got moments {moments[::2]}, omega {omega[::2]}, quaternion {attitude[::2]}"
+            f"quaternion that is not zero; got moments {moments[::2]}, omega {omega[::2]}, quaternion {start[::2]}"
         ),
     )

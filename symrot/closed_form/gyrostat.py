@@ -5,13 +5,14 @@ The formulas are in :file:`gyrostat.c`. Source: Landau & Lifshitz, Mechanics, 3r
 Proof: ``derivations/symmetric_gyrostat.md``.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from symrot.closed_form.motion import ExactMotion, prepared
-from symrot.closed_form.pairs import SMALLEST, Number, numbers, same, spread
+from symrot.closed_form.pairs import SMALLEST, Number, attitude, numbers, same, spread
 from symrot.errors import InputError
+from symrot.scene import Initial
 
-__all__ = ["motion"]
+__all__ = ["Gyrostat", "motion", "starts"]
 
 
 def motion(
@@ -36,29 +37,41 @@ def motion(
     InputError
         If the body is not symmetric about the rotor's axis, or a number is not of this domain.
     """
-    moments = numbers("inertia", inertia, 3, SMALLEST)
-    momentum = numbers("rotor", rotor, 3)
-    rates, attitude = numbers("omega", omega0, 3), numbers("quaternion", quaternion0, 4)
-    symmetric = [k for k in range(3) if same(moments[k - 2], moments[k - 1])]
-    fitting = [k for k in symmetric if not momentum[k - 2] and not momentum[k - 1]]
-    if not fitting:
-        raise InputError(
-            "a gyrostat moves in closed form here when its rotor lies along the axis of a symmetric body, got moments "
-            f"{[float(x) for x in moments]} kg m^2 and rotor {[float(x) for x in momentum]} kg m^2/s"
+    return Gyrostat(inertia, rotor).motion(omega0, quaternion0)
+
+
+def starts(inertia: Sequence[Number], rotor: Sequence[Number]) -> Callable[[Initial], ExactMotion]:
+    """Return what gives the motion from an initial state; see :func:`motion`."""
+    body = Gyrostat(inertia, rotor)
+    return lambda start: body.motion(start.omega_b, start.quaternion)
+
+
+class Gyrostat:
+    """A gyrostat with what its motions share."""
+
+    def __init__(self, inertia: Sequence[Number], rotor: Sequence[Number]) -> None:
+        self._given = moments = numbers("inertia", inertia, 3, SMALLEST)
+        momentum = numbers("rotor", rotor, 3)
+        symmetric = [k for k in range(3) if same(moments[k - 2], moments[k - 1])]
+        fitting = [k for k in symmetric if not momentum[k - 2] and not momentum[k - 1]]
+        if not fitting:
+            raise InputError(
+                "a gyrostat moves in closed form here when its rotor lies along the axis of a symmetric body, got "
+                f"moments {[float(x) for x in moments]} kg m^2 and rotor {[float(x) for x in momentum]} kg m^2/s"
+            )
+        axis = fitting[0]
+        self.named = [(axis + 1) % 3, (axis + 2) % 3, axis]
+        self.moments, self.rotor = spread([moments[axis - 2], moments[axis]]), spread([momentum[axis]])
+
+    def motion(self, omega0: Sequence[Number], quaternion0: Sequence[Number]) -> ExactMotion:
+        """Return the motion from an initial state."""
+        rates, start = numbers("omega", omega0, 3), attitude(numbers("quaternion", quaternion0, 4))
+        named = spread([rates[k] for k in self.named])
+        return prepared(
+            "gyrostat",
+            (self.moments, self.rotor, named, start, [*map(float, self.named), 0.0]),
+            lambda: (
+                "a gyrostat has positive moments (kg m^2), a finite angular velocity (rad/s) and a quaternion that is "
+                f"not zero, got moments {[float(x) for x in self._given]}, omega {[float(x) for x in rates]}"
+            ),
         )
-    axis = fitting[0]
-    named = [(axis + 1) % 3, (axis + 2) % 3, axis]
-    return prepared(
-        "gyrostat",
-        (
-            spread([moments[axis - 2], moments[axis]]),
-            spread([momentum[axis]]),
-            spread([rates[k] for k in named]),
-            spread(attitude),
-            [*map(float, named), 0.0],
-        ),
-        lambda: (
-            "a gyrostat has positive moments (kg m^2), a finite angular velocity (rad/s) and a quaternion that is "
-            f"not zero, got moments {[float(x) for x in moments]}, omega {[float(x) for x in rates]}"
-        ),
-    )

@@ -34,6 +34,8 @@ FLAGS = (
     "-shared",
 )
 
+INCLUDE = '\n#include "'
+
 PARTS = {"": (*FLAGS, "-Og"), "_at": (*FLAGS, "-O2")}
 """The two files of a closed form, by what follows its name, with their flags."""
 
@@ -47,12 +49,12 @@ def source(name: str) -> str:
 
     def text(file: str) -> str:
         seen.add(file)
-        lines = []
-        for line in (here / file).read_text(encoding="utf-8").splitlines():
-            included = line.split('"')[1] if line.startswith('#include "') else ""
-            if included not in seen:
-                lines.append(text(included) if included else line)
-        return "\n".join(lines)
+        first, *rest = ("\n" + (here / file).read_text(encoding="utf-8")).removesuffix("\n").split(INCLUDE)
+        parts = [first]
+        for part in rest:
+            included, _, after = part.partition('"')
+            parts += [*([] if included in seen else ["\n", text(included)]), after]
+        return "".join(parts).removeprefix("\n")
 
     return text(f"{name}.c") + "\n"
 

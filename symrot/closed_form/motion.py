@@ -15,7 +15,7 @@ from symrot.codegen import library
 from symrot.codegen.address import address
 from symrot.errors import CompilerError, InputError
 
-__all__ = ["REGIMES", "ExactMotion", "prepared"]
+__all__ = ["REGIMES", "ExactMotion", "functions", "prepared"]
 
 REGIMES = ("steady", "circular", "hyperbolic", "separatrix")
 """Which series a motion takes: none; those of the elliptic functions; their imaginary transforms; on the separatrix."""
@@ -93,7 +93,8 @@ class _Portable(ExactMotion):
         self._motion.evaluate(times, omega, quaternion)
 
 
-def _functions(name: str, arguments: int) -> _Functions:
+def functions(name: str, arguments: int) -> _Functions:
+    """Return `prepare` and the loop over samples of a closed form, and the type of a record of its constants."""
     if name not in _bound:
         constants, samples = load(name)
         prepare, length = (getattr(constants, f"symrot_{name}_{part}") for part in ("prepare", "length"))
@@ -123,7 +124,7 @@ def prepared(name: str, arguments: tuple[list[float] | None, ...], refusal: Call
             return _Portable(MOTIONS[name](*arguments))
         except ValueError:
             raise InputError(refusal()) from None
-    prepare, evaluate, record = _functions(name, len(arguments))
+    prepare, evaluate, record = functions(name, len(arguments))
     constants = record()
     given = [None if values is None else _packed(values) for values in arguments]
     status = prepare(*given, ctypes.addressof(constants))

@@ -2,13 +2,15 @@
 
 from collections.abc import Sequence
 from fractions import Fraction
-from math import isfinite, lcm
+from math import isfinite, lcm, ulp
 from typing import Any
 
 from symrot.errors import InputError
 from symrot.number import equal, show
 
-__all__ = ["LARGEST", "SMALLEST", "Number", "common", "numbers", "pair", "quotient", "same", "spread"]
+__all__ = [
+    "GRID", "LARGEST", "SMALLEST", "Number", "attitude", "common", "numbers", "pair", "quotient", "same", "spread",
+]  # fmt: skip
 
 Number = float | int | Fraction
 
@@ -17,6 +19,11 @@ LARGEST = 1e205
 
 SMALLEST = 1e-205
 """Of the moments of inertia, kg m^2."""
+
+GRID = 2.0**-33
+"""Of the last bit of hi: what lo of an attitude is a multiple of."""
+
+_BITS = 600  # 2^600 and its inverse lie inside these bounds
 
 
 def quotient(numerator: int, denominator: int) -> tuple[float, float]:
@@ -36,6 +43,19 @@ def spread(values: Sequence[Number]) -> list[float]:
     result: list[float] = []
     for value in values:
         result += (value, 0.0) if isinstance(value, float) else quotient(value.numerator, value.denominator)
+    return result
+
+
+def attitude(values: Sequence[Number]) -> list[float]:
+    """Return hi, lo of each component of a quaternion in one list, to 2^-86 of the component.
+
+    An attitude needs no more, and arithmetic in pairs of doubles finds the same numbers for many attitudes at once.
+    """
+    result = spread(values)
+    for k in range(1, len(result), 2):
+        step = ulp(result[k - 1]) * GRID
+        if result[k] and step:
+            result[k] = round(result[k] / step) * step
     return result
 
 
@@ -63,6 +83,8 @@ def numbers(what: str, values: Sequence[Number], length: int, least: float = -LA
     if {*map(type, found)} == {float} and all(map(isfinite, found)) and max(found) <= LARGEST and min(found) >= least:
         return found
     for index, value in enumerate(found):
+        if type(value) is Fraction and _moderate(value, least):
+            continue
         if isinstance(value, bool) or not isinstance(value, float | int | Fraction):
             found[index] = value = _double(what, value)
         if not abs(value) <= LARGEST:
@@ -70,6 +92,13 @@ def numbers(what: str, values: Sequence[Number], length: int, least: float = -LA
         if value < least:
             raise InputError(f"{what}: expected positive numbers, {least:g} at least, got {show(value)}")
     return found
+
+
+def _moderate(value: Fraction, least: float) -> bool:
+    """Return whether a fraction surely lies within the bounds of :func:`numbers`, by its length in bits alone."""
+    top, bottom = value.numerator, value.denominator
+    size = top.bit_length() - bottom.bit_length()  # of the power of two next to it, or one more
+    return size < _BITS and (least < 0 or (top > 0 and size > -_BITS))
 
 
 def _listed(what: str, values: Sequence[Number], length: int) -> list[Any]:

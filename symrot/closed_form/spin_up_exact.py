@@ -14,7 +14,6 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 from symrot import number
-from symrot.closed_form import frames
 from symrot.closed_form.library import Floats
 from symrot.closed_form.spin_up_series import NEAR, Series
 
@@ -125,7 +124,7 @@ class Sweep:
         smaller = rounded(self.across / (2 * larger * self.speed(omega)))
         half = (larger, smaller) if omega >= 0 else (smaller, larger)
         turn = fixed([half[0], Fraction(0), half[1], Fraction(0)])
-        return product(turn, fixed(frames.unit((m3, -m2, m1, Fraction(0)))))
+        return product(turn, fixed(number.unit((m3, -m2, m1, Fraction(0)))))
 
     def angle(self, start: Fraction, time: Fraction) -> Fraction:
         """Return the angle that the body turns about that vector within a time, from Omega = start."""

@@ -78,7 +78,7 @@ class Integers:
         self._sweep = Sweep(rounded(width / scale), rounded(s / scale**2), series(kappa2, inverse))
         self._edge = Fraction(0) if self._sweep.series.wide else rounded(Fraction(NEAR) * self._root / scale)
         self._axes = self._body_axes(axis, sign, first / width, second / width)
-        self._given = product(fixed(frames.unit(attitude)), self._axes)
+        self._given = product(fixed(number.unit(attitude)), self._axes)
         self._rates = [[0.0, 0.0] for _ in range(3)]
         self._rates[axis - 2] = [float(first), -sign * float(second)]
         self._rates[axis - 1] = [float(second), sign * float(first)]

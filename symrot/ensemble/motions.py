@@ -5,18 +5,21 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from symrot.closed_form.choose import exact_form
+from symrot.closed_form.choose import Form
 from symrot.codegen import library
 from symrot.ensemble import lanes
+from symrot.ensemble.exact import follow_exact, forms_of
+from symrot.ensemble.numbers import Numbers
 from symrot.ensemble.variation import Variation
 from symrot.errors import InputError, PropagationError
-from symrot.planner import Plan
+from symrot.expression import names
+from symrot.planner import STATES, Plan
 from symrot.propagation import dop853, epoch, taylor
 from symrot.propagation.kernels import compiled, error_blocks, kernel_key, missing_compiler, scene_kernel
 from symrot.propagation.method import METHODS, choose_method
-from symrot.propagation.stepping import CutOff, Floats
+from symrot.propagation.stepping import NOT_FINITE_SENTENCE, CutOff, Floats
 from symrot.propagation.trajectory import ARRAY_FUNCTIONS
-from symrot.scene_kernel import SceneKernel, bind
+from symrot.scene_kernel import SceneKernel
 
 Integers = lanes.Integers
 
@@ -62,34 +65,30 @@ def follow(problem: Problem, method: str) -> Followed:
         ``auto`` (closed form for each that has one, lanes for the others), ``exact``, ``taylor``, ``dop853`` or
         ``scipy:NAME``.
     """
-    scenes, count = problem.variation.scenes, len(problem.variation)
+    count = len(problem.variation)
     name = method.partition(":")[0]
     if method != "auto" and (name not in METHODS or name == "constant" or (":" in method and name != "scipy")):
         choose_method(problem.plan, method)  # says what there is
-    forms = [exact_form(scene) if method in ("auto", "exact") else None for scene in scenes]
-    if method == "auto" and missing_compiler():
-        forms = [None] * count
-    solved = [i for i, form in enumerate(forms) if form is not None]
-    if method == "exact" and len(solved) < count:
-        first = forms.index(None)
+    solved = [(form, rows) for form, rows in _forms(problem, method) if form is not None]
+    by_steps = np.ones(count, dtype=bool)
+    for _, rows in solved:
+        by_steps[rows] = False
+    stepped = np.flatnonzero(by_steps).tolist()
+    if method == "exact" and stepped:
         raise InputError(
-            f"method: expected motions with a closed form for 'exact', got none for trajectory {first} of the scene "
-            f"{problem.variation.scene.name!r}"
+            f"method: expected motions with a closed form for 'exact', got none for trajectory {stepped[0]} of the "
+            f"scene {problem.variation.scene.name!r}"
         )
-    stepped = sorted(set(range(count)) - set(solved))
     samples = problem.times.shape[-1]
     attitude = bool(problem.plan.structure["attitude"])
-    omega = np.full((count, samples, 3), np.nan)
-    quaternion = np.full((count, samples, 4), np.nan) if attitude else None
+    omega = np.empty((count, samples, 3))
+    quaternion = np.empty((count, samples, 4)) if attitude else None
     methods, messages = ["exact"] * count, [""] * count
     steps, evaluations = np.zeros(count, dtype=np.int64), np.zeros(count, dtype=np.int64)
-    for i in solved:
-        form = forms[i]
-        assert form is not None
-        rates, attitudes = form.motion(scenes[i]).evaluate(problem.times_of(i) - problem.t0, quaternion=attitude)
-        omega[i] = rates
-        if quaternion is not None:
-            quaternion[i] = attitudes
+    for form, rows in solved:
+        follow_exact(
+            problem.variation, form, rows, problem.times, problem.t0, omega, quaternion, problem.workers
+        )  # fmt: skip
     if stepped:
         chosen = method if method != "auto" else _stepping_method(problem)
         stepper = _Stepped(problem, stepped)
@@ -99,6 +98,13 @@ def follow(problem: Problem, method: str) -> Followed:
             methods[i], messages[i] = chosen, outcome.messages[place]
         steps[stepped], evaluations[stepped] = outcome.steps, outcome.evaluations
     return Followed(omega, quaternion, tuple(methods), tuple(messages), steps, evaluations)
+
+
+def _forms(problem: Problem, method: str) -> list[tuple[Form | None, Any]]:
+    """Return the closed forms that a method takes, with their trajectories."""
+    if method == "exact" or (method == "auto" and not missing_compiler()):
+        return forms_of(problem.variation)
+    return []
 
 
 def _stepping_method(problem: Problem) -> str:
@@ -129,16 +135,18 @@ class _Stepped:
     def __init__(self, problem: Problem, chosen: Sequence[int]) -> None:
         self.problem, self.plan, self.chosen = problem, problem.plan, chosen
         self.kernel = scene_kernel(self.plan)
-        scenes = [problem.variation.scenes[i] for i in chosen]
-        self.plans = [Plan(scene, self.plan.structure, ()) for scene in scenes]
-        self.y = np.array([plan.initial_state for plan in self.plans]).reshape(len(chosen), -1)
+        places, states = [STATES.index(name) for name in self.plan.states], problem.variation.initial_states
+        self.y = np.column_stack([states, np.zeros(len(states))])[np.ix_(chosen, places)]
+        self.numbers = Numbers(problem.variation, self.plan, chosen)
         times = problem.times
         self.times = times if times.ndim == 1 else np.ascontiguousarray(times[list(chosen)])
         self.epoch, self.t0, self.moved = 0.0, problem.t0, (self.plan, self.kernel)
         if self.times.size and epoch.far(problem.t0, float(self.times.min()), float(self.times.max())):
             self.epoch, self.t0, self.moved = problem.t0, 0.0, epoch.moved(self.plan, self.kernel)
-        rows = [epoch.moved_parameters(self.moved[1], plan.constants, self.epoch) for plan in self.plans]
-        self.p = np.array(rows, dtype=np.float64).reshape(len(rows), len(self.moved[1].rate_parameters))
+        try:
+            self.p = self.numbers.bound(self.moved[1].rate_parameters, self.epoch)
+        except OverflowError:
+            raise CutOff(self.epoch, NOT_FINITE_SENTENCE) from None
 
     def on_clock(self, times: Floats) -> Floats:
         """Return times on the clock of the steppers, which shows 0 at the epoch."""
@@ -152,21 +160,17 @@ class _Stepped:
         def moving() -> tuple[Plan, SceneKernel]:
             return self.moved if self.epoch else epoch.moved(self.plan, self.kernel)
 
-        return epoch.clock(moving, self.plans[k].constants, self.epoch)
-
-    def _bound(self, parameters: Any) -> Floats:
-        rows = [bind(parameters, plan.constants) for plan in self.plans]
-        return np.array(rows, dtype=np.float64).reshape(len(rows), len(parameters))
+        return epoch.clock(moving, self.numbers.constants(k), self.epoch)
 
     def read(self, states: Floats, omega: Floats, quaternion: Floats | None) -> None:
         """Write angular velocity and attitude of the states into their places."""
         chosen = list(self.chosen)
         values: dict[str, Any] = dict(zip(self.plan.states, np.moveaxis(states, -1, 0), strict=True))
         values["t"] = self.times
-        columns = self._bound(self.kernel.quantity_parameters).T
-        names = [name for name, _ in self.kernel.quantity_parameters]
-        values |= dict(zip(names, columns[:, :, None], strict=True))
         wanted = OMEGA + (QUATERNION if quaternion is not None else ())
+        parameters = self._parameters_of(wanted)
+        columns = self.numbers.bound(parameters).T
+        values |= dict(zip([name for name, _ in parameters], columns[:, :, None], strict=True))
         found = self.kernel.quantities.evaluate(values, ARRAY_FUNCTIONS, float, wanted)
         for k, name in enumerate(OMEGA):
             omega[chosen, :, k] = found[name]
@@ -176,11 +180,19 @@ class _Stepped:
             size = np.sqrt((quaternion[chosen] ** 2).sum(axis=-1, keepdims=True))
             quaternion[chosen] /= size
 
+    def _parameters_of(self, wanted: Sequence[str]) -> Any:
+        """Return the parameters that stand in some quantities."""
+        program, parameters = self.kernel.quantities, self.kernel.quantity_parameters
+        needed = set().union(*(names(node) for name, node in program.outputs if name in wanted))
+        for name, node in reversed(program.temporaries):
+            needed |= names(node) if name in needed else set()
+        return tuple([(name, node) for name, node in parameters if name in needed])
+
     def one_by_one(self, integrate: Callable[[int, Floats], tuple[Floats, Any]]) -> lanes.Outcome:
         """Follow each with a stepper of one motion."""
         samples = self.times.shape[-1]
-        states = np.full((len(self.plans), samples, len(self.plan.states)), np.nan)
-        steps, evaluations = (np.zeros(len(self.plans), dtype=np.int64) for _ in range(2))
+        states = np.full((len(self.chosen), samples, len(self.plan.states)), np.nan)
+        steps, evaluations = (np.zeros(len(self.chosen), dtype=np.int64) for _ in range(2))
         messages = []
         for k, i in enumerate(self.chosen):
             try:
@@ -231,7 +243,7 @@ def _scipy(stepped: _Stepped, method: str) -> lanes.Outcome:
 
 
 def _constant(stepped: _Stepped, method: str) -> lanes.Outcome:
-    count = len(stepped.plans)
+    count = len(stepped.chosen)
     nothing = np.zeros(count, dtype=np.int64)
     return lanes.Outcome(np.empty((count, stepped.times.shape[-1], 0)), nothing, nothing, ("",) * count)
 

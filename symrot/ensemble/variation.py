@@ -1,6 +1,6 @@
 """What differs between the trajectories of an ensemble, read and checked, and the least structure that covers all."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
@@ -22,6 +22,8 @@ __all__ = ["Variation", "read_times", "read_variation"]
 
 PLACES = {"I_xx": (0, 0), "I_yy": (1, 1), "I_zz": (2, 2), "I_xy": (0, 1), "I_xz": (0, 2), "I_yz": (1, 2)}
 PRINCIPAL = ("I_xx", "I_yy", "I_zz")
+PRODUCTS = ("I_xy", "I_xz", "I_yz")
+CLEARLY = 1e-12  # of the largest moment: doubles tell such a difference
 FIXED = {"direction": "turn the initial quaternions instead", "attitude": "turn the initial quaternions instead"}
 SIGNS = {  # what a field's sign asks of its values, of each trajectory: shape (n, k) -> (n,)
     "positive": lambda values: (values > 0).all(axis=1),
@@ -56,21 +58,77 @@ class Variation:
     def __len__(self) -> int:
         return len(self.omega)
 
-    @cached_property
-    def scenes(self) -> list[Scene]:
-        """The scene of each trajectory, its numbers those of the arrays, exactly."""
-        columns = {name: column.tolist() for name, column in self.columns.items()}
-        return [
-            self._with(start, {name: Fraction(column[i]) for name, column in columns.items()})
-            for i, start in enumerate(self._starts())
-        ]
+    def scene_of(self, i: int) -> Scene:
+        """Return the scene of a trajectory, its numbers those of the arrays, exactly."""
+        return self._with(self.initial(i), {name: Fraction(float(column[i])) for name, column in self.columns.items()})
 
-    def _starts(self) -> Iterator[Initial]:
-        own = self.scene.initial.quaternion
-        rows = [None] * len(self) if self.quaternion is None else self.quaternion.tolist()
-        for omega, row in zip(self.omega.tolist(), rows, strict=True):
-            x, y, z = map(Fraction, omega)
-            yield Initial((x, y, z), own if row is None else _unit(row))
+    def initial(self, i: int) -> Initial:
+        """Return the initial state of a trajectory, its numbers those of the arrays, exactly."""
+        x, y, z = map(Fraction, self.omega[i].tolist())
+        if self.quaternion is None:
+            return Initial((x, y, z), self.scene.initial.quaternion)
+        return Initial((x, y, z), _unit(self.quaternion[i].tolist()))
+
+    @cached_property
+    def attitudes(self) -> Floats | None:
+        """The unit quaternions as pairs of doubles, shape (n, 8); None: the scene's own."""
+        from symrot.closed_form.batches import attitudes
+
+        return None if self.quaternion is None else attitudes(self.quaternion)
+
+    @cached_property
+    def initial_states(self) -> Floats:
+        """Angular velocity and unit quaternion of each trajectory, shape (n, 7), each number the nearest double."""
+        found = np.empty((len(self), 7))
+        found[:, :3] = self.omega
+        own = [float(q) for q in self.scene.initial.quaternion]
+        found[:, 3:] = own if self.attitudes is None else self.attitudes[:, ::2]
+        return found
+
+    @property
+    def in_principal_axes(self) -> bool:
+        """Whether no trajectory has a product of inertia."""
+        fixed = all(self.scene.body.inertia[i][j] == 0 for name, (i, j) in PLACES.items() if name not in PRINCIPAL)
+        return fixed and not any(self.columns[name].any() for name in self.columns if name in PRODUCTS)
+
+    def constant(self, name: str) -> Fraction | Floats:
+        """Return a constant by the planner's name: the scene's, or a column (n,)."""
+        if name in self.columns:
+            return self.columns[name]
+        torque, field, entry = self.places[name]
+        if torque < 0:
+            i, j = PLACES[name]
+            return self.scene.body.inertia[i][j]
+        value: Any = self.scene.torques[torque].values[field]
+        number_of: Fraction = value if entry is None else value[entry]
+        return number_of
+
+    def prefix(self, torque: int) -> str:
+        """Return what stands before the names of the constants of a torque."""
+        found: str = general_structure(self.scene)["torques"][torque]["prefix"]
+        return found
+
+    def constants_beside(self, name: str) -> list[float]:
+        """Return the doubles that a column may equal: constants of the scene of the same field that do not vary."""
+        place = self.places[name]
+        same = [key for key, other in self.places.items() if other[:2] == place[:2] and key not in self.columns]
+        values = {self.constant(key) for key in same if not isinstance(self.places[key].entry, str)}
+        return [float(x) for x in values if isinstance(x, Fraction) and number.equal(Fraction(float(x)), x)]
+
+    @property
+    def negligible(self) -> Floats:
+        """The products of inertia, kg m^2, up to which given axes are principal, shape (n,)."""
+        found: Floats = np.ldexp(abs(self.moments).max(axis=1), -200)
+        return found
+
+    @property
+    def moments(self) -> Floats:
+        """I_xx, I_yy and I_zz of each trajectory, kg m^2, the nearest doubles, shape (n, 3)."""
+        found = np.empty((len(self), 3))
+        for k, name in enumerate(PRINCIPAL):
+            value = self.constant(name)
+            found[:, k] = float(value) if isinstance(value, Fraction) else value
+        return found
 
     def _with(self, start: Initial, values: Mapping[str, Fraction]) -> Scene:
         if not values:
@@ -131,9 +189,8 @@ def _changed(old: Any, entry: int | str | None, value: Fraction) -> Any:
 
 def _unit(row: list[float]) -> tuple[Fraction, Fraction, Fraction, Fraction]:
     """Return a quaternion divided by its norm."""
-    q = [Fraction(value) for value in row]
-    norm = number.sqrt(sum((value * value for value in q), start=Fraction(0)))
-    return q[0] / norm, q[1] / norm, q[2] / norm, q[3] / norm
+    q0, q1, q2, q3 = number.unit([Fraction(value) for value in row])
+    return q0, q1, q2, q3
 
 
 def _representative(column: Floats) -> Fraction:
@@ -185,15 +242,24 @@ def read_variation(
         raise InputError(f"quaternion: expected quaternions that are not zero, got zero in trajectory {at}")
     variation = Variation(scene, arrays.get("omega", own), attitudes, columns, places)
     if not PLACES.keys().isdisjoint(columns):
-        _check_bodies(variation.scenes)
+        _check_bodies(variation)
     return variation
 
 
-def _check_bodies(scenes: Sequence[Scene]) -> None:
-    """Refuse moments of inertia that no body has, or that leave its motion undetermined."""
-    for i, scene in enumerate(scenes):
-        require_admissible(scene.body.principal, f"parameters, trajectory {i}")
-        if reason := why_not_propagable(scene.body.principal):
+def _check_bodies(variation: Variation) -> None:
+    """Refuse moments of inertia that no body has, or that leave its motion undetermined.
+
+    Doubles settle it where principal moments are given and clearly fulfil their inequalities; the rest is looked at
+    exactly.
+    """
+    doubtful = np.ones(len(variation), dtype=bool)
+    if variation.in_principal_axes:
+        small, middle, large = np.sort(variation.moments, axis=1).T
+        doubtful = ~((small > CLEARLY * large) & (small + middle > (1 + CLEARLY) * large))
+    for i in np.flatnonzero(doubtful).tolist():
+        principal = variation.scene_of(i).body.principal
+        require_admissible(principal, f"parameters, trajectory {i}")
+        if reason := why_not_propagable(principal):
             raise InputError(f"parameters, trajectory {i}: {reason}")
 
 

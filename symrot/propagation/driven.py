@@ -202,7 +202,7 @@ def _address(pointer: Any) -> int:
 class DrivenMotion(Motion):
     """The motion of a scene under one more torque."""
 
-    movable = False  # the torque is asked for at the times of the scene
+    movable, restarts = False, True  # the torque is asked for at the times of the scene
 
     def __init__(self, plan: Plan, tolerance: float, drive: Any, in_space: bool, switching: Sequence[float]) -> None:
         plan = replace(plan, structure=plan.structure | WHOLE)

@@ -5,6 +5,7 @@ compiler works on the rates, the invariants are proven.
 """
 
 import json
+import os
 from collections.abc import Callable, Sequence
 from functools import cache
 from pathlib import Path
@@ -53,9 +54,12 @@ def _version() -> str:
     found = []
     for place in DERIVING:
         path = PACKAGE / place
-        for file in path.glob("*.py") if path.is_dir() else (path,):
-            status = file.stat()
-            found.append(f"{place}/{file.name} {status.st_size} {status.st_mtime_ns}")
+        if path.suffix:
+            files = [(path.name, path.stat())]
+        else:
+            with os.scandir(path) as entries:
+                files = [(entry.name, entry.stat()) for entry in entries if entry.name.endswith(".py")]
+        found += [f"{place}/{name} {status.st_size} {status.st_mtime_ns}" for name, status in files]
     return "\n".join(sorted(found))
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from fractions import Fraction
 from functools import cached_property
 from pathlib import Path
 from time import perf_counter
@@ -13,13 +14,14 @@ from numpy.typing import ArrayLike, NDArray
 from symrot.closed_form.choose import Exact, Form, exact_form
 from symrot.planner import Plan, Row, general_structure
 from symrot.propagation import dop853, epoch, taylor
+from symrot.propagation.binding import Binding, two_doubles
 from symrot.propagation.dop853 import Stats
-from symrot.propagation.invariants import invariant_parameters
 from symrot.propagation.kernels import compiled, error_blocks, formula_deviations, scene_kernel, taylor_library
 from symrot.propagation.method import Choice
-from symrot.propagation.stepping import CutOff, Recording, Task
+from symrot.propagation.stepping import NOT_FINITE_SENTENCE, CutOff, Recording, Task
 from symrot.propagation.trajectory import ARRAY_FUNCTIONS, Trajectory
-from symrot.scene_kernel import SceneKernel, bind
+from symrot.scene import Initial
+from symrot.scene_kernel import EPOCH, SceneKernel
 
 __all__ = ["Motion", "unreduced"]
 
@@ -44,6 +46,12 @@ def unreduced(plan: Plan, form: Form) -> Plan:
     return replace(plan, structure=structure, rows=(*rows, Row("stepping", True, why, form.derivation, structure)))
 
 
+OF_START = (
+    "rate_parameters", "taylor_parameters", "stepping", "exact", "_quantity_values", "_initial", "_on_own_clock",
+)  # fmt: skip
+"""What a motion keeps that depends on its start."""
+
+
 class Motion:
     """A plan with its kernel, bound to numbers.
 
@@ -54,6 +62,8 @@ class Motion:
     movable = True  # whether another clock may be taken
     switched = False  # whether its torques have switches
     warnings: tuple[str, ...] = ()  # on what cannot be guaranteed
+    restarts = True  # whether from_start knows the class; each class says so for itself
+    first: "Motion | None" = None  # of the same structure, whose kernels, library and numbers are used
 
     def __init__(self, plan: Plan, choice: Choice, tolerance: float) -> None:
         self.plan, self.choice, self.tolerance = plan, choice, tolerance
@@ -62,7 +72,7 @@ class Motion:
             form = exact_form(plan.scene)
             assert form is not None
             form.begin()
-            self.plan = unreduced(plan, form)
+            self.form, self.plan = form, unreduced(plan, form)
         elif choice.method == "dop853":
             self.kernel, self.library = compiled(plan)
         elif choice.method == "taylor":
@@ -70,14 +80,37 @@ class Motion:
             self.library = taylor_library(plan, self.kernel, tolerance)
         self.start = float(plan.scene.span.start)
 
+    def from_start(self, initial: Initial) -> "Motion":
+        """Return the motion from another initial state of the same structure; nothing is looked up or derived again.
+
+        Of the same structure is a start with the same :func:`symrot.planner.structure_key`.
+        """
+        other: Motion = object.__new__(type(self))
+        other.__dict__.update(self.__dict__)
+        for name in OF_START:
+            other.__dict__.pop(name, None)
+        other.plan, other.first = self.plan.from_start(initial), self.first or self
+        return other
+
     @cached_property
     def kernel(self) -> SceneKernel:
         """The derived kernels; of an exact motion, only when something other than omega and attitude is asked for."""
-        return scene_kernel(self.plan)
+        return self.first.kernel if self.first else scene_kernel(self.plan)
+
+    @cached_property
+    def _rates_binding(self) -> Binding:
+        return self.first._rates_binding if self.first else Binding(self.kernel.rate_parameters, self.plan)
+
+    @cached_property
+    def _quantities_binding(self) -> Binding:
+        """The parameters of quantities, each as two doubles."""
+        if self.first:
+            return self.first._quantities_binding
+        return Binding(self.kernel.quantity_parameters, self.plan, two_doubles)
 
     @cached_property
     def rate_parameters(self) -> list[float]:
-        return bind(self.kernel.rate_parameters, self.plan.constants)
+        return self._rates_binding(self.plan)
 
     @cached_property
     def stepping(self) -> Task:
@@ -98,12 +131,12 @@ class Motion:
     @cached_property
     def taylor_parameters(self) -> list[float]:
         """Those of the rates, then those of the invariants."""
-        return [*self.rate_parameters, *invariant_parameters(self.kernel, self.plan)]
+        return [*self.rate_parameters, *self._quantities_binding(self.plan)]
 
     @cached_property
     def _quantity_values(self) -> dict[str, float]:
         names = [name for name, _ in self.kernel.quantity_parameters]
-        return dict(zip(names, bind(self.kernel.quantity_parameters, self.plan.constants), strict=True))
+        return dict(zip(names, self._quantities_binding(self.plan)[::2], strict=True))
 
     def evaluate(self, t: Floats, states: Floats, names: Sequence[str]) -> Floats:
         """Return quantities of the kernel at states of shape (n, N), as an array of shape (n, len(names))."""
@@ -132,11 +165,11 @@ class Motion:
         """Return the motion on the clock that suits such times: this one, or one that shows 0 at the start."""
         if not (self.start and self.movable and len(times) and self.choice.method.partition(":")[0] in STEPPED):
             return self
-        return self._from_start if epoch.far(self.start, float(times.min()), float(times.max())) else self
+        return self._on_own_clock if epoch.far(self.start, float(times.min()), float(times.max())) else self
 
     @cached_property
-    def _from_start(self) -> "Motion":
-        return _FromStart(self)
+    def _on_own_clock(self) -> "Motion":
+        return self.first._on_own_clock.from_start(self.plan.scene.initial) if self.first else _OnOwnClock(self)
 
     def integrate(self, times: Floats, rise: bool = False) -> tuple[Floats, Stats]:
         """Return the states at the times, shape (n, N), and what it cost; ``rise``: they are known to be in order."""
@@ -155,6 +188,8 @@ class Motion:
     @cached_property
     def rates(self) -> Callable[..., Any]:
         """The emitted NumPy kernel as ``f(t, y, p)``."""
+        if self.first:
+            return self.first.rates
         from symrot.codegen.numpy_kernel import load_numpy_kernel
 
         function = load_numpy_kernel(self.kernel.rates)
@@ -163,9 +198,12 @@ class Motion:
     @cached_property
     def exact(self) -> Exact:
         """The motion in closed form."""
-        form = exact_form(self.plan.scene)
-        assert form is not None
-        return form.motion(self.plan.scene)
+        return self._starts(self.plan.scene.initial)
+
+    @cached_property
+    def _starts(self) -> Callable[[Initial], Exact]:
+        """The closed form of the body and its torques, with all that its starts share."""
+        return self.first._starts if self.first else self.form.starts(self.plan.scene)
 
     def solution(self, trajectory: Trajectory) -> Callable[[ArrayLike], Floats]:
         """Return omega and quaternion as a function of time over the trajectory's span."""
@@ -214,10 +252,10 @@ class Motion:
         return {"blocks": blocks, "scales": scales, "deviations": deviations, **({"method": solver} if solver else {})}
 
 
-class _FromStart(Motion):
+class _OnOwnClock(Motion):
     """A motion on a clock that shows 0 at its start, see :mod:`symrot.propagation.epoch`."""
 
-    movable = False
+    movable, restarts = False, True
 
     def __init__(self, motion: Motion) -> None:
         self.choice, self.tolerance, self.library = motion.choice, motion.tolerance, motion.library
@@ -231,8 +269,17 @@ class _FromStart(Motion):
             self.library = epoch.compiled(self.plan, self.kernel)
 
     @cached_property
+    def _rates_binding(self) -> Binding:
+        if self.first:
+            return self.first._rates_binding
+        return Binding(self.kernel.rate_parameters, self.plan, known={EPOCH: Fraction(self.epoch)})
+
+    @cached_property
     def rate_parameters(self) -> list[float]:
-        return epoch.moved_parameters(self.kernel, self.plan.constants, self.epoch)
+        try:
+            return self._rates_binding(self.plan)
+        except OverflowError:
+            raise CutOff(self.epoch, NOT_FINITE_SENTENCE) from None
 
     def _moved(self) -> tuple[Plan, SceneKernel]:
         return self.plan, self.kernel

@@ -1,5 +1,6 @@
 """From a scene to its motion: choose a method, bind the kernel to numbers once, then propagate as often as asked."""
 
+from fractions import Fraction
 from functools import cached_property
 from math import isfinite
 from pathlib import Path
@@ -10,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from symrot import number
 from symrot.errors import InputError, PropagationError
-from symrot.planner import Plan, make_plan, switched
+from symrot.planner import Plan, make_plan, structure_key, switched
 from symrot.propagation.method import choose_method
 from symrot.propagation.motion import Motion
 from symrot.propagation.real_array import real_array
@@ -20,6 +21,8 @@ from symrot.scene import Initial, Scene, load_scene
 from symrot.scene_kernel import SceneKernel
 
 __all__ = ["Propagator", "propagate", "propagator"]
+
+SMALLEST = float(number.SMALLEST)
 
 Floats = NDArray[np.float64]
 
@@ -33,12 +36,28 @@ class Propagator:
     def __init__(self, scene: Scene, method: str, tolerance: float) -> None:
         self.scene, self.tolerance, self._method = scene, tolerance, method
         self._motion = self._prepare(self._planned())
+        self._by_structure = {structure_key(scene, scene.initial): self._motion}
 
     def _planned(self, initial: Initial | None = None) -> Plan:
         return make_plan(self.scene, initial)
 
     def _prepare(self, plan: Plan) -> Motion:
         return Motion(plan, choose_method(plan, self._method), self.tolerance)
+
+    def _from(self, initial: Initial) -> Motion:
+        """Return the motion from another initial state.
+
+        The first start of each structure is planned and prepared as a new scene would be. The others take over all but
+        the numbers of the start.
+        """
+        if not vars(type(self._motion)).get("restarts"):
+            return self._prepare(self._planned(initial))
+        key = structure_key(self.scene, initial)
+        first = self._by_structure.get(key)
+        if first is None:
+            first = self._by_structure[key] = self._prepare(self._planned(initial))
+            return first
+        return first.from_start(initial)
 
     @property
     def plan(self) -> Plan:
@@ -105,7 +124,7 @@ class Propagator:
         rise = _in_order(times)
         motion = self._motion
         if omega is not None or quaternion is not None:
-            motion = self._prepare(self._planned(_initial(self.scene, omega, quaternion)))
+            motion = self._from(_initial(self.scene, omega, quaternion))
         message = f"{motion.choice.method}: {motion.choice.reason}"
         try:
             if events is not None:
@@ -161,17 +180,22 @@ def _vector(values: ArrayLike, size: int, name: str, unit: str) -> list[float]:
     return found
 
 
+def _exact(value: float, name: str) -> Fraction:
+    """Return the exact value of a finite double; one below all normal doubles is refused as a scene's is."""
+    return Fraction(value) if abs(value) >= SMALLEST or not value else number.read(value, name)
+
+
 def _initial(scene: Scene, omega: ArrayLike | None, quaternion: ArrayLike | None) -> Initial:
     initial = scene.initial
     if omega is not None:
-        x, y, z = (number.read(value, "omega") for value in _vector(omega, 3, "omega", "rad/s"))
+        x, y, z = (_exact(value, "omega") for value in _vector(omega, 3, "omega", "rad/s"))
         initial = initial._replace(omega_b=(x, y, z))
     if quaternion is not None:
-        q = [number.read(value, "quaternion") for value in _vector(quaternion, 4, "quaternion", "1")]
-        norm = number.sqrt(sum((value * value for value in q), start=q[0] * 0))
-        if norm == 0:
+        q = [_exact(value, "quaternion") for value in _vector(quaternion, 4, "quaternion", "1")]
+        if not any(q):
             raise InputError(f"quaternion: expected a quaternion that is not zero, got {number.show(q)}")
-        initial = initial._replace(quaternion=(q[0] / norm, q[1] / norm, q[2] / norm, q[3] / norm))
+        q0, q1, q2, q3 = number.unit(q)
+        initial = initial._replace(quaternion=(q0, q1, q2, q3))
     return initial
 
 

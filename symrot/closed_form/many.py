@@ -1,0 +1,108 @@
+"""Many motions of one closed form in one call: what differs between them as arrays, what they share once.
+
+The constants and the samples of a motion are found by the same compiled functions as those of a single one, from the
+same numbers: they come out bit by bit the same.
+"""
+
+import ctypes
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from symrot.closed_form.library import Floats, load
+from symrot.closed_form.motion import functions
+from symrot.codegen.address import address
+
+__all__ = ["Batch", "evaluate"]
+
+AT_ONCE = 1024  # motions to a call: some 10 ms, after which Python can see an interrupt
+
+
+class Batch(NamedTuple):
+    """Motions of the closed form ``name``, from what its `prepare` takes.
+
+    Each argument is an array of shape (k,) that all motions share, of shape (n, k), or None.
+    """
+
+    name: str
+    arguments: tuple[Floats | None, ...]
+
+
+class _Motions(ctypes.Structure):
+    """``symrot_many_motions`` of many.c."""
+
+    _fields_ = (
+        ("prepare", ctypes.c_void_p), ("at", ctypes.c_void_p), ("record", ctypes.c_void_p),
+        ("arguments", ctypes.c_ssize_t), ("given", ctypes.c_void_p * 6), ("strides", ctypes.c_ssize_t * 6),
+        ("times", ctypes.c_void_p), ("times_stride", ctypes.c_ssize_t), ("samples", ctypes.c_ssize_t),
+        ("omega", ctypes.c_void_p), ("quaternion", ctypes.c_void_p),
+    )  # fmt: skip
+
+
+def _place(function: Any) -> int:
+    return int(ctypes.cast(function, ctypes.c_void_p).value or 0)
+
+
+def evaluate(batch: Batch, times: Floats, omega: Floats, quaternion: Floats | None, workers: int = 1) -> list[int]:
+    """Write the samples of n motions; return those that are to be made alone, whose numbers are not of the domain.
+
+    Parameters
+    ----------
+    batch : Batch
+    times : array, shape (m,) or (n, m)
+        s, from the start.
+    omega, quaternion : arrays, shapes (n, m, 3) and (n, m, 4), or None
+        Written, one motion after the other in memory.
+    workers : int
+        Threads; each does its share.
+    """
+    prepare, at, record = functions(batch.name, len(batch.arguments))
+    (library,) = load("many")
+    run, size = library.symrot_many, ctypes.c_ssize_t
+    run.argtypes, run.restype = (ctypes.c_void_p, size, size), size
+    given = [None if values is None else np.ascontiguousarray(values) for values in batch.arguments]
+    times = np.ascontiguousarray(times)
+    n, samples = omega.shape[:2]
+    if not samples:
+        return []
+
+    def share(first: int, last: int, stop: Any = bool) -> list[int]:
+        room, refused = record(), []
+        motions = _Motions(
+            _place(prepare), _place(at), ctypes.addressof(room), len(given), times=address(times),
+            times_stride=samples if times.ndim == 2 else 0, samples=samples, omega=address(omega),
+            quaternion=address(quaternion),
+        )  # fmt: skip
+        for k, values in enumerate(given):
+            if values is not None:
+                motions.given[k] = address(values)
+                motions.strides[k] = values.shape[1] if values.ndim == 2 else 0
+        while first < last and not stop():
+            end = min(first + AT_ONCE, last)
+            first = run(ctypes.addressof(motions), first, end)
+            if first < end:
+                refused.append(first)
+                first += 1
+        return refused
+
+    odd = _shared(share, n, min(workers, max(1, n // AT_ONCE)))
+    told = omega if quaternion is None else quaternion
+    ends = told[:, 0, 0] + told[:, -1, -1]  # as a motion alone tells that it leaves the doubles
+    return sorted({*odd, *np.flatnonzero(np.isnan(ends)).tolist()})
+
+
+def _shared(share: Any, n: int, workers: int) -> Sequence[int]:
+    if workers <= 1:
+        found: list[int] = share(0, n)
+        return found
+    from concurrent.futures import ThreadPoolExecutor
+    from threading import Event
+
+    interrupted, edges = Event(), [n * k // workers for k in range(workers + 1)]
+    with ThreadPoolExecutor(workers) as pool:
+        try:
+            jobs = [pool.submit(share, edges[k], edges[k + 1], interrupted.is_set) for k in range(workers)]
+            return [i for job in jobs for i in job.result()]
+        finally:
+            interrupted.set()

@@ -1,0 +1,71 @@
+"""The parameters of kernels for each trajectory of an ensemble: what does not vary is evaluated once."""
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+
+import numpy as np
+
+from symrot import number
+from symrot.ensemble.variation import PRINCIPAL, Variation
+from symrot.expression import names
+from symrot.planner import Plan
+from symrot.propagation.binding import folded, value_of
+from symrot.propagation.stepping import Floats
+from symrot.scene_kernel import EPOCH, Parameters
+
+__all__ = ["Numbers"]
+
+OMEGA = ("omega_1", "omega_2", "omega_3")
+
+
+class Numbers:
+    """The constants of some trajectories of an ensemble.
+
+    Parameters
+    ----------
+    variation : Variation
+    plan : Plan
+        That covers them all.
+    chosen : whole numbers
+        Which trajectories.
+    """
+
+    def __init__(self, variation: Variation, plan: Plan, chosen: Sequence[int]) -> None:
+        self._variation, self._plan, self._chosen = variation, plan, list(chosen)
+        varying = dict(variation.columns) | {name: variation.omega[:, k] for k, name in enumerate(OMEGA)}
+        for letter, name in zip(plan.structure["inertia"].get("moments", ""), PRINCIPAL, strict=False):
+            if name in varying:
+                varying.setdefault(letter, varying[name])
+        self._columns = {name: varying[name][self._chosen] for name in plan.constants if name in varying}
+
+    def constants(self, k: int) -> dict[str, Fraction]:
+        """Return all constants of the k-th of the trajectories, exact."""
+        return Plan(self._variation.scene_of(self._chosen[k]), self._plan.structure, ()).constants
+
+    def bound(self, parameters: Parameters, epoch: float = 0.0) -> Floats:
+        """Return parameters for each trajectory, shape (n, k): exact arithmetic, one rounding each.
+
+        Raises
+        ------
+        OverflowError
+            If one is beyond all doubles.
+        """
+        scene = Plan(self._variation.scene, self._plan.structure, ()).constants
+        known = {"pi": number.PI, EPOCH: Fraction(epoch), **scene}
+        fixed = {name: value for name, value in known.items() if name not in self._columns}
+        found = np.empty((len(self._chosen), len(parameters)))
+        for k, (_, node) in enumerate(parameters):
+            if node[0] == "symbol" and node[1] in self._columns:
+                found[:, k] = self._columns[node[1]]
+            elif names(node).isdisjoint(self._columns):
+                found[:, k] = float(value_of(node, fixed))
+            else:
+                found[:, k] = self._each(folded(node, fixed), names(node))
+        return found
+
+    def _each(self, node: tuple[object, ...], used: set[str]) -> list[float]:
+        columns: Mapping[str, list[float]] = {
+            name: column.tolist() for name, column in self._columns.items() if name in used
+        }
+        rows = zip(*columns.values(), strict=True)
+        return [float(value_of(node, dict(zip(columns, map(Fraction, row), strict=True)))) for row in rows]
