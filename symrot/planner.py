@@ -73,6 +73,11 @@ class Plan:
         """Those of :attr:`constants` that do not depend on the initial state."""
         return _scene_constants(self.scene, self.structure)
 
+    @property
+    def switches(self) -> list[str]:
+        """The functions that switch in the torques of a plan whose modes may change, as they are written."""
+        return [switch["label"] for torque in self.structure["torques"] for switch in torque.get("switches", ())]
+
     @cached_property
     def states(self) -> tuple[str, ...]:
         """The names of the states, in the order of the kernel: angular velocity, then attitude."""

@@ -15,10 +15,18 @@ from symrot.errors import InputError, PropagationError
 from symrot.expression import names
 from symrot.planner import STATES, Plan
 from symrot.propagation import dop853, epoch, taylor
-from symrot.propagation.kernels import compiled, error_blocks, kernel_key, missing_compiler, scene_kernel
+from symrot.propagation.kernels import (
+    compiled,
+    error_blocks,
+    formula_deviations,
+    kernel_key,
+    missing_compiler,
+    scene_kernel,
+    taylor_library,
+)
 from symrot.propagation.method import METHODS, choose_method
 from symrot.propagation.stepping import NOT_FINITE_SENTENCE, CutOff, Floats
-from symrot.propagation.trajectory import ARRAY_FUNCTIONS
+from symrot.propagation.trajectory import ARRAY_FUNCTIONS, Trajectory
 from symrot.scene_kernel import SceneKernel
 
 Integers = lanes.Integers
@@ -89,7 +97,11 @@ def follow(problem: Problem, method: str) -> Followed:
         follow_exact(
             problem.variation, form, rows, problem.times, problem.t0, omega, quaternion, problem.workers
         )  # fmt: skip
-    if stepped:
+    if stepped and problem.plan.switches:
+        alone = _switched(problem, method, stepped, omega, quaternion)
+        methods, messages = list(alone.methods), list(alone.messages)
+        steps, evaluations = alone.steps, alone.evaluations
+    elif stepped:
         chosen = method if method != "auto" else _stepping_method(problem)
         stepper = _Stepped(problem, stepped)
         outcome = STEPPERS[chosen.partition(":")[0]](stepper, chosen)
@@ -97,6 +109,35 @@ def follow(problem: Problem, method: str) -> Followed:
         for place, i in enumerate(stepped):
             methods[i], messages[i] = chosen, outcome.messages[place]
         steps[stepped], evaluations[stepped] = outcome.steps, outcome.evaluations
+    return Followed(omega, quaternion, tuple(methods), tuple(messages), steps, evaluations)
+
+
+def _switched(
+    problem: Problem, method: str, stepped: Sequence[int], omega: Floats, quaternion: Floats | None
+) -> Followed:
+    """Follow motions under torques with switches, each as it would be alone."""
+    from symrot.propagation.propagator import propagator
+
+    count, messages, methods = len(stepped), list[str](), list[str]()
+    steps, evaluations = np.zeros(count, dtype=np.int64), np.zeros(count, dtype=np.int64)
+    for k, i in enumerate(stepped):
+        times, alone = problem.times_of(i), propagator(problem.variation.scene_of(i), method, problem.tolerance)
+        omega[i] = np.nan
+        if quaternion is not None:
+            quaternion[i] = np.nan
+        trajectory: Trajectory | None
+        try:
+            trajectory, message = alone(times), ""
+        except PropagationError as error:
+            trajectory, message = getattr(error, "trajectory", None), str(error)
+        if trajectory is not None:
+            rows = slice(None) if not message else np.isin(times, trajectory.t)
+            omega[i][rows] = trajectory.omega
+            if quaternion is not None:
+                quaternion[i][rows] = trajectory.quaternion
+            steps[k], evaluations[k] = trajectory.stats.accepted, trajectory.stats.evaluations
+        messages.append(message)
+        methods.append(alone.method)
     return Followed(omega, quaternion, tuple(methods), tuple(messages), steps, evaluations)
 
 
@@ -208,11 +249,24 @@ class _Stepped:
 
 def _taylor(stepped: _Stepped, method: str) -> lanes.Outcome:
     problem = stepped.problem
+    if formula_deviations(*stepped.moved, [0.0] * stepped.p.shape[1]) is not None:
+        return _enclosed(stepped)
     path = lane_library(*stepped.moved, problem.tolerance)
     return lanes.follow(
         path, stepped.p, stepped.y, stepped.t0, stepped.on_clock(stepped.times), problem.tolerance,
         workers=problem.workers, epoch=stepped.epoch,
     )  # fmt: skip
+
+
+def _enclosed(stepped: _Stepped) -> lanes.Outcome:
+    """Follow motions whose steps an enclosure holds: one after the other, for lanes have none."""
+    problem, (plan, kernel) = stepped.problem, stepped.moved
+    path = taylor_library(plan, kernel, problem.tolerance, projected=False)
+
+    def integrate(k: int, times: Floats) -> tuple[Floats, Any]:
+        return taylor.task(path, stepped.p[k], stepped.y[k], stepped.t0, problem.tolerance).sample(times)
+
+    return stepped.one_by_one(integrate)
 
 
 def _dop853(stepped: _Stepped, method: str) -> lanes.Outcome:
@@ -237,7 +291,9 @@ def _scipy(stepped: _Stepped, method: str) -> lanes.Outcome:
 
     def integrate(k: int, times: Floats) -> tuple[Floats, Any]:
         rates = function if stepped.p.shape[1] else lambda t, y, p: function(t, y)
-        return fallback.integrate(rates, stepped.p[k], stepped.y[k], stepped.t0, times, problem.tolerance, **options)
+        start = rates, stepped.p[k], stepped.y[k], stepped.t0
+        deviations = formula_deviations(*stepped.moved, stepped.p[k])
+        return fallback.integrate(*start, times, problem.tolerance, deviations=deviations, **options)
 
     return stepped.one_by_one(integrate)
 

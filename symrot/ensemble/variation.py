@@ -13,7 +13,7 @@ from symrot import number
 from symrot.dynamics.torque_kinds import TORQUE_KINDS
 from symrot.errors import InputError
 from symrot.inertia.principal import principal_axes, require_admissible, why_not_propagable
-from symrot.planner import Plan, general_structure, make_plan
+from symrot.planner import Plan, general_structure, make_plan, switched
 from symrot.propagation.real_array import real_array
 from symrot.propagation.stepping import Floats
 from symrot.scene import Initial, Scene
@@ -154,7 +154,7 @@ class Variation:
         values = {name: _representative(column) for name, column in self.columns.items()}
         if not PLACES.keys().isdisjoint(values):
             values |= self._representative_inertia()
-        return make_plan(self._with(GENERAL_START, values))
+        return make_plan(self._with(GENERAL_START, values), switched=switched(self.scene))
 
     def _representative_inertia(self) -> dict[str, Fraction]:
         """Return a tensor with the equalities and zeros that hold in every trajectory, and no others."""

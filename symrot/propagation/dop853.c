@@ -8,6 +8,7 @@
  *     SYMROT_BLOCKS       edges of the blocks of states whose errors are judged apart, e.g. {0, 3, 7}
  *     SYMROT_SCALES       per block: 0 judges the error against the block's own size (a rate),
  *                         a positive number against that number (an attitude of unit norm: 1)
+ *     SYMROT_DEFECT       if defined, how many times the error allowed its dense output may fail the equations inside
  *     SYMROT_ENCLOSED     whether some terms of the rates may hide a feature: enclosure.h is put in here then
  * and included dop853_tableau.h. C99 that is also valid C++; no malloc, no globals, no input or output, reentrant.
  *
@@ -64,6 +65,12 @@ typedef struct {
     int64_t accepted, rejected, evaluations, recorded;
     double y[SYMROT_STATES], carry[SYMROT_STATES], dy[SYMROT_STATES];
 } symrot_run;
+
+#if defined(SYMROT_DEFECT) || SYMROT_DEPENDS
+#define SYMROT_KNOWN 1  /* the dense output of a step is made before it is accepted */
+#else
+#define SYMROT_KNOWN 0
+#endif
 
 #define EACH(i) for (int i = 0; i < SYMROT_WIDTH; ++i)
 #define EACH_STATE(i) for (int i = 0; i < SYMROT_STATES; ++i)
@@ -225,6 +232,36 @@ static void symrot_radii(symrot_path term, double part, double *radius)
 /* ENCLOSURE */
 #endif
 
+#if defined(SYMROT_DEFECT)
+/* Return by how much the dense output of a step fails the equations inside it, per step and relative to its blocks. */
+static SYMROT_APART double symrot_defect(double at, double h, const double *y, const double *y1, const double *p,
+    double (*term)[SYMROT_WIDTH])
+{
+    static const double places[] = {0.2718, 0.6180};
+    double worst = 0.0;
+    for (int n = 0; n < 2; ++n) {
+        const double s = places[n], r = 1.0 - s;
+        double here[SYMROT_STATES], slope[SYMROT_STATES], rate[SYMROT_STATES];
+        EACH_STATE(i) {  /* value and slope of the dense output, from its innermost bracket on */
+            double value = term[7][i], rise = 0.0;
+            for (int k = 6; k >= 0; --k) {
+                rise = k%2 ? r*rise - value : s*rise + value;
+                value = term[k][i] + (k%2 ? r : s)*value;
+            }
+            here[i] = value;
+            slope[i] = rise;
+        }
+        symrot_rate(at + s*h, here, p, rate);
+        EACH_STATE(i) slope[i] -= h*rate[i];
+        for (int b = 0; b < SYMROT_COUNT; ++b) {
+            const double defect = sqrt(symrot_square_sum(slope, b)/symrot_scale_squared(y, y1, h, b));
+            if (!(defect <= worst)) worst = defect;
+        }
+    }
+    return worst;
+}
+#endif
+
 /* Tell the caller the numbers of states and parameters that this library was built for. */
 SYMROT_EXPORT void symrot_dop853_sizes(int64_t sizes[2])
 {
@@ -271,7 +308,7 @@ SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *
     const double stop = run->stop, side = stop < run->t ? -1.0 : 1.0;
     const double epoch = run->epoch, pace = run->pace, tiny = 1e-30*fabs(stop - run->t);
     double t = run->t, h = run->h, growth = run->growth;
-    int64_t next = run->next, accepted = 0, rejected = 0, proofs = 0, dense = 0, recorded = 0;
+    int64_t next = run->next, accepted = 0, rejected = 0, proofs = 0, dense = 0, defects = 0, recorded = 0;
     int status = SYMROT_PAUSED, broken = 0;
 
     memset(k, 0, sizeof k);
@@ -361,6 +398,22 @@ SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *
             run->proven = run->proven > 0.0 && fabs(h) <= SYMROT_REGAIN*run->proven ? fabs(h) : 0.0;
         }
 #endif
+#if defined(SYMROT_DEFECT)
+        if (worst <= 1.0) {
+            symrot_rate(last, y1, p, k[13]);
+            symrot_dense_coefficients(at, h, y, step, p, k, term);
+            ++dense;
+            defects += 2;
+            const double defect = symrot_defect(at, h, y, y1, p, term);
+            if (!(defect <= SYMROT_DEFECT*allowed)) {
+                ++rejected;
+                ++proofs;
+                h *= 0.5;
+                growth = 1.0;
+                continue;
+            }
+        }
+#endif
         if (!(worst <= 1.0)) {
             ++rejected;
             broken = !(worst < INFINITY);
@@ -369,10 +422,10 @@ SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *
             continue;
         }
         ++accepted;
-        if (!SYMROT_DEPENDS) symrot_rate(last, y1, p, k[13]);
+        if (!SYMROT_KNOWN) symrot_rate(last, y1, p, k[13]);
 
         const int sampled = next < count && (times[next] - t1)*side <= 0.0;
-        if (!SYMROT_DEPENDS && (room > 0 || (sampled && times[next] != t1))) {
+        if (!SYMROT_KNOWN && (room > 0 || (sampled && times[next] != t1))) {
             symrot_dense_coefficients(at, h, y, step, p, k, term);
             ++dense;
         }
@@ -412,7 +465,7 @@ SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *
     run->next = next;
     run->accepted += accepted;
     run->rejected += rejected;
-    run->evaluations += 12*accepted + 11*rejected + proofs + 3*dense;
+    run->evaluations += 12*accepted + 11*rejected + proofs + 3*dense + defects;
     run->recorded = recorded;
     EACH_STATE(i) { run->y[i] = y[i]; run->carry[i] = carry[i]; run->dy[i] = k[1][i]; }
     return status;

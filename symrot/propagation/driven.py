@@ -21,7 +21,7 @@ from symrot.codegen import library
 from symrot.errors import InputError, PropagationError
 from symrot.planner import Plan, make_plan
 from symrot.propagation import dop853
-from symrot.propagation.kernels import error_blocks, scene_kernel
+from symrot.propagation.kernels import enclosure_text, error_blocks, has_formulas, scene_kernel
 from symrot.propagation.method import DRIVEN
 from symrot.propagation.motion import Motion
 from symrot.propagation.propagator import Propagator
@@ -39,9 +39,14 @@ CALLBACK = ctypes.CFUNCTYPE(
 )  # fmt: skip
 WHOLE: dict[str, Any] = {"planar": None, "initial_quaternion": None, "constant": {}, "attitude": True}
 SAMPLES_PER_STEP = 8.0  # of a table: a longer step could pass over what they say
+DEFECT = 1e4  # times the error allowed in a step: more, and the dense output missed something inside
 BEND = 2.0**-50  # of the torque: what the last bits of samples bend their spline by, from one to the next
 OVERSHOOT = 100.0  # times the largest sample: a spline that goes so far says nothing of the torque
 MOST_STEPS = 30_000_000  # under a table, some 20 s; others end at stepping.MAX_STEPS
+UNKNOWN = (
+    "the torque is a function without a formula: each step is checked inside, but a feature narrower than a step may "
+    "be missed; give max_step, in s, below the width of the narrowest"
+)
 FORMS = "a function of (t, omega, quaternion), a C function of ctypes, or a table (times, samples)"
 
 
@@ -49,6 +54,7 @@ class _Function:
     """A function in Python as one in C; keeps the exception that ends a motion."""
 
     user: Any = None
+    samples = False
     longest_step = math.inf
     most_steps = MAX_STEPS
     knots: Sequence[float] = ()
@@ -87,6 +93,7 @@ class _CFunction:
     """A function of a C library: ``int (double, const double[3], const double[4], double[3], void *)``."""
 
     user: Any = None
+    samples = False
     longest_step = math.inf
     most_steps = MAX_STEPS
     knots: Sequence[float] = ()
@@ -103,6 +110,7 @@ class _CFunction:
 class _Table:
     """Samples, interpolated by cubic splines between switching times."""
 
+    samples = True
     most_steps = MOST_STEPS
 
     def __init__(self, times: Any, samples: Any, switching: Sequence[float]) -> None:
@@ -204,12 +212,16 @@ class DrivenMotion(Motion):
 
     movable, restarts = False, True  # the torque is asked for at the times of the scene
 
-    def __init__(self, plan: Plan, tolerance: float, drive: Any, in_space: bool, switching: Sequence[float]) -> None:
+    def __init__(
+        self, plan: Plan, tolerance: float, drive: Any, in_space: bool, switching: Sequence[float], max_step: float
+    ) -> None:
         plan = replace(plan, structure=plan.structure | WHOLE)
         self.plan, self.tolerance = plan, tolerance
         self.choice = DRIVEN
         self.start = float(plan.scene.span.start)
         self._drive, self.switching = drive, switching
+        self.longest_step = min(drive.longest_step, max_step)
+        self.warnings = () if drive.samples or math.isfinite(max_step) else (UNKNOWN,)
         bare = scene_kernel(plan)
         own = len(bare.rate_parameters)
         text = "\n".join(
@@ -219,7 +231,10 @@ class DrivenMotion(Motion):
                 Path(__file__).with_name("driven.c").read_text(encoding="utf-8"),
             )
         )
-        source = dop853.translation_unit(text, "symrot_driven", len(plan.states), own + 12, *error_blocks(plan))
+        edges, scales = error_blocks(plan)
+        bounds = (enclosure_text(plan, lambda: bare.rates, edges),) if has_formulas(plan) else ()
+        text = f"#define SYMROT_DEFECT {DEFECT!r}\n{text}"
+        source = dop853.translation_unit(text, "symrot_driven", len(plan.states), own + 12, edges, scales, *bounds)
         self.library = library.build(source, "driven")
         if drive.pointer is None:
             self._loaded = ctypes.CDLL(str(self.library))
@@ -246,7 +261,7 @@ class DrivenMotion(Motion):
         assert self.library is not None
         return dop853.task(
             self.library, self.driven_parameters, self.plan.initial_state, self.start, self.tolerance,
-            max_step=self._drive.longest_step, max_steps=self._drive.most_steps,
+            max_step=self.longest_step, max_steps=self._drive.most_steps,
             breaks=sorted({*self.switching, *self._drive.knots}),
         )  # fmt: skip
 
@@ -276,14 +291,16 @@ class DrivenPropagator(Propagator):
     """Propagates a scene under one more torque; made by :func:`symrot.propagator` with ``torque``."""
 
     def __init__(
-        self, scene: Scene, tolerance: float, torque: Any, switching_times: ArrayLike = (), frame: str = "body"
-    ) -> None:
+        self, scene: Scene, tolerance: float, torque: Any, switching_times: ArrayLike = (), frame: str = "body",
+        max_step: float = math.inf,
+    ) -> None:  # fmt: skip
         switching = real_array(switching_times, "switching_times", "finite times in s", ndmin=1).ravel()
         if not np.isfinite(switching).all():
             raise InputError(f"switching_times: expected finite times in s, got {number.show(switching_times)}")
         if frame not in ("body", "space"):
             raise InputError(f"torque_frame: expected 'body' or 'space', got {frame!r}")
         self._switching = tuple(sorted(set(switching.tolist())))
+        self._max_step = max_step
         self._torque, self._in_space = _drive(torque, self._switching), frame == "space"
         super().__init__(scene, "dop853", tolerance)
 
@@ -291,4 +308,4 @@ class DrivenPropagator(Propagator):
         return make_plan(self.scene, initial, driven=True)
 
     def _prepare(self, plan: Plan) -> Motion:
-        return DrivenMotion(plan, self.tolerance, self._torque, self._in_space, self._switching)
+        return DrivenMotion(plan, self.tolerance, self._torque, self._in_space, self._switching, self._max_step)

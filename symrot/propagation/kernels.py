@@ -6,7 +6,7 @@ compiler works on the rates, the invariants are proven.
 
 import json
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "compiled",
+    "enclosure_text",
     "error_blocks",
     "formula_deviations",
     "has_formulas",
@@ -116,8 +117,10 @@ def motion_library(plan: Plan, kernel: SceneKernel) -> Path:
     return library.build(library_source(plan, kernel), "motion")
 
 
-def taylor_library(plan: Plan, kernel: SceneKernel, tolerance: float) -> Path:
+def taylor_library(plan: Plan, kernel: SceneKernel, tolerance: float, projected: bool = True) -> Path:
     """Return the library that steps a plan by Taylor series, of the order that suits the tolerance.
+
+    ``projected`` says whether it holds the motion on its invariants.
 
     Raises
     ------
@@ -128,10 +131,10 @@ def taylor_library(plan: Plan, kernel: SceneKernel, tolerance: float) -> Path:
     from symrot.propagation.invariants import invariant_source
 
     order = taylor.order_for(tolerance, kernel.rates)
-    key = f"taylor {order}\n{kernel_key(plan)}"
+    key = f"taylor {order}{'' if projected else ' not projected'}\n{kernel_key(plan)}"
     source = library.fetch(key)
     if source is None:
-        invariants = invariant_source(kernel, plan.states)
+        invariants = invariant_source(kernel, plan.states) if projected else ""
         source = taylor.translation_unit(kernel.rates, *error_blocks(plan), order, invariants, has_formulas(plan))
         library.store(key, source)
     return library.build(source, "taylor", taylor.FLAGS)
@@ -161,7 +164,7 @@ def has_formulas(plan: Plan) -> bool:
     return any(torque["kind"] == "expression" for torque in plan.structure["torques"])
 
 
-def formula_deviations(plan: Plan, kernel: SceneKernel, parameters: Sequence[float]) -> "Deviations | None":
+def formula_deviations(plan: Plan, kernel: SceneKernel, parameters: Iterable[float]) -> "Deviations | None":
     """Return what steps in Python must be held to, or None where no torque is given by formulas that hide something."""
     if not has_formulas(plan):
         return None

@@ -2,7 +2,7 @@
 
 from fractions import Fraction
 from functools import cached_property
-from math import isfinite
+from math import inf, isfinite
 from pathlib import Path
 from typing import Any
 
@@ -209,6 +209,7 @@ def propagator(
     torque_frame: str = "body",
     state: str = "quaternion",
     switching: bool = True,
+    max_step: float = inf,
 ) -> Propagator:
     """Return the propagator of a scene: derived, specialised, emitted and compiled, or taken from the cache.
 
@@ -237,6 +238,9 @@ def propagator(
     switching : bool
         Whether such angles are exchanged for those of a regular sequence before they reach gimbal lock; ``stats``
         counts how often.
+    max_step : float
+        Longest step, s, under such a torque: shorter than its narrowest feature. Formulas need none, and tables have
+        that of their samples.
 
     Raises
     ------
@@ -262,6 +266,10 @@ def propagator(
 
         return EulerPropagator(scene, method, aim, state, switching)
     if torque is None:
+        if max_step != inf:
+            raise InputError(
+                f"max_step: expected none without a torque that is no formula, got {number.show(max_step)}"
+            )
         if switched(scene):
             from symrot.propagation.switched import SwitchedPropagator
 
@@ -271,7 +279,14 @@ def propagator(
         raise InputError(f"method: expected 'auto' or 'dop853' for a torque that is no formula, got {method!r}")
     from symrot.propagation.driven import DrivenPropagator
 
-    return DrivenPropagator(scene, aim, torque, switching_times, torque_frame)
+    return DrivenPropagator(scene, aim, torque, switching_times, torque_frame, _longest_step(max_step))
+
+
+def _longest_step(max_step: float) -> float:
+    longest = float(real_array(max_step, "max_step", "a positive number of seconds"))
+    if not longest > 0.0:
+        raise InputError(f"max_step: expected a positive number of seconds, got {number.show(max_step)}")
+    return longest
 
 
 def _tolerance(tolerance: float) -> float:
