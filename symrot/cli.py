@@ -14,7 +14,7 @@ from typing import Any, NoReturn, TextIO
 import symrot
 from symrot import cli_certify
 from symrot.cli_output import BAD, FAILED, GOOD, INTERRUPTED, UNREAD, Command, json_option, progress, say, say_json
-from symrot.errors import InputError, SymrotError
+from symrot.errors import InputError, PropagationError, SymrotError
 from symrot.report.layout import emphasis, one_line
 
 __all__ = ["main"]
@@ -78,8 +78,9 @@ def _run(options: Namespace) -> int:
     propagator = symrot.propagator(scene, options.method, options.tolerance, state=options.state)
     propagator.prepare()
     preparation = perf_counter() - start
-    progress("propagating ..")
-    trajectory = propagator()
+    trajectory = _followed(propagator, options)
+    if trajectory is None:
+        return INTERRUPTED
     found = facts(propagator, trajectory, preparation)
     if options.out:
         progress("writing ..")
@@ -96,6 +97,44 @@ def _run(options: Namespace) -> int:
     title, *rest = summary(found)
     say([emphasis(title, sys.stdout), *rest])
     return GOOD
+
+
+def _followed(propagator: Any, options: Namespace) -> Any:
+    """Return the trajectory; of one that ends early, the samples before go into ``--out``. None: interrupted."""
+    from symrot.propagation.progress import reporting
+
+    started = shown = perf_counter()
+
+    def show(t: float, start: float, stop: float) -> None:
+        nonlocal shown
+        now = perf_counter()
+        if now - shown > 0.2:
+            shown = now
+            progress(f"propagating: {abs(t - start) / abs(stop - start):.1%} of the span, {now - started:.0f} s ..")
+
+    progress("propagating ..")
+    try:
+        with reporting(show):
+            return propagator()
+    except PropagationError as error:
+        raise PropagationError(f"{error}{_saved(error, propagator, options)}") from None
+    except KeyboardInterrupt as error:
+        progress("")
+        part = getattr(error, "trajectory", None)
+        until = f" at t = {float(part.t[-1])!r} s" if part is not None and len(part) else ""
+        sys.stderr.write(f"symrot: interrupted{until}{_saved(error, propagator, options)}\n")
+        return None
+
+
+def _saved(error: BaseException, propagator: Any, options: Namespace) -> str:
+    """Save the samples before an error where ``--out`` says, and return what to say of it."""
+    part = getattr(error, "trajectory", None)
+    if not options.out or part is None or not len(part):
+        return ""
+    from symrot.report import output
+
+    output.save(part, options.out, propagator.tolerance)
+    return f"; {options.out} holds the {len(part)} samples before"
 
 
 def _explain(options: Namespace) -> int:

@@ -7,6 +7,7 @@ from symrot.report.layout import apart, columns, duration, exact, fields, one_li
 
 __all__ = ["facts", "summary"]
 
+SWITCHES_SHOWN = 6
 ABOUT = {"center_of_mass": "its centre of mass", "fixed_point": "a fixed point"}
 
 
@@ -54,6 +55,8 @@ def facts(propagator: Any, trajectory: Any, preparation: float) -> dict[str, Any
             "seconds": stats.seconds,
             "preparation_seconds": preparation,
         },
+        "switching_times": list(stats.switching_times),
+        "warnings": list(trajectory.warnings),
         "invariants": [
             {
                 "name": item.name, "unit": item.unit, "initial": float(item.values[0]), "scale": item.scale,
@@ -121,7 +124,17 @@ def _settings(found: dict[str, Any]) -> list[tuple[str, str]]:
         ("tolerance", f"{method['tolerance']:g}"),
         ("states", (not exact and _states(found["states"])) or "none to integrate"),
         ("cost", _steps(found["cost"], exact)),
+        *_switches(found["switching_times"]),
+        *(("warning", text) for text in found["warnings"]),
     ]  # fmt: skip
+
+
+def _switches(times: list[float]) -> list[tuple[str, str]]:
+    if not times:
+        return []
+    listed = ", ".join(shown(time) for time in times[:SWITCHES_SHOWN])
+    more = f", .. ({len(times)} in all)" if len(times) > SWITCHES_SHOWN else ""
+    return [("switches", f"at t = {listed}{more} s")]
 
 
 def _skipped(found: dict[str, Any]) -> list[tuple[str, str]]:
