@@ -207,7 +207,7 @@ def _state_limit(feature: Feature, y: Any) -> Any:
 def _step(rates: Any, basis: Basis, t: Any, h: Any, y: Any, scales: Any, accuracy: float) -> Any:
     """Return (rates at the nodes, coefficients, whether it was easy), or None where the step is too long."""
     times = (t + h * basis.nodes)[:, None]
-    values = np.broadcast_to(rates(EXTENDED(t) + h / 1000, y), (NODES, *y.shape))
+    values = np.broadcast_to(rates(times[:1], y[None]), (NODES, *y.shape))
     size = np.asarray(scales, dtype=EXTENDED) / abs(h)
     last, stalled, noise = np.inf, 0, 0.0
     for iteration in range(MOST_ITERATIONS):
