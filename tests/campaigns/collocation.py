@@ -9,7 +9,7 @@ coefficients of its derivative are at rounding level.
 from collections.abc import Callable, Sequence
 from functools import cache
 from itertools import pairwise
-from time import perf_counter
+from time import process_time
 from typing import Any, NamedTuple
 
 import mpmath
@@ -39,6 +39,7 @@ class Feature(NamedTuple):
     rate: Callable[[Any], Any] | None = None
     curvature: float = 0.0
     period: float = 0.0
+    local: bool = False
 
     def distance(self, value: Any) -> Any:
         """Return how far a value is from the center."""
@@ -161,7 +162,7 @@ def follow(
     ArithmeticError
         If the steps shrink to nothing or become too many: the case is none for this reference.
     """
-    basis, dense, deadline = matrices(), Dense(), perf_counter() + MOST_SECONDS
+    basis, dense, deadline = matrices(), Dense(), process_time() + MOST_SECONDS
     y = np.asarray(y0, dtype=EXTENDED)
     in_time = [f for f in features if f.value is None]
     in_state = [f for f in features if f.value is not None]
@@ -175,7 +176,7 @@ def follow(
             now = left if left <= 1.1 * h else h
             step = _step(rates, basis, t, sign * now, y, scales, accuracy)
             steps += 1
-            if steps > MOST_STEPS or perf_counter() > deadline or now < 1e-17 * max(1.0, abs(float(t))):
+            if steps > MOST_STEPS or process_time() > deadline or now < 1e-17 * max(1.0, abs(float(t))):
                 raise ArithmeticError(f"the reference came to t = {float(t)!r} s in {steps} steps")
             if step is None:
                 h = now / 2
@@ -199,6 +200,8 @@ def _state_limit(feature: Feature, y: Any) -> Any:
     room = _allowed(distance, feature.width)
     speed = float(np.max(np.abs(feature.rate(y))))
     bend = feature.curvature
+    if feature.local and distance > room:
+        bend *= min(1.0, 2 * (feature.width / (distance - room)) ** 2)
     if bend == 0:
         return EXTENDED(room / speed) if speed else EXTENDED(np.inf)
     return EXTENDED(2 * room / (speed + np.sqrt(speed * speed + 2 * bend * room)))
