@@ -88,7 +88,8 @@ def angle_time(draw: Draw, family: str, index: int, seed: int) -> Case:
     place = draw.low + draw.span * at + draw.width * random.uniform(-1, 1)
     second = second._replace(parameters={"c": place, "w": draw.width}, features=[Feature(place, draw.width)])
     shape = product(first, second)
-    m = float(draw.sign() * 0.3 * c * omega / min(width / omega, draw.width))
+    lasting = draw.span if first.name == "soft_step" else min(width / omega, draw.width)
+    m = float((-1 if first.name == "soft_step" else draw.sign()) * 0.3 * c * omega / lasting)  # keep below a full turn
     shape = shape._replace(parameters={**shape.parameters, "m": m})
     features = [*shape.features, Feature(center, width, _angle, _rate, abs(m) / c, FULL)]
     problem = _about_3(draw, c, omega, f"m*({shape.text})", shape, 2 * omega, features)
@@ -141,7 +142,9 @@ def attitude(draw: Draw, family: str, index: int, seed: int) -> Case:
     center = random.uniform(-0.8, 0.8)
     name = str(random.choice(["bump", "sech2", "soft_step"]))
     shape = in_value(name, f"q{which}", center, width)
-    m = float(draw.sign() * 0.1 * min(moments) * speed**2 / max(width, 1e-3) ** random.uniform(0.3, 1))
+    m = float(draw.sign() * 0.1 * min(moments) * speed**2)
+    if name != "soft_step":  # which lasts, and need not be strong
+        m /= max(width, 1e-3) ** random.uniform(0.3, 1)
     shape = shape._replace(parameters={**shape.parameters, "m": m})
     texts = ["0", "0", "0"]
     texts[int(random.integers(3))] = f"m*({shape.text})"
