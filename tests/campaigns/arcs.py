@@ -15,6 +15,7 @@ __all__ = ["Drive", "bang_bang", "constant_drive", "dry_friction", "sine_drive",
 
 Motion = Callable[[Any], tuple[Any, Any]]
 MOST_ARCS = 20_000
+PER_SWING = 128
 
 
 class Drive(NamedTuple):
@@ -63,29 +64,33 @@ class _Arcs:
         return rate, angle
 
 
-def _root(function: Callable[[Any], Any], low: Any, high: Any) -> Any:
-    """Return where a function changes sign between two times, by halving to the last bit."""
-    side = function(low) > 0
+def _root(function: Callable[[Any], Any], before: bool, low: Any, high: Any) -> Any:
+    """Return where a function that is positive at low, or not, changes sign before high, by halving to the last bit."""
     for _ in range(200):
         middle = (low + high) / 2
         if middle in (low, high):
             break
-        if (function(middle) > 0) == side:
+        if bool(function(middle) > 0) == before:
             low = middle
         else:
             high = middle
     return high
 
 
-def _first_change(function: Callable[[Any], Any], low: Any, high: Any, swing: float) -> Any:
-    """Return the first time after low at which a function changes sign, or high; cells are shorter than a swing."""
-    cells = int(min(np.ceil(float(high - low) / (swing / 16)), 200_000)) if np.isfinite(swing) else 64
+def _first_change(function: Callable[[Any], Any], before: bool, low: Any, high: Any, swing: float) -> Any:
+    """Return the first time after low at which a function changes sign, or high.
+
+    ``before`` says whether the function is positive just after low, where it may be zero. It is looked at
+    :data:`PER_SWING` times in each swing of the drive.
+    """
+    cells = int(min(np.ceil(float(high - low) / swing * PER_SWING), 400_000))
     grid = low + (high - low) * np.linspace(0, 1, max(cells, 64) + 1).astype(EXTENDED)
-    values = function(grid)
-    change = np.nonzero((values[1:-1] > 0) != (values[2:] > 0))[0]
+    positive = function(grid) > 0
+    positive[0] = before
+    change = np.nonzero(positive[:-1] != positive[1:])[0]
     if not len(change):
         return high
-    return _root(function, grid[change[0] + 1], grid[change[0] + 2])
+    return _root(function, before, grid[change[0]], grid[change[0] + 1])
 
 
 def dry_friction(inertia: float, k: float, drive: Drive, t0: float, omega: float, stop: float) -> Motion:
@@ -106,7 +111,7 @@ def dry_friction(inertia: float, k: float, drive: Drive, t0: float, omega: float
 
 
 def _breakaway(drive: Drive, force: Any, t: Any, end: Any) -> Any:
-    return _first_change(lambda at: np.abs(drive.torque(at)) - force, t, end, drive.swing)
+    return _first_change(lambda at: np.abs(drive.torque(at)) - force, False, t, end, drive.swing)
 
 
 def _slip(
@@ -122,7 +127,7 @@ def _slip(
 
     found.add(t, arc)
     if np.isfinite(drive.swing):
-        stop = _first_change(lambda at: side * arc(at)[0], t, end, drive.swing)
+        stop = _first_change(lambda at: side * arc(at)[0], True, t, end, drive.swing)
     else:
         slowing = (drive.torque(t) - side * force) / c * side
         stop = min(t + side * w / -slowing, end) if slowing < 0 else end

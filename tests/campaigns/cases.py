@@ -19,6 +19,7 @@ __all__ = ["Case", "Draw", "fitted", "log_uniform", "scene_of", "toml_of"]
 TOLERANCES = (1e-12, 1e-6)
 WIDTHS = (1e-6, 1.0)  # of the span
 SPANS = (1e-2, 1e3)  # s
+PAIRS = 48  # structures of products, of each family
 METHODS = {
     "auto": 0.32, "taylor": 0.22, "dop853": 0.2, "scipy:DOP853": 0.06, "scipy:LSODA": 0.07, "scipy:RK45": 0.03,
     "scipy:Radau": 0.02, "auto ZXZ": 0.02, "taylor ZXZ": 0.015, "dop853 ZXZ": 0.015, "auto ensemble": 0.03,
@@ -108,11 +109,20 @@ class Draw:
         q /= np.linalg.norm(q)
         return float(q[0]), float(q[1]), float(q[2]), float(q[3])
 
-    def time_shape(self, switches: bool = False) -> Shape:
-        """Return a random shape of time."""
+    def time_shape(self, switches: bool = False, name: str = "") -> Shape:
+        """Return a random shape of time, or the one of that name."""
         makers = SWITCHES_IN_TIME if switches else IN_TIME
-        name = str(self.random.choice(sorted(makers)))
+        name = name or str(self.random.choice(sorted(makers)))
         return makers[name](self.random, self.low, self.high, self.width)
+
+    def structure(self, family: str, switches: bool = False) -> tuple[Random, str, str]:
+        """Return two names of shapes, out of :data:`PAIRS` for a family, and the random choices that go with them.
+
+        The numbers of a formula vary from case to case and its structure does less, for each is compiled once.
+        """
+        pair = np.random.default_rng([zlib.crc32(family.encode()), int(self.random.integers(PAIRS))])
+        first, second = (str(pair.choice(sorted(SWITCHES_IN_TIME if switches else IN_TIME))) for _ in range(2))
+        return pair, first, second
 
     def method(self) -> str:
         """Return a random method."""
@@ -188,15 +198,16 @@ def _problem(
 def _three(draw: Draw, kind: str, switches: bool = False) -> tuple[Problem, str]:
     """Return a torque with up to three components, on a body that may tumble."""
     moments, random = draw.moments(kind), draw.random
-    shapes = [draw.time_shape(switches), draw.time_shape(switches)]
+    structure, *names = draw.structure(f"{kind} {switches}", switches)
+    shapes = [draw.time_shape(switches, name) for name in names]
     fits = [fitted(draw, shape, min(moments)) for shape in shapes]
     (first, rate), (second, _) = fits
     pair = product(first, second)  # for its parameters: those of the second renamed
     left, right = _factors(pair.text)
-    places = random.permutation(3)
+    places = structure.permutation(3)
     texts = ["0", "0", "0"]
     texts[places[0]], texts[places[1]] = left, right
-    if random.random() < 0.4:
+    if structure.random() < 0.4:
         texts[places[2]] = f"{left}/2-{right}/3"
     omega = random.normal(size=3) * draw.spin / draw.span / 2
     if kind != "sphere" and random.random() < 0.5:
@@ -222,8 +233,8 @@ def time_axis(draw: Draw, family: str, index: int, seed: int) -> Case:
 
 def time_product(draw: Draw, family: str, index: int, seed: int) -> Case:
     """Products of two shapes of time."""
-    first = draw.time_shape()
-    second = draw.time_shape()
+    _, *names = draw.structure(family)
+    first, second = (draw.time_shape(name=name) for name in names)
     if draw.random.random() < 0.6:  # where the other is not zero
         names = ("c", "d", "e")
         place = first.parameters["c"] + first.parameters.get("w", draw.width) * draw.random.uniform(-1, 1)
@@ -253,7 +264,8 @@ def switch_time(draw: Draw, family: str, index: int, seed: int) -> Case:
     """Switches of time, about one axis."""
     shape = draw.time_shape(switches=True)
     if draw.random.random() < 0.25:
-        shape = product(shape, draw.time_shape())
+        structure, *_ = draw.structure(family)
+        shape = product(shape, draw.time_shape(name=str(structure.choice(sorted(IN_TIME)))))
     return finish(draw, family, index, seed, shape.name, _axis(draw, shape))
 
 

@@ -17,7 +17,7 @@ NODES = 20
 def impulse_of(problem: Problem, stop: float) -> "np.ndarray":
     """Return the integral of a torque of time from t0 to ``stop``, N m s, shape (3,), by Gauss's rule on a told mesh."""
     mesh = time_mesh(
-        problem.t0, stop, problem.features, problem.breaks, min(problem.longest, problem.high - problem.low)
+        problem.t0, stop, problem.features, problem.breaks, min(problem.longest, (problem.high - problem.low) / 25)
     )
     return _integral(lambda t: torque_function(problem.texts, problem.parameters)(t, np.zeros((*t.shape, 7))), mesh)
 

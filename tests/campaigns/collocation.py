@@ -9,7 +9,7 @@ coefficients of its derivative are at rounding level.
 from collections.abc import Callable, Sequence
 from functools import cache
 from itertools import pairwise
-from time import perf_counter
+from time import process_time
 from typing import Any, NamedTuple
 
 import mpmath
@@ -23,6 +23,7 @@ NODES = 16
 MOST_ITERATIONS = 60
 MOST_STEPS = 60_000
 MOST_SECONDS = 25.0
+COARSER = float(np.finfo(EXTENDED).eps / np.finfo(np.float64).eps)
 NEAR, FAR = 0.5, 1 / 3  # of the width of a feature, of the distance to it
 
 
@@ -39,6 +40,7 @@ class Feature(NamedTuple):
     rate: Callable[[Any], Any] | None = None
     curvature: float = 0.0
     period: float = 0.0
+    local: bool = False
 
     def distance(self, value: Any) -> Any:
         """Return how far a value is from the center."""
@@ -150,18 +152,20 @@ def _allowed(distance: float, width: float) -> float:
 def follow(
     rates: Callable[[Any, Any], Any], y0: Any, start: float, stop: float, features: Sequence[Feature],
     breaks: Sequence[float] = (), longest: float = np.inf, scales: Any = 1.0, accuracy: float = 1e-18, observe: Any = None,
+    doubles: Any = None,
 ) -> Dense:  # fmt: skip
     """Follow a batch of states, shape (batch, N), from start to stop (before or after).
 
     Errors of a step are judged against ``scales``, shape (N,). ``observe(times, states, weights)`` is told the nodes of
-    every step that was accepted, and their weights in an integral over time.
+    every step that was accepted, and their weights in an integral over time. ``doubles`` are the same rates computed in
+    doubles: they show what rounding does to a formula.
 
     Raises
     ------
     ArithmeticError
         If the steps shrink to nothing or become too many: the case is none for this reference.
     """
-    basis, dense, deadline = matrices(), Dense(), perf_counter() + MOST_SECONDS
+    basis, dense, deadline = matrices(), Dense(), process_time() + MOST_SECONDS
     y = np.asarray(y0, dtype=EXTENDED)
     in_time = [f for f in features if f.value is None]
     in_state = [f for f in features if f.value is not None]
@@ -173,9 +177,9 @@ def follow(
             h = min(h, *(_state_limit(f, y) for f in in_state), np.inf) if in_state else h
             left = abs(end - t)
             now = left if left <= 1.1 * h else h
-            step = _step(rates, basis, t, sign * now, y, scales, accuracy)
+            step = _step(rates, doubles, basis, t, sign * now, y, scales, accuracy)
             steps += 1
-            if steps > MOST_STEPS or perf_counter() > deadline or now < 1e-17 * max(1.0, abs(float(t))):
+            if steps > MOST_STEPS or process_time() > deadline or now < 1e-17 * max(1.0, abs(float(t))):
                 raise ArithmeticError(f"the reference came to t = {float(t)!r} s in {steps} steps")
             if step is None:
                 h = now / 2
@@ -199,15 +203,17 @@ def _state_limit(feature: Feature, y: Any) -> Any:
     room = _allowed(distance, feature.width)
     speed = float(np.max(np.abs(feature.rate(y))))
     bend = feature.curvature
+    if feature.local and distance > room:
+        bend *= min(1.0, 2 * (feature.width / (distance - room)) ** 2)
     if bend == 0:
         return EXTENDED(room / speed) if speed else EXTENDED(np.inf)
     return EXTENDED(2 * room / (speed + np.sqrt(speed * speed + 2 * bend * room)))
 
 
-def _step(rates: Any, basis: Basis, t: Any, h: Any, y: Any, scales: Any, accuracy: float) -> Any:
+def _step(rates: Any, doubles: Any, basis: Basis, t: Any, h: Any, y: Any, scales: Any, accuracy: float) -> Any:
     """Return (rates at the nodes, coefficients, whether it was easy), or None where the step is too long."""
     times = (t + h * basis.nodes)[:, None]
-    values = np.broadcast_to(rates(EXTENDED(t) + h / 1000, y), (NODES, *y.shape))
+    values = np.broadcast_to(rates(times[:1], y[None]), (NODES, *y.shape))
     size = np.asarray(scales, dtype=EXTENDED) / abs(h)
     last, stalled, noise = np.inf, 0, 0.0
     for iteration in range(MOST_ITERATIONS):
@@ -221,7 +227,7 @@ def _step(rates: Any, basis: Basis, t: Any, h: Any, y: Any, scales: Any, accurac
             break
         stalled += change > 0.7 * last
         if stalled and not noise:
-            noise = _noise(rates, times, states, values, size)
+            noise = _noise(rates, doubles, times, states, values, size)
         if iteration > 3 and (change > 1e3 or stalled > 4):
             return None
         last = change
@@ -229,14 +235,19 @@ def _step(rates: Any, basis: Basis, t: Any, h: Any, y: Any, scales: Any, accurac
         return None
     coefficients = np.tensordot(basis.analysis, values, axes=(1, 0))
     tail = float(np.max(np.abs(coefficients[-2:]) / size))
-    if tail > 20 * accuracy and tail > (noise or _noise(rates, times, states, values, size)):
+    if tail > 20 * accuracy and tail > (noise or _noise(rates, doubles, times, states, values, size)):
         return None
     easy = float(np.max(np.abs(coefficients[-6:]) / size)) < accuracy and iteration < 20
     return values, coefficients, easy
 
 
-def _noise(rates: Any, times: Any, states: Any, values: Any, size: Any) -> float:
-    """Return what the last bits of times and states change the rates by: below that nothing can be resolved."""
+def _noise(rates: Any, doubles: Any, times: Any, states: Any, values: Any, size: Any) -> float:
+    """Return what rounding changes the rates by: below that nothing can be resolved.
+
+    It is seen from the rates in doubles, whose rounding is coarser by a known factor, or from the last bits of times.
+    """
+    if doubles is not None:
+        return 4 * COARSER * float(np.max(np.abs(doubles(times, states) - values) / size))
     ulps = 1 + 2 * np.finfo(EXTENDED).eps
     moved = max(np.max(np.abs(rates(times * t, states * y) - values) / size) for t, y in ((ulps, 1), (1, ulps)))
     return 4 * float(moved)

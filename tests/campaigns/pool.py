@@ -9,7 +9,7 @@ from typing import Any
 __all__ = ["run_all"]
 
 STARTING = 60.0  # s that the first case of a process is given for imports and compilers
-PREPARING = 120.0  # s for what comes before the part of a case that has a limit
+PREPARING = 300.0  # s for what comes before the part of a case that has a limit
 
 
 def _serve(work: Callable[..., Any], connection: Any) -> None:

@@ -76,8 +76,8 @@ def attitude_apart(p: Any, q: Any) -> Any:
     return 4 * np.arcsin(np.minimum(half, 1))
 
 
-def _rates(problem: Problem) -> Callable[[Any, Any], Any]:
-    torque = torque_function(problem.texts, problem.parameters)
+def _rates(problem: Problem, kind: Any = EXTENDED) -> Callable[[Any, Any], Any]:
+    torque = torque_function(problem.texts, problem.parameters, kind)
     moments = np.array(problem.principal, dtype=EXTENDED)
 
     def rates(t: Any, y: Any) -> Any:
@@ -146,7 +146,7 @@ def reference(problem: Problem) -> Truth:
         peak[0] = max(peak[0], float(speed.max()))
 
     scales = np.array([size] * 3 + [1.0] * 4)
-    options = {"longest": problem.longest, "scales": scales, "observe": observe}
+    options = {"longest": problem.longest, "scales": scales, "observe": observe, "doubles": _rates(problem, np.float64)}
     sides = {
         sign: follow(rates, start, problem.t0, end, problem.features, problem.breaks, **options)
         for sign, end in ((1, high), (-1, problem.low))

@@ -53,7 +53,8 @@ def angle(draw: Draw, family: str, index: int, seed: int) -> Case:
     speed = omega * 3
     bend = 2 * abs(m) / c
     features = [
-        Feature(x, width, _angle, _rate, bend, FULL) for x in ((center, second) if name == "two_bumps" else (center,))
+        Feature(x, width, _angle, _rate, bend, FULL, name != "soft_step")
+        for x in ((center, second) if name == "two_bumps" else (center,))
     ]
     shape = shape._replace(parameters={**shape.parameters, "m": m})
     problem = _about_3(draw, c, float(omega), f"m*({shape.text})", shape, speed, features)
@@ -70,7 +71,7 @@ def angle_turns(draw: Draw, family: str, index: int, seed: int) -> Case:
     m = float(random.choice([0.3, -0.2]) * c * omega**2 / 2 / (width * 1.8) / 3)
     shape = in_value("bump", ANGLE, center, width)
     shape = shape._replace(parameters={**shape.parameters, "m": m})
-    feature = Feature(center, width, _angle, _rate, 2 * abs(m) / c, FULL)
+    feature = Feature(center, width, _angle, _rate, 2 * abs(m) / c, FULL, True)
     problem = _about_3(draw, c, draw.sign() * omega, f"m*({shape.text})", shape, 2 * omega, [feature])
     return finish(draw, family, index, seed, "bump", problem)
 
@@ -87,7 +88,8 @@ def angle_time(draw: Draw, family: str, index: int, seed: int) -> Case:
     place = draw.low + draw.span * at + draw.width * random.uniform(-1, 1)
     second = second._replace(parameters={"c": place, "w": draw.width}, features=[Feature(place, draw.width)])
     shape = product(first, second)
-    m = float(draw.sign() * 0.3 * c * omega / min(width / omega, draw.width))
+    lasting = draw.span if first.name == "soft_step" else min(width / omega, draw.width)
+    m = float((-1 if first.name == "soft_step" else draw.sign()) * 0.3 * c * omega / lasting)  # keep below a full turn
     shape = shape._replace(parameters={**shape.parameters, "m": m})
     features = [*shape.features, Feature(center, width, _angle, _rate, abs(m) / c, FULL)]
     problem = _about_3(draw, c, omega, f"m*({shape.text})", shape, 2 * omega, features)
@@ -140,7 +142,9 @@ def attitude(draw: Draw, family: str, index: int, seed: int) -> Case:
     center = random.uniform(-0.8, 0.8)
     name = str(random.choice(["bump", "sech2", "soft_step"]))
     shape = in_value(name, f"q{which}", center, width)
-    m = float(draw.sign() * 0.1 * min(moments) * speed**2 / max(width, 1e-3) ** random.uniform(0.3, 1))
+    m = float(draw.sign() * 0.1 * min(moments) * speed**2)
+    if name != "soft_step":  # which lasts, and need not be strong
+        m /= max(width, 1e-3) ** random.uniform(0.3, 1)
     shape = shape._replace(parameters={**shape.parameters, "m": m})
     texts = ["0", "0", "0"]
     texts[int(random.integers(3))] = f"m*({shape.text})"
@@ -247,16 +251,16 @@ def poles(draw: Draw, family: str, index: int, seed: int) -> Case:
         "cube": ("m/(t-c)**3", 1.0, at), "square": ("m/(t-c)**2", 1.0, at), "simple": ("m/(t-c)", 1.0, at),
         "tan": ("m*tan(t)", 4.0, np.pi / 2), "log": ("m*log(c-t)", 1.0, at), "sqrt": ("m*sqrt(c-t)", 1.0, at),
         "exp_cube": ("m*exp(t**3)", 20.0, 8.9), "exp_exp": ("m*exp(exp(t))", 20.0, 6.56),
-        "cosh": ("m*cosh(100*t)", 20.0, 7.1), "mild_exp": ("m*exp(t**3)", random.uniform(0.5, 2.2), np.inf),
+        "cosh": ("m*cosh(100*t)", 20.0, 7.1), "mild_exp": ("m*exp(t**3)", random.uniform(0.5, 2.0), np.inf),
     }  # fmt: skip
     text, high, pole = table[kind]
     m = float(c * random.uniform(0.01, 1))
     omega = float(random.choice([0.0, 0.3, 5.0]))
     parameters = {"m": m} | ({"c": float(at)} if "c" in text.replace("cosh", "") else {})
     stop = min(high, pole)
-    reach = stop * (1 - 1e-3) if kind in ("cube", "square", "simple", "tan", "log", "sqrt") and pole < high else stop
+    reach = stop * (1 - 1e-2) if kind in ("cube", "square", "simple", "tan", "log", "sqrt") and pole < high else stop
     if kind.startswith("exp_") or kind == "cosh":
-        reach = {"exp_cube": 2.5, "exp_exp": 2.5, "cosh": 0.2}[kind]
+        reach = {"exp_cube": 2.0, "exp_exp": 2.0, "cosh": 0.1}[kind]
     problem = Problem(
         (c * 0.8, c * 0.9, c), (0.0, 0.0, omega), START, 0.0, 0.0, float(high), ("0", "0", text), parameters,
         [Feature(float(pole), 1e-3 * stop)] if np.isfinite(pole) else [], poles=[float(pole)] if pole < high else [],

@@ -81,11 +81,11 @@ def jobs_of(count: int, families: list[str], seed: int) -> list[tuple[str, int]]
 def table(results: list[Result], by: str) -> list[str]:
     """Return the lines of outcomes by ``family`` or ``method``."""
     rows = sorted({getattr(r, by) for r in results})
-    lines = [f"{by:22}{'cases':>8}" + "".join(f"{name:>11}" for name in COLUMNS)]
+    lines = [f"{by:22}{'cases':>8}" + "".join(f"{name:>12}" for name in COLUMNS)]
     for row in [*rows, "all"]:
         chosen = [r for r in results if row in ("all", getattr(r, by))]
         counts = Counter(r.outcome for r in chosen)
-        lines.append(f"{row:22}{len(chosen):8}" + "".join(f"{counts[name] or '-':>11}" for name in COLUMNS))
+        lines.append(f"{row:22}{len(chosen):8}" + "".join(f"{counts[name] or '-':>12}" for name in COLUMNS))
     return lines
 
 
@@ -110,7 +110,7 @@ def report(results: list[Result], seed: int, most: int) -> list[str]:
     lines += ["", "slowest:"] + [
         f"  {r.key:24} {r.method:14} {r.seconds:8.2f} s  {r.outcome}, {r.shape}" for r in slowest
     ]
-    for outcome in (*WRONG, "warned", "doubt"):
+    for outcome in (*WRONG, "warned", "no formula", "doubt"):
         chosen = sorted((r for r in results if r.outcome == outcome), key=lambda r: r.key)
         if chosen:
             lines += ["", f"{outcome}: {len(chosen)}"]

@@ -27,6 +27,7 @@ OUTCOMES = {
     "growth": "within 20 tolerances times the growth of a change of the start",
     "sentence": "ended in a sentence, and right as far as it came",
     "warned": "beyond 20 tolerances, with a warning; torques without a formula alone",
+    "no formula": "the same without a warning, while trajectories have no place for one",
     "wrong": "beyond what growth explains, without a word",
     "traceback": "an exception that is no sentence",
     "no end": "beyond the time limit",
@@ -76,7 +77,7 @@ def run(case: Case) -> list[Answer]:
             follow = symrot.propagator(scene, method, case.tolerance, **options)
             trajectory = follow(case.samples)
         except (symrot.PropagationError, symrot.InputError) as error:
-            partial = getattr(error, "trajectory", None)
+            partial = getattr(error, "trajectory", None) or getattr(error, "partial", None)
             if partial is None:
                 return [Answer(np.empty(0), np.empty((0, 7)), str(error), False)]
             return [Answer(partial.t, np.hstack([partial.omega, partial.quaternion]), str(error), False)]
@@ -90,7 +91,8 @@ def run(case: Case) -> list[Answer]:
             except (symrot.PropagationError, symrot.InputError) as error:
                 times.pop()
                 sentence = sentence or str(error)
-    warned = bool(caught) or bool(getattr(trajectory, "warnings", None)) or bool(getattr(trajectory, "warning", None))
+    marked = [getattr(trajectory, name, None) for name in ("warnings", "warning")]
+    warned = bool(caught) or any(map(bool, marked))
     return [Answer(np.concatenate(times), np.concatenate(states), sentence, warned)]
 
 
@@ -180,11 +182,17 @@ def judge(case: Case, started: Callable[[], None] = lambda: None) -> Result:
         passed = [pole for pole in case.problem.poles if len(answer.times) and answer.times.max() > pole]
         if passed and not answer.sentence:
             outcome, detail = "wrong", f"went on behind the pole at t = {passed[0]!r} s"
-        if outcome == "wrong" and answer.warned and case.method in ("function", "table"):
-            outcome = "warned"
+        if outcome == "wrong" and case.method in ("function", "table"):
+            outcome = "warned" if answer.warned else "wrong" if _warnings_exist() else "no formula"
         found.append((list(OUTCOMES).index(outcome), outcome, detail, worst, growth))
     _, outcome, detail, worst, growth = max(found)
     return result(outcome, detail, worst, growth, seconds)
+
+
+def _warnings_exist() -> bool:
+    from symrot import Trajectory
+
+    return any("warning" in name for name in dir(Trajectory))
 
 
 def _within(answer: Answer, case: Case) -> Answer:
