@@ -24,6 +24,7 @@ import math
 import re
 from collections.abc import Callable, Iterable, Sequence
 from fractions import Fraction
+from itertools import pairwise
 from pathlib import Path
 from time import perf_counter, process_time
 from typing import Any, NamedTuple
@@ -34,10 +35,13 @@ from symrot import number
 from symrot.bench.problem import Problem, State
 from symrot.closed_form.choose import exact_form
 from symrot.codegen import library
+from symrot.codegen.enclosure import enclosure
 from symrot.codegen.recurrences import coefficients, recurrences
 from symrot.errors import SymrotError
 from symrot.expression import evaluate
 from symrot.planner import Plan, general_structure
+from symrot.propagation.enclosure import Deviations, longest_followed
+from symrot.propagation.kernels import error_blocks
 from symrot.propagation.propagator import propagator
 from symrot.propagation.smoothness import roughness
 from symrot.scene_kernel import EXACT_FUNCTIONS, Parameters
@@ -158,7 +162,7 @@ def _taylor(problem: Problem, say: Say, seconds: float) -> list[State]:
     kernel, plan = problem.kernel, problem.plan
     given = _exact_parameters(kernel.rate_parameters, plan), _exact_start(plan)
     where = f"{problem.start} {problem.ends}"
-    key = f"reference {DIGITS} {ORDER} {TAIL}\n{json.dumps(kernel.data['rates'])}\n{given}\n{where}"
+    key = f"held reference {DIGITS} {ORDER} {TAIL}\n{json.dumps(kernel.data['rates'])}\n{given}\n{where}"
     kept = library.fetch(key)
     with mpmath.workdps(DIGITS):
         if kept is None:
@@ -177,6 +181,10 @@ def _series(
 
     system, functions, sizes = recurrences(problem.kernel.rates), _functions(), _sizes(problem)
     values: dict[str, Any] = {name: _as_mpf(value) for name, value in given[0].items()}
+    hidden = enclosure(system)
+    deviations = hidden and Deviations(hidden, {name: float(value) for name, value in given[0].items()})
+    edges = error_blocks(problem.plan)[0]
+    allowed = [TAIL * max(sizes[low:high]) for low, high in pairwise(edges)]
     state, path = [_as_mpf(value) for value in given[1]], []
     now, clock = mpmath.mpf(problem.start), process_time()
     for end in problem.ends:
@@ -188,6 +196,13 @@ def _series(
                 largest = max(abs(one[n]) / size for one, size in zip(series, sizes, strict=True))
                 if largest:
                     step = min(step, (TAIL / largest) ** (mpmath.mpf(1) / n))
+            if deviations:  # no step goes past a feature that its coefficients do not show
+                terms = [[float(abs(one[n] * step**n)) for n in range(1, ORDER + 1)] for one in series]
+                start, length = list(map(float, state)), float(step)
+                proven = longest_followed(deviations, float(now), start, terms, length, allowed, edges, ORDER)
+                step = step if proven == length else mpmath.mpf(proven)
+                if step < 1e-15 * max(1, abs(now)):
+                    raise _Unavailable(f"the steps shrink to nothing at t = {float(now)!r}, as before a singularity")
             state = [mpmath.polyval(one[::-1], step) for one in series]
             now += step
             spent = process_time() - clock

@@ -25,7 +25,7 @@ from symrot.errors import InputError, PropagationError
 from symrot.kinematics import conversions
 from symrot.planner import Plan
 from symrot.propagation import dop853, taylor
-from symrot.propagation.kernels import ATTITUDE_SCALE, RATE_SCALE, kernel_key
+from symrot.propagation.kernels import ATTITUDE_SCALE, RATE_SCALE, has_formulas, kernel_key
 from symrot.propagation.method import Choice
 from symrot.propagation.motion import Motion
 from symrot.propagation.propagator import Propagator
@@ -132,12 +132,16 @@ class EulerMotion(Motion):
             kernel, count = SceneKernel(json.loads(saved)), self._moving
             edges, scales = [0, *([count] if count else []), count + 3], [RATE_SCALE] * (count > 0) + [ATTITUDE_SCALE]
             if self.choice.method == "taylor":
-                text = taylor.translation_unit(
-                    kernel.rates, edges, scales, taylor.order_for(self.tolerance, kernel.rates)
-                )
+                order = taylor.order_for(self.tolerance, kernel.rates)
+                text = taylor.translation_unit(kernel.rates, edges, scales, order, enclosed=has_formulas(self.plan))
             else:
                 sizes = count + 3, len(kernel.rate_parameters)
-                text = dop853.translation_unit(kernel.source, "symrot_rates", *sizes, edges, scales)
+                bounds = dop853.NO_ENCLOSURE
+                if has_formulas(self.plan):
+                    from symrot.codegen.enclosure_source import enclosure_source
+
+                    bounds = enclosure_source(kernel.rates, dop853.DENSE_ORDER, edges)
+                text = dop853.translation_unit(kernel.source, "symrot_rates", *sizes, edges, scales, bounds)
             found = _Kernel(library.build(text, "angles"), bind(kernel.rate_parameters, self.plan.constants))
             self._kernels[sequence] = found
         return self._kernels[sequence]

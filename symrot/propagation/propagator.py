@@ -262,6 +262,8 @@ def propagator(
     if state != "quaternion":
         if torque is not None:
             raise InputError(f"state: expected 'quaternion' for a torque that is no formula, got {state!r}")
+        if switched(scene):
+            raise InputError(f"state: expected 'quaternion' for torques that jump or bend, got {state!r}")
         from symrot.propagation.euler_state import EulerPropagator
 
         return EulerPropagator(scene, method, aim, state, switching)
@@ -277,6 +279,10 @@ def propagator(
         return Propagator(scene, method, aim)
     if method not in ("auto", "dop853"):
         raise InputError(f"method: expected 'auto' or 'dop853' for a torque that is no formula, got {method!r}")
+    if switched(scene):
+        raise InputError(
+            f"torque: expected none beside formulas that jump or bend (abs, sign, ..), got {number.show(torque)}"
+        )
     from symrot.propagation.driven import DrivenPropagator
 
     return DrivenPropagator(scene, aim, torque, switching_times, torque_frame, _longest_step(max_step))
