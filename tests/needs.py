@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from symrot.certify.disassembly import missing
+from symrot.codegen.library import missing as missing_compiler
 
 HERE = [name for name in ("gcc", "clang") if shutil.which(name)]
 PROCESSOR = Path("/proc/cpuinfo").read_text() if Path("/proc/cpuinfo").exists() else ""
@@ -13,3 +14,4 @@ needs_objdump = pytest.mark.skipif(bool(missing()) or "gcc" not in HERE, reason=
 needs_avx2 = pytest.mark.skipif(
     not {"avx2", "fma"} <= set(PROCESSOR.split()), reason="needs a processor with AVX2, FMA"
 )
+needs_compiler = pytest.mark.skipif(bool(missing_compiler()), reason="needs a C compiler")

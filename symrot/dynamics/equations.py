@@ -235,11 +235,12 @@ def sliding(equations: Equations, held: list[tuple[Mapping[str, Any], str]]) -> 
         If the rates of the guards do not determine the modes.
     """
     rates = dict(zip(equations.states, equations.explicit_rates, strict=True))
-    names, pace = [], []
+    names, pace, guards = [], [], []
     for torque, mode in held:
         values = formula_values(torque, equations.motion)
         guard = formula(parse(next(each["guard"] for each in torque["switches"] if each["mode"] == mode)), values)
         names.append(values[mode])
+        guards.append(guard)
         pace.append(guard.diff(symbols.t) + reduce(add, (guard.diff(y) * rate for y, rate in rates.items()), S.Zero))
     matrix = Matrix([[entry.diff(name) for name in names] for entry in pace])
     rest = Matrix(pace).subs(dict.fromkeys(names, S.Zero))
@@ -247,4 +248,5 @@ def sliding(equations: Equations, held: list[tuple[Mapping[str, Any], str]]) -> 
     if matrix.free_symbols & set(names) or determinant == 0:
         raise InputError("torque: expected switches that hold their guards at zero in one way alone")
     modes = tuple(zip(names, -(matrix.adjugate() * rest) / determinant, strict=True))
-    return replace(equations, definitions=(*modes, *equations.definitions), modes=modes)
+    still = [S.Zero if state in guards else rate for state, rate in zip(equations.states, equations.rates, strict=True)]
+    return replace(equations, rates=tuple(still), definitions=(*modes, *equations.definitions), modes=modes)

@@ -206,6 +206,7 @@ class _Task:
         ]
         self.steps = self.evaluations = self.broken = 0
         self.pieces: list[Piece] = []  # of the pass that runs
+        self.final = False  # whether that is the pass that counts
         self.mark = (0, self.t0)  # evaluations and time when the pace was judged last
         if not np.isfinite(self._derivative(self.t0, self.y0)).all():
             raise CutOff(self.t0, NOT_FINITE_SENTENCE)
@@ -222,10 +223,11 @@ class _Task:
 
     def partial(self, times: Floats) -> tuple[NDArray[np.intp], Floats]:
         """Return numbers and states of the times, sorted away from t0, that lie before the motion was cut off."""
-        way = max((max(abs(low - self.t0), abs(high - self.t0)) for low, high, _ in self.pieces), default=0.0)
+        pieces = self.pieces if self.final else []  # the coarse pass is no result
+        way = max((max(abs(low - self.t0), abs(high - self.t0)) for low, high, _ in pieces), default=0.0)
         inside = np.flatnonzero(np.abs(times - self.t0) <= way)
         states = np.empty((len(inside), len(self.y0)))
-        _evaluate(self.pieces, times[inside], states)
+        _evaluate(pieces, times[inside], states)
         states[times[inside] == self.t0] = self.y0
         return inside, states
 
@@ -238,6 +240,7 @@ class _Task:
             SLACK * PILOT_TOLERANCE * (scale if scale > 0.0 else max(float(np.linalg.norm(self.y0[block])), slowest))
             for block, scale in self.blocks
         ]
+        self.final = False
         pilot = self._stretches(end, PILOT_TOLERANCE, np.full(len(self.y0), PILOT_TOLERANCE), bars)
         coarse = sum(len(solution.ts) - 1 for _, _, solution in pilot)
         path = np.concatenate([np.abs(solution(solution.ts)) for _, _, solution in pilot], axis=1)
@@ -248,6 +251,7 @@ class _Task:
             bars.append(SLACK * share * max(size, slowest))
             # SciPy takes the mean over all states, we the sum over a block
             allowed[block] = share * max(size, slowest) / math.sqrt(len(self.y0))
+        self.final = True
         return self._stretches(end, SMALLEST_RTOL, allowed, bars)
 
     def _stretches(self, end: float, rtol: float, atol: Floats, bars: list[float]) -> list[Piece]:

@@ -43,6 +43,7 @@ MOST_SWITCHES = 1_000_000
 CHATTER, CHATTERING = 50, 1e-9  # so many switches within that part of the span are endlessly many
 ROOM = 4  # steps in the first piece after a switch; twice as many in each piece after it
 WINDOWS = 64  # pieces of the span that SciPy follows at a time, at first
+STATES = frozenset({*(f"omega_{i}" for i in (1, 2, 3)), *(f"q{i}" for i in range(4))})
 Modes = dict[str, int]
 Consumer = Callable[["Chunk"], None]
 
@@ -100,7 +101,16 @@ class SwitchedMotion(Motion):
 
     def initial_modes(self) -> Modes:
         """Return the modes at the start; a guard that is zero there counts as positive, until the motion tells."""
-        start, modes = self.plan.scene.initial, Modes()
+        return dict(self._initial_modes[0])
+
+    @property
+    def undecided(self) -> set[str]:
+        """The modes whose guards are zero at the start, and not only because of the time."""
+        return self._initial_modes[1]
+
+    @cached_property
+    def _initial_modes(self) -> tuple[Modes, set[str]]:
+        start, modes, undecided = self.plan.scene.initial, Modes(), set[str]()
         values: dict[str, float] = {name: float(value) for name, value in self.constants.items()}
         values |= {"t": self.start, **{f"omega_{i + 1}": float(value) for i, value in enumerate(start.omega_b)}}
         values |= {f"q{i}": float(value) for i, value in enumerate(start.quaternion)}
@@ -108,7 +118,9 @@ class SwitchedMotion(Motion):
             guard = float(evaluate(switch["guard"], values, MATH, float))
             modes[switch["mode"]] = math.floor(guard) if switch["kind"] == "floor" else -1 if guard < 0.0 else 1
             values[switch["mode"]] = float(modes[switch["mode"]])
-        return modes
+            if guard == 0.0 and switch["kind"] == "sign" and names(switch["guard"]) & STATES:
+                undecided.add(switch["mode"])
+        return modes, undecided
 
     def regime(self, held: frozenset[str]) -> "_Regime":
         """Return the smooth motion while the guards of some modes stay at zero; derived when first asked for."""
@@ -285,11 +297,32 @@ class _Run:
 
     def follow(self, consume: Consumer) -> None:
         """Follow the motion to its end, handing on each part as it is known."""
+        self._check_start()
         while self.t != self.end:
             regime = self.motion.regime(self.held)
             guard = self._segment(regime, consume)
             if guard is not None:
                 self._switch(regime, guard)
+
+    def _check_start(self) -> None:
+        """Refuse a start on a switch from which both sides lead away: the motion has more than one way on."""
+        for switch in self.motion.switches:
+            mode = switch["mode"]
+            inactive = switch["where"] and self.modes[switch["where"][0]] != switch["where"][1]
+            if mode not in self.motion.undecided or inactive or self.t == self.end:
+                continue
+            regime, leaving = self.motion.regime(self.held), 0
+            for sign in (1, -1):
+                rates, values = regime.bound({**self.modes, mode: sign})
+                piece, _ = next(self._source(regime, rates).pieces())
+                signs, _ = signs_at_ends(regime.path, [guard.formula for guard in regime.guards], values, piece)
+                leaving += all(s > 0 for s, guard in zip(signs, regime.guards, strict=True) if guard.mode == mode)
+            if leaving == 2:
+                way = "past" if self.end < self.motion.start else "future"
+                raise CutOff(self.t, f"the motion starts on {self._name(mode)} and has more than one {way}", self.end)
+
+    def _source(self, regime: _Regime, rates: list[float]) -> Any:
+        return _SOURCES[self.motion.choice.method.partition(":")[0]](self, regime, rates)
 
     def _segment(self, regime: _Regime, consume: Consumer) -> _Guard | None:
         """Follow one smooth part; return the guard that ended it, or None at the end of the motion."""
@@ -298,7 +331,7 @@ class _Run:
         events = [
             event if on else event._replace(terminal=False) for event, on in zip(regime.events, active, strict=True)
         ]
-        source = _SOURCES[self.motion.choice.method.partition(":")[0]](self, regime, rates)
+        source = self._source(regime, rates)
         start, passed = self.t, [self.t]
         violated: list[_Guard] = []
 

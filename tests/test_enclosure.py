@@ -1,0 +1,271 @@
+"""Enclosures: discs hold the image of every function, steps are held where a feature hides and nowhere else."""
+
+import cmath
+import ctypes
+import math
+import shutil
+import subprocess
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+import symrot
+from symrot.codegen import library
+from symrot.codegen.enclosure import BEYOND, enclosure
+from symrot.codegen.enclosure_source import enclosure_source
+from symrot.codegen.recurrences import coefficients, recurrences
+from symrot.errors import PropagationError
+from symrot.expression import parse
+from symrot.planner import make_plan
+from symrot.propagation import dop853, stepping, taylor
+from symrot.propagation.enclosure import FUNCTIONS, Deviations, Disc, longest_followed
+from symrot.propagation.kernels import error_blocks, scene_kernel
+from symrot.scene import Scene
+from symrot.scene_kernel import bind
+from tests.needs import needs_compiler
+
+RANDOM = np.random.default_rng(12)
+COMPLEX = {name: getattr(cmath, name) for name in FUNCTIONS if name not in ("sech", "atan2")}
+COMPLEX["sech"] = lambda z: 1 / cmath.cosh(z)
+DOMAINS = {"log": (0.1, 5.0), "sqrt": (0.1, 5.0), "asin": (-0.9, 0.9), "acos": (-0.9, 0.9)}
+
+
+def scene(torque, omega=(0, 0, 0), stop=10.0, tolerance=1e-10, **parameters):
+    torque = torque if isinstance(torque, list) else ["0", "0", torque]
+    content = {
+        "schema": 1, "body": {"principal": [1, 2, 3]}, "initial": {"omega": list(omega)}, "span": {"t": [0, stop]},
+        "torque": [{"kind": "expression", "torque": torque, "parameters": parameters}],
+        "accuracy": {"tolerance": tolerance}, "output": {"quantities": ["omega", "quaternion"]},
+    }  # fmt: skip
+    return Scene.from_dict(content)
+
+
+def circle(disc, count=64):
+    angles = 2 * np.pi * np.arange(count) / count
+    return [complex(disc.centre) + disc.radius * cmath.exp(1j * angle) for angle in angles]
+
+
+@pytest.mark.parametrize("name", sorted(set(FUNCTIONS) - {"atan2"}))
+def test_the_image_of_a_disc_lies_in_the_disc_of_its_image(name):
+    """|f(z) - centre| <= radius on the circle, hence inside: the largest value of an analytic function is there."""
+    low, high = DOMAINS.get(name, (-30.0, 30.0) if name in ("tanh", "sech", "atan") else (-4.0, 4.0))
+    bounded = 0
+    for _ in range(400):
+        disc = Disc(RANDOM.uniform(low, high), 10 ** RANDOM.uniform(-6, 1))
+        image = FUNCTIONS[name](disc)
+        if not math.isfinite(image.radius):
+            continue
+        bounded += 1
+        far = max(abs(COMPLEX[name](z) - image.centre) for z in circle(disc))
+        assert far <= image.radius * (1 + 1e-9) + 1e-12 * abs(image.centre) + 1e-300, (disc, image)
+    assert bounded > 100
+
+
+def test_the_angle_of_two_discs_is_enclosed():
+    for _ in range(400):
+        y, x = (Disc(RANDOM.uniform(-2, 2), 10 ** RANDOM.uniform(-5, 0)) for _ in range(2))
+        image = FUNCTIONS["atan2"](y, x)
+        if not math.isfinite(image.radius):
+            continue
+        base = complex(x.centre, y.centre), complex(x.centre, -y.centre)
+        for dy, dx in zip(circle(Disc(0, y.radius), 16), circle(Disc(0, x.radius), 16)[::-1], strict=True):
+            upper, lower = 1 + (dx + 1j * dy) / base[0], 1 + (dx - 1j * dy) / base[1]
+            assert abs((cmath.log(upper) - cmath.log(lower)) / 2j) <= image.radius * (1 + 1e-9)
+
+
+@needs_compiler
+def test_the_rules_in_c_are_those_in_python():
+    names = sorted(set(FUNCTIONS) - {"atan2"})
+    cases = "\n".join(f"case {k}: d = symrot_disc_{name}(a); break;" for k, name in enumerate(names))
+    text = f"""#include <stdint.h>
+#define SYMROT_ROUGH
+{taylor.Path(taylor.__file__).with_name("disc.h").read_text()}
+void image(int which, double c, double r, double *out)
+{{ symrot_disc a = symrot_disc_of(c, r), d = a; switch (which) {{ {cases} }} out[0] = d.c; out[1] = d.r; }}
+"""
+    function, out = ctypes.CDLL(str(library.build(text, "discs"))).image, (ctypes.c_double * 2)()
+    function.argtypes = (ctypes.c_int, ctypes.c_double, ctypes.c_double, ctypes.c_void_p)
+    for k, name in enumerate(names):
+        low, high = DOMAINS.get(name, (-20.0, 20.0))
+        for _ in range(100):
+            disc = Disc(RANDOM.uniform(low, high), 10 ** RANDOM.uniform(-5, 0.5))
+            function(k, *disc, out)
+            expected = FUNCTIONS[name](disc)
+            assert list(out) == pytest.approx(list(expected), rel=1e-12, nan_ok=True), (name, disc)
+
+
+def rates(made):
+    plan = make_plan(made)
+    return plan, scene_kernel(plan)
+
+
+@pytest.mark.parametrize(
+    "torque", ["cos(3*t)/2", "t**2 - omega_3", "q1*q2 - omega_1*cos(t)", "-omega_3**3", "sin(t)**2*cos(2*t)**3"]
+)
+def test_polynomials_and_waves_need_no_enclosure(torque):
+    assert enclosure(recurrences(rates(scene(torque))[1].rates)) is None
+
+
+@pytest.mark.parametrize(
+    "torque", ["exp(-t)", "cos(t)**8", "tanh(omega_3)", "1/(2 + q0)", "sin(t**2)", "sqrt(1 + t**2)", "cosh(t)"]
+)
+def test_what_may_hide_a_feature_is_enclosed(torque):
+    plan, kernel = rates(scene(torque))
+    found = enclosure(recurrences(kernel.rates))
+    assert [bool(own) for own in found.terms] == [name == "omega_3" for name in plan.states]
+    assert BEYOND > 6
+
+
+@pytest.mark.parametrize(
+    "torque",
+    ["exp(-(t-1)**2)", "tanh(3*omega_3 + t)", "q1/(3 + omega_3*cos(t)**9)", "atan2(1 + q1, 2 + t)", "log(2 + t)"],
+)
+def test_coefficients_obey_the_bound(torque):
+    """Coefficient n of an enclosed rate is at most its deviation over rho^n (Cauchy), the states being polynomials."""
+    made = scene(torque, (0.1, -0.2, 0.3))
+    plan, kernel = rates(made)
+    system = recurrences(kernel.rates)
+    parameters = dict(
+        zip([name for name, _ in kernel.rate_parameters], bind(kernel.rate_parameters, plan.constants), strict=True)
+    )
+    deviations = Deviations(enclosure(system), parameters)
+    import mpmath
+
+    with mpmath.workdps(40):
+        functions = {
+            name: getattr(mpmath, name) for name in ("sqrt", "exp", "log", "tanh", "atan2", "cos", "sin", "sech")
+        }
+        values = {**{k: mpmath.mpf(v) for k, v in parameters.items()}, "t": mpmath.mpf(0)}
+        values |= {name: mpmath.mpf(y) for name, y in zip(plan.states, plan.initial_state, strict=True)}
+        number = lambda value: mpmath.mpf(value.numerator) / value.denominator  # noqa: E731
+        series = coefficients(system, 40, values, functions, number)
+    for rho in (0.1, 0.3):
+        radii = [float(sum(abs(c) * rho**n for n, c in enumerate(one) if n)) for one in series]
+        bounds = deviations(0.0, rho, plan.initial_state, radii)
+        omega_3 = series[plan.states.index("omega_3")]
+        bound = bounds[plan.states.index("omega_3")]
+        assert 0 < bound < math.inf
+        smooth = 1.0  # what is not enclosed: products of components of omega, of coefficients at most those
+        for n in range(12, 39):
+            rate = abs(omega_3[n + 1]) * (n + 1)
+            assert rate <= (bound + smooth * rho) / rho**n
+
+
+def test_a_bound_that_is_too_small_would_let_a_pulse_pass():
+    """The search for a step trusts the enclosure: told that nothing deviates, it takes the whole step."""
+    made = scene("exp(-((t-5)/w)**2)", w=1e-3)
+    plan, kernel = rates(made)
+    terms = enclosure(recurrences(kernel.rates))
+    parameters = dict(
+        zip([n for n, _ in kernel.rate_parameters], bind(kernel.rate_parameters, plan.constants), strict=True)
+    )
+    edges = error_blocks(plan)[0]
+    start = (0.0, plan.initial_state, [[0.0] * 20 for _ in plan.states], 10.0, [1e-12] * (len(edges) - 1), edges, 20)
+    assert longest_followed(Deviations(terms, parameters), *start) < 5.0
+    assert longest_followed(lambda t, reach, y, radii: [0.0] * len(plan.states), *start) == 10.0
+
+
+@needs_compiler
+@pytest.mark.parametrize("stepper", [taylor, dop853], ids=["taylor", "dop853"])
+def test_without_the_enclosure_the_pulse_is_missed(stepper):
+    """So the tests of narrow torques do see the enclosure at work."""
+    plan, kernel = rates(scene("exp(-((t-5)/w)**2)", w=1e-3))
+    p, edges = bind(kernel.rate_parameters, plan.constants), error_blocks(plan)
+    for enclosed in (True, False):
+        if stepper is taylor:
+            text, flags = taylor.translation_unit(kernel.rates, *edges, enclosed=enclosed), taylor.FLAGS
+        else:
+            bounds = enclosure_source(kernel.rates, dop853.DENSE_ORDER, edges[0]) if enclosed else dop853.NO_ENCLOSURE
+            text = dop853.translation_unit(kernel.source, "symrot_rates", len(plan.states), len(p), *edges, bounds)
+            flags = library.FLAGS
+        states, _ = stepper.integrate(library.build(text, "held", flags), p, plan.initial_state, 0.0, [10.0], 1e-10)
+        omega = states[0, plan.states.index("omega_3")]
+        assert (abs(omega - 1e-3 * math.sqrt(math.pi) / 3) < 1e-12) == enclosed
+
+
+@needs_compiler
+@pytest.mark.skipif(shutil.which("gcc") is None or shutil.which("g++") is None, reason="no GNU compilers")
+@pytest.mark.parametrize(
+    "command", [["gcc", "-std=c99", "-x", "c"], ["g++", "-std=c++11", "-x", "c++"]], ids=["c", "c++"]
+)
+def test_held_steppers_are_clean_c99_and_valid_cpp(command):
+    plan, kernel = rates(scene(["tanh(t)*q1", "1/cosh(t)", "exp(-omega_3**2)"]))
+    edges = error_blocks(plan)
+    bounds = enclosure_source(kernel.rates, dop853.DENSE_ORDER, edges[0])
+    p = len(kernel.rate_parameters)
+    head = "#include <math.h>\n"
+    units = [head + dop853.translation_unit(kernel.source, "symrot_rates", len(plan.states), p, *edges, bounds)]
+    if command[0] == "gcc":
+        units.append(taylor.translation_unit(kernel.rates, *edges))
+    for unit in units:
+        options = ["-Wall", "-Wextra", "-Wshadow", "-Werror", "-fsyntax-only", "-"]
+        done = subprocess.run([*command, *options], input=unit, text=True, capture_output=True, check=False)
+        assert done.returncode == 0, done.stderr
+
+
+@needs_compiler
+@pytest.mark.parametrize("torque", ["exp(-t)/5", "exp(-(t-5)**2)", "tanh(t-5)/5", "sqrt(1+t**2)/50", "sin(t**2/4)/5"])
+def test_smooth_torques_of_time_cost_no_more_steps(torque):
+    """At most a fifth more than without the enclosure, over a span of some ten steps of the torque."""
+    plan, kernel = rates(scene([torque, "0", torque], (0.3, 1, 0.5), 20.0, 1e-12))
+    p, edges = bind(kernel.rate_parameters, plan.constants), error_blocks(plan)
+    steps = []
+    for enclosed in (False, True):
+        path = library.build(taylor.translation_unit(kernel.rates, *edges, enclosed=enclosed), "held", taylor.FLAGS)
+        steps.append(taylor.integrate(path, p, plan.initial_state, 0.0, [20.0], 1e-12)[1].accepted)
+    assert steps[1] <= 1.2 * steps[0] + 1
+
+
+def test_a_function_without_series_is_not_enclosed():
+    """Of abs nothing is known: who steps it locates its switches instead."""
+    from symrot.kernel import Argument, Program, Signature
+
+    one = (("y", "", ""),)
+    signature = Signature("f", (Argument("y", "in", one), Argument("dy", "out", (("dy", "", ""),))))
+    assert "SYMROT_ENCLOSED 0" in enclosure_source(Program(signature, (), (("dy", parse("abs(y)")),)), 7, [0, 1])
+
+
+@needs_compiler
+@pytest.mark.parametrize("method", ["taylor", "dop853"])
+def test_a_hopeless_motion_is_given_up_with_its_samples(method, monkeypatch):
+    monkeypatch.setattr(stepping, "PATIENCE", 2000)
+    monkeypatch.setattr(stepping, "HOPELESS", 1e-3)
+    times = np.linspace(0, 20, 81)
+    with pytest.raises(PropagationError, match=r"beyond t = \d.* more than the limit of 100000000") as caught:
+        symrot.propagator(scene("exp(t**3)", (0, 0, 1)), method)(times)
+    part = caught.value.trajectory
+    assert len(part) > 4 and not part.success and part.status == -1
+    assert (part.t == times[: len(part)]).all() and np.isfinite(part.omega).all()
+    before = symrot.propagator(scene("exp(t**3)", (0, 0, 1)), method)(times[: len(part)])
+    assert abs(part.omega - before.omega).max() < 1e-7 * abs(before.omega).max()
+
+
+@needs_compiler
+@pytest.mark.parametrize("method", ["taylor", "dop853", "scipy:DOP853"])
+def test_an_interrupt_carries_the_samples_before(method, monkeypatch):
+    from symrot.propagation import progress
+
+    def stop(t, start, end):
+        if t > 5.0:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(taylor._Stepper, "steps_per_call", 5)
+    made = symrot.propagator(scene("-tanh(omega_3)/9", (0.3, 1, 0.5), 100.0), method)
+    monkeypatch.setattr(dop853._Stepper, "steps_per_call", 5)
+    times = np.linspace(0, 100, 201)
+    with progress.reporting(stop), pytest.raises(KeyboardInterrupt) as caught:
+        made(times)
+    part = caught.value.trajectory
+    assert (5 if method != "scipy:DOP853" else 0) < len(part) < 200 and (part.t == times[: len(part)]).all()
+    assert abs(part.omega - made(times).omega[: len(part)]).max() < 1e-8  # none of SciPy's coarse pass
+
+
+def test_exact_numbers_of_weights_are_used():
+    """Weights of a sum are folded as fractions, not typed: 1/3 of a deviation is a third of it."""
+    plan, kernel = rates(scene("exp(-t)/3"))
+    parameters = dict(
+        zip([n for n, _ in kernel.rate_parameters], bind(kernel.rate_parameters, plan.constants), strict=True)
+    )
+    bound = max(Deviations(enclosure(recurrences(kernel.rates)), parameters)(0.0, 0.5, plan.initial_state, [0.0] * 9))
+    assert bound == pytest.approx(math.expm1(0.5) * float(Fraction(1, 9)), rel=1e-12)
