@@ -217,3 +217,93 @@ def test_an_event_of_an_attitude_that_is_left_out_is_refused():
     assert len(run(motion, ["omega_2"]).t_events[0])
     with pytest.raises(InputError, match=r'expected "quaternion" among output\.quantities'):
         run(motion, ["q0"])
+
+
+# ------------------------------------------------------------------------------------------------ nothing hides
+
+EVERY_METHOD = [*METHODS, "scipy"]
+
+
+@pytest.mark.parametrize("method", EVERY_METHOD)
+def test_poles_and_jumps_are_no_events(method):
+    events = ["tan(t)", "1/q0", "1/(t - 5)", "(t - 5)/abs(t - 5)", "1/(t - 2)**3", "1/(t - 2)**2", "sin(t)/(t - 5)"]
+    tangent, *others, sine = run(scene(stop=10), events, method, 1e-10).t_events
+    assert abs(tangent - math.pi * np.arange(4)).max() < 1e-14
+    assert [len(t) for t in others] == [0] * 5 and len(sine) == 4
+
+
+def test_zeros_at_the_edge_of_a_domain_are_no_events_but_touches_by_a_kink_are():
+    edge, kink, root, slow = run(
+        scene(), ["sqrt(t - 5)", "abs(t - 7.25)*(1 + t)", "sqrt(abs(t - 5))", "tanh(1000*(t - 5)) - 1"]
+    ).t_events
+    assert len(edge) == 0 and len(slow) == 0
+    assert list(kink) == [7.25] and list(root) == [5.0]
+
+
+@pytest.mark.parametrize("method", EVERY_METHOD)
+@pytest.mark.parametrize("width", [1e-1, 1e-3, 1e-5])
+def test_no_pulse_is_so_narrow_that_it_is_missed(method, width):
+    """Two crossings within 1.7 widths of 100 s, in time; and in an angle, q3 = sin(t/2)."""
+    half = width * math.sqrt(math.log(2))
+    for t in ([0.0, 200.0], [0.0, -200.0]):
+        place = math.copysign(100.0, t[1])
+        events = [f"exp(-((t - {place!r})/{width!r})**2) - 1/2", f"exp(-((q3 - 0.6)/{width!r})**2) - 1/2"]
+        trajectory = run(scene((0, 0, 1), 200, **SPIN), events, method, 1e-9, t=t)
+        assert abs(trajectory.t_events[0] - [place - half, place + half]).max() < 1e-12
+        first = sorted(trajectory.t_events[1], key=abs)[:2] if t[1] > 0 else []
+        expected = [2 * math.asin(0.6 - half), 2 * math.asin(0.6 + half)] if t[1] > 0 else []
+        assert len(trajectory.t_events[1]) >= 60 and np.allclose(first, expected, rtol=0, atol=1e-6)
+
+
+def test_a_pole_at_the_middle_of_the_shortest_interval():
+    found = run(scene(stop=22), ["(t - 5.341641)/(t - 6.447)"], "dop853", 1e-13, t=[2.0, 22.0]).t_events[0]
+    assert list(found) == [5.341641]
+
+
+def test_dense_zeros_of_exact_motions_are_counted():
+    for rate in (1000, 100_000):
+        found = run(scene(stop=1), [f"sin({rate}*t)"], "exact").t_events[0]
+        exact = math.pi / rate * np.arange(int(rate / math.pi) + 1)
+        assert len(found) == len(exact) and abs(found - exact).max() < 2 * ULP
+
+
+@pytest.mark.parametrize("formula", ["sin(1/(t - 5))", "asin(sin(t)) - t", "sin(1e8*t)"])
+def test_zeros_that_cannot_be_told_apart_end_in_a_sentence(formula):
+    with pytest.raises(
+        PropagationError, match=r"events: expected formulas whose zeros can be told apart, but beyond t"
+    ):
+        run(scene(), [formula])
+
+
+def test_coinciding_events_are_all_listed():
+    trajectory = run(scene(), ["t - 5", "(t - 5)**3", "sin(t - 5)", "exp(t - 5) - 1", symrot.Event("t == 6", True)])
+    for times in trajectory.t_events[:1] + trajectory.t_events[2:4]:
+        assert 5.0 in times
+    assert abs(trajectory.t_events[1] - 5).max() < 1e-12 and trajectory.t[-1] == 6.0
+
+
+def test_events_at_the_ends_and_at_samples():
+    t = np.linspace(0, 10, 11)
+    whole = run(scene(), ["sin(pi*t)", "t*(t - 10)", symrot.Event("t == 10", terminal=True)], t=t)
+    assert whole.t_events[0] == pytest.approx(t, abs=1e-14) and list(whole.t_events[1]) == [0.0, 10.0]
+    assert list(whole.t) == list(t) and whole.status == 1
+
+
+def test_random_products_of_known_zeros():
+    """Factors with zeros in closed form, seeded: crossings and touches, poles, pulses, pairs, both directions."""
+    random = np.random.default_rng(20)
+    for _ in range(40):
+        a, b = round(random.uniform(1, 9), 3), round(random.uniform(10, 19), 3)
+        gap, width = 10 ** random.uniform(-10, -3), 10 ** random.uniform(-5, -1)
+        half = width * math.sqrt(math.log(4))
+        factors = {
+            f"(t - {a!r})": [a], f"(t - {a!r})*(t - {a + gap!r})": [a, a + gap], f"tanh((t - {a!r})/{width!r})": [a],
+            f"(exp(-((t - {a!r})/{width!r})**2) - 1/4)": [a - half, a + half], f"abs(t - {a!r})": [a],
+            f"(t - {a!r})**2": [a], f"1/(t - {a!r})**3": [], f"(exp(t - {a!r}) - 1)": [a],
+        }  # fmt: skip
+        text = random.choice(list(factors))
+        side = random.choice([1, -1])
+        formula = f"{text}*(t - {b!r})".replace("(t ", f"({side}*t ")
+        found = run(scene(stop=20), [formula], random.choice(METHODS), 1e-10, t=[0.0, side * 20.0]).t_events[0]
+        expected = sorted(side * t for t in [*factors[text], b])
+        assert len(found) == len(expected) and abs(found - expected).max() < 1e-6, formula

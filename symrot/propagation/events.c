@@ -37,7 +37,7 @@ extern "C" {
 
 enum { SYMROT_POINTS = 21, SYMROT_DEGREE = SYMROT_POINTS - 1, SYMROT_DEPTH = 128, SYMROT_FOUND = 5, SYMROT_DISCS = 2 };
 static const double SYMROT_TOUCHING = 4.0;  /* rounding errors: an extremum so near zero touches it */
-enum { SYMROT_TOUCHES = 65 };  /* samples of an interval of 64 units in the last place */
+enum { SYMROT_TOUCHES = 129 };  /* samples of an interval of 64 units in the last place: all numbers in it */
 
 static const double SYMROT_DISC_SIZE[SYMROT_DISCS] = {4.0, 2.0};  /* radii of discs, in halves of the interval */
 static const double SYMROT_LEBESGUE = 3.0;  /* what errors of samples grow to in the polynomial through them */
@@ -221,6 +221,7 @@ static void symrot_shortest(symrot_search *search, int event, double a, double b
     const int from = symrot_sign(fa, na), to = symrot_sign(fb, nb);
     symrot_spend(search, 2);
     if (!(fabs(fa) <= DBL_MAX && fabs(fb) <= DBL_MAX)) return;  /* no value there */
+    if ((fa != 0.0 && !(na <= DBL_MAX)) || (fb != 0.0 && !(nb <= DBL_MAX))) return;  /* nor one that means anything */
     if (from == 0 && to == 0) {
         symrot_add(search, event, a, b, 0, 0);
         return;
@@ -267,7 +268,8 @@ static int symrot_settle(symrot_search *search, int event, double a, double b, i
     const symrot_range all = symrot_event_range(event, centre, half, y, r, search->p);
     symrot_spend(search, 3);
     if (symrot_empty(all) || all.lo > 0.0 || all.hi < 0.0) return 1;
-    if (fabs(symrot_event(event, centre, y, search->p, &own)) <= own && all.hi - all.lo <= 16.0*own) {
+    const double middle = fabs(symrot_event(event, centre, y, search->p, &own));
+    if (middle <= own && own <= DBL_MAX && all.hi - all.lo <= 16.0*own) {
         symrot_add(search, event, a, b, 0, 0);
         return 1;
     }

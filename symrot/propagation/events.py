@@ -42,7 +42,7 @@ NEAR = 64 * float(np.finfo(float).eps)  # of the time: entries so close are one
 FIELDS = 5  # of an entry in events.c
 ROOM = 1024  # entries per call
 LONG = 1e-3  # of the motion: an event that stays zero for longer, up to an end, is none
-OPERATIONS_PER_CALL = 2e7  # some 20 ms, after which Python can see an interrupt
+OPERATIONS_PER_CALL = 5e6  # some 20 ms, after which Python can see an interrupt
 MOST_OPERATIONS, OPERATIONS_PER_ROW = 4e9, 2e5  # of a search; each row of a motion earns more
 MOST_ENTRIES = 500_000
 

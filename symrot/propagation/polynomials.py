@@ -126,8 +126,9 @@ def fitted(
         return Piece(edges, rows)
     if depth == HALVINGS:
         if not (off <= ROUGH * size).all():
+            t = float(edges[int(bad.argmax())])
             raise PropagationError(
-                f"events: the motion is too rough to follow near t = {float(edges[int(bad.argmax())])!r} s"
+                f"events: expected a motion that polynomials can follow, but it is rough near t = {t!r} s"
             )
         return Piece(edges, rows)
     parts, ends = [], [edges[:1]]
