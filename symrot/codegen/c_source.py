@@ -257,12 +257,12 @@ def _batch(program: Program, real: Real, near: bool) -> list[str]:
     of_sample = _with_names(program, each)
     angles = turning_arguments(of_sample) if near else []
     parts = _split(program)
-    late = _stores_last(program)
     if len(parts) > 1:
         loops = [
             _loop(part, real, ("start", "end"), (), "        ", _stores_last(part), INDEPENDENT, near) for part in parts
         ]
         return [*head, *_blocks(SPAN), *(line for loop in loops for line in loop), "    }", "}"]
+    late = _stores_last(program)
     if not angles:
         return [*head, *_loop(of_sample, real, ("0", "n"), loaded, "    ", late, INDEPENDENT, near), "}"]
     far = " + ".join(f"symrot_far{real.suffix}({c_expression(angle, real, True)})" for angle in angles)
