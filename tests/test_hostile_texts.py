@@ -72,6 +72,7 @@ HOSTILE = {  # what it is: kernel, what is replaced in the text of it, by what
     "written elsewhere": (R, "dangles[2*n + k] =", "dangles[3*n + k] ="),
     "not written": (R, SUM, ""),
     "input written": (R, SUM, SUM + " ((double *)omega)[0] = 0.0;"),
+    "input not const": (R, "(const double angles[3]", "(double angles[3]"),
     "arguments swapped": (R, "const double angles[3], const double omega[3]", "const double omega[3], const double angles[3]"),
     "function twice": (R, "\nvoid", "\nvoid euler_zyx_body_rates_batch(size_t n) { }\n\nvoid"),
     "own sine": (R, "\nvoid", "\nstatic inline double symrot_sin(double x)\n{\n    return x;\n}\n\nvoid"),
@@ -185,18 +186,6 @@ def test_angles_beyond_the_range_are_computed_again_by_the_c_library(kernels, re
         )
 
 
-def test_arguments_that_are_no_constants_are_refused_by_the_audit(kernels):
-    """No compiler takes them, as the header says otherwise: ``recheck.py`` looks at names and their order alone."""
-    files = kernels[R]
-    text = files.source.replace("(const double angles[3]", "(double angles[3]")
-    (files.directory / f"{R}.c").write_text(text, encoding="utf-8")
-    digests = files.data["files"] | {f"{R}.c": sha256(text.encode()).hexdigest()}
-    files.path.write_text(printed(files.data | {"files": digests}), encoding="utf-8")
-    with pytest.raises(CertificateError, match="other arguments"):
-        audit(files.path, lambda data: files.said)
-    files.restore()
-
-
 def test_angles_are_asked_for_before_anything_is_computed_again(kernels, refused):
     """A sum that is built in the second loop, or a first loop that computes nothing, leaves samples as they are."""
     text = kernels[R].source
@@ -258,7 +247,10 @@ def test_what_is_given_is_a_rotation_or_of_length_one(kernels, refused, given):
     laws = kernels[Q].data["laws"]
     changed = [law | {"given": given(law["given"])} if len(law["given"]) > 1 else law for law in laws]
     assert changed != laws
-    assert refused(Q, kernels[Q].source, laws=changed)
+    assert refused(Q, kernels[Q].source, laws=changed) in (
+        f"the law {laws[0]['law']!r} does not follow",
+        "q0 is no new name",
+    )
 
 
 def test_a_law_of_nothing_is_refused(kernels, refused):

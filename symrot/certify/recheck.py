@@ -122,21 +122,21 @@ def check_c(name, said, real, data, formulas, functions, found):
     own |= {f"symrot_choose_ge{end}": names["select_ge"], f"symrot_far{end}": lambda x: [x]}
     need(not own.keys() & found.keys() and name == data["kernel"] + end, "a function has another meaning, or type")
     own |= {f: partial(call, *found[f][1:]) for f in found if found[f][0] == f"static inline {real}"}
-    places = [place for place, *_ in data["inputs"] + data["spec"]["formulas"]]
+    places = [f"const {place}" for place in inputs] + [place for place, *_ in data["spec"]["formulas"]]
     sizes = Counter(place.partition("[")[0] for place in places)
     need(places == [b if b in places else f"{b}[{k}]" for b in sizes for k in range(sizes[b])], "arguments are others")
     for (_, listed, body), frames in (found[name], [""]), (found[f"{name}_batch"], [EACH, PARTS, BLOCKS % bits]):
-        loops = re.findall(r"(?<=\+\+k\) \{)[^{}]*(?=\})", body) or [body]
-        frame = re.sub(r"(?<=\+\+k\) \{)[^{}]*(?=\})", "", body) if loops != [body] else ""
-        takes = [re.sub(rf" ?(const )?(size_t|{real}) (\*SYMROT_RESTRICT )?|\[\d+]$", "", a) for a in listed.split(",")]
+        parts = re.split(r"(?<=\+\+k\) \{)([^{}]*)(?=\})", body)
+        frame, loops = ("".join(parts[::2]), parts[1::2]) if parts[1:] else ("", parts)
+        typed = [re.sub(rf"^{real} (?=\w+$)", "const ", each.strip()) for each in listed.split(",")]  # by value
+        takes = [re.sub(rf"\b(size_t|{real}) (\*SYMROT_RESTRICT )?|\[\d+]$", "", each) for each in typed]
         need(frame in frames and takes == ["n"] * bool(frame) + [*sizes], f"arguments or loops of {name} are others")
         results = []
         for loop in loops:
             near = set()
             need(not frame or not re.search(r"(?<!\bp)\[\d+\]|\bp\[\d+\*", loop), f"{name} takes one sample alone")
             results.append(run(loop.replace("*n + k]", "]").replace("[k]", "") if frame else loop, inputs))
-            asked = near <= {*results[-1].pop("beyond", [])}
-            need(asked and (len(results) == 1 or not near), f"functions of {name} take angles beyond their range")
+            need(near <= {*results[0].pop("beyond", [])}, f"functions of {name} take angles beyond their range")
         for result in [results[0] | results[1]] if frame == PARTS else results:
             need(result == {p: names[s] for p, s, _ in data["spec"]["formulas"]}, f"{name} is not its formulas")
 
