@@ -30,6 +30,7 @@ PLAIN |= {"copysign": Decimal.copy_sign, "nearly_": lambda y, x: Decimal(math.at
 OTHERS = ("tan", "asin", "acos", "atan", "exp", "log", "sinh", "cosh", "tanh")  # any functions, in laws too
 MEANS = {"atan2": "closer_(x, y, closer_(x, y, nearly_(x, y)))", "closer_": "z + (x*cos(z) - y*sin(z))/sqrt(x*x + y*y)"}
 MEANS |= {"select_lt": "x < y ? z : w", "select_eq": "x == y ? z : w", "select_ge": "x >= y ? z : w", "Abs": "fabs(x)"}
+LARGEST = 16_000_000  # bytes of a file
 NODES = (ast.Expression, ast.BinOp, ast.UnaryOp, ast.Call, ast.Name, ast.Constant, ast.operator, ast.USub, ast.Load)
 ATOM = re.compile(r"(?<![\w.])(\w+\[[^]]*\]|\d[\w.]*(?:(?<=e)[-+]\w+)?)")
 CHOICE = re.compile(r"^([^?:<>=]+) (<|>=|==) ([^?:<>=]+) \? ([^?:<>=]+) : ([^?:<>=]+)")
@@ -141,16 +142,23 @@ def check_c(name, said, real, data, formulas, functions, found):
             need(result == {p: names[s] for p, s, _ in data["spec"]["formulas"]}, f"{name} is not its formulas")
 
 
+def content(path):
+    """Return the bytes of a regular file of a size that kernels have: nothing else is opened."""
+    need(path.is_file() and path.stat().st_size <= LARGEST, f"{path.name} is no file of at most {LARGEST} bytes")
+    return path.read_bytes()
+
+
 def certified(path):
     """Return what a certificate says, after its seal and the hashes of all its files."""
-    data = json.loads(path.read_bytes(), object_pairs_hook=lambda pairs: len(dict(pairs)) == len(pairs) and dict(pairs))
+    data = json.loads(content(path), object_pairs_hook=lambda pairs: len(dict(pairs)) == len(pairs) and dict(pairs))
     seal = data.pop("seal") == sha256(json.dumps(data, sort_keys=True, separators=(",", ":")).encode()).hexdigest()
     need(seal and data["schema"] == "symrot.certificate/1", "the schema is another, or the text that was sealed")
     name, files = data["kernel"], data["files"]
     need(path.name == f"{name}.cert.json" and {f"{name}.c", f"{name}.h"} <= {*files}, "it is that of another file")
     for file, digest in files.items():
-        if "/" not in file or (path.parent / file).is_file():
-            need(sha256((path.parent / file).read_bytes()).hexdigest() == digest, f"{file} is not what was certified")
+        need(re.fullmatch(r"(\.\./){0,2}(\w+/)*\w+\.\w+", file), f"{file} is no file of a kernel")
+        if "/" not in file or (path.parent / file).exists():
+            need(sha256(content(path.parent / file)).hexdigest() == digest, f"{file} is not what was certified")
     return data
 
 

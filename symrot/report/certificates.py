@@ -10,10 +10,11 @@ from itertools import repeat
 from pathlib import Path
 
 import symrot
-from symrot.certify.audit import audit, operations_of
+from symrot.certify.audit import LARGEST, audit, operations_of
 from symrot.certify.certificate import Data, said_of, with_slots
 from symrot.codegen import library
 from symrot.errors import CertificateError, InputError
+from symrot.input_file import read_input
 from symrot.interface import emit, kernel_names, scene_kernel_name, subject
 from symrot.report import compiled
 from symrot.report.edited import explained, kernel_of
@@ -289,10 +290,11 @@ def _emitted(path: str) -> str:
         said = f"{path}: expected a file that symrot emits of a kernel of the library or a shipped scene"
         raise InputError(f"{said} ({hint})" if hint else f"{said}; `symrot audit` takes the certificate of any kernel")
     try:
-        text = file.read_text(encoding="utf-8")
+        text = read_input(file, LARGEST).decode().replace("\r\n", "\n")
     except (OSError, UnicodeDecodeError) as reason:
-        why = reason.strerror if isinstance(reason, OSError) else "it is no UTF-8"
-        raise InputError(f"{path}: expected a file that can be read ({why})") from None
+        why = reason.strerror if isinstance(reason, OSError) else "no UTF-8"
+        said = f"a file of at most {LARGEST // 1_000_000} MB that can be read"
+        raise InputError(f"{path}: expected {said}, got {why}") from None
     if file.name.endswith(".cert.json"):
         audit_file(file)
     elif text != emit(kernel, "c", kept_bounds(kernel, file.parent)).source:

@@ -10,12 +10,14 @@ from pathlib import Path
 from typing import Any
 
 from symrot.certify import recheck
+from symrot.certify.audit import LARGEST
 from symrot.certify.certificate import with_slots
 from symrot.certify.readback import read_kernel
 from symrot.certify.rounding import check_bounds, check_section
 from symrot.certify.selftest import selftest_files
 from symrot.codegen.build_files import build_files
 from symrot.errors import CertificateError, InputError
+from symrot.input_file import read_input
 from symrot.interface import emit
 from symrot.kernels.library import definition, kernel_names
 from symrot.report.files import write
@@ -87,7 +89,7 @@ def kept_bounds(kernel: str | Path, directory: Path | None) -> Mapping[str, Any]
 def _slots(path: Path) -> dict[str, Any]:
     """Return the certificate that is there, of which bounds and verdicts are kept; nothing for none."""
     try:
-        found = json.loads(path.read_bytes())
+        found = json.loads(read_input(path, LARGEST))
     except (OSError, ValueError, RecursionError):
         return {}
     return found if isinstance(found, dict) else {}
