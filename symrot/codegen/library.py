@@ -2,9 +2,9 @@
 
 An entry is keyed by the source, the identity of the compiler (resolved path, size, time of change), the flags and the
 processor; it is named by its own checksum, so a truncated or altered file is noticed and built anew instead of loaded.
-Files appear by atomic rename, so any number of processes may build at once. The directory is private (mode 0700), and
-one that belongs to another user is not used. Where the cache cannot be written, a temporary directory of this process
-takes its place and :func:`cache` says why.
+Files appear by atomic rename, so any number of processes may build at once. The directory is private (mode 0700); one
+that belongs to another user, or that another user could exchange, is not used. Where the cache cannot be used, a
+temporary directory of this process takes its place and :func:`cache` says why.
 
 Environment: ``CC`` names the compiler; ``SYMROT_CACHE`` the cache directory, else ``XDG_CACHE_HOME/symrot``, else the
 platform's own place. This module imports neither SymPy nor NumPy nor SciPy.
@@ -12,7 +12,9 @@ platform's own place. This module imports neither SymPy nor NumPy nor SciPy.
 
 import os
 import re
+import stat
 import sys
+from functools import cache as cache_of_calls
 from hashlib import sha256
 from pathlib import Path
 from typing import NamedTuple
@@ -295,17 +297,54 @@ def _foreign(path: Path) -> str:
     found = path.lstat()
     if hasattr(os, "getuid") and found.st_uid != os.getuid():
         return f"{path} belongs to another user (uid {found.st_uid})"
-    if path.is_symlink():
+    if stat.S_ISLNK(found.st_mode):
         return f"{path} is a symbolic link"
+    if not (stat.S_ISREG(found.st_mode) or stat.S_ISDIR(found.st_mode)):
+        return f"{path} is no regular file"
     return ""
+
+
+@cache_of_calls
+def _exposed(room: Path) -> str:
+    """Return why another user could put a directory in the place of ours, or an empty text.
+
+    Whoever may write a directory may rename what is in it, whomever that belongs to; where the directory is sticky, as
+    ``/tmp`` is, only who owns the entry, the directory or the machine may. So every directory on the way, links
+    followed or not, has to be of the user or of root, and to be sticky if others may write it.
+    """
+    if not hasattr(os, "getuid"):
+        return ""
+    for path in dict.fromkeys((*room.absolute().parents, *room.resolve().parents)):
+        for found in (path.lstat(), path.stat()):  # a link, and where it leads
+            if found.st_uid not in (0, os.getuid()):
+                return f"{path} belongs to another user (uid {found.st_uid}), who could replace {room}"
+        mode = found.st_mode
+        others = mode & stat.S_IWOTH or (mode & stat.S_IWGRP and _shared_group(found.st_gid))
+        if others and not mode & stat.S_ISVTX:
+            return f"{path} can be written by other users, who could replace {room}"
+    return ""
+
+
+def _shared_group(group: int) -> bool:
+    """Return whether a group may have members beside the user; a user's own group has the user's name."""
+    import grp
+    import pwd
+
+    try:
+        user, found = pwd.getpwuid(os.getuid()), grp.getgrgid(group)
+    except KeyError:
+        return True
+    return found.gr_name != user.pw_name or not {user.pw_name}.issuperset(found.gr_mem)
 
 
 def _own_room() -> tuple[Path, str]:
     """Return the user's cache directory and why it cannot be used, or an empty text."""
     room = _cache_directory() / ROOM
     try:
-        room.mkdir(mode=0o700, parents=True, exist_ok=True)
-        reason = _foreign(room)
+        if not room.is_dir():
+            for place in (*reversed(room.parents), room):
+                place.mkdir(mode=0o700, exist_ok=True)
+        reason = _foreign(room) or _exposed(room)
         if not reason and room.stat().st_mode & 0o077:
             room.chmod(0o700)
         if not reason and not os.access(room, os.W_OK):
