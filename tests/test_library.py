@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from symrot.codegen import library
+from symrot.codegen import compiler_run, library
 from symrot.errors import CompilerError
 
 SOURCE = "double answer(void) { return 42.0; }\n"
@@ -35,7 +35,7 @@ def no_compiling(monkeypatch):
     def refuse(*arguments, **options):
         raise AssertionError("a program was run")
 
-    return lambda: monkeypatch.setattr(subprocess, "run", refuse)
+    return lambda: monkeypatch.setattr(compiler_run, "Popen", refuse)
 
 
 def answer(path):
@@ -201,6 +201,28 @@ def test_a_hanging_compiler_is_given_up(monkeypatch, tmp_path):
     monkeypatch.setattr(library, "SECONDS_TO_COMPILE", 0.2)
     with pytest.raises(CompilerError, match=r"no answer within 0\.2 s"):
         library.build(SOURCE, "answer")
+
+
+def test_what_a_hanging_compiler_started_is_stopped_too(monkeypatch, tmp_path):
+    """Else its output stays open, and whoever reads it waits; it is asked once, not once for each set of flags."""
+    script = f"echo asked >> {tmp_path}/asked\nsleep 60 &\necho $! > {tmp_path}/child\nsleep 60"
+    monkeypatch.setenv("CC", str(fake_compiler(tmp_path, script)))
+    monkeypatch.setattr(library, "SECONDS_TO_COMPILE", 0.5)
+    with pytest.raises(CompilerError, match=r"no answer within 0\.5 s"):
+        library.build(SOURCE, "answer", (*library.FLAGS, *library.TUNING))
+    assert (tmp_path / "asked").read_text() == "asked\n"
+    state = Path(f"/proc/{(tmp_path / 'child').read_text().strip()}/stat")
+    assert not state.exists() or state.read_text().split()[2] == "Z"
+
+
+def test_compilers_can_be_stopped_from_another_thread(monkeypatch, tmp_path):
+    monkeypatch.setenv("CC", str(fake_compiler(tmp_path, f"touch {tmp_path}/started; sleep 60")))
+    building = library.Building(SOURCE, "answer")
+    while not (tmp_path / "started").exists():
+        pass
+    library.stop_compilers()
+    with pytest.raises(CompilerError, match="was killed before it was done"):
+        building.path()
 
 
 def test_a_compiler_without_native_tuning_is_asked_again_without_it(monkeypatch, tmp_path, no_compiling):

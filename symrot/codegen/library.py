@@ -33,6 +33,7 @@ __all__ = [
     "compiler",
     "fetch",
     "missing",
+    "stop_compilers",
     "store",
 ]
 
@@ -148,7 +149,7 @@ class Building:
 
         self._path: Path | None = built(source, name, flags)
         self._error: Exception | None = None
-        self._thread = Thread(target=self._work, args=(source, name, flags))
+        self._thread = Thread(target=self._work, args=(source, name, flags), name="symrot compiles")
         if self._path is None:
             self._thread.start()
 
@@ -161,7 +162,11 @@ class Building:
     def wait(self) -> None:
         """Return when the compiler is done, well or not."""
         if self._thread.ident is not None:
-            self._thread.join()
+            try:
+                self._thread.join()
+            except KeyboardInterrupt:
+                stop_compilers()
+                raise
 
     def path(self) -> Path:
         """Return the library when it is there.
@@ -176,6 +181,13 @@ class Building:
             raise self._error
         assert self._path is not None
         return self._path
+
+
+def stop_compilers() -> None:
+    """Kill the compilers that threads of this process wait for, as after Ctrl-C; who waits gets a CompilerError."""
+    from symrot.codegen.compiler_run import stop_all
+
+    stop_all()
 
 
 def _entry(tool: Compiler, source: str, name: str, flags: tuple[str, ...]) -> str:
@@ -426,14 +438,17 @@ def _sound_library(directory: Path, entry: str, name: str) -> Path | None:
 def _compile(tool: Compiler, source: str, name: str, entry: str, flags: tuple[str, ...]) -> Path:
     import tempfile
 
+    from symrot.codegen.compiler_run import run_compiler
+
     try:
         with tempfile.TemporaryDirectory(prefix="symrot-", ignore_cleanup_errors=True) as place:
             output = Path(place) / f"{name}{SUFFIX}"
-            complaint = _run(tool, source, flags, output)
+            complaint = run_compiler(tool.command, flags, source, output, SECONDS_TO_COMPILE)
             for spared in (set(TUNING), {*TUNING, NATIVE}):
                 if complaint and spared.intersection(flags):
                     fewer = tuple(flag for flag in flags if flag not in spared)
-                    complaint = complaint if _run(tool, source, fewer, output) else ""
+                    again = run_compiler(tool.command, fewer, source, output, SECONDS_TO_COMPILE)
+                    complaint = complaint if again else ""
             if complaint:
                 raise CompilerError(f"the C compiler {tool.command[0]} fails on the kernel {name!r}: {complaint}")
             content = output.read_bytes()
@@ -443,29 +458,3 @@ def _compile(tool: Compiler, source: str, name: str, entry: str, flags: tuple[st
     if _keep(entry, library.name.encode()).parent == library.parent:
         return library
     return _keep(library.name, content)  # the disk filled up in between
-
-
-def _run(tool: Compiler, source: str, flags: tuple[str, ...], output: Path) -> str:
-    """Run the compiler; return its first complaint, or an empty text when the library is there."""
-    import subprocess
-
-    command = [*tool.command, *flags, "-x", "c", "-", "-o", str(output), "-lm"]
-    try:
-        done = subprocess.run(
-            command,
-            input=source.encode(),
-            capture_output=True,
-            timeout=SECONDS_TO_COMPILE,
-            env={**os.environ, "LC_ALL": "C"},
-            check=False,
-        )
-    except subprocess.TimeoutExpired:
-        return f"no answer within {SECONDS_TO_COMPILE} s"
-    except OSError as error:
-        return f"it cannot be run: {error.strerror or error}"
-    if done.returncode == 0 and output.is_file() and output.stat().st_size:
-        return ""
-    lines = [line.strip() for line in done.stderr.decode("utf-8", "replace").splitlines() if line.strip()]
-    errors = [line for line in lines if "error" in line.lower()]
-    silence = f"exit status {done.returncode}, no message" if done.returncode else "no library was written"
-    return (errors or lines or [silence])[0]
