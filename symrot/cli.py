@@ -51,7 +51,7 @@ def _run(options: Namespace) -> int:
         check_target(options.plot, plot.SUFFIXES, "--plot")
         plot.require_matplotlib()
     scene = symrot.load_scene(options.scene, table_folders=options.table_folder)
-    progress("preparing the kernel ..")
+    progress("preparing the kernel (a compiler has at most 300 s) ..")
     start = perf_counter()
     propagator = symrot.propagator(scene, options.method, options.tolerance, state=options.state)
     propagator.prepare()
@@ -384,6 +384,13 @@ def _silence(stream: Any) -> None:
     os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
+def _stop_compilers() -> None:
+    """Kill the compilers that were started, if any: Python waits at its end for threads that wait for them."""
+    library = sys.modules.get("symrot.codegen.library")
+    if library is not None:
+        library.stop_compilers()
+
+
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one command and return its exit code.
 
@@ -419,5 +426,6 @@ def main(argv: Sequence[str] | None = None) -> int:
         sys.stderr.write(f"symrot: {one_line(place)}{error.strerror or error}\n")
         return BAD
     except KeyboardInterrupt:
+        _stop_compilers()
         progress("")
         return INTERRUPTED

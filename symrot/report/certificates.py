@@ -2,7 +2,6 @@
 
 import json
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from functools import cache
 from hashlib import sha256
 from importlib.metadata import version
@@ -18,7 +17,8 @@ from symrot.input_file import read_input
 from symrot.interface import emit, kernel_names, scene_kernel_name, subject
 from symrot.report import compiled
 from symrot.report.edited import explained, kernel_of
-from symrot.report.kernels import SCENES, WORKERS, certificate_files, kept_bounds, kernel_files, write_files
+from symrot.report.kernels import SCENES, certificate_files, kept_bounds, kernel_files, write_files
+from symrot.report.workers import workers
 from symrot.scene_file import names_with_kernels
 from symrot.scene_reader import nearest
 
@@ -114,14 +114,10 @@ def audit_files(
         return {str(path): audit_file(path, object_file, rerun, coq, progress) for path in paths}
     found = {}
     options = map(repeat, (object_file, rerun, coq))
-    with ProcessPoolExecutor(WORKERS) as pool:
-        try:
-            for path, said in zip(paths, pool.map(audit_file, paths, *options, chunksize=8), strict=True):
-                progress(f"audited {path.name} ..")
-                found[str(path)] = said
-        except CertificateError:
-            pool.shutdown(cancel_futures=True)
-            raise
+    with workers() as pool:
+        for path, said in zip(paths, pool.map(audit_file, paths, *options, chunksize=8), strict=True):
+            progress(f"audited {path.name} ..")
+            found[str(path)] = said
     return found
 
 
@@ -238,7 +234,7 @@ def certify_all(
     names = (*kernel_names(), *names_with_kernels())
     found: dict[str, Data] = {}
     written: list[Path] = []
-    with ProcessPoolExecutor(WORKERS) as pool:
+    with workers() as pool:
         work = pool.map(_certified, names, repeat(directory), repeat(objects), chunksize=4)
         for name, (data, paths) in zip(names, work, strict=True):
             progress(f"certified {name} ..")
