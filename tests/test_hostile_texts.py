@@ -13,6 +13,7 @@ from symrot.certify import exact_check, recheck
 from symrot.certify.audit import audit
 from symrot.certify.certificate import printed
 from symrot.certify.mutations import Files
+from symrot.codegen.math_header import math_header
 from symrot.errors import CertificateError
 from symrot.interface import emit, subject
 
@@ -292,3 +293,50 @@ def test_a_name_that_a_certificate_says_twice_is_refused(kernels):
 def test_a_law_that_is_nearly_true_is_refused(kernels, refused, vanishing):
     (law, *laws) = kernels[S].data["laws"]
     assert refused(S, kernels[S].source, laws=[law | {"vanishing": [vanishing, *law["vanishing"][1:]]}, *laws])
+
+
+HEADERS = {  # what a header says beside its prototypes, or instead of them: what is replaced, by what
+    "macro": ("\n#endif\n", "\n#endif\n#define sin cos\n"),
+    "macro among prototypes": ("/* one sample */", "#define sin(x) (7.0*(x))\n"),
+    "macro of another restrict": ("SYMROT_RESTRICT restrict", "SYMROT_RESTRICT volatile"),
+    "loop by a macro": ('_Pragma("GCC ivdep")', "if (0)"),
+    "another header": ("#include <stddef.h>", '#include "other.h"'),
+    "function": ("/* one sample */", "static inline double sin(double x) { return x; }"),
+    "prototype of another function": ("/* one sample */", "double sin(double x);"),
+    "other arguments": ("const double omega[3]", "const double omega[4]"),
+    "no guard": ("#ifndef SYMROT_EULER_ZYX_BODY_RATES_H", "#ifndef SYMROT_OTHER_H"),
+    "spliced line": ("/* one sample */", "/* one sample */ \\\n"),
+    "line comment": ("/* one sample */", "// /* one sample */"),
+    "trigraph": ("/* one sample */", "/* ??/\n */"),
+    "other alphabet": ("/* one sample */", "/* \u0435 */"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("what", HEADERS)
+def test_a_header_that_says_more_than_prototypes_is_refused(what, kernels):
+    files = kernels[R]
+    old, new = HEADERS[what]
+    text = files.texts[f"{R}.h"]
+    start = text.index("#ifndef")
+    assert old in text[start:]
+    text = text[:start] + text[start:].replace(old, new, 1)
+    (files.directory / f"{R}.h").write_text(text, encoding="utf-8")
+    digests = files.data["files"] | {f"{R}.h": sha256(text.encode()).hexdigest()}
+    files.path.write_text(printed(files.data | {"files": digests}), encoding="utf-8")
+    with pytest.raises(ValueError, match=f"{R}.h holds"):
+        recheck.check(files.path)
+    with pytest.raises(CertificateError):
+        audit(files.path, lambda data: files.said)
+    files.restore()
+
+
+def test_another_header_of_functions_is_refused(kernels):
+    files = kernels[R]
+    text = math_header().replace("sin", "cos")
+    (files.directory / "symrot_math.h").write_text(text, encoding="utf-8")
+    digests = files.data["files"] | {"symrot_math.h": sha256(text.encode()).hexdigest()}
+    files.path.write_text(printed(files.data | {"files": digests}), encoding="utf-8")
+    with pytest.raises(ValueError, match="laws or functions are others"):
+        recheck.check(files.path)
+    files.restore()
+    assert sha256(math_header().encode()).hexdigest() == recheck.MATH  # print it anew where symrot_math.h changes
