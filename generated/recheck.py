@@ -3,10 +3,10 @@
 Every hash. Link 3, C text = formulas: exactly, at a random point of fractions, where functions are any functions and
 choices any means of their two ways; what series leave out is computed at 64 random points. Link 1, formulas obey laws:
 to 60 digits at 8 random points where what is given holds, of numbers up to 1000, at 64 if they choose. What fails by
-less, or only near few points or far out, is not noticed: `symrot audit` proves. Headers hold known macros and prototypes
-alone, and symrot_math.h is the one below by its hash; NumPy texts are known by hash alone. That a kernel is what its
-name says, and what else is said (proofs, titles, operations, flags, theorems, object code), is not looked at, nor
-rounding errors, however large, nor where C is defined. Names that end in _ are of this file alone.
+less, or only near few points or far out, is not noticed: `symrot audit` proves. Headers hold known macros and
+prototypes alone, and symrot_math.h is the one below by its hash; NumPy texts are known by hash alone. That a kernel
+is what its name says, and what else is said (proofs, titles, operations, flags, theorems, object code), is not looked
+at, nor rounding errors, however large, nor where C is defined. Names that end in _ are of this file alone.
 """
 
 # mypy: ignore-errors
