@@ -3,9 +3,10 @@
 Every hash. Link 3, C text = formulas: exactly, at a random point of fractions, where functions are any functions and
 choices any means of their two ways; what series leave out is computed at 64 random points. Link 1, formulas obey laws:
 to 60 digits at 8 random points where what is given holds, of numbers up to 1000, at 64 if they choose. What fails by
-less, or only near few points or far out, is not noticed: `symrot audit` proves. Headers are known by hash alone. What
-else is said (proofs, titles, operations, flags, theorems, object code) is not looked at, nor rounding errors, however
-large, nor where C is defined. Names that end in _ are of this file alone.
+less, or only near few points or far out, is not noticed: `symrot audit` proves. Headers hold known macros and
+prototypes alone, and symrot_math.h is the one below by its hash; NumPy texts are known by hash alone. That a kernel
+is what its name says, and what else is said (proofs, titles, operations, flags, theorems, object code), is not looked
+at, nor rounding errors, however large, nor where C is defined. Names that end in _ are of this file alone.
 """
 
 # mypy: ignore-errors
@@ -30,6 +31,37 @@ PLAIN |= {"copysign": Decimal.copy_sign, "nearly_": lambda y, x: Decimal(math.at
 OTHERS = ("tan", "asin", "acos", "atan", "exp", "log", "sinh", "cosh", "tanh")  # any functions, in laws too
 MEANS = {"atan2": "closer_(x, y, closer_(x, y, nearly_(x, y)))", "closer_": "z + (x*cos(z) - y*sin(z))/sqrt(x*x + y*y)"}
 MEANS |= {"select_lt": "x < y ? z : w", "select_eq": "x == y ? z : w", "select_ge": "x >= y ? z : w", "Abs": "fabs(x)"}
+LARGEST = 16_000_000  # bytes of a file
+MATH = "ec48bca7f8eb7ed77612704a0672155f4af0330d0679ba59524c5cfb5f5b0a19"  # symrot_math.h
+HEADER = """#ifndef SYMROT_@_H
+#define SYMROT_@_H
+#include <stddef.h>
+#ifndef SYMROT_RESTRICT
+#ifdef __cplusplus
+#define SYMROT_RESTRICT __restrict
+#else
+#define SYMROT_RESTRICT restrict
+#endif
+#endif
+#ifndef SYMROT_INDEPENDENT
+#if defined(__clang__) && defined(__NO_MATH_ERRNO__)
+#define SYMROT_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
+#elif defined(__GNUC__) && !defined(__clang__)
+#define SYMROT_INDEPENDENT _Pragma("GCC ivdep")
+#else
+#define SYMROT_INDEPENDENT
+#endif
+#endif
+?#ifndef SYMROT_SPAN
+#define SYMROT_SPAN 2048
+#endif
+?#ifdef __cplusplus
+extern "C" {
+#endif
+?#ifdef __cplusplus
+}
+#endif
+#endif"""
 NODES = (ast.Expression, ast.BinOp, ast.UnaryOp, ast.Call, ast.Name, ast.Constant, ast.operator, ast.USub, ast.Load)
 ATOM = re.compile(r"(?<![\w.])(\w+\[[^]]*\]|\d[\w.]*(?:(?<=e)[-+]\w+)?)")
 CHOICE = re.compile(r"^([^?:<>=]+) (<|>=|==) ([^?:<>=]+) \? ([^?:<>=]+) : ([^?:<>=]+)")
@@ -122,35 +154,53 @@ def check_c(name, said, real, data, formulas, functions, found):
     own |= {f"symrot_choose_ge{end}": names["select_ge"], f"symrot_far{end}": lambda x: [x]}
     need(not own.keys() & found.keys() and name == data["kernel"] + end, "a function has another meaning, or type")
     own |= {f: partial(call, *found[f][1:]) for f in found if found[f][0] == f"static inline {real}"}
-    places = [place for place, *_ in data["inputs"] + data["spec"]["formulas"]]
+    places = [f"const {place}" for place in inputs] + [place for place, *_ in data["spec"]["formulas"]]
     sizes = Counter(place.partition("[")[0] for place in places)
     need(places == [b if b in places else f"{b}[{k}]" for b in sizes for k in range(sizes[b])], "arguments are others")
     for (_, listed, body), frames in (found[name], [""]), (found[f"{name}_batch"], [EACH, PARTS, BLOCKS % bits]):
-        loops = re.findall(r"(?<=\+\+k\) \{)[^{}]*(?=\})", body) or [body]
-        frame = re.sub(r"(?<=\+\+k\) \{)[^{}]*(?=\})", "", body) if loops != [body] else ""
-        takes = [re.sub(rf" ?(const )?(size_t|{real}) (\*SYMROT_RESTRICT )?|\[\d+]$", "", a) for a in listed.split(",")]
+        parts = re.split(r"(?<=\+\+k\) \{)([^{}]*)(?=\})", body)
+        frame, loops = ("".join(parts[::2]), parts[1::2]) if parts[1:] else ("", parts)
+        typed = [re.sub(rf"^{real} (?=\w+$)", "const ", each.strip()) for each in listed.split(",")]  # by value
+        takes = [re.sub(rf"\b(size_t|{real}) (\*SYMROT_RESTRICT )?|\[\d+]$", "", each) for each in typed]
         need(frame in frames and takes == ["n"] * bool(frame) + [*sizes], f"arguments or loops of {name} are others")
         results = []
         for loop in loops:
             near = set()
             need(not frame or not re.search(r"(?<!\bp)\[\d+\]|\bp\[\d+\*", loop), f"{name} takes one sample alone")
             results.append(run(loop.replace("*n + k]", "]").replace("[k]", "") if frame else loop, inputs))
-            asked = near <= {*results[-1].pop("beyond", [])}
-            need(asked and (len(results) == 1 or not near), f"functions of {name} take angles beyond their range")
+            need(near <= {*results[0].pop("beyond", [])}, f"functions of {name} take angles beyond their range")
         for result in [results[0] | results[1]] if frame == PARTS else results:
             need(result == {p: names[s] for p, s, _ in data["spec"]["formulas"]}, f"{name} is not its formulas")
 
 
+def check_header(name, raw, found):
+    """Refuse a header that holds more than the prototypes of the functions of its C file."""
+    need(not re.search(r"[^\n -~]|\\|\?\?|//", raw), f"{name}.h holds what C may read in several ways")
+    lines = [line.strip() for line in re.sub(r"/\*.*?\*/", " ", raw, flags=re.S).split("\n")]
+    top, span, opened, end = map(re.escape, HEADER.replace("@", name.upper()).split("?"))
+    held = re.fullmatch(rf"{top}({span})?{opened}([^#\"{{}}]*){end}", "\n".join(line for line in lines if line))
+    bare = partial(re.sub, r" *([(),*;]) *", r"\1")
+    heads = {bare(f"void {f}({listed})") for f, (kind, listed, _) in found.items() if kind == "void"}
+    need(held and {*bare(" ".join(held[2].split())).split(";")} == {*heads, ""}, f"{name}.h holds more than prototypes")
+
+
+def content(path):
+    """Return the bytes of a regular file of a size that kernels have: nothing else is opened."""
+    need(path.is_file() and path.stat().st_size <= LARGEST, f"{path.name} is no file of at most {LARGEST} bytes")
+    return path.read_bytes()
+
+
 def certified(path):
     """Return what a certificate says, after its seal and the hashes of all its files."""
-    data = json.loads(path.read_bytes(), object_pairs_hook=lambda pairs: len(dict(pairs)) == len(pairs) and dict(pairs))
+    data = json.loads(content(path), object_pairs_hook=lambda pairs: len(dict(pairs)) == len(pairs) and dict(pairs))
     seal = data.pop("seal") == sha256(json.dumps(data, sort_keys=True, separators=(",", ":")).encode()).hexdigest()
     need(seal and data["schema"] == "symrot.certificate/1", "the schema is another, or the text that was sealed")
     name, files = data["kernel"], data["files"]
     need(path.name == f"{name}.cert.json" and {f"{name}.c", f"{name}.h"} <= {*files}, "it is that of another file")
     for file, digest in files.items():
-        if "/" not in file or (path.parent / file).is_file():
-            need(sha256((path.parent / file).read_bytes()).hexdigest() == digest, f"{file} is not what was certified")
+        need(re.fullmatch(r"(\.\./){0,2}(\w+/)*\w+\.\w+", file), f"{file} is no file of a kernel")
+        if "/" not in file or (path.parent / file).exists():
+            need(sha256(content(path.parent / file)).hexdigest() == digest, f"{file} is not what was certified")
     return data
 
 
@@ -164,8 +214,10 @@ def check(path):
     odd = rest or re.search(r"\*\*|['\"#%]", text) or re.search(r"[^\n -~]|\\|\?\?|//", raw)
     found = {f: (kind, listed, body) for kind, f, listed, body in re.findall(FUNCTION, text)}
     known = {f for f in found if found[f][0] == "void"} == {f + end for f in readback for end in ("", "_batch")}
-    known = known and readback and {*re.findall('#.+ "(.+)"', raw)} <= {*files} and len(found) == count
+    known = known and readback and {*re.findall('#.+ "(.+)"', raw)} <= {f"{name}.h", "symrot_math.h"} & {*files}
+    known = known and len(found) == count and files.get("symrot_math.h", MATH) == MATH
     need(known and not odd and data["laws"], "laws or functions are others")
+    check_header(name, path.with_name(f"{name}.h").read_text("utf-8"), found)
     formulas = [((p,), spec["parameters"].get(s, s)) for p, s, _ in data["inputs"]] + spec["named"] + spec["formulas"]
     need({s for p, s, _ in data["inputs"] + spec["formulas"] if p[:2] == "p["} == {*spec["parameters"]}, "p is another")
     with localcontext(Context(prec=190, Emax=120)):

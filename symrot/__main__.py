@@ -1,6 +1,17 @@
-"""``python -m symrot``."""
+"""``python -m symrot``, and the command ``symrot``."""
 
-from symrot.cli import main
+__all__ = ["main"]
+
+
+def main() -> int:
+    """Run the command line; Ctrl-C while it is still being imported ends it as quietly as later."""
+    try:
+        from symrot import cli
+
+        return cli.main()
+    except KeyboardInterrupt:
+        return 130
+
 
 if __name__ == "__main__":
     raise SystemExit(main())

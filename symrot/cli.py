@@ -72,8 +72,8 @@ def _run(options: Namespace) -> int:
 
         check_target(options.plot, plot.SUFFIXES, "--plot")
         plot.require_matplotlib()
-    scene = symrot.load_scene(options.scene)
-    progress("preparing the kernel ..")
+    scene = symrot.load_scene(options.scene, table_folders=options.table_folder)
+    progress("preparing the kernel (a compiler has at most 300 s) ..")
     start = perf_counter()
     propagator = symrot.propagator(scene, options.method, options.tolerance, state=options.state)
     propagator.prepare()
@@ -140,7 +140,7 @@ def _saved(error: BaseException, propagator: Any, options: Namespace) -> str:
 def _explain(options: Namespace) -> int:
     from symrot.report import explain
 
-    scene = symrot.load_scene(options.scene)
+    scene = symrot.load_scene(options.scene, table_folders=options.table_folder)
     progress("counting operations ..")
     found = explain.facts(symrot.plan(scene))
     progress("")
@@ -315,8 +315,15 @@ def _scene_argument(parser: ArgumentParser, **more: Any) -> None:
     parser.add_argument("scene", metavar="SCENE", help="a shipped scene (see `symrot scenes`), or a file", **more)
 
 
+def _table_folder_option(parser: ArgumentParser) -> None:
+    parser.add_argument("--table-folder", metavar="DIR", action="append", default=[],
+                        help="let the scene name files of samples in this folder too; may be repeated "
+                        "(default: its own folder alone)")  # fmt: skip
+
+
 def _run_arguments(parser: ArgumentParser) -> None:
     _scene_argument(parser)
+    _table_folder_option(parser)
     parser.add_argument("--method", default="auto", metavar="NAME", help="auto, exact, taylor, dop853 or scipy:NAME")
     parser.add_argument("--tolerance", metavar="X", help="error to aim for, 1e-15 to 1e-2 (default: the scene's own)")
     parser.add_argument("--state", default="quaternion", metavar="SEQUENCE", help="step Euler angles, such as ZXZ")
@@ -327,6 +334,7 @@ def _run_arguments(parser: ArgumentParser) -> None:
 
 def _explain_arguments(parser: ArgumentParser) -> None:
     _scene_argument(parser)
+    _table_folder_option(parser)
     json_option(parser)
 
 
@@ -440,6 +448,13 @@ def _silence(stream: Any) -> None:
     os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
+def _stop_compilers() -> None:
+    """Kill the compilers that were started, if any: Python waits at its end for threads that wait for them."""
+    library = sys.modules.get("symrot.codegen.library")
+    if library is not None:
+        library.stop_compilers()
+
+
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one command and return its exit code.
 
@@ -475,5 +490,6 @@ def main(argv: Sequence[str] | None = None) -> int:
         sys.stderr.write(f"symrot: {one_line(place)}{error.strerror or error}\n")
         return BAD
     except KeyboardInterrupt:
+        _stop_compilers()
         progress("")
         return INTERRUPTED

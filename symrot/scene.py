@@ -4,7 +4,7 @@ The format is the table :data:`TOP` and the readers it names. Everything that a 
 complaint is one sentence with file, key, expectation and value (:class:`symrot.errors.InputError`).
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
@@ -91,7 +91,9 @@ class Scene:
         return (*(torque.kind for torque in self.torques), *table)
 
     @classmethod
-    def from_dict(cls, content: Mapping[str, Any], where: str = "scene") -> "Scene":
+    def from_dict(
+        cls, content: Mapping[str, Any], where: str = "scene", *, table_folders: str | Path | Sequence[str | Path] = ()
+    ) -> "Scene":
         """Return the scene of a dict with the keys of a scene file.
 
         Parameters
@@ -100,17 +102,26 @@ class Scene:
             As DESIGN.md section 5; numbers may be int, Fraction, Decimal, text, or float (its exact binary value).
         where : str
             Name of the scene, put in front of every complaint.
+        table_folders : str, Path or sequence of them
+            Folders, beside the current one, whose files a torque of kind table may name.
 
         Raises
         ------
         InputError
             One sentence: key, expectation, value.
         """
-        return _read_scene(content, where, where, None)
+        return _read_scene(content, where, where, None, table_folders)
 
 
-def load_scene(source: str | Path) -> Scene:
+def load_scene(source: str | Path, *, table_folders: str | Path | Sequence[str | Path] = ()) -> Scene:
     """Return a scene by the name of a shipped one, or from the path of a TOML file.
+
+    Parameters
+    ----------
+    source : str or Path
+        The name, or the path.
+    table_folders : str, Path or sequence of them
+        Folders, beside that of the scene, whose files a torque of kind table may name.
 
     Raises
     ------
@@ -124,7 +135,7 @@ def load_scene(source: str | Path) -> Scene:
     """
     path = find_scene(source)
     label = path.name if path.parent == SHIPPED else str(source)
-    return _read_scene(read_toml(path, label), label, path.stem, str(path))
+    return _read_scene(read_toml(path, label), label, path.stem, str(path), table_folders)
 
 
 def shipped_scenes() -> list[tuple[str, str, str]]:
@@ -247,7 +258,7 @@ TOP: dict[str, Entry] = {
 
 
 def _read_torques(
-    value: Any, body: Body, span: Span, folder: Path, where: str
+    value: Any, body: Body, span: Span, folder: Path, where: str, table_folders: str | Path | Sequence[str | Path]
 ) -> tuple[tuple[Torque, ...], Table | None]:
     if not isinstance(value, list | tuple):
         expected(where, "a list of torques, each written as [[torque]]", value)
@@ -258,16 +269,25 @@ def _read_torques(
     if len(tables) > 1:
         expected(f"{where}[{tables[1]}].kind", "at most one torque of kind table: add their samples up", word)
     formulas = [read_torque(value[i], body, f"{where}[{i}]") for i in range(len(value)) if i not in tables]
-    samples = [read_samples(value[i], folder, f"{where}[{i}]", (span.start, span.stop)) for i in tables]
+    times = span.start, span.stop
+    samples = [read_samples(value[i], folder, f"{where}[{i}]", times, table_folders) for i in tables]
     return tuple(formulas), next(iter(samples), None)
 
 
-def _read_scene(content: Mapping[str, Any], label: str, name: str, path: str | None) -> Scene:
+def _read_scene(
+    content: Mapping[str, Any],
+    label: str,
+    name: str,
+    path: str | None,
+    table_folders: str | Path | Sequence[str | Path],
+) -> Scene:
     where = f"{label}: "
     table(content, where, "a table with schema, body, initial, span")
     found = read_table(content, where, TOP, "a scene")
     folder = Path() if path is None else Path(path).parent
-    torques, samples = _read_torques(found["torque"], found["body"], found["span"], folder, f"{where}torque")
+    torques, samples = _read_torques(
+        found["torque"], found["body"], found["span"], folder, f"{where}torque", table_folders
+    )
     return Scene(
         name=name,
         path=path,

@@ -7,6 +7,7 @@ from typing import Any
 
 from symrot.dynamics.torque_kinds import TABLE_KIND
 from symrot.errors import InputError
+from symrot.input_file import read_input
 from symrot.scene_reader import nearest
 
 __all__ = ["LARGEST_FILE", "SHIPPED", "find_scene", "names_with_kernels", "read_toml", "shipped_names"]
@@ -77,15 +78,14 @@ def read_toml(path: Path, label: str, what: str = "scene") -> dict[str, Any]:
     Raises
     ------
     InputError
-        For a file that cannot be read, is larger than 1 MB, empty, not UTF-8 text or not TOML (with the line).
+        For a file that cannot be read, is no regular file, larger than 1 MB, empty, not UTF-8 text or not TOML (with
+        the line).
     """
     try:
-        with path.open("rb") as file:
-            content = file.read(LARGEST_FILE + 1)
+        content = read_input(path, LARGEST_FILE)
     except OSError as reason:
-        raise InputError(f"{label}: expected a readable {what} file, got {reason.strerror or reason}") from None
-    if len(content) > LARGEST_FILE:
-        raise InputError(f"{label}: expected a {what} file of at most {LARGEST_FILE // 1_000_000} MB, got a larger one")
+        said = f"a readable {what} file of at most {LARGEST_FILE // 1_000_000} MB"
+        raise InputError(f"{label}: expected {said}, got {reason.strerror or reason}") from None
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as reason:

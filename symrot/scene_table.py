@@ -1,6 +1,6 @@
 """A torque of a scene that is a table of samples: written in the scene, or in a CSV file beside it."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from itertools import pairwise
 from math import isfinite
@@ -9,6 +9,7 @@ from typing import Any, NamedTuple, NoReturn
 
 from symrot.dynamics.torque_kinds import TABLE_KIND
 from symrot.errors import InputError
+from symrot.input_file import read_input
 from symrot.scene_reader import Entry, choice, expected, number, read_table, text, vector
 
 __all__ = ["COLUMNS", "LARGEST_FILE", "MOST_SAMPLES", "Table", "read_samples"]
@@ -78,7 +79,13 @@ _ENTRIES = {
 }
 
 
-def read_samples(value: Mapping[str, Any], folder: Path, where: str, span: tuple[Fraction, Fraction]) -> Table:
+def read_samples(
+    value: Mapping[str, Any],
+    folder: Path,
+    where: str,
+    span: tuple[Fraction, Fraction],
+    table_folders: str | Path | Sequence[str | Path] = (),
+) -> Table:
     """Read a ``[[torque]]`` of kind table, which must cover the span of its scene.
 
     Parameters
@@ -86,17 +93,19 @@ def read_samples(value: Mapping[str, Any], folder: Path, where: str, span: tuple
     value : mapping
         The table of the scene.
     folder : Path
-        Where a file of samples is looked for, unless its path is absolute.
+        Where a file of samples is looked for; it may lie there or in a folder below, links followed.
     where : str
         The place in the scene, for complaints.
     span : 2 Fractions
         First and last time that the scene asks for, s.
+    table_folders : str, Path or sequence of them
+        Further folders whose files a scene may name.
 
     Raises
     ------
     InputError
-        For an unknown key, a file that cannot be read, samples that are no numbers, too few, not in order, or do not
-        cover the span.
+        For an unknown key, a file elsewhere, a file that cannot be read, samples that are no numbers, too few, not in
+        order, or do not cover the span.
     """
     found = read_table(value, where, _ENTRIES, "a torque of kind table")
     written = [key for key in ("t", "moment") if found[key] is not None]
@@ -111,7 +120,7 @@ def read_samples(value: Mapping[str, Any], folder: Path, where: str, span: tuple
             expected(place, f"at most {MOST_SAMPLES} samples", len(times))
     else:
         place, rows = f"{where}.file: {found['file']}", 2
-        times, moments = _read_file(folder / found["file"], place)
+        times, moments = _read_file(_allowed_file(found["file"], folder, table_folders, f"{where}.file"), place)
     _check(times, found["switching_times"], place, rows)
     _check_slopes(times, moments, place)
     twice = {after for before, after in pairwise(times) if after == before}
@@ -154,26 +163,41 @@ def _check_slopes(times: tuple[float, ...], moments: tuple[tuple[float, ...], ..
                      f"{1 / _STEEPEST:g} s apart, got {change!r} N m within {gap!r} s after {before!r} s")  # fmt: skip
 
 
+def _allowed_file(file: str, folder: Path, table_folders: str | Path | Sequence[str | Path], where: str) -> Path:
+    """Return the file of samples that a scene names, links followed; refuse one outside the folders for it.
+
+    A scene may come from a stranger: it must not make symrot open, and quote, another file of the user.
+    """
+    if isinstance(table_folders, str | Path):
+        table_folders = (table_folders,)
+    if not file.strip() or "\\" in file:
+        expected(where, "the name of a CSV file, with / between folders", file)
+    try:
+        path = (folder / file).resolve()
+        inside = any(path.is_relative_to(Path(each).resolve()) for each in (folder, *table_folders))
+    except (OSError, RuntimeError, ValueError) as reason:  # RuntimeError: links that lead in a circle
+        expected(where, f"the name of a CSV file, got {getattr(reason, 'strerror', None) or reason}")
+    if not inside:
+        expected(where, "a file in the folder of the scene or below it", file, "`--table-folder DIR`, in Python "
+                 "load_scene(.., table_folders=[DIR]), allows those of a folder elsewhere")  # fmt: skip
+    return path
+
+
 def _read_file(path: Path, place: str) -> tuple[tuple[float, ...], tuple[tuple[float, float, float], ...]]:
     """Return times and moments of a CSV file whose first line is ``t, M1, M2, M3``."""
     said = f"a CSV file with the columns {', '.join(COLUMNS)}"
     try:
-        if path.exists() and not path.is_file():
-            raise OSError("something that is no file")
-        with path.open("rb") as file:
-            content = file.read(LARGEST_FILE + 1)
-    except (OSError, ValueError) as reason:
-        expected(place, f"{said}, got {getattr(reason, 'strerror', None) or reason}")
-    if len(content) > LARGEST_FILE:
-        expected(place, f"a file of at most {LARGEST_FILE // 1_000_000} MB, got a larger one")
+        content = read_input(path, LARGEST_FILE)
+    except OSError as reason:
+        expected(place, f"{said}, at most {LARGEST_FILE // 1_000_000} MB, got {reason.strerror or reason}")
     try:
         lines = content.decode("utf-8-sig").splitlines()
     except UnicodeDecodeError as reason:
-        expected(place, f"UTF-8 text, got byte 0x{content[reason.start]:02x} at position {reason.start}")
+        expected(place, f"UTF-8 text, got another byte at position {reason.start}")
     if not any(line.strip() for line in lines):
         expected(place, f"{said}, got an empty file")
     if tuple(cell.strip() for cell in lines[0].split(",")) != COLUMNS:
-        expected(f"{place}, line 1", f"the columns {', '.join(COLUMNS)}", lines[0][:80])
+        expected(f"{place}, line 1", f"the columns {', '.join(COLUMNS)}, got another line")
     rows = [_row(line, f"{place}, line {index}") for index, line in enumerate(lines[1:], start=2) if line.strip()]
     if len(rows) > MOST_SAMPLES:
         expected(place, f"at most {MOST_SAMPLES} samples, got {len(rows)}")

@@ -340,7 +340,7 @@ def test_certify_and_audit(tmp_path, capsys, monkeypatch):
     capsys.readouterr()
     assert main(["audit", "k/quaternion_product.cert.json"]) == 1
     assert main(["certify", "k/quaternion_product.c"]) == 2
-    assert main(["audit", "k/nothing.cert.json"]) == 1
+    assert main(["audit", "k/nothing.cert.json"]) == 2
     assert main(["certify", "quaternion_produkt"]) == 2
     said = capsys.readouterr()
     assert said.out == "" and said.err.count("\n") == 4 and "Traceback" not in said.err
@@ -424,7 +424,7 @@ def test_an_edited_file_is_refused_with_its_line_and_what_it_computes(edit, tmp_
         (["certify", "quaternion_to_dcm"], "did you mean 'quaternion_of_dcm'?"),
         (["certify", "mine.c"], "`symrot audit` takes the certificate of any kernel"),
         (["certify", "quaternion_dc.cert.json"], "did you mean 'quaternion_dcm'?"),
-        (["certify", "nowhere/quaternion_dcm.c"], "can be read (No such file or directory)"),
+        (["certify", "nowhere/quaternion_dcm.c"], "can be read, got No such file or directory"),
         (["bound", str(KERNELS / "quaternion_dcm.c")], "did you mean 'quaternion_dcm'?"),
         (["audit", "quaternion_dcm.c"], "its own is quaternion_dcm.cert.json"),
     ],

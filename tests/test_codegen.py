@@ -8,6 +8,7 @@ import random
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
@@ -18,6 +19,7 @@ import sympy
 
 import symrot
 from symrot import symbols
+from symrot.certify import exact_check, recheck
 from symrot.codegen.banner import Description
 from symrot.codegen.c_source import c_header, c_source
 from symrot.codegen.formulas import to_node
@@ -267,6 +269,34 @@ def test_a_title_cannot_break_out_of_its_comment(tmp_path):
     build(tmp_path, emitted, "c")
     assert emitted.source.count("*/") == emitted.source.count("/*") == 1
     compile(symrot.emit(scene, "numpy").source, "kernel", "exec")
+
+
+NAMES = ("\\", "*\\ int x;", "a??", "??/", "http:", "caf\u00e9", "\u65e5\u672c", "\t", "a\nb", "\u202eabc", "'", '"', "-x",
+         "int", "x" * 200, "#", "%s", "quaternion_dcm", "class", '"""')  # fmt: skip
+
+
+@needs_cc
+@pytest.mark.parametrize("name", NAMES, ids=ascii)
+def test_a_scene_of_any_name_is_emitted_and_certified(name, tmp_path, monkeypatch):
+    """The name, as that of a file, and a title stand in comments; the name of the function is made of it."""
+    monkeypatch.chdir(tmp_path)
+    title = name if name.isprintable() else ascii(name)
+    torque = {"kind": "expression", "torque": ["sin(t)", "0", "0"]}
+    content = {"schema": 1, "title": f"{title} http://x.org *\\ */ ??/", "body": {"principal": [1, 2, 3]}, "torque": [torque],
+               "initial": {"omega": [1, 1, 1]}, "span": {"t": [0, 9]}}  # fmt: skip
+    scene = replace(Scene.from_dict(content), name=name)
+    emitted = symrot.emit(scene)
+    assert emitted.source.isascii()
+    assert emitted.source.count("*/") == emitted.source.count("/*") == 1 and "//" not in emitted.source
+    compile(symrot.emit(scene, "numpy").source, "kernel", "exec")
+    (tmp_path / f"{emitted.name}.c").write_text(emitted.source, encoding="utf-8")
+    (tmp_path / f"{emitted.name}.h").write_text(emitted.header, encoding="utf-8")
+    path = tmp_path / f"{emitted.name}.cert.json"
+    path.write_text(emitted.certificate, encoding="utf-8")
+    subprocess.run(["cc", "-std=c99", "-trigraphs", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-c", path.name.replace(".cert.json", ".c")],
+                   check=True)  # fmt: skip
+    assert recheck.check(path).startswith(emitted.name)
+    exact_check.check(path)
 
 
 def test_emitted_text_is_the_same_under_any_hash_seed():

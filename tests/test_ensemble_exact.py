@@ -31,7 +31,7 @@ def starts(n):
     omega[5, 1] = 1e-70 * omega[5, 0]
     quaternion = RANDOM.standard_normal((n, 4)) * 10.0 ** RANDOM.integers(-30, 30, (n, 1))
     quaternion[::5] = np.eye(4)[RANDOM.integers(0, 4, len(quaternion[::5]))]
-    quaternion[1::7] = np.round(3 * RANDOM.standard_normal((len(quaternion[1::7]), 4))) + [9, 0, 0, 0]
+    quaternion[1::7] = np.round(3 * RANDOM.standard_normal((len(quaternion[1::7]), 4))) + np.array([9, 0, 0, 0])
     return omega, quaternion
 
 
@@ -156,7 +156,7 @@ def test_attitudes_of_many_are_those_of_one():
     """Pairs of doubles for many, exact numbers for one: the same bits, ties and all."""
     cases = np.vstack(
         [
-            RANDOM.standard_normal((4000, 4)), RANDOM.integers(-3, 4, (500, 4)) + [0.5, 0, 0, 0],
+            RANDOM.standard_normal((4000, 4)), RANDOM.integers(-3, 4, (500, 4)) + np.array([0.5, 0, 0, 0]),
             RANDOM.standard_normal((500, 4)) * 10.0 ** RANDOM.integers(-60, 60, (500, 4)),
             [[1, 1e-120, 0, -0.0], [-1, 0, 0, 2.0**-299], [1e300, 1e-300, 1, 1], [5e-324, 0, 0, 5e-324]],
         ]

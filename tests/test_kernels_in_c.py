@@ -57,6 +57,16 @@ def test_compilers_vectorise_batches(name, tmp_path):
         assert len(places) >= 2, (compiler, found.stderr)
 
 
+@pytest.mark.skipif("clang" not in COMPILERS, reason="needs clang, which warns of loops that it was told to vectorise")
+@pytest.mark.parametrize(
+    "flags", [["-O1"], ["-O2"], ["-O1", "-fno-math-errno"], ["-Os", "-fno-math-errno"]], ids=" ".join
+)
+def test_clang_warns_of_no_loop(flags, tmp_path):
+    """Functions that may set errno are not vectorised: no loop with one may be said to be."""
+    for name in ("quaternion_of_dcm", "torque_damping_quadratic", "rotation_vector_body_rates", "rodrigues_quaternion"):
+        compiled("clang", "-std=c99", *flags, *STRICT, "-c", KERNELS / f"{name}.c", "-o", tmp_path / "x.o")
+
+
 def harness(directory, *flags):
     (directory / "symrot_math.h").write_text(math_header())
     library = directory / "sine.so"

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from symrot.codegen import library
+from symrot.codegen import compiler_run, library
 from symrot.errors import CompilerError
 
 SOURCE = "double answer(void) { return 42.0; }\n"
@@ -35,7 +35,7 @@ def no_compiling(monkeypatch):
     def refuse(*arguments, **options):
         raise AssertionError("a program was run")
 
-    return lambda: monkeypatch.setattr(subprocess, "run", refuse)
+    return lambda: monkeypatch.setattr(compiler_run, "Popen", refuse)
 
 
 def answer(path):
@@ -203,6 +203,28 @@ def test_a_hanging_compiler_is_given_up(monkeypatch, tmp_path):
         library.build(SOURCE, "answer")
 
 
+def test_what_a_hanging_compiler_started_is_stopped_too(monkeypatch, tmp_path):
+    """Else its output stays open, and whoever reads it waits; it is asked once, not once for each set of flags."""
+    script = f"echo asked >> {tmp_path}/asked\nsleep 60 &\necho $! > {tmp_path}/child\nsleep 60"
+    monkeypatch.setenv("CC", str(fake_compiler(tmp_path, script)))
+    monkeypatch.setattr(library, "SECONDS_TO_COMPILE", 0.5)
+    with pytest.raises(CompilerError, match=r"no answer within 0\.5 s"):
+        library.build(SOURCE, "answer", (*library.FLAGS, *library.TUNING))
+    assert (tmp_path / "asked").read_text() == "asked\n"
+    state = Path(f"/proc/{(tmp_path / 'child').read_text().strip()}/stat")
+    assert not state.exists() or state.read_text().split()[2] == "Z"
+
+
+def test_compilers_can_be_stopped_from_another_thread(monkeypatch, tmp_path):
+    monkeypatch.setenv("CC", str(fake_compiler(tmp_path, f"touch {tmp_path}/started; sleep 60")))
+    building = library.Building(SOURCE, "answer")
+    while not (tmp_path / "started").exists():
+        pass
+    library.stop_compilers()
+    with pytest.raises(CompilerError, match="was killed before it was done"):
+        building.path()
+
+
 def test_a_compiler_without_native_tuning_is_asked_again_without_it(monkeypatch, tmp_path, no_compiling):
     script = 'case "$*" in *march=native*) echo "error: bad -march" >&2; exit 1;; esac; exec cc "$@"'
     monkeypatch.setenv("CC", str(fake_compiler(tmp_path, script)))
@@ -262,9 +284,61 @@ def symbolic_link(room, monkeypatch):
     room.symlink_to(room.parent.parent / "elsewhere")
 
 
+def open_parent(room, monkeypatch):
+    room.mkdir(parents=True)
+    room.parent.chmod(0o777)
+
+
+def open_grandparent(room, monkeypatch):
+    room.mkdir(parents=True)
+    room.parents[1].chmod(0o707)
+
+
+def shared_by_a_group(room, monkeypatch):
+    room.mkdir(parents=True)
+    room.parent.chmod(0o770)
+    monkeypatch.setattr(library, "_shared_group", lambda group: True)
+
+
+def foreign_parent(room, monkeypatch):
+    room.mkdir(parents=True)
+    mine, look = os.getuid(), Path.stat
+
+    def stat_of(path, **options):
+        found = list(look(path, **options))
+        if path == room.parent:
+            found[stat.ST_UID] = mine + 1
+        return os.stat_result(found)
+
+    monkeypatch.setattr(Path, "stat", stat_of)
+
+
+def link_in_an_open_folder(room, monkeypatch):
+    """The folder that a link leads to is private; the link may be exchanged."""
+    private, shared = room.parents[1] / "private", room.parents[1] / "shared"
+    private.mkdir()
+    shared.mkdir()
+    shared.chmod(0o777)
+    (shared / "link").symlink_to(private)
+    monkeypatch.setenv("SYMROT_CACHE", str(shared / "link"))
+
+
+def link_into_an_open_folder(room, monkeypatch):
+    shared = room.parents[1] / "shared"
+    (shared / "mine" / "kernels").mkdir(parents=True)
+    shared.chmod(0o777)
+    room.parent.symlink_to(shared / "mine")
+
+
 @pytest.mark.parametrize(
     "trouble, reason",
     [
+        (open_parent, "cache can be written by other users"),
+        (open_grandparent, "can be written by other users, who could replace"),
+        (shared_by_a_group, "cache can be written by other users"),
+        (foreign_parent, "cache belongs to another user"),
+        (link_in_an_open_folder, "shared can be written by other users"),
+        (link_into_an_open_folder, "shared can be written by other users"),
         (block_parent, "cannot be used"),
         (full_disk, "No space left on device"),
         (read_only, "cannot be written"),
@@ -284,6 +358,32 @@ def test_an_unusable_cache_is_replaced_for_this_process(trouble, reason, own_cac
     assert reason in library.cache().reason
     no_compiling()
     assert library.build(SOURCE, "answer") == path
+
+
+@pytest.mark.skipif(not hasattr(os, "getuid"), reason="the system has no owners of files")
+def test_a_cache_in_a_sticky_folder_is_used(own_cache, tmp_path):
+    """As below /tmp: nobody but its owner can rename it there."""
+    own_cache.mkdir(parents=True)
+    tmp_path.chmod(0o1777)
+    assert library.cache() == (own_cache, "")
+
+
+def test_the_folders_of_a_new_cache_are_private(own_cache, monkeypatch, tmp_path):
+    """Whatever the umask of the process."""
+    before = os.umask(0)
+    try:
+        monkeypatch.setenv("SYMROT_CACHE", str(tmp_path / "a" / "b"))
+        assert library.cache() == (tmp_path / "a" / "b" / "kernels", "")
+    finally:
+        os.umask(before)
+
+
+def test_a_pipe_in_the_cache_is_no_entry(own_cache):
+    library.store("key", "{}")
+    (entry,) = own_cache.iterdir()
+    entry.unlink()
+    os.mkfifo(entry)
+    assert library.fetch("key") is None  # and does not wait for a writer
 
 
 def test_a_probe_finds_a_full_disk(own_cache, monkeypatch):

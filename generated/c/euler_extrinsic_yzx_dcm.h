@@ -45,9 +45,9 @@
 #endif
 
 #ifndef SYMROT_INDEPENDENT /* in front of a loop over samples: outputs do not overlap inputs */
-#if defined(__clang__)
+#if defined(__clang__) && defined(__NO_MATH_ERRNO__) /* with errno, calls of <math.h> keep a loop as it is */
 #define SYMROT_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
-#elif defined(__GNUC__)
+#elif defined(__GNUC__) && !defined(__clang__)
 #define SYMROT_INDEPENDENT _Pragma("GCC ivdep")
 #else
 #define SYMROT_INDEPENDENT

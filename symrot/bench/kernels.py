@@ -66,6 +66,7 @@ class Contestant:
         return min(self.seconds[shape]) * 1e9 if self.seconds[shape] else None
 
 
+@cache
 def _samples(name: str, count: int) -> list[Floats]:
     """Return inputs in the box of a kernel, one array of shape (size, count) for each argument; unit quaternions."""
     found, draw = definition(name), np.random.default_rng(5)
@@ -83,6 +84,7 @@ def _block(name: str, shape: str, count: int, place: int) -> tuple[Floats, Float
 
     The outputs follow the inputs in one piece that begins on a page and has all been written. Left to the allocator,
     they lay apart by another part of a page in each run, on other kinds of pages, and each second vector on two lines.
+    ``place`` tells pieces with the same numbers apart.
     """
     given = np.concatenate(_samples(name, count))
     size = sum(a.size for a in kernel_program(name).signature.arguments if a.role == "out")
@@ -415,6 +417,7 @@ def main(arguments: list[str] | None = None) -> None:
         cells += 1 + len(_ratios(contestants))
         over += _missed(name, contestants)
         _block.cache_clear()
+        _samples.cache_clear()
     print(f"not installed, left out: {', '.join(sorted(absent))}" if absent else "every tool took part")
     print(f"{cells - len(over)} of {cells} cells within the bar (operations no more than the best of the others, ns "
           f"{BAR} of it); over it: {'; '.join(over) or 'none'}")  # fmt: skip

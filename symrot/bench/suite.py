@@ -20,9 +20,10 @@ from symrot import __version__
 from symrot.bench.problem import Problem
 from symrot.bench.work_precision import digest, machine, study
 from symrot.errors import InputError
+from symrot.input_file import read_input
 from symrot.report.files import check_target, write
 from symrot.report.layout import columns, one_line
-from symrot.report.work_precision import ROUNDING
+from symrot.report.work_precision import LARGEST_FILE, ROUNDING
 from symrot.scene import Scene, load_scene
 from symrot.scene_file import read_toml
 
@@ -53,7 +54,7 @@ class _Kept:
         self.asked = {"format": "symrot unfinished suite 1", "symrot": __version__, "machine": of, **asked}
         self.studies: dict[str, Any] = {}
         try:
-            found = json.loads(self.path.read_text(encoding="utf-8"))
+            found = json.loads(read_input(self.path, LARGEST_FILE))
             if isinstance(found, dict) and isinstance(studies := found.pop("studies", None), dict):
                 self.studies = studies if found == json.loads(json.dumps(self.asked)) else {}
         except (OSError, ValueError, RecursionError):

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from symrot.errors import InputError
+from symrot.input_file import refuse_special
 
 if TYPE_CHECKING:
     from symrot.proof import Derivation
@@ -160,6 +161,8 @@ def derive_all(directory: Path | str) -> list[Path]:
     for name, text in printed.items():
         path = directory / name
         if not path.is_file() or path.read_bytes() != text.encode():
+            if path.exists():
+                refuse_special(path)  # a pipe would wait for a reader
             path.write_bytes(text.encode())
             changed.append(path)
     for path in _left_over(directory, printed):
@@ -186,5 +189,9 @@ def check(directory: Path | str) -> list[tuple[Path, str]]:
 
 def _left_over(directory: Path, printed: dict[str, str]) -> list[Path]:
     """Return the pages that symrot once printed into a directory and now would not."""
-    others = (path for path in sorted(directory.glob("*.md")) if path.name not in printed)
-    return [path for path in others if f"printed by `symrot derive {path.stem}`; do not edit." in path.read_text()]
+    others = (path for path in sorted(directory.glob("*.md")) if path.name not in printed and path.is_file())
+    return [path for path in others if _mark(path.stem).encode() in path.read_bytes()]
+
+
+def _mark(name: str) -> str:
+    return f"printed by `symrot derive {name}`; do not edit."

@@ -22,13 +22,14 @@ from symrot.certify.readback import read_batch, read_kernel
 from symrot.certify.rounded import meaning
 from symrot.certify.rounding import check_bounds, check_section
 from symrot.certify.rounding_words import library_region, library_section
-from symrot.errors import CertificateError
+from symrot.errors import CertificateError, InputError
+from symrot.input_file import read_input
 from symrot.kernels.library import kernel_names
 from symrot.kernels.removable import REMOVABLE
 
 __all__ = ["audit", "load"]
 
-LARGEST = 2**24  # bytes of a certificate
+LARGEST = 16_000_000  # bytes of a certificate
 PARTS: dict[str, Any] = {  # what a certificate holds, and of what type
     "schema": str, "kernel": str, "title": str, "regenerate": str, "convention": str, "domain": str, "derivation": str,
     "files": dict, "inputs": list, "spec": dict, "coq": (dict, type(None)), "flags": dict, "trusted": dict,
@@ -38,16 +39,14 @@ OPTIONAL = ("rounding", "objects")
 
 
 def load(path: Path) -> Data:
-    """Return a certificate; ``CertificateError`` for a file that is none, in one sentence."""
+    """Return a certificate; InputError where none can be read, CertificateError for another content."""
     if path.suffix in (".c", ".h", ".o"):
         raise CertificateError(f"{path}: expected a certificate, got another file: its own is {path.stem}.cert.json")
     try:
-        with path.open("rb") as stream:
-            content = stream.read(LARGEST + 1)
+        content = read_input(path, LARGEST)
     except OSError as reason:
-        raise CertificateError(f"{path}: expected a certificate that can be read ({reason.strerror})") from None
-    if len(content) > LARGEST:
-        raise CertificateError(f"{path}: expected a certificate of at most {LARGEST} bytes")
+        said = f"a certificate of at most {LARGEST // 1_000_000} MB that can be read"
+        raise InputError(f"{path}: expected {said}, got {reason.strerror}") from None
     try:
         data = json.loads(content, object_pairs_hook=_unique, parse_constant=_refused)
     except (ValueError, RecursionError) as reason:

@@ -186,6 +186,9 @@ class _Prover:
     def _value(self, node: tuple[Any, ...]) -> Quotient:
         fractions, kind = self.fractions, node[0]
         if kind == "in":
+            if node[1] not in self.symbol_of:
+                said = f"no input but {', '.join(self.symbol_of)}, got {node[1]}"
+                raise CertificateError(f"{self.operations.name}: expected {said}")
             symbol = self.symbol_of[node[1]]
             return self.meant.get(symbol) or fractions.of(symbol)
         if kind == "const":

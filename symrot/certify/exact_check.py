@@ -377,4 +377,5 @@ REFUSALS += (ValueError,)
 def sentence(reason):
     if isinstance(reason, (SyntaxError, LookupError)):
         return f"no text of kernels, or no certificate of the schema ({reason.args[0]!r})"
-    return str(reason) if isinstance(reason, (ValueError, OSError)) else f"no certificate of the schema ({reason!r})"
+    said = str(reason) if isinstance(reason, (ValueError, OSError)) else f"no certificate of the schema ({reason!r})"
+    return said if len(said) <= 400 else f"{said[:200]} .. {said[-200:]}"

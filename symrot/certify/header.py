@@ -25,9 +25,9 @@ _TOP = """
 """
 _INDEPENDENT = """
 #ifndef SYMROT_INDEPENDENT
-#if defined(__clang__)
+#if defined(__clang__) && defined(__NO_MATH_ERRNO__)
 #define SYMROT_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
-#elif defined(__GNUC__)
+#elif defined(__GNUC__) && !defined(__clang__)
 #define SYMROT_INDEPENDENT _Pragma("GCC ivdep")
 #else
 #define SYMROT_INDEPENDENT

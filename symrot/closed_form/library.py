@@ -85,12 +85,15 @@ def load(name: str) -> tuple[Any, ...]:
         If there is no C compiler, it refuses them, or one cannot be loaded.
     """
     if name not in _loaded:
-        parts = begin(name)
-        del _begun[name]
-        try:
-            _loaded[name] = tuple(ctypes.CDLL(str(part.path())) for part in parts)
-        except OSError as error:
-            raise CompilerError(f"the compiled closed form {name!r} cannot be loaded: {error}") from error
+        for attempt in (1, 2, 3):
+            parts = begin(name)
+            del _begun[name]
+            try:
+                _loaded[name] = tuple(ctypes.CDLL(str(part.path())) for part in parts)
+                break
+            except OSError as error:  # another process may have cleared the cache since
+                if attempt == 3 or all(part.path().exists() for part in parts):
+                    raise CompilerError(f"the compiled closed form {name!r} cannot be loaded: {error}") from error
     return _loaded[name]
 
 

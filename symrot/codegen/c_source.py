@@ -257,12 +257,12 @@ def _batch(program: Program, real: Real, near: bool) -> list[str]:
     of_sample = _with_names(program, each)
     angles = turning_arguments(of_sample) if near else []
     parts = _split(program)
-    late = _stores_last(program)
     if len(parts) > 1:
         loops = [
             _loop(part, real, ("start", "end"), (), "        ", _stores_last(part), INDEPENDENT, near) for part in parts
         ]
         return [*head, *_blocks(SPAN), *(line for loop in loops for line in loop), "    }", "}"]
+    late = _stores_last(program)
     if not angles:
         return [*head, *_loop(of_sample, real, ("0", "n"), loaded, "    ", late, INDEPENDENT, near), "}"]
     far = " + ".join(f"symrot_far{real.suffix}({c_expression(angle, real, True)})" for angle in angles)
@@ -390,9 +390,9 @@ def c_header(program: Program, description: Description, reals: Sequence[Real] =
         "#include <stddef.h>", "", "#ifndef SYMROT_RESTRICT", "#ifdef __cplusplus",
         "#define SYMROT_RESTRICT __restrict", "#else", "#define SYMROT_RESTRICT restrict", "#endif", "#endif", "",
         "#ifndef SYMROT_INDEPENDENT /* in front of a loop over samples: outputs do not overlap inputs */",
-        "#if defined(__clang__)",
+        "#if defined(__clang__) && defined(__NO_MATH_ERRNO__) /* with errno, calls of <math.h> keep a loop as it is */",
         '#define SYMROT_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")',
-        "#elif defined(__GNUC__)", '#define SYMROT_INDEPENDENT _Pragma("GCC ivdep")',
+        "#elif defined(__GNUC__) && !defined(__clang__)", '#define SYMROT_INDEPENDENT _Pragma("GCC ivdep")',
         "#else", "#define SYMROT_INDEPENDENT", "#endif", "#endif", "", *(_SPAN if len(_split(program)) > 1 else ()),
         "#ifdef __cplusplus", 'extern "C" {', "#endif",
         "", *shapes, "",

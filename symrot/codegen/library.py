@@ -2,9 +2,9 @@
 
 An entry is keyed by the source, the identity of the compiler (resolved path, size, time of change), the flags and the
 processor; it is named by its own checksum, so a truncated or altered file is noticed and built anew instead of loaded.
-Files appear by atomic rename, so any number of processes may build at once. The directory is private (mode 0700), and
-one that belongs to another user is not used. Where the cache cannot be written, a temporary directory of this process
-takes its place and :func:`cache` says why.
+Files appear by atomic rename, so any number of processes may build at once. The directory is private (mode 0700); one
+that belongs to another user, or that another user could exchange, is not used. Where the cache cannot be used, a
+temporary directory of this process takes its place and :func:`cache` says why.
 
 Environment: ``CC`` names the compiler; ``SYMROT_CACHE`` the cache directory, else ``XDG_CACHE_HOME/symrot``, else the
 platform's own place. This module imports neither SymPy nor NumPy nor SciPy.
@@ -12,6 +12,7 @@ platform's own place. This module imports neither SymPy nor NumPy nor SciPy.
 
 import os
 import re
+import stat
 import sys
 from functools import cache as cache_once
 from pathlib import Path
@@ -36,6 +37,7 @@ __all__ = [
     "compiler",
     "fetch",
     "missing",
+    "stop_compilers",
     "store",
 ]
 
@@ -153,7 +155,7 @@ class Building:
         if self._path is None:
             from threading import Thread
 
-            self._thread = Thread(target=self._work, args=(source, name, flags))
+            self._thread = Thread(target=self._work, args=(source, name, flags), name="symrot compiles")
             self._thread.start()
 
     def _work(self, source: str, name: str, flags: tuple[str, ...]) -> None:
@@ -165,7 +167,11 @@ class Building:
     def wait(self) -> None:
         """Return when the compiler is done, well or not."""
         if self._thread is not None:
-            self._thread.join()
+            try:
+                self._thread.join()
+            except KeyboardInterrupt:
+                stop_compilers()
+                raise
 
     def path(self) -> Path:
         """Return the library when it is there.
@@ -180,6 +186,13 @@ class Building:
             raise self._error
         assert self._path is not None
         return self._path
+
+
+def stop_compilers() -> None:
+    """Kill the compilers that threads of this process wait for, as after Ctrl-C; who waits gets a CompilerError."""
+    from symrot.codegen.compiler_run import stop_all
+
+    stop_all()
 
 
 def _entry(tool: Compiler, source: str, name: str, flags: tuple[str, ...]) -> str:
@@ -303,17 +316,54 @@ def _foreign(path: Path) -> str:
     found = path.lstat()
     if hasattr(os, "getuid") and found.st_uid != os.getuid():
         return f"{path} belongs to another user (uid {found.st_uid})"
-    if path.is_symlink():
+    if stat.S_ISLNK(found.st_mode):
         return f"{path} is a symbolic link"
+    if not (stat.S_ISREG(found.st_mode) or stat.S_ISDIR(found.st_mode)):
+        return f"{path} is no regular file"
     return ""
+
+
+@cache_once
+def _exposed(room: Path) -> str:
+    """Return why another user could put a directory in the place of ours, or an empty text.
+
+    Whoever may write a directory may rename what is in it, whomever that belongs to; where the directory is sticky, as
+    ``/tmp`` is, only who owns the entry, the directory or the machine may. So every directory on the way, links
+    followed or not, has to be of the user or of root, and to be sticky if others may write it.
+    """
+    if not hasattr(os, "getuid"):
+        return ""
+    for path in dict.fromkeys((*room.absolute().parents, *room.resolve().parents)):
+        for found in (path.lstat(), path.stat()):  # a link, and where it leads
+            if found.st_uid not in (0, os.getuid()):
+                return f"{path} belongs to another user (uid {found.st_uid}), who could replace {room}"
+        mode = found.st_mode
+        others = mode & stat.S_IWOTH or (mode & stat.S_IWGRP and _shared_group(found.st_gid))
+        if others and not mode & stat.S_ISVTX:
+            return f"{path} can be written by other users, who could replace {room}"
+    return ""
+
+
+def _shared_group(group: int) -> bool:
+    """Return whether a group may have members beside the user; a user's own group has the user's name."""
+    import grp
+    import pwd
+
+    try:
+        user, found = pwd.getpwuid(os.getuid()), grp.getgrgid(group)
+    except KeyError:
+        return True
+    return found.gr_name != user.pw_name or not {user.pw_name}.issuperset(found.gr_mem)
 
 
 def _own_room() -> tuple[Path, str]:
     """Return the user's cache directory and why it cannot be used, or an empty text."""
     room = _cache_directory() / ROOM
     try:
-        room.mkdir(mode=0o700, parents=True, exist_ok=True)
-        reason = _foreign(room)
+        if not room.is_dir():
+            for place in (*reversed(room.parents), room):
+                place.mkdir(mode=0o700, exist_ok=True)
+        reason = _foreign(room) or _exposed(room)
         if not reason and room.stat().st_mode & 0o077:
             room.chmod(0o700)
         if not reason and not os.access(room, os.W_OK):
@@ -395,14 +445,17 @@ def _sound_library(directory: Path, entry: str, name: str) -> Path | None:
 def _compile(tool: Compiler, source: str, name: str, entry: str, flags: tuple[str, ...]) -> Path:
     import tempfile
 
+    from symrot.codegen.compiler_run import run_compiler
+
     try:
         with tempfile.TemporaryDirectory(prefix="symrot-", ignore_cleanup_errors=True) as place:
             output = Path(place) / f"{name}{SUFFIX}"
-            complaint = _run(tool, source, flags, output)
+            complaint = run_compiler(tool.command, flags, source, output, SECONDS_TO_COMPILE)
             for spared in (set(TUNING), {*TUNING, NATIVE}):
                 if complaint and spared.intersection(flags):
                     fewer = tuple(flag for flag in flags if flag not in spared)
-                    complaint = complaint if _run(tool, source, fewer, output) else ""
+                    again = run_compiler(tool.command, fewer, source, output, SECONDS_TO_COMPILE)
+                    complaint = complaint if again else ""
             if complaint:
                 raise CompilerError(f"the C compiler {tool.command[0]} fails on the kernel {name!r}: {complaint}")
             content = output.read_bytes()
@@ -412,29 +465,3 @@ def _compile(tool: Compiler, source: str, name: str, entry: str, flags: tuple[st
     if _keep(entry, library.name.encode()).parent == library.parent:
         return library
     return _keep(library.name, content)  # the disk filled up in between
-
-
-def _run(tool: Compiler, source: str, flags: tuple[str, ...], output: Path) -> str:
-    """Run the compiler; return its first complaint, or an empty text when the library is there."""
-    import subprocess
-
-    command = [*tool.command, *flags, "-x", "c", "-", "-o", str(output), "-lm"]
-    try:
-        done = subprocess.run(
-            command,
-            input=source.encode(),
-            capture_output=True,
-            timeout=SECONDS_TO_COMPILE,
-            env={**os.environ, "LC_ALL": "C"},
-            check=False,
-        )
-    except subprocess.TimeoutExpired:
-        return f"no answer within {SECONDS_TO_COMPILE} s"
-    except OSError as error:
-        return f"it cannot be run: {error.strerror or error}"
-    if done.returncode == 0 and output.is_file() and output.stat().st_size:
-        return ""
-    lines = [line.strip() for line in done.stderr.decode("utf-8", "replace").splitlines() if line.strip()]
-    errors = [line for line in lines if "error" in line.lower()]
-    silence = f"exit status {done.returncode}, no message" if done.returncode else "no library was written"
-    return (errors or lines or [silence])[0]

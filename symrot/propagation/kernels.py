@@ -102,6 +102,9 @@ def compiled(plan: Plan) -> tuple[SceneKernel, Path]:
 
     try:
         kernel = scene_kernel(plan, start)
+    except KeyboardInterrupt:
+        library.stop_compilers()
+        raise
     finally:
         for building in started:
             building.wait()

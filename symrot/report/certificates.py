@@ -2,7 +2,6 @@
 
 import json
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from functools import cache
 from hashlib import sha256
 from importlib.metadata import version
@@ -10,14 +9,16 @@ from itertools import repeat
 from pathlib import Path
 
 import symrot
-from symrot.certify.audit import audit, operations_of
+from symrot.certify.audit import LARGEST, audit, operations_of
 from symrot.certify.certificate import Data, said_of, with_slots
 from symrot.codegen import library
 from symrot.errors import CertificateError, InputError
+from symrot.input_file import read_input
 from symrot.interface import emit, kernel_names, scene_kernel_name, subject
 from symrot.report import compiled
 from symrot.report.edited import explained, kernel_of
-from symrot.report.kernels import SCENES, WORKERS, certificate_files, kept_bounds, kernel_files, write_files
+from symrot.report.kernels import SCENES, certificate_files, kept_bounds, kernel_files, write_files
+from symrot.report.workers import workers
 from symrot.scene_file import names_with_kernels
 from symrot.scene_reader import nearest
 
@@ -113,14 +114,10 @@ def audit_files(
         return {str(path): audit_file(path, object_file, rerun, coq, progress) for path in paths}
     found = {}
     options = map(repeat, (object_file, rerun, coq))
-    with ProcessPoolExecutor(WORKERS) as pool:
-        try:
-            for path, said in zip(paths, pool.map(audit_file, paths, *options, chunksize=8), strict=True):
-                progress(f"audited {path.name} ..")
-                found[str(path)] = said
-        except CertificateError:
-            pool.shutdown(cancel_futures=True)
-            raise
+    with workers() as pool:
+        for path, said in zip(paths, pool.map(audit_file, paths, *options, chunksize=8), strict=True):
+            progress(f"audited {path.name} ..")
+            found[str(path)] = said
     return found
 
 
@@ -237,7 +234,7 @@ def certify_all(
     names = (*kernel_names(), *names_with_kernels())
     found: dict[str, Data] = {}
     written: list[Path] = []
-    with ProcessPoolExecutor(WORKERS) as pool:
+    with workers() as pool:
         work = pool.map(_certified, names, repeat(directory), repeat(objects), chunksize=4)
         for name, (data, paths) in zip(names, work, strict=True):
             progress(f"certified {name} ..")
@@ -289,10 +286,11 @@ def _emitted(path: str) -> str:
         said = f"{path}: expected a file that symrot emits of a kernel of the library or a shipped scene"
         raise InputError(f"{said} ({hint})" if hint else f"{said}; `symrot audit` takes the certificate of any kernel")
     try:
-        text = file.read_text(encoding="utf-8")
+        text = read_input(file, LARGEST).decode().replace("\r\n", "\n")
     except (OSError, UnicodeDecodeError) as reason:
-        why = reason.strerror if isinstance(reason, OSError) else "it is no UTF-8"
-        raise InputError(f"{path}: expected a file that can be read ({why})") from None
+        why = reason.strerror if isinstance(reason, OSError) else "no UTF-8"
+        said = f"a file of at most {LARGEST // 1_000_000} MB that can be read"
+        raise InputError(f"{path}: expected {said}, got {why}") from None
     if file.name.endswith(".cert.json"):
         audit_file(file)
     elif text != emit(kernel, "c", kept_bounds(kernel, file.parent)).source:

@@ -2,10 +2,12 @@
 
 from pathlib import Path
 
+from symrot.certify.audit import LARGEST
 from symrot.certify.certificate import Subject
 from symrot.certify.equality import prove_equal
 from symrot.certify.readback import read_batch, read_kernel
 from symrot.errors import CertificateError, InputError
+from symrot.input_file import read_input
 from symrot.interface import kernel_names, scene_kernel_name, subject
 from symrot.report.kernels import kept_bounds
 from symrot.scene_file import shipped_names
@@ -31,7 +33,7 @@ def explained(certificate: Path) -> str:
     emitted = subject(kernel, kept_bounds(kernel, certificate.parent))
     for file, wanted in emitted.files.items():
         try:
-            text = (certificate.parent / file).read_bytes().decode(errors="replace")
+            text = read_input(certificate.parent / file, LARGEST).decode(errors="replace")
         except OSError:
             continue
         if text != wanted:

@@ -3,29 +3,30 @@
 import json
 import os
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from difflib import unified_diff
 from itertools import repeat
 from pathlib import Path
 from typing import Any
 
 from symrot.certify import recheck
+from symrot.certify.audit import LARGEST
 from symrot.certify.certificate import with_slots
 from symrot.certify.readback import read_kernel
 from symrot.certify.rounding import check_bounds, check_section
 from symrot.certify.selftest import selftest_files
 from symrot.codegen.build_files import build_files
 from symrot.errors import CertificateError, InputError
+from symrot.input_file import read_input
 from symrot.interface import emit
 from symrot.kernels.library import definition, kernel_names
 from symrot.report.files import write
+from symrot.report.workers import workers
 from symrot.scene_file import names_with_kernels
 
 __all__ = ["certificate_files", "kept_bounds", "kernel_files", "kernel_lines", "stale", "write_all", "write_files"]
 
 SUFFIXES = {"c": (".c", ".h", ".json", ".txt", ".in"), "numpy": (".py",)}
 RECHECK = "recheck.py"  # re-checks certificates without symrot
-WORKERS = min(os.cpu_count() or 1, 4)
 SCENES = "scenes"  # under the folder of each target: the kernels of shipped scenes; those of the library beside it
 
 
@@ -87,7 +88,7 @@ def kept_bounds(kernel: str | Path, directory: Path | None) -> Mapping[str, Any]
 def _slots(path: Path) -> dict[str, Any]:
     """Return the certificate that is there, of which bounds and verdicts are kept; nothing for none."""
     try:
-        found = json.loads(path.read_bytes())
+        found = json.loads(read_input(path, LARGEST))
     except (OSError, ValueError, RecursionError):
         return {}
     return found if isinstance(found, dict) else {}
@@ -111,7 +112,7 @@ def _all_files(targets: Sequence[str], directory: Path, progress: Callable[[str]
         (name, room) for room, names in (("", kernel_names()), (f"{SCENES}/", names_with_kernels())) for name in names
     ]
     files: dict[str, str] = {}
-    with ProcessPoolExecutor(WORKERS) as pool:
+    with workers() as pool:
         names, rooms = zip(*work, strict=True)
         for name, found in zip(
             names, pool.map(_files_of, names, rooms, repeat(targets), repeat(directory), chunksize=8), strict=True

@@ -8,6 +8,7 @@ from statistics import geometric_mean
 from typing import Any
 
 from symrot.errors import InputError
+from symrot.input_file import read_input
 from symrot.report.layout import apart, columns, duration, fields, one_line
 
 __all__ = ["compared", "lines", "lines_of_comparison", "read_study"]
@@ -110,11 +111,10 @@ def read_study(path: Path) -> dict[str, Any]:
     """
     label = repr(str(path))
     try:
-        if path.stat().st_size > LARGEST_FILE:
-            raise InputError(f"{label}: expected a study of `symrot bench`, got a file of {path.stat().st_size} bytes")
-        found = json.loads(path.read_text(encoding="utf-8"))
+        found = json.loads(read_input(path, LARGEST_FILE))
     except OSError as reason:
-        raise InputError(f"{label}: expected a study of `symrot bench`; {reason.strerror or reason}") from None
+        said = f"a study of `symrot bench`, of at most {LARGEST_FILE // 1_000_000} MB"
+        raise InputError(f"{label}: expected {said}, got {reason.strerror or reason}") from None
     except (ValueError, RecursionError):
         raise InputError(f"{label}: expected a study of `symrot bench` as JSON, got other text") from None
     if not isinstance(found, dict) or found.get("format") != FORMAT:

@@ -1,0 +1,15 @@
+"""A cache that another process clears between the compiler and the loader is filled again."""
+
+from symrot.closed_form import library as closed_forms
+from symrot.codegen import library
+
+
+def test_a_closed_form_is_compiled_again_if_it_was_cleared_before_it_was_loaded(tmp_path, monkeypatch):
+    monkeypatch.setenv("SYMROT_CACHE", str(tmp_path / "cache"))
+    monkeypatch.setattr(closed_forms, "_loaded", {})
+    monkeypatch.setattr(closed_forms, "_begun", {})
+    first = closed_forms.begin("gyrostat")
+    for part in first:
+        part.path()
+    assert library.clear()
+    assert closed_forms.load("gyrostat")

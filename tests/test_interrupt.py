@@ -1,0 +1,98 @@
+"""Ctrl-C ends every command at once with exit code 130, no traceback, and nothing of it left running."""
+
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+import symrot
+
+ROOT = Path(symrot.__file__).parents[1]
+SECONDS = 20  # a command that swallows the signal, or waits for another process, takes longer on any machine
+KERNELS = [str(path) for path in sorted((ROOT / "generated" / "c").glob("*.cert.json"))[:30]]
+COMMANDS = {
+    "run": ["run", "tumbling_prism"],
+    "derive --all": ["derive", "--all", "-o", "pages"],
+    "certify --all": ["certify", "--all"],
+    "emit --all": ["emit", "--all", "-o", "emitted"],
+    "audit": ["audit", *KERNELS],
+    "bench": ["bench", "tumbling_prism", "--quick"],
+    "check": ["check", "sin(a+b)*cos(c-d)*exp(a)*tanh(d)/sqrt(1+c**2) == cosh(a)**2*sin(b+c)*tan(d)**3"],
+    "textbook": ["check", "--textbook", "all"],
+}
+
+
+def started(words, folder, **environment):
+    """Start a command with a cache of its own, in a group of processes of its own."""
+    cache = {"SYMROT_CACHE": str(folder / "cache"), "PYTHONPATH": str(ROOT)}
+    return subprocess.Popen(
+        [sys.executable, "-m", "symrot", *words], cwd=folder, env=os.environ | cache | environment, text=True,
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True,
+    )  # fmt: skip
+
+
+def interrupted(process, to_group):
+    """Send SIGINT, as a terminal does to the whole group, or to the first process alone; return what was said."""
+    (os.killpg if to_group else os.kill)(process.pid, signal.SIGINT)
+    try:
+        _, err = process.communicate(timeout=SECONDS)
+    except subprocess.TimeoutExpired:
+        os.killpg(process.pid, signal.SIGKILL)
+        process.communicate()
+        pytest.fail("the command went on")
+    return err
+
+
+def left_over(folder):
+    return [path for path in folder.rglob("*") if path.name.startswith(".symrot-") or path.suffix == ".part"]
+
+
+@pytest.mark.parametrize("to_group", [True, False], ids=["group", "alone"])
+@pytest.mark.parametrize("command", COMMANDS)
+def test_a_command_ends_when_it_is_interrupted(command, to_group, tmp_path):
+    process = started(COMMANDS[command], tmp_path)
+    time.sleep(random.uniform(0.3, 2.5))  # at any time: the test holds for all of them
+    if process.poll() is not None:
+        process.communicate()
+        pytest.skip("it was done before")
+    assert interrupted(process, to_group) == ""
+    assert process.returncode in (130, -signal.SIGINT)  # the second where it was done, and Python was about to end
+    with pytest.raises(ProcessLookupError):
+        for _ in range(100):  # a process that was killed may still have to be collected
+            os.killpg(process.pid, 0)
+            time.sleep(0.05)
+    if command not in ("emit --all", "certify --all", "audit"):  # those kill processes that write
+        assert left_over(tmp_path) == []
+
+
+def test_an_import_that_is_interrupted_ends_quietly(monkeypatch, capsys):
+    from symrot import __main__, cli
+
+    def interrupt():
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(cli, "main", interrupt)
+    assert __main__.main() == 130 and capsys.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize("to_group", [True, False], ids=["group", "alone"])
+def test_a_hanging_compiler_is_killed(to_group, tmp_path):
+    compiler = tmp_path / "cc"
+    compiler.write_text(f"#!/bin/sh\necho $$ >> {tmp_path}/pids\nsleep 100\n")
+    compiler.chmod(0o755)
+    process = started(["run", "tumbling_prism"], tmp_path, CC=str(compiler))
+    pids = tmp_path / "pids"
+    while process.poll() is None and not pids.exists():
+        time.sleep(0.01)
+    time.sleep(random.uniform(0, 1))
+    assert interrupted(process, to_group) == "" and process.returncode == 130
+    for pid in map(int, pids.read_text().split()):
+        with pytest.raises(ProcessLookupError):
+            for _ in range(100):
+                os.killpg(pid, 0)
+                time.sleep(0.05)
