@@ -201,6 +201,14 @@ def test_an_ensemble_is_its_motions():
 
 
 @needs_compiler
+def test_parameters_of_any_name_stand_in_guards():
+    """Kernels call their own constants p0, p1, ..: not those of the scene."""
+    for name in ("p0", "p1", "p2", "x0"):
+        motion = symrot.propagator(scene(f"floor(t/{name}) - 2*floor(t/(2*{name}))", stop=2.0, **{name: 0.25}))
+        assert motion([2.0]).omega[0, 2] == pytest.approx(1 / 3, abs=1e-10), name
+
+
+@needs_compiler
 def test_another_start_has_its_own_modes():
     made = symrot.propagator(scene("-sign(omega_3)", (0, 0, 1)))
     assert made([3.0], omega=[0, 0, -2]).omega[0, 2] == pytest.approx(-1.0, abs=1e-10)

@@ -2,7 +2,9 @@
 
 A double keeps 53 bits of ``a*t + b``: at t = 1e9 s a phase is off by 1e-7 rad, whatever steps. With ``t = epoch + tau``
 every polynomial of t, inside sine, cosine, exp or anywhere, is a polynomial of tau whose coefficients are found once,
-exactly, and rounded once; of what only sine, cosine and tangent see, whole turns are taken away before.
+exactly, and rounded once; of what only sine, cosine and tangent see, whole turns are taken away before. Elsewhere
+products stay products of such polynomials of degree one: written out, ``((t - c)/w)**2`` would be a difference of large
+numbers beside a narrow pulse.
 
 Standard library only.
 """
@@ -55,8 +57,9 @@ def moved(program: Program, parameters: Parameters) -> tuple[Program, Parameters
 class _Form(NamedTuple):
     """A formula, rewritten; and its terms where it is a polynomial of t with constant coefficients."""
 
-    node: Node | None  # None: made from the terms where it is used
+    node: Node | None  # None: of degree one, made from the terms where it is used
     terms: tuple[Node, ...] | None = None
+    centred: bool = False  # whether it is a product of factors such as t - c, which are small near a time of their own
 
 
 class _Mover:
@@ -76,7 +79,7 @@ class _Mover:
             form = self.read(node)
             if form.node is not None:
                 temporaries.append((name, form.node))
-                form = _Form(("symbol", name), form.terms)
+                form = form._replace(node=("symbol", name))
             self.forms[name] = form
         outputs = tuple((name, self.written(self.read(node))) for name, node in self.program.outputs)
         signature = self.program.signature
@@ -97,20 +100,22 @@ class _Mover:
             return self.forms[node[1]]
         parts = [self.read(child) for child in children(node)]
         terms = _terms(node, [part.terms for part in parts])
-        if terms is not None and len(terms) > 1:
+        if terms is not None and len(terms) == 2:
             return _Form(None, terms)
         turns = kind == "call" and node[1] in TURNING
         written = tuple(self.written(part, turns) for part in parts)
         if kind == "call":
             return _Form((kind, node[1], written), terms)
-        return _Form((kind, *written, *node[2:]) if kind == "**" else (kind, *written), terms)
+        centred = any(part.centred for part in parts) or (kind in ("*", "**") and any(map(_is_shifted, parts)))
+        return _Form((kind, *written, *node[2:]) if kind == "**" else (kind, *written), terms, centred)
 
     def written(self, form: _Form, turns: bool = False) -> Node:
         """Return a form as a formula; a polynomial of t by Horner's rule, its coefficients parameters.
 
         ``turns`` says that whole turns of it do not matter.
         """
-        if form.node is not None:
+        whole = turns and form.terms is not None and len(form.terms) > 1 and not form.centred
+        if form.node is not None and not whole:
             return form.node
         assert form.terms is not None
         if (form.terms, turns) not in self.known:
@@ -149,6 +154,11 @@ class _Mover:
         if node[0] == "call":
             return ("call", node[1], tuple(map(self.resolved, node[2])))
         return (node[0], *map(self.resolved, children(node)), *(node[2:] if node[0] == "**" else ()))
+
+
+def _is_shifted(form: _Form) -> bool:
+    """Return whether a form is a t + b with b other than zero."""
+    return form.terms is not None and len(form.terms) == 2 and form.terms[0] != ZERO
 
 
 def _terms(node: Node, parts: list[tuple[Node, ...] | None]) -> tuple[Node, ...] | None:

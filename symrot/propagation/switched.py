@@ -230,14 +230,14 @@ class _Regime:
     def __init__(self, switched: SwitchedMotion, motion: Motion, held: frozenset[str]) -> None:
         self.motion, self.plan, self.held, self.constants = motion, motion.plan, held, switched.constants
         self.guards = [guard for switch in switched.switches for guard in self._guards(switch)]
-        kernel, modes = motion.kernel, [switch["mode"] for switch in switched.switches]
-        own = [name for name, _ in kernel.quantity_parameters]
-        used = set().union(*(names(parse(guard.formula.replace(" of t", "_of_t"))) for guard in self.guards))
-        self.more = sorted(name for name in used if name not in own and (name in self.constants or name in modes))
+        known = {*self.constants, *(switch["mode"] for switch in switched.switches)}
+        nodes = [parse(guard.formula) for guard in self.guards]
+        self.more = sorted(known & set().union(*map(names, nodes)))
         self.events = [Event(guard.formula, terminal=True, direction=-1) for guard in self.guards]
-        columns = {f"{mode}_of_t": f"{mode} of t" for mode in held}
-        formulas = [rename(parse(guard.formula), columns) for guard in self.guards]
-        program = _with_parameters(kernel.quantities, self.more)
+        columns = {name: f"{name} of the scene" for name in self.more}  # a kernel has names of its own for constants
+        columns |= {f"{mode}_of_t": f"{mode} of t" for mode in held}
+        program = _with_parameters(motion.kernel.quantities, [columns[name] for name in self.more])
+        formulas = [rename(node, columns) for node in nodes]
         source = guard_library_source(program, formulas, self.plan.states, *error_blocks(self.plan))
         self.path = library.build(source, "events")
         self._bound: dict[tuple[int, ...], tuple[list[float], list[float]]] = {}
