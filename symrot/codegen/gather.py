@@ -17,6 +17,7 @@ Tree = tuple[Any, ...]
 HOISTED = "$"
 """First letter of a constant that has no number yet."""
 
+LARGEST_POWER = 64  # of what is written as one product
 ONE: Tree = ("num", Fraction(1))
 
 
@@ -134,6 +135,8 @@ class Gather:
         count = abs(int(power))
         if count == 1 and not divisors and len(factors) == 1:
             return constant**power, factors[0]
+        if count > LARGEST_POWER:
+            return constant**power, _repeated(("mul", factors, divisors), count)
         return constant**power, ("mul", factors * count, divisors * count)
 
     def _sum(self, terms: Iterable[Expr]) -> tuple[Expr, Tree]:
@@ -162,6 +165,14 @@ class Gather:
             parts.append((outer * inner, scaled))
         sign, tree = _signed_sum(parts)
         return Integer(sign), tree
+
+
+def _repeated(tree: Tree, count: int) -> Tree:
+    """Return a large power of a tree as squares of squares: a product of so many factors would be too deep a formula."""
+    if count <= LARGEST_POWER:
+        return ("mul", (tree,) * count, ())
+    half = _repeated(tree, count // 2)
+    return ("mul", (half, half, tree) if count % 2 else (half, half), ())
 
 
 def _oriented(value: Expr) -> tuple[int, Expr]:

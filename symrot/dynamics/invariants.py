@@ -14,6 +14,7 @@ from symrot import symbols
 from symrot.dynamics.equations import Equations
 from symrot.dynamics.torques import field_value
 from symrot.exact import is_zero
+from symrot.exact.ratio import TooLarge
 from symrot.kinematics.quaternion import dcm_of
 
 __all__ = ["Invariant", "find_invariants", "rate_along"]
@@ -111,6 +112,10 @@ def find_invariants(equations: Equations, structure: Mapping[str, Any]) -> tuple
     kinds = [torque["kind"] for torque in structure["torques"]]
     found = []
     for name, unit, value, tested in _candidates(equations, structure):
-        kept = is_zero(rate_along(tested, equations), equations.relations)
-        found.append(Invariant(name, unit, value, kept, _reason(name, kept, equations, kinds)))
+        try:
+            kept = is_zero(rate_along(tested, equations), equations.relations)
+            reason = _reason(name, kept, equations, kinds)
+        except TooLarge:
+            kept, reason = False, "not decided: the formula of its rate is too large"
+        found.append(Invariant(name, unit, value, kept, reason))
     return tuple(sorted(found, key=lambda item: not item.kept))
