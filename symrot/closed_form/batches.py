@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from symrot import number
 from symrot.closed_form import double_double as dd
-from symrot.closed_form.free_body import NEGLIGIBLE, Body, defect_of
+from symrot.closed_form.free_body import NEGLIGIBLE, Body, Defect
 from symrot.closed_form.gyrostat import Gyrostat
 from symrot.closed_form.heavy_top import Top
 from symrot.closed_form.library import Floats
@@ -96,7 +96,7 @@ def free_bodies(inertia: Sequence[Sequence[Fraction]], omega: Floats, start: Flo
         if body.axes is not None:
             integers, shared = body.along(given)
             rates[i] = [part for x in integers for part in quotient(x, shared)]
-        exact[i, 6:] = defect_of(body.integers, integers)
+        exact[i, 6:] = body.defect(integers)
     axes = None if body.axes is None else np.array(body.axes)
     return Batch("free_body", (np.array(body.moments), rates, start, exact, axes))
 
@@ -107,7 +107,7 @@ def free_bodies_of_moments(moments: Floats, omega: Floats, start: Floats) -> Bat
     for k in range(3):
         exact[:, 2 * k], exact[:, 2 * k + 1] = dd.two_sum(moments[:, (k + 1) % 3], -moments[:, (k + 2) % 3])
     for i, (own, given) in enumerate(zip(moments.tolist(), omega.tolist(), strict=True)):
-        exact[i, 6:] = defect_of(_integers(own), _integers(given))
+        exact[i, 6:] = Defect(_integers(own))(_integers(given))
     return Batch("free_body", (_pairs(moments), _pairs(omega), start, exact, None))
 
 
