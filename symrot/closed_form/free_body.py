@@ -14,10 +14,10 @@ from collections.abc import Callable, Sequence
 from symrot.closed_form.frames import quaternion_of
 from symrot.closed_form.motion import ExactMotion, prepared
 from symrot.closed_form.pairs import SMALLEST, Number, attitude, common, numbers, quotient, spread
-from symrot.inertia.principal import principal_axes
+from symrot.inertia.principal import Principal, principal_axes
 from symrot.scene import Initial
 
-__all__ = ["NEGLIGIBLE", "Body", "Defect", "motion", "motion_of_tensor", "starts_of_tensor"]
+__all__ = ["NEGLIGIBLE", "Body", "Defect", "motion", "motion_of_tensor", "starts"]
 
 NEGLIGIBLE = 200  # bits: what is smaller is taken for zero, as in number.equal
 
@@ -63,20 +63,19 @@ def motion_of_tensor(
     The principal axes are found to 110 digits and turn into the constants of the motion before anything is rounded to a
     double. Arguments as :func:`motion`, but ``inertia`` is a symmetric 3x3 tensor (kg m^2).
     """
-    return Body(inertia).motion(omega0, quaternion0)
+    return Body(principal_axes([list(row) for row in inertia])).motion(omega0, quaternion0)
 
 
-def starts_of_tensor(inertia: Sequence[Sequence[Number]]) -> Callable[[Initial], ExactMotion]:
-    """Return what gives the motion from an initial state; the principal axes are found once. See :func:`motion`."""
-    body = Body(inertia)
+def starts(principal: Principal) -> Callable[[Initial], ExactMotion]:
+    """Return what gives the motion of a body from an initial state; see :func:`motion_of_tensor`."""
+    body = Body(principal)
     return lambda start: body.motion(start.omega_b, start.quaternion)
 
 
 class Body:
     """A free body with what its motions share: moments, their differences, and axes where they are not principal."""
 
-    def __init__(self, inertia: Sequence[Sequence[Number]]) -> None:
-        body = principal_axes([list(row) for row in inertia])
+    def __init__(self, body: Principal) -> None:
         integers, shared = common(body.moments)
         self.moments, self.gaps, self.defect = spread(body.moments), _gaps(integers, shared), Defect(integers)
         entries = [x for row in body.axes for x in row]

@@ -81,11 +81,11 @@ def choose(variation: Variation, times: Floats, start: float, faster: bool) -> l
     90 us (a spin-up): then steps are faster up to the angles of :data:`STEPS_BELOW`. The angle is that of the
     trajectory itself, so that its method does not depend on the others.
     """
-    found = []
+    found, without_compiler = [], bool(not faster and library.missing())  # steps need one too
     for form, rows in forms_of(variation):
         if form is None:
             continue
-        batch, usual = (None, None) if library.missing() else _batch(variation, form, rows)
+        batch, usual = (None, None) if without_compiler else _batch(variation, form, rows)
         if batch is None and faster:
             rows = rows[_angles(variation, times, start)[rows] > STEPS_BELOW.get(form.library, 0.0)]
         if len(rows):
@@ -198,7 +198,7 @@ def _free(variation: Variation, rows: Rows, omega: Floats, start: Floats) -> tup
     from symrot.closed_form import batches
 
     if not variation.columns:
-        return batches.free_bodies(variation.scene.body.inertia, omega, start), True
+        return batches.free_bodies(variation.scene.body.principal, omega, start), True
     if not variation.in_principal_axes:
         return None, None
     if any(isinstance(x, Fraction) and Fraction(float(x)) != x for x in map(variation.constant, PRINCIPAL)):
