@@ -4,11 +4,11 @@
     python -m symrot.bench.starts --ensembles [--most 100000] [--rounds 5] [SCENE ...]
 
 The first table has a row for each scene and method, in microseconds: to read the start, to plan it (its structure is
-known), to bind parameters, to set up the motion (constants of a closed form; the task of a stepper), the motion itself;
-then whole calls at 101 times: ``propagator(t)``, ``propagator(t, omega=...)`` and the same with ``quaternion=``; last
-what of the latter is not the motion itself. The second has microseconds per trajectory of 101 samples, in closed form
-and by steps, with other starts alone and with other constants too, and the method that ``auto`` takes. Time of the
-processor, medians.
+known), to bind parameters, to set up the motion (constants of a closed form; the task of a stepper), the motion itself
+(all that is done in C, and the call of it); then whole calls at 101 times with another angular velocity, attitude, or
+both; last what of the dearer of the first two, and of the third, is not the motion itself. The second has microseconds
+per trajectory of 101 samples, in closed form and by steps, with other starts alone and with other constants too, and
+the method that ``auto`` takes. Time of the processor, medians.
 """
 
 import argparse
@@ -21,6 +21,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from symrot.closed_form import motion as forms
 from symrot.ensemble.ensemble import propagate_ensemble
 from symrot.errors import InputError
 from symrot.planner import structure_key
@@ -80,17 +81,36 @@ def _row(found: Propagator, rounds: int) -> tuple[float, ...]:
         _median(lambda: structure_key(scene, initial), rounds) + _median(lambda: motion.from_start(initial), rounds),
         _median(bind, rounds),
         _median(prepare, rounds),
-        _median(lambda: motion.follow(times, True), rounds),
-        _median(lambda: found(times), rounds),
+        _in_c(motion, initial, rounds) + _median(lambda: motion.follow(times, True), rounds),
         _median(lambda: found(times, omega=omega), rounds),
+        _median(lambda: found(times, quaternion=quaternion), rounds),
         _median(lambda: found(times, omega=omega, quaternion=quaternion), rounds),
     )
 
 
+def _in_c(motion: Any, initial: Any, rounds: int) -> float:
+    """Return what the constants of a closed form take in C; steppers have none."""
+    functions = forms._bound.get(motion.form.library) if motion.choice.method == "exact" else None
+    if functions is None:
+        return 0.0
+    calls: list[tuple[Any, ...]] = []
+
+    def heard(*given: Any) -> Any:
+        calls.append(given)
+        return functions[0](*given)
+
+    forms._bound[motion.form.library] = (heard, *functions[1:])
+    try:
+        alive = motion.from_start(initial).exact
+    finally:
+        forms._bound[motion.form.library] = functions
+    return _median(lambda kept=alive: functions[0](*calls[0]), rounds)  # type: ignore[misc]  # whose memory is written
+
+
 def changed_starts(scenes: list[str], rounds: int) -> None:
     """Print the first table."""
-    heads = ("read", "plan", "bind", "set up", "motion", "same", "omega", "both", "Python")
-    print(f"{'us of a changed start':28}{'method':>8}" + "".join(f"{head:>8}" for head in heads))
+    heads = ("read", "plan", "bind", "set up", "motion", "omega", "attitude", "both", "Python", "of both")
+    print(f"{'us of a changed start':28}{'method':>8}" + "".join(f"{head:>9}" for head in heads))
     for name in scenes:
         for method in METHODS:
             try:
@@ -99,8 +119,9 @@ def changed_starts(scenes: list[str], rounds: int) -> None:
                 continue
             if found.method == method:
                 row = _row(found, rounds)
-                cells = (*row, row[-1] - row[4])
-                print(f"{name:28}{method:>8}" + "".join(f"{cell:8.1f}" for cell in cells))
+                motion, *calls = row[4:]
+                cells = (*row, max(calls[:2]) - motion, calls[2] - motion)
+                print(f"{name:28}{method:>8}" + "".join(f"{cell:9.1f}" for cell in cells))
 
 
 def _ensemble(scene: Scene, n: int, random: np.random.Generator) -> Iterator[tuple[str, dict[str, Any]]]:

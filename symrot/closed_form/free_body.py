@@ -80,7 +80,12 @@ class Body:
         self.moments, self.gaps, self.defect = spread(body.moments), _gaps(integers, shared), Defect(integers)
         entries = [x for row in body.axes for x in row]
         self._axes, self._unit = common(entries)
-        self._start: tuple[Sequence[Number], list[float]] = (), []  # the last attitude, which many starts share
+        self._rates: tuple[Sequence[Number], list[float], list[float]] = (
+            (),
+            [],
+            [],
+        )  # the last, which the next may share
+        self._attitude: tuple[Sequence[Number], list[float]] = (), []
         self.axes = None if body.given_axes else spread([*entries, *quaternion_of(body.axes)])
 
     def along(self, omega0: Sequence[Number]) -> tuple[list[int], int]:
@@ -95,13 +100,17 @@ class Body:
 
     def motion(self, omega0: Sequence[Number], quaternion0: Sequence[Number]) -> ExactMotion:
         """Return the motion from an initial state along the given axes."""
-        rates, shared = self.along(numbers("omega", omega0, 3))
-        given, start = self._start
-        if quaternion0 is not given:
+        given, omega, exact = self._rates
+        if omega0 is not given:
+            rates, shared = self.along(numbers("omega", omega0, 3))
+            omega = [part for x in rates for part in quotient(x, shared)]
+            exact = [*self.gaps, *self.defect(rates)]
+            self._rates = omega0, omega, exact
+        attitude0, start = self._attitude
+        if quaternion0 is not attitude0:
             start = attitude(numbers("quaternion", quaternion0, 4))
-            self._start = quaternion0, start
-        omega = [part for x in rates for part in quotient(x, shared)]
-        return _prepared(self.moments, omega, start, [*self.gaps, *self.defect(rates)], self.axes)
+            self._attitude = quaternion0, start
+        return _prepared(self.moments, omega, start, exact, self.axes)
 
 
 def _differences(moments: Sequence[Number], omega: Sequence[Number]) -> list[float]:
