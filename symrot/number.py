@@ -96,13 +96,14 @@ def sqrt(value: Fraction) -> Fraction:
     return Fraction(isqrt((value.numerator << 2 * shift) // value.denominator), 1 << shift)
 
 
-def unit(vector: Sequence[Fraction]) -> tuple[Fraction, ...]:
+def unit(vector: Sequence[Fraction | float]) -> tuple[Fraction, ...]:
     """Return a vector divided by its norm, which must not be zero: exact where the norm is rational, else to 2^-320.
 
     All in integers over one denominator: fractions would take a greatest common divisor for each sum and product.
     """
-    shared = lcm(*[x.denominator for x in vector])
-    tops = [x.numerator * (shared // x.denominator) for x in vector]
+    ratios = [x.as_integer_ratio() for x in vector]
+    shared = lcm(*[bottom for _, bottom in ratios])
+    tops = [top * (shared // bottom) for top, bottom in ratios]
     square = sum([x * x for x in tops])
     norm, shift = isqrt(square), 0
     if norm * norm != square:

@@ -31,7 +31,8 @@ def starts(n):
     omega[5, 1] = 1e-70 * omega[5, 0]
     quaternion = RANDOM.standard_normal((n, 4)) * 10.0 ** RANDOM.integers(-30, 30, (n, 1))
     quaternion[::5] = np.eye(4)[RANDOM.integers(0, 4, len(quaternion[::5]))]
-    quaternion[1::7] = np.round(3 * RANDOM.standard_normal((len(quaternion[1::7]), 4))) + np.array([9, 0, 0, 0])
+    quaternion[1::7] = np.round(3 * RANDOM.standard_normal((len(quaternion[1::7]), 4)))
+    quaternion[1::7, 0] += 9.0
     return omega, quaternion
 
 
@@ -169,3 +170,21 @@ def test_a_pendulum_beside_its_axis_is_stepped():
     """What has no closed form is found out once for all starts with the same zeros."""
     found = symrot.propagate_ensemble(scene([BESIDE], inertia=(1, 2, 3)), omega=RANDOM.standard_normal((9, 3)))
     assert set(found.methods) == {"taylor"}
+
+
+@pytest.mark.parametrize(
+    ("name", "seconds", "methods"),
+    [
+        ("free", 1e-3, {"exact"}), ("free", 1e6, {"exact"}), ("top", 1e-3, {"exact"}), ("gyrostat", 1e-3, {"exact"}),
+        ("driven", 1.0, {"taylor"}), ("driven", 1e6, {"exact"}), ("braked", 1.0, {"taylor"}),
+        ("turned top", 1.0, {"taylor"}), ("turned top", 1e3, {"exact"}), ("turned top", 40.0, {"exact", "taylor"}),
+    ],
+)  # fmt: skip
+def test_auto_takes_what_was_measured_to_be_faster(name, seconds, methods):
+    """Arrays of closed forms always; those made one by one where the body turns far; each for itself."""
+    omega = np.random.default_rng(3).uniform(0.5, 3.0, (20, 3))
+    found = symrot.propagate_ensemble(SCENES[name], omega=omega, t=[0.0, seconds])
+    assert set(found.methods) == methods
+    for i in (0, 7):
+        alone = symrot.propagate_ensemble(SCENES[name], omega=omega[i : i + 1], t=[0.0, seconds])
+        assert alone.methods[0] == found.methods[i] and alone.omega.tobytes() == found.omega[i].tobytes()

@@ -138,3 +138,40 @@ def test_the_wheel_holds_all_data_and_no_test(unpacked_wheel):
     }
     assert wanted <= held
     assert not any(name.startswith("tests") for name in held)
+
+
+def test_a_warm_run_imports_nothing_it_can_do_without(tmp_path):
+    """A start costs what it imports: neither OpenSSL nor archives nor the commands that were not asked for."""
+    spared = (
+        "sympy",
+        "scipy",
+        "matplotlib",
+        "hashlib",
+        "_hashlib",
+        "shutil",
+        "bz2",
+        "symrot.bench",
+        "symrot.report.box",
+    )
+    code = (
+        "import sys, io; from symrot.cli import main; sys.stdout = io.StringIO(); main(['run', 'tumbling_prism']); "
+        f"print([m for m in {spared!r} if m in sys.modules], file=sys.stderr)"
+    )
+    for _ in range(2):  # the first fills the cache
+        done = subprocess.run(
+            [sys.executable, "-c", code],
+            capture_output=True,
+            text=True,
+            env=os.environ | {"SYMROT_CACHE": str(tmp_path)},
+        )
+    assert done.stderr.strip().splitlines()[-1] == "[]"
+
+
+def test_help_of_one_command_and_of_all():
+    """One parser for a known command; the names of all for `--help` and for what is no command."""
+    lines = run("from symrot.cli import COMMANDS, _parser; print(_parser('run').format_help(), *COMMANDS)")
+    assert "propagate a scene" in lines and "bench" in lines
+    done = subprocess.run([sys.executable, "-m", "symrot", "--help"], capture_output=True, text=True)
+    assert all(name in done.stdout for name in ("run", "certify", "bench", "doctor"))
+    done = subprocess.run([sys.executable, "-m", "symrot", "run", "--help"], capture_output=True, text=True)
+    assert "usage: symrot run" in done.stdout and "--tolerance" in done.stdout

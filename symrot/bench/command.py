@@ -104,6 +104,7 @@ STUDIES: dict[str, str] = {
     "dense": "20 000 samples of one motion against heyoka's dense output",
     "kernels": "emitted kernels against those of other tools, in operations and nanoseconds",
     "overhead": "a call from Python against the bare call in C",
+    "starts": "another start by component, and ensembles of 10 to 100 000 motions, exact and stepped",
     "stepper": "DOP853 in C against one by hand and SciPy's, at equal tolerance",
     "closed_form": "nanoseconds per sample of the closed forms, and their set-up",
     "long": "1e6 revolutions by stepping: energy, attitude and time",

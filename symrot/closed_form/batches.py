@@ -11,12 +11,13 @@ from numpy.typing import NDArray
 
 from symrot import number
 from symrot.closed_form import double_double as dd
-from symrot.closed_form.free_body import NEGLIGIBLE, Body, defect_of
+from symrot.closed_form.free_body import NEGLIGIBLE, Body, Defect
 from symrot.closed_form.gyrostat import Gyrostat
 from symrot.closed_form.heavy_top import Top
 from symrot.closed_form.library import Floats
 from symrot.closed_form.many import Batch
 from symrot.closed_form.pairs import GRID, LARGEST, SMALLEST, attitude, pair, quotient
+from symrot.inertia.principal import Principal
 
 __all__ = ["Column", "attitudes", "free_bodies", "free_bodies_of_moments", "gyrostats", "tops", "tops_of", "usual"]
 
@@ -87,16 +88,16 @@ def _noticed(omega: Floats) -> Floats:
     return np.where(abs(omega) < np.ldexp(abs(omega).max(axis=1), -NEGLIGIBLE)[:, None], 0.0, omega)
 
 
-def free_bodies(inertia: Sequence[Sequence[Fraction]], omega: Floats, start: Floats) -> Batch:
+def free_bodies(principal: Principal, omega: Floats, start: Floats) -> Batch:
     """Return the motions of one free body from :func:`usual` angular velocities and attitudes (8,) or (n, 8)."""
-    body, rates, exact = Body(inertia), _pairs(_noticed(omega)), np.empty((len(omega), 8))
+    body, rates, exact = Body(principal), _pairs(_noticed(omega)), np.empty((len(omega), 8))
     exact[:, :6] = body.gaps
     for i, given in enumerate(rates[:, ::2].tolist() if body.axes is None else omega.tolist()):
         integers = _integers(given)
         if body.axes is not None:
             integers, shared = body.along(given)
             rates[i] = [part for x in integers for part in quotient(x, shared)]
-        exact[i, 6:] = defect_of(body.integers, integers)
+        exact[i, 6:] = body.defect(integers)
     axes = None if body.axes is None else np.array(body.axes)
     return Batch("free_body", (np.array(body.moments), rates, start, exact, axes))
 
@@ -107,7 +108,7 @@ def free_bodies_of_moments(moments: Floats, omega: Floats, start: Floats) -> Bat
     for k in range(3):
         exact[:, 2 * k], exact[:, 2 * k + 1] = dd.two_sum(moments[:, (k + 1) % 3], -moments[:, (k + 2) % 3])
     for i, (own, given) in enumerate(zip(moments.tolist(), omega.tolist(), strict=True)):
-        exact[i, 6:] = defect_of(_integers(own), _integers(given))
+        exact[i, 6:] = Defect(_integers(own))(_integers(given))
     return Batch("free_body", (_pairs(moments), _pairs(omega), start, exact, None))
 
 

@@ -76,7 +76,7 @@ def _is_free(scene: Scene) -> bool:
 def _free_body(scene: Scene) -> Starts:
     from symrot.closed_form import free_body
 
-    return free_body.starts_of_tensor(scene.body.inertia)
+    return free_body.starts(scene.body.principal)
 
 
 def _is_symmetric_top(scene: Scene) -> bool:

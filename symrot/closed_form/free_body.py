@@ -14,10 +14,10 @@ from collections.abc import Callable, Sequence
 from symrot.closed_form.frames import quaternion_of
 from symrot.closed_form.motion import ExactMotion, prepared
 from symrot.closed_form.pairs import SMALLEST, Number, attitude, common, numbers, quotient, spread
-from symrot.inertia.principal import principal_axes
+from symrot.inertia.principal import Principal, principal_axes
 from symrot.scene import Initial
 
-__all__ = ["NEGLIGIBLE", "Body", "defect_of", "motion", "motion_of_tensor", "starts_of_tensor"]
+__all__ = ["NEGLIGIBLE", "Body", "Defect", "motion", "motion_of_tensor", "starts"]
 
 NEGLIGIBLE = 200  # bits: what is smaller is taken for zero, as in number.equal
 
@@ -63,24 +63,29 @@ def motion_of_tensor(
     The principal axes are found to 110 digits and turn into the constants of the motion before anything is rounded to a
     double. Arguments as :func:`motion`, but ``inertia`` is a symmetric 3x3 tensor (kg m^2).
     """
-    return Body(inertia).motion(omega0, quaternion0)
+    return Body(principal_axes([list(row) for row in inertia])).motion(omega0, quaternion0)
 
 
-def starts_of_tensor(inertia: Sequence[Sequence[Number]]) -> Callable[[Initial], ExactMotion]:
-    """Return what gives the motion from an initial state; the principal axes are found once. See :func:`motion`."""
-    body = Body(inertia)
+def starts(principal: Principal) -> Callable[[Initial], ExactMotion]:
+    """Return what gives the motion of a body from an initial state; see :func:`motion_of_tensor`."""
+    body = Body(principal)
     return lambda start: body.motion(start.omega_b, start.quaternion)
 
 
 class Body:
     """A free body with what its motions share: moments, their differences, and axes where they are not principal."""
 
-    def __init__(self, inertia: Sequence[Sequence[Number]]) -> None:
-        body = principal_axes([list(row) for row in inertia])
-        self.integers, shared = common(body.moments)
-        self.moments, self.gaps = spread(body.moments), _gaps(self.integers, shared)
+    def __init__(self, body: Principal) -> None:
+        integers, shared = common(body.moments)
+        self.moments, self.gaps, self.defect = spread(body.moments), _gaps(integers, shared), Defect(integers)
         entries = [x for row in body.axes for x in row]
         self._axes, self._unit = common(entries)
+        self._rates: tuple[Sequence[Number], list[float], list[float]] = (
+            (),
+            [],
+            [],
+        )  # the last, which the next may share
+        self._attitude: tuple[Sequence[Number], list[float]] = (), []
         self.axes = None if body.given_axes else spread([*entries, *quaternion_of(body.axes)])
 
     def along(self, omega0: Sequence[Number]) -> tuple[list[int], int]:
@@ -95,16 +100,23 @@ class Body:
 
     def motion(self, omega0: Sequence[Number], quaternion0: Sequence[Number]) -> ExactMotion:
         """Return the motion from an initial state along the given axes."""
-        rates, shared = self.along(numbers("omega", omega0, 3))
-        start = attitude(numbers("quaternion", quaternion0, 4))
-        omega = [part for x in rates for part in quotient(x, shared)]
-        return _prepared(self.moments, omega, start, [*self.gaps, *defect_of(self.integers, rates)], self.axes)
+        given, omega, exact = self._rates
+        if omega0 is not given:
+            rates, shared = self.along(numbers("omega", omega0, 3))
+            omega = [part for x in rates for part in quotient(x, shared)]
+            exact = [*self.gaps, *self.defect(rates)]
+            self._rates = omega0, omega, exact
+        attitude0, start = self._attitude
+        if quaternion0 is not attitude0:
+            start = attitude(numbers("quaternion", quaternion0, 4))
+            self._attitude = quaternion0, start
+        return _prepared(self.moments, omega, start, exact, self.axes)
 
 
 def _differences(moments: Sequence[Number], omega: Sequence[Number]) -> list[float]:
     """Return I2 - I3, I3 - I1, I1 - I2 and the defect |L|^2 - 2 T I_mid, scaled as free_body.c takes it, as hi, lo."""
     integers, shared = common(moments)
-    return [*_gaps(integers, shared), *defect_of(integers, common(omega)[0])]
+    return [*_gaps(integers, shared), *Defect(integers)(common(omega)[0])]
 
 
 def _gaps(i: list[int], shared: int) -> list[float]:
@@ -117,14 +129,22 @@ def _gaps(i: list[int], shared: int) -> list[float]:
     return found
 
 
-def defect_of(i: list[int], w: list[int]) -> tuple[float, float]:
-    """Return |L|^2 - 2 T I_mid over the square of the largest moment times the largest rate, of integers, as hi, lo."""
-    middle = sorted(i)[1]
-    shares = [moment * (moment - middle) * rate * rate for moment, rate in zip(i, w, strict=True)]
-    defect, largest = sum(shares), max(i) * max(map(abs, w))
-    if abs(defect) << NEGLIGIBLE < max(map(abs, shares)) or not largest:
-        return 0.0, 0.0
-    return quotient(defect, largest * largest)
+class Defect:
+    """|L|^2 - 2 T I_mid over the square of the largest moment times the largest rate, for moments as integers."""
+
+    def __init__(self, i: list[int]) -> None:
+        middle = sorted(i)[1]
+        self._one, self._two, self._three = [moment * (moment - middle) for moment in i]
+        self._largest = max(i)
+
+    def __call__(self, w: list[int]) -> tuple[float, float]:
+        """Return it for rates as integers, as hi, lo."""
+        x, y, z = w
+        one, two, three = self._one * x * x, self._two * y * y, self._three * z * z
+        defect, largest = one + two + three, self._largest * max(abs(x), abs(y), abs(z))
+        if not defect or abs(defect) << NEGLIGIBLE < max(abs(one), abs(two), abs(three)):
+            return 0.0, 0.0
+        return quotient(defect, largest * largest)
 
 
 def _prepared(

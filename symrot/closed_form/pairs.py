@@ -51,11 +51,11 @@ def attitude(values: Sequence[Number]) -> list[float]:
 
     An attitude needs no more, and arithmetic in pairs of doubles finds the same numbers for many attitudes at once.
     """
-    result = spread(values)
-    for k in range(1, len(result), 2):
-        step = ulp(result[k - 1]) * GRID
-        if result[k] and step:
-            result[k] = round(result[k] / step) * step
+    result: list[float] = []
+    for value in values:
+        hi, lo = (value, 0.0) if isinstance(value, float) else quotient(value.numerator, value.denominator)
+        step = ulp(hi) * GRID
+        result += (hi, round(lo / step) * step if lo and step else lo)
     return result
 
 

@@ -91,10 +91,11 @@ def propagate_ensemble(
 ) -> Ensemble:
     """Return n motions of a scene that differ in their initial states and in constants of the scene.
 
-    Each is found as :func:`symrot.propagate` would find it alone, and comes out bit by bit the same whatever the
-    others are, in whatever order and number, and on how many threads: in closed form where there is one, else by
-    Taylor series with one trajectory in each SIMD lane. A motion that cannot be followed to its last time does not
-    disturb the others: its ``status`` and message say so.
+    Each comes out bit by bit the same whatever the others are, in whatever order and number, and on how many threads.
+    ``auto`` follows each by the faster method: in closed form where there is one, with the very bits that
+    :func:`symrot.propagate` gives alone; by Taylor series with one trajectory in each SIMD lane where there is none, or
+    where it would be made one by one and the body turns little (see :func:`symrot.ensemble.exact.choose`). A motion
+    that cannot be followed to its last time does not disturb the others: its ``status`` and message say so.
 
     Parameters
     ----------

@@ -7,7 +7,7 @@ by one, each as a motion alone; where no constant varies, they share what the bo
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 from itertools import combinations
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +23,7 @@ from symrot.scene import Initial
 if TYPE_CHECKING:
     from symrot.closed_form.many import Batch
 
-__all__ = ["follow_exact", "forms_of"]
+__all__ = ["STEPS_BELOW", "Solved", "choose", "follow_exact", "forms_of"]
 
 Rows = NDArray[np.intp]
 MOST_BITS = 62  # of a pattern
@@ -59,16 +59,64 @@ def _patterns(variation: Variation) -> list[Rows]:
     return np.split(order, edges)
 
 
+STEPS_BELOW = {"axial": 1000.0, "spin_up": 1500.0, "heavy_top": 100.0}
+"""Up to which angle, rad, steps are faster than closed forms that are made one by one; see :func:`choose`."""
+
+
+class Solved(NamedTuple):
+    """Trajectories of one closed form, as arrays if there are such."""
+
+    form: Form
+    rows: Rows
+    batch: "Batch | None"
+    usual: Any  # which rows the arrays are good for
+
+
+def choose(variation: Variation, times: Floats, start: float, faster: bool) -> list[Solved]:
+    """Return the trajectories to be followed in closed form: with ``faster``, those for which steps take longer.
+
+    Measured by ``python -m symrot.bench.starts --ensembles``, for spans of 0.1 to 1000 s and tolerances of 1e-6 and
+    1e-12: a closed form made as an array takes 3 to 14 us, less than any steps, which take 5 to 30 us and 0.05 us for
+    each rad. Made one by one it takes 40 us (a top whose axes are turned first), 60 us (a rotation about one axis) or
+    90 us (a spin-up): then steps are faster up to the angles of :data:`STEPS_BELOW`. The angle is that of the
+    trajectory itself, so that its method does not depend on the others.
+    """
+    found, without_compiler = [], bool(not faster and library.missing())  # steps need one too
+    for form, rows in forms_of(variation):
+        if form is None:
+            continue
+        batch, usual = (None, None) if without_compiler else _batch(variation, form, rows)
+        if batch is None and faster:
+            rows = rows[_angles(variation, times, start)[rows] > STEPS_BELOW.get(form.library, 0.0)]
+        if len(rows):
+            found.append(Solved(form, rows, batch, usual))
+    return found
+
+
+def _angles(variation: Variation, times: Floats, start: float) -> Floats:
+    """Return the angles that bodies turn about at the rate of their start and under constant torques, rad, (n,)."""
+    n = len(variation)
+    span = np.broadcast_to(abs(times - start).max(axis=-1, initial=0.0), (n,))
+    push: Any = np.zeros(n)
+    smallest = variation.moments.min(axis=1)
+    for k, torque in enumerate(variation.scene.torques):
+        if torque.kind == "constant_body":
+            for axis in (1, 2, 3):
+                value = variation.constant(f"{variation.prefix(k)}torque_{axis}")
+                push = push + abs(float(value) if isinstance(value, Fraction) else value)
+    with np.errstate(all="ignore"):  # what overflows is far
+        angles: Floats = np.sqrt((variation.omega**2).sum(axis=1)) * span + 0.5 * push / smallest * span**2
+    return np.nan_to_num(angles, nan=np.inf)
+
+
 def follow_exact(
-    variation: Variation, form: Form, rows: Rows, times: Floats, start: float, omega: Floats, quaternion: Floats | None,
+    variation: Variation, solved: Solved, times: Floats, start: float, omega: Floats, quaternion: Floats | None,
     workers: int,
 ) -> None:  # fmt: skip
-    """Write angular velocity and attitude of the trajectories ``rows``, all of one form, at times (m,) or (n, m), s."""
+    """Write angular velocity and attitude of trajectories of one form at times (m,) or (n, m), s."""
     since = times - start if start else times
+    form, rows, batch, usual = solved
     whole = len(rows) == len(variation)
-    batch, usual = None, np.True_  # type: tuple[Batch | None, Any]
-    if not library.missing():
-        batch, usual = _batch(variation, form, rows)
     alone: Sequence[int] = range(len(rows))
     if batch is not None:
         from symrot.closed_form.many import evaluate
@@ -150,7 +198,7 @@ def _free(variation: Variation, rows: Rows, omega: Floats, start: Floats) -> tup
     from symrot.closed_form import batches
 
     if not variation.columns:
-        return batches.free_bodies(variation.scene.body.inertia, omega, start), True
+        return batches.free_bodies(variation.scene.body.principal, omega, start), True
     if not variation.in_principal_axes:
         return None, None
     if any(isinstance(x, Fraction) and Fraction(float(x)) != x for x in map(variation.constant, PRINCIPAL)):

@@ -5,10 +5,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from symrot.closed_form.choose import Form
 from symrot.codegen import library
 from symrot.ensemble import lanes
-from symrot.ensemble.exact import follow_exact, forms_of
+from symrot.ensemble.exact import Solved, choose, follow_exact
 from symrot.ensemble.numbers import Numbers
 from symrot.ensemble.variation import Variation
 from symrot.errors import InputError, PropagationError
@@ -70,17 +69,17 @@ def follow(problem: Problem, method: str) -> Followed:
     Parameters
     ----------
     method : str
-        ``auto`` (closed form for each that has one, lanes for the others), ``exact``, ``taylor``, ``dop853`` or
-        ``scipy:NAME``.
+        ``auto`` (for each the faster of closed form and lanes, see :func:`symrot.ensemble.exact.choose`), ``exact``,
+        ``taylor``, ``dop853`` or ``scipy:NAME``.
     """
     count = len(problem.variation)
     name = method.partition(":")[0]
     if method != "auto" and (name not in METHODS or name == "constant" or (":" in method and name != "scipy")):
         choose_method(problem.plan, method)  # says what there is
-    solved = [(form, rows) for form, rows in _forms(problem, method) if form is not None]
+    solved = _solved(problem, method)
     by_steps = np.ones(count, dtype=bool)
-    for _, rows in solved:
-        by_steps[rows] = False
+    for each in solved:
+        by_steps[each.rows] = False
     stepped = np.flatnonzero(by_steps).tolist()
     if method == "exact" and stepped:
         raise InputError(
@@ -93,10 +92,8 @@ def follow(problem: Problem, method: str) -> Followed:
     quaternion = np.empty((count, samples, 4)) if attitude else None
     methods, messages = ["exact"] * count, [""] * count
     steps, evaluations = np.zeros(count, dtype=np.int64), np.zeros(count, dtype=np.int64)
-    for form, rows in solved:
-        follow_exact(
-            problem.variation, form, rows, problem.times, problem.t0, omega, quaternion, problem.workers
-        )  # fmt: skip
+    for each in solved:
+        follow_exact(problem.variation, each, problem.times, problem.t0, omega, quaternion, problem.workers)
     if stepped and problem.plan.switches:
         alone = _switched(problem, method, stepped, omega, quaternion)
         methods, messages = list(alone.methods), list(alone.messages)
@@ -141,10 +138,10 @@ def _switched(
     return Followed(omega, quaternion, tuple(methods), tuple(messages), steps, evaluations)
 
 
-def _forms(problem: Problem, method: str) -> list[tuple[Form | None, Any]]:
-    """Return the closed forms that a method takes, with their trajectories."""
+def _solved(problem: Problem, method: str) -> list[Solved]:
+    """Return the trajectories that a method follows in closed form."""
     if method == "exact" or (method == "auto" and not missing_compiler()):
-        return forms_of(problem.variation)
+        return choose(problem.variation, problem.times, problem.t0, faster=method == "auto")
     return []
 
 

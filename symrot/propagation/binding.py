@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping
 from fractions import Fraction
 
 from symrot import number
+from symrot.closed_form.pairs import quotient
 from symrot.expression import Node, evaluate, names
 from symrot.planner import START_CONSTANTS, Plan
 from symrot.scene_kernel import EXACT_FUNCTIONS, Parameters
@@ -15,15 +16,14 @@ from symrot.scene_kernel import EXACT_FUNCTIONS, Parameters
 __all__ = ["Binding", "folded", "one_double", "two_doubles", "value_of"]
 
 
-def one_double(value: Fraction) -> list[float]:
-    """Return the double nearest to a number."""
-    return [float(value)]
+def one_double(top: int, bottom: int) -> tuple[float, ...]:
+    """Return the double nearest to a ratio."""
+    return (top / bottom,)
 
 
-def two_doubles(value: Fraction) -> list[float]:
-    """Return the double nearest to a number, and what rounding to it left out."""
-    high = float(value)
-    return [high, float(value - Fraction(high))]
+def two_doubles(top: int, bottom: int) -> tuple[float, ...]:
+    """Return the double nearest to a ratio, and what rounding to it left out."""
+    return quotient(top, bottom)
 
 
 class Binding:
@@ -36,7 +36,7 @@ class Binding:
     plan : Plan
         Of the structure, with any start.
     rounded : function
-        From an exact number to the doubles that stand for it.
+        From a ratio of integers to the doubles that stand for it.
     known : mapping
         More constants of the formulas, by name.
 
@@ -50,14 +50,15 @@ class Binding:
         self,
         parameters: Parameters,
         plan: Plan,
-        rounded: Callable[[Fraction], list[float]] = one_double,
+        rounded: Callable[[int, int], tuple[float, ...]] = one_double,
         known: Mapping[str, Fraction] | None = None,
     ) -> None:
         constants = {"pi": number.PI, **(known or {}), **plan.constants}
         fixed = {name: value for name, value in constants.items() if name not in START_CONSTANTS}
-        self._rounded, self._numbers = rounded, [rounded(value_of(node, constants)) for _, node in parameters]
+        values = [value_of(node, constants).as_integer_ratio() for _, node in parameters]
+        self._rounded, self._numbers = rounded, [rounded(*value) for value in values]
         self._moving = [
-            (k, folded(node, fixed)) for k, (_, node) in enumerate(parameters) if names(node) & START_CONSTANTS
+            (k, _Moving(folded(node, fixed))) for k, (_, node) in enumerate(parameters) if names(node) & START_CONSTANTS
         ]
 
     def __call__(self, plan: Plan) -> list[float]:
@@ -65,9 +66,41 @@ class Binding:
         found = self._numbers
         if self._moving:
             found, constants = list(found), plan.constants
-            for k, node in self._moving:
-                found[k] = self._rounded(value_of(node, constants))
+            for k, moving in self._moving:
+                found[k] = self._rounded(*moving.ratio(constants))
         return [value for values in found for value in values]
+
+
+class _Moving:
+    """A formula of numbers of the start; most are a coefficient times a power of one, which integers give at once."""
+
+    def __init__(self, formula: Node) -> None:
+        self._formula, self._monomial = formula, _monomial(formula)
+
+    def ratio(self, constants: Mapping[str, Fraction]) -> tuple[int, int]:
+        """Return the value as a ratio of integers, of which the second is positive."""
+        if self._monomial is None:
+            return value_of(self._formula, constants).as_integer_ratio()
+        top, bottom, name, power = self._monomial
+        base = constants[name]
+        return top * base.numerator**power, bottom * base.denominator**power
+
+
+def _monomial(node: Node) -> tuple[int, int, str, int] | None:
+    """Return the coefficient as two integers, the name and the power >= 1 of a monomial; None for other formulas."""
+    if node[0] == "symbol":
+        return 1, 1, node[1], 1
+    if node[0] == "neg" and (inner := _monomial(node[1])):
+        return -inner[0], *inner[1:]
+    if node[0] == "**" and node[2] > 0 and (inner := _monomial(node[1])):
+        return inner[0] ** node[2], inner[1] ** node[2], inner[2], inner[3] * node[2]
+    if node[0] in ("*", "/") and node[2][0] == "number" and (inner := _monomial(node[1])):
+        factor = Fraction(node[2][1]) if node[0] == "*" else 1 / Fraction(node[2][1])
+        return inner[0] * factor.numerator, inner[1] * factor.denominator, *inner[2:]
+    if node[0] == "*" and node[1][0] == "number" and (inner := _monomial(node[2])):
+        factor = Fraction(node[1][1])
+        return inner[0] * factor.numerator, inner[1] * factor.denominator, *inner[2:]
+    return None
 
 
 def value_of(formula: Node, constants: Mapping[str, Fraction]) -> Fraction:

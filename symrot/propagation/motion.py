@@ -98,6 +98,11 @@ class Motion:
         return self.first.kernel if self.first else scene_kernel(self.plan)
 
     @cached_property
+    def _timed(self) -> bool:
+        """Whether the time stands in the rates."""
+        return self.first._timed if self.first else self.kernel.rates.uses("t")
+
+    @cached_property
     def _rates_binding(self) -> Binding:
         return self.first._rates_binding if self.first else Binding(self.kernel.rate_parameters, self.plan)
 
@@ -119,7 +124,7 @@ class Motion:
         if self.choice.method == "taylor":
             start = (self.taylor_parameters, self.plan.initial_state, self.start)
             return taylor.task(self.library, *start, self.tolerance)
-        timed = (self.movable or self.epoch) and self.kernel.rates.uses("t")
+        timed = (self.movable or self.epoch) and self._timed
         clock = epoch.clock(self._moved, self.plan.constants, self.epoch) if timed else None
         start = (self.rate_parameters, self.plan.initial_state, self.start)
         return dop853.task(self.library, *start, self.tolerance, clock=clock)

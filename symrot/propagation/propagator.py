@@ -20,7 +20,7 @@ from symrot.propagation.trajectory import Trajectory
 from symrot.scene import Initial, Scene, load_scene
 from symrot.scene_kernel import SceneKernel
 
-__all__ = ["Propagator", "propagate", "propagator"]
+__all__ = ["Propagator", "propagate", "propagator", "read_start"]
 
 SMALLEST = float(number.SMALLEST)
 
@@ -44,7 +44,7 @@ class Propagator:
     def _prepare(self, plan: Plan) -> Motion:
         return Motion(plan, choose_method(plan, self._method), self.tolerance)
 
-    def _from(self, initial: Initial) -> Motion:
+    def motion_from(self, initial: Initial) -> Motion:
         """Return the motion from another initial state.
 
         The first start of each structure is planned and prepared as a new scene would be. The others take over all but
@@ -124,7 +124,7 @@ class Propagator:
         rise = _in_order(times)
         motion = self._motion
         if omega is not None or quaternion is not None:
-            motion = self._from(_initial(self.scene, omega, quaternion))
+            motion = self.motion_from(read_start(self.scene, omega, quaternion))
         message = f"{motion.choice.method}: {motion.choice.reason}"
         try:
             if events is not None:
@@ -174,9 +174,9 @@ def _in_order(times: Floats) -> bool:
 
 def _vector(values: ArrayLike, size: int, name: str, unit: str) -> list[float]:
     array = real_array(values, name, f"{size} numbers in {unit}")
-    if array.shape != (size,) or not np.isfinite(array).all():
-        raise InputError(f"{name}: expected {size} finite numbers in {unit}, got {number.show(array.tolist())}")
     found: list[float] = array.tolist()
+    if array.shape != (size,) or not all(map(isfinite, found)):
+        raise InputError(f"{name}: expected {size} finite numbers in {unit}, got {number.show(found)}")
     return found
 
 
@@ -185,13 +185,17 @@ def _exact(value: float, name: str) -> Fraction:
     return Fraction(value) if abs(value) >= SMALLEST or not value else number.read(value, name)
 
 
-def _initial(scene: Scene, omega: ArrayLike | None, quaternion: ArrayLike | None) -> Initial:
+def read_start(scene: Scene, omega: ArrayLike | None, quaternion: ArrayLike | None) -> Initial:
+    """Return the initial state that a call of a propagator asks for, exact; what is None is the scene's own."""
     initial = scene.initial
     if omega is not None:
         x, y, z = (_exact(value, "omega") for value in _vector(omega, 3, "omega", "rad/s"))
         initial = initial._replace(omega_b=(x, y, z))
     if quaternion is not None:
-        q = [_exact(value, "quaternion") for value in _vector(quaternion, 4, "quaternion", "1")]
+        q = _vector(quaternion, 4, "quaternion", "1")
+        for value in q:
+            if abs(value) < SMALLEST:
+                _exact(value, "quaternion")
         if not any(q):
             raise InputError(f"quaternion: expected a quaternion that is not zero, got {number.show(q)}")
         q0, q1, q2, q3 = number.unit(q)

@@ -1,0 +1,173 @@
+"""What another start costs: one more call of a propagator, part by part, and one trajectory of an ensemble.
+
+    python -m symrot.bench.starts [--rounds 300] [SCENE ...]
+    python -m symrot.bench.starts --ensembles [--most 100000] [--rounds 5] [SCENE ...]
+
+The first table has a row for each scene and method, in microseconds: to read the start, to plan it (its structure is
+known), to bind parameters, to set up the motion (constants of a closed form; the task of a stepper), the motion itself
+(all that is done in C, and the call of it); then whole calls at 101 times with another angular velocity, attitude, or
+both; last what of the dearer of the first two, and of the third, is not the motion itself. The second has microseconds
+per trajectory of 101 samples, in closed form and by steps, with other starts alone and with other constants too, and
+the method that ``auto`` takes. Time of the processor, medians.
+"""
+
+import argparse
+from collections.abc import Callable, Iterator
+from functools import partial
+from statistics import median
+from time import process_time_ns
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symrot.closed_form import motion as forms
+from symrot.ensemble.ensemble import propagate_ensemble
+from symrot.errors import InputError
+from symrot.planner import structure_key
+from symrot.propagation.propagator import Propagator, propagator, read_start
+from symrot.scene import Scene, load_scene
+
+__all__ = ["main"]
+
+SCENES = ("t_handle", "heavy_top_loops", "gyrostat", "damped_disk", "gravity_gradient_satellite")
+ENSEMBLES = ("t_handle", "heavy_top_loops", "axisymmetric_satellite", "spin_up")
+METHODS = ("exact", "taylor", "dop853")
+SAMPLES = 101
+SIZES = (10, 100, 1_000, 10_000, 100_000)
+SPREAD = 0.01
+
+Floats = NDArray[np.float64]
+
+
+def _median(run: Callable[[], object], rounds: int) -> float:
+    """Return microseconds of processor time."""
+    times = []
+    for _ in range(rounds):
+        began = process_time_ns()
+        run()
+        times.append(process_time_ns() - began)
+    return median(times) / 1e3
+
+
+def _start(scene: Scene) -> tuple[Floats, Floats]:
+    """Return a start near that of the scene, without zeros."""
+    omega, quaternion = (np.array([float(x) for x in vector]) for vector in scene.initial)
+    return omega * (1 + SPREAD) + SPREAD * abs(omega).max(), quaternion + SPREAD
+
+
+def _row(found: Propagator, rounds: int) -> tuple[float, ...]:
+    scene = found.scene
+    (omega, quaternion), times = _start(scene), np.linspace(0.0, float(scene.span.stop), SAMPLES)
+    found(times, omega=omega, quaternion=quaternion)
+    initial = read_start(scene, omega, quaternion)
+    motion = found.motion_from(initial)
+    parts = motion.exact if motion.choice.method == "exact" else motion.stepping
+    motion.follow(times, True)
+    fresh = [motion.from_start(initial) for _ in range(2 * rounds)]
+    moving, bound = iter(fresh[:rounds]), iter(fresh[rounds:])
+
+    def bind() -> Any:
+        each = next(bound)
+        return () if motion.choice.method == "exact" else (each.plan.initial_state, each.taylor_parameters)
+
+    def prepare(each: Iterator[Any] = moving) -> Any:
+        one = next(each)
+        return one.exact if motion.choice.method == "exact" else one.stepping
+
+    assert parts is not None
+    return (
+        _median(lambda: read_start(scene, omega, quaternion), rounds),
+        _median(lambda: structure_key(scene, initial), rounds) + _median(lambda: motion.from_start(initial), rounds),
+        _median(bind, rounds),
+        _median(prepare, rounds),
+        _in_c(motion, initial, rounds) + _median(lambda: motion.follow(times, True), rounds),
+        _median(lambda: found(times, omega=omega), rounds),
+        _median(lambda: found(times, quaternion=quaternion), rounds),
+        _median(lambda: found(times, omega=omega, quaternion=quaternion), rounds),
+    )
+
+
+def _in_c(motion: Any, initial: Any, rounds: int) -> float:
+    """Return what the constants of a closed form take in C; steppers have none."""
+    functions = forms._bound.get(motion.form.library) if motion.choice.method == "exact" else None
+    if functions is None:
+        return 0.0
+    calls: list[tuple[Any, ...]] = []
+
+    def heard(*given: Any) -> Any:
+        calls.append(given)
+        return functions[0](*given)
+
+    forms._bound[motion.form.library] = (heard, *functions[1:])
+    try:
+        alive = motion.from_start(initial).exact
+    finally:
+        forms._bound[motion.form.library] = functions
+    return _median(lambda kept=alive: functions[0](*calls[0]), rounds)  # type: ignore[misc]  # whose memory is written
+
+
+def changed_starts(scenes: list[str], rounds: int) -> None:
+    """Print the first table."""
+    heads = ("read", "plan", "bind", "set up", "motion", "omega", "attitude", "both", "Python", "of both")
+    print(f"{'us of a changed start':28}{'method':>8}" + "".join(f"{head:>9}" for head in heads))
+    for name in scenes:
+        for method in METHODS:
+            try:
+                found = propagator(name, method)
+            except InputError:
+                continue
+            if found.method == method:
+                row = _row(found, rounds)
+                motion, *calls = row[4:]
+                cells = (*row, max(calls[:2]) - motion, calls[2] - motion)
+                print(f"{name:28}{method:>8}" + "".join(f"{cell:9.1f}" for cell in cells))
+
+
+def _ensemble(scene: Scene, n: int, random: np.random.Generator) -> Iterator[tuple[str, dict[str, Any]]]:
+    omega, quaternion = _start(scene)
+    given: dict[str, Any] = {
+        "omega": omega * (1 + SPREAD * random.standard_normal((n, 3))),
+        "quaternion": quaternion + SPREAD * random.standard_normal((n, 4)),
+        "t": np.linspace(0.0, float(scene.span.stop), SAMPLES),
+    }
+    yield "starts", given
+    moments = np.array([float(scene.body.inertia[k][k]) for k in range(3)])
+    varied = {"principal": moments * (1 + SPREAD * random.random((n, 1)))}
+    if scene.torques and "weight" in scene.torques[0].values:
+        varied["weight"] = float(scene.torques[0].values["weight"]) * (1 + SPREAD * random.random(n))
+    yield "and " + ", ".join(varied), {**given, "parameters": varied}
+
+
+def ensembles(scenes: list[str], rounds: int, most: int) -> None:
+    """Print the second table."""
+    print(f"{'us per trajectory':26}{'varied':26}{'n':>8}{'exact':>9}{'taylor':>9}   auto takes")
+    for name in scenes:
+        scene = load_scene(name)
+        for n in (size for size in SIZES if size <= most):
+            for varied, given in _ensemble(scene, n, np.random.default_rng(1)):
+                auto = propagate_ensemble(scene, **given).methods[0]
+                cells = []
+                for method in ("exact", "taylor"):
+                    run = partial(propagate_ensemble, scene, method=method, **given)
+                    run()
+                    cells.append(_median(run, rounds) / n)
+                print(f"{name:26}{varied:26}{n:8d}{cells[0]:9.1f}{cells[1]:9.1f}   {auto}")
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Print a table."""
+    parser = argparse.ArgumentParser(prog="python -m symrot.bench.starts", description=(__doc__ or "").split("\n")[0])
+    parser.add_argument("scenes", metavar="SCENE", nargs="*")
+    parser.add_argument("--rounds", type=int)
+    parser.add_argument("--ensembles", action="store_true", help="trajectories of ensembles instead")
+    parser.add_argument("--most", type=int, default=SIZES[-1], help="trajectories of the largest ensemble")
+    options = parser.parse_args(arguments)
+    if options.ensembles:
+        ensembles(options.scenes or list(ENSEMBLES), options.rounds or 5, options.most)
+    else:
+        changed_starts(options.scenes or list(SCENES), options.rounds or 300)
+
+
+if __name__ == "__main__":
+    main()
