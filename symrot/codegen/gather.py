@@ -168,7 +168,7 @@ class Gather:
 
 
 def _repeated(tree: Tree, count: int) -> Tree:
-    """Return a large power of a tree as squares of squares: a product of so many factors would be too deep a formula."""
+    """Return a large power of a tree as squares of squares: a product of all its factors would be too deep."""
     if count <= LARGEST_POWER:
         return ("mul", (tree,) * count, ())
     half = _repeated(tree, count // 2)
