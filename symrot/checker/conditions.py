@@ -34,11 +34,12 @@ MOST_TERMS_OF_SQUARE = 40
 
 @dataclass(frozen=True)
 class Requirement:
-    """A condition as text, its code, and the expressions that are zero under it (none for an inequality)."""
+    """A condition as text, its code, and the expressions that are zero, or not negative, under it."""
 
     code: str
     text: str
     zeros: tuple[Expr, ...] = ()
+    signs: tuple[Expr, ...] = ()
 
 
 def requirements(
@@ -178,7 +179,8 @@ def branch_requirements(ring: FormulaRing, numerators: Sequence[PolyElement]) ->
             if not surely_nonnegative(value):
                 signs[f"{value} >= 0"] = value
         else:
-            return [Requirement("sign_branch", " and ".join(sorted(signs)))] if signs else []
+            stated = tuple(signs[text] for text in sorted(signs))
+            return [Requirement("sign_branch", " and ".join(sorted(signs)), signs=stated)] if signs else []
     return None
 
 

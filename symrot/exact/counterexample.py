@@ -158,7 +158,7 @@ def closed_form_witness(
 
     Hypotheses are met by rational points of spheres and by solving linear ones, as for :func:`rational_witness`.
     """
-    places = {number: leaf for leaf, number in ring.symbols.items()}
+    places = {number: leaf for leaf, number in ring.symbols.items() if ring.leaves[leaf]}
     if any(number not in places for hypothesis in ring.hypothesis_numerators for number in _occurring(hypothesis)):
         return None
     coordinates, solved = _coordinates(ring)

@@ -33,8 +33,9 @@ def _inside(root: Root) -> Expr:
 
 
 def radicands(ring: FormulaRing) -> list[Expr]:
-    """Return what must not be negative: under roots of even index, in logarithms, 1 - x^2 for asin(x) and acos(x)."""
-    found = [radical.base for radical in ring.radicals.values() if radical.power % 2 and not _is_square(radical.base)]
+    """Return what must not be negative: under roots, in logarithms, 1 - x^2 for asin(x) and acos(x)."""
+    bases = [radical.base for node, radical in ring.radicals.items() if isinstance(node, Pow)]
+    found = [base for base in bases if not _is_square(base)]
     found += [formula for leaf in _leaves(ring) for formula in _nonnegative(leaf)]
     return [formula for formula in dict.fromkeys(found) if not (formula.is_nonnegative or formula.is_number)]
 
@@ -63,5 +64,5 @@ def _nonnegative(leaf: Expr) -> list[Expr]:
 
 
 def _is_square(base: Expr) -> bool:
-    """Return whether a radicand comes from an absolute value, which the ring keeps as the root of a square."""
+    """Return whether a radicand is the even power of a real number."""
     return bool(isinstance(base, Pow) and base.exp.is_Integer and base.exp % 2 == 0)

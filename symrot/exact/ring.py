@@ -112,7 +112,7 @@ class FormulaRing:
             relations_found = self._relate(ZZ) or self._relate(QQ)
             assert relations_found is not None  # the rationals suffice for any polynomial
             self.relations: Relations = relations_found
-            found = self._dependences()
+            found = self._without_circles(self._dependences())
             if not found:
                 break
             self.dependences |= found
@@ -202,6 +202,20 @@ class FormulaRing:
         if not plain or len(places) < 2:
             return {}
         return dependences({root: self._polynomial(root) for root in places}, self.generators)
+
+    def _without_circles(self, found: dict[Root, Dependence]) -> dict[Root, Dependence]:
+        """Return those dependences by which no root comes to be expressed by itself, through others."""
+        accepted: dict[Root, Dependence] = {}
+        for root, dependence in found.items():
+            stack, seen = _named(dependence), set()
+            while stack:
+                other = stack.pop()
+                if other not in seen:
+                    seen.add(other)
+                    stack.extend(_named((self.dependences | accepted).get(other)))
+            if root not in seen:
+                accepted[root] = dependence
+        return accepted
 
     def _take_fine_constants(self) -> int:
         """Return N of the generator 2 cos(pi/N) for constants of angles that are no multiples of pi/24; 0 for none."""
@@ -438,6 +452,13 @@ class FormulaRing:
         contents, (above, below) = zip(*(poly.primitive() for poly in parts), strict=True)
         constant = Rational(int(contents[0]) * int(scales[1]), int(contents[1]) * int(scales[0]))
         return constant, above, below
+
+
+def _named(dependence: Dependence | None) -> list[Root]:
+    """Return the roots by which a root is expressed."""
+    if dependence is None:
+        return []
+    return [*dependence.roots, *(factor for factor, _ in dependence.divisors if isinstance(factor, Root))]
 
 
 def _occurring(poly: PolyElement) -> set[int]:

@@ -82,7 +82,9 @@ def radical(node: Expr, radicand: Callable[[Expr, int], Radicand]) -> Radical:
     Raises
     ------
     InputError
-        If a negative power of an expression is asked for which is zero everywhere.
+        If a negative power of an expression is asked for which is zero everywhere, or a root that is no real number
+        of a negative one: ``(-8)^(1/3)`` is ``1 + sqrt(3) i`` on the principal branch. Square roots of negative
+        numbers are read as multiples of ``i``.
     """
     if node is I:
         return Radical(Integer(-1), Integer(1), (_imaginary_unit(),), Integer(1), 1)
@@ -105,6 +107,8 @@ def radical(node: Expr, radicand: Callable[[Expr, int], Radicand]) -> Radical:
         rational, roots = square_root_of_number(content)
     if above == -1 and below == 1 and index == 2:
         roots.append(_imaginary_unit())
+    elif above.is_Rational and above < 0 and index != 2:
+        raise InputError(f"a root of a negative number is no real number: {node}")
     elif above != 1 or below != 1:
         inside = (above * below ** (index - 1)).expand()
         shown = below * (above / below) ** Rational(1, index)
