@@ -192,7 +192,7 @@ def _split(poly: PolyElement, place: int, generator: PolyElement) -> tuple[PolyE
 
 def surely_nonnegative(value: Expr) -> bool:
     """Return whether a real value cannot be negative by its form alone; roots are real where the claim is defined."""
-    if value.is_nonnegative or isinstance(value, Abs):
+    if value.is_nonnegative or isinstance(value, Abs | sympy.exp):
         return True
     if isinstance(value, Pow) and value.exp.is_Rational:
         even = value.exp.q == 1 and value.exp.p % 2 == 0

@@ -130,6 +130,7 @@ def _decided(
     further = [lift for found in proofs if found for lift in found]
     conditions = _conditions([ring, *further], granted, problem.radicands)
     grounds = Grounds(ring, shown, _needs(problem, lefts, rights))
+    grounds.refuse_if_nowhere()
     if not wrong:
         return _true(grounds, conditions, further)
     numerators = [ring.reduce(residuals[place].numerator) for place in wrong]

@@ -25,6 +25,7 @@ from symrot.checker.size import (
 from symrot.checker.tree import Node
 from symrot.errors import InputError
 from symrot.exact.extent import pieces
+from symrot.exact.intervals import enclosure
 from symrot.kinematics.quaternion import dcm_of, qmul
 from symrot.kinematics.rotations import elementary_rotation, skew, vee
 
@@ -42,7 +43,10 @@ def _of_scalar(function: Callable[[Expr], Expr], below: Callable[[Expr], Expr] |
             raise scope.fail(node.args[0], f"an angle whose sine has at most {MOST_ANGLE_TERMS} terms")
         if below is not None:
             scope.divide_by(below(value), node)
-        return function(value)
+        made = function(value)
+        if value.is_number and not made.is_Rational and enclosure(made) is None:
+            raise scope.fail(node, "a number whose digits can be computed instead of a tower of functions")
+        return made
 
     return call
 

@@ -105,9 +105,6 @@ class Grounds:
         needs = list(dict.fromkeys([*self.needs, *further]))
         if not self.ring.hypotheses and not zeros and self._polynomial_core(needs):
             return True
-        for need in self.needs:
-            if fails_everywhere(need):
-                raise InputError(f"the sides are real numbers nowhere: {self._shown_need(need)} holds at no real point")
         needs = [need for need in needs if leaves_of([need.formula]) or not self._true_number(need)]
         if any(not leaves_of([need.formula]) for need in needs):
             return False
@@ -117,6 +114,12 @@ class Grounds:
             return True
         self.refuse_if_empty()
         return bool(self.ring.hypotheses and not zeros and self._drawn_point(needs, ATTEMPTS))
+
+    def refuse_if_nowhere(self) -> None:
+        """Raise ``InputError`` where the range of a formula shows that the sides are real numbers nowhere."""
+        for need in self.needs:
+            if fails_everywhere(need):
+                raise InputError(f"the sides are real numbers nowhere: {self._shown_need(need)} holds at no real point")
 
     def _polynomial_core(self, needs: Sequence[Need]) -> bool:
         """Return whether the points where nothing vanishes that is divided by are dense, by the theorem of the core."""
@@ -266,20 +269,21 @@ class Grounds:
             values |= {name: OTHER_VALUES[n % len(OTHER_VALUES)] for n, name in enumerate(others)}
             if not self._defined(values):
                 continue
-            sides = left.xreplace(values), right.xreplace(values)
-            held = [enclosure(side) for side in sides]
+            held = [enclosure(side, values) for side in (left, right)]
             if None not in held and 0 not in held[0] - held[1]:
+                sides = left.xreplace(values), right.xreplace(values)
                 used = atoms_of([left, right, *self.ring.hypotheses])
                 shown = sorted(((name, value) for name, value in values.items() if name in used), key=str)
                 return Witness(tuple(shown), entry, *sides)
         return None
 
     def _nowhere_zero(self, values: dict[Expr, Expr]) -> bool:
-        factors = [factor.as_expr(*self.ring.generators).xreplace(values) for factor in self.ring.ratios.factors]
-        return all(held is not None and 0 not in held for held in map(enclosure, factors))
+        factors = [factor.as_expr(*self.ring.generators) for factor in self.ring.ratios.factors]
+        enclosures = [enclosure(factor, values) for factor in factors]
+        return all(held is not None and 0 not in held for held in enclosures)
 
     def _defined(self, values: dict[Expr, Expr]) -> bool:
         if not self._nowhere_zero(values):
             return False
-        roots = [enclosure(found.base.xreplace(values)) for found in self.ring.radicals.values()]
+        roots = [enclosure(found.base, values) for found in self.ring.radicals.values()]
         return all(held is not None and held.a >= 0 for held in roots)

@@ -30,7 +30,7 @@ WIDER = (*SIMPLE, *(Fraction(sign * n, d) for n, d in ((1, 10), (5, 1), (10, 1),
          (3, 4), (9, 10), (1, 1000), (1000, 1), (10**6, 1), (1, 10**6)) for sign in (1, -1)))  # fmt: skip
 
 TOLERANCE = 1e-12
-SMALLEST_STEP = Fraction(1, 2**24)
+SMALLEST_STEP, LARGEST_STEP = Fraction(1, 2**24), Fraction(2**40)
 
 Point = dict[Expr, Any]
 
@@ -135,7 +135,7 @@ class _Search:
             if better is None:
                 size /= 4
             else:
-                (depth, point), size = better, 2 * size
+                (depth, point), size = better, min(2 * size, LARGEST_STEP)
         return point
 
     def depth(self, point: Point) -> float:

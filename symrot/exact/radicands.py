@@ -12,7 +12,7 @@ from sympy import Abs, Expr, Rational
 from sympy.polys.domains import ZZ
 from sympy.polys.rings import PolyElement
 
-from symrot.exact.roots import Root, absolute
+from symrot.exact.roots import Root, absolute, sign_of
 
 __all__ = ["Dependence", "dependences", "take_squares"]
 
@@ -32,7 +32,7 @@ def take_squares(above: PolyElement, below: PolyElement, generators: Sequence[Ex
     squares += [(factor, -times) for factor, times in inverse]
     outside: list[tuple[Root | Expr, int]] = []
     if not divisor.is_ground:
-        shown, sign = divisor.as_expr(*generators), _sign(rest.as_expr(*generators))
+        shown, sign = divisor.as_expr(*generators), sign_of(rest.as_expr(*generators))
         if sign:  # rest/divisor is not negative
             outside.append((sign * shown, -1))
         else:
@@ -40,11 +40,6 @@ def take_squares(above: PolyElement, below: PolyElement, generators: Sequence[Ex
         rest = rest * divisor
     outside += [(absolute(factor.as_expr(*generators)), times) for factor, times in squares]
     return rest.as_expr(*generators), tuple(outside)
-
-
-def _sign(value: Expr) -> int:
-    """Return 1 or -1 for a real expression that is never of the other sign, 0 where that is not known."""
-    return 1 if value.is_nonnegative else -1 if value.is_nonpositive else 0
 
 
 def _square_part(poly: PolyElement) -> tuple[PolyElement, list[tuple[PolyElement, int]]]:

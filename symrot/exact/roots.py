@@ -12,12 +12,12 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from math import prod
 
-from sympy import Abs, Expr, I, Integer, Pow, Rational, Symbol, factorint, sqrt
+from sympy import Abs, Expr, I, Integer, Pow, Rational, Symbol, exp, factorint, sqrt
 from sympy.core.function import AppliedUndef
 
 from symrot.errors import InputError
 
-__all__ = ["Radical", "Radicand", "Root", "absolute", "is_root", "radical", "square_root_of_number"]
+__all__ = ["Radical", "Radicand", "Root", "absolute", "is_root", "radical", "sign_of", "square_root_of_number"]
 
 
 @dataclass(frozen=True)
@@ -118,11 +118,24 @@ def radical(node: Expr, radicand: Callable[[Expr, int], Radicand]) -> Radical:
 
 def absolute(value: Expr) -> Root | Expr:
     """Return the absolute value of a real expression: itself or its negative where that is known, or a root."""
-    if value.is_nonnegative:
-        return value
-    if value.is_nonpositive:
-        return -value
-    return Root(Abs(value), (value**2).expand(), 2, 1 + _nesting([value]))
+    sign = sign_of(value)
+    return sign * value if sign else Root(Abs(value), (value**2).expand(), 2, 1 + _nesting([value]))
+
+
+def sign_of(value: Expr) -> int:
+    """Return 1 or -1 for a real expression that is never of the other sign, 0 where that is not known."""
+    if value.is_nonnegative or _is_positive_where_defined(value):
+        return 1
+    return -1 if value.is_nonpositive or _is_positive_where_defined(-value) else 0
+
+
+def _is_positive_where_defined(value: Expr) -> bool:
+    """Return whether a formula is made of exponentials and positive numbers: SymPy takes infinite exponents along."""
+    if isinstance(value, exp):
+        return True
+    if value.is_Add or value.is_Mul:
+        return all(map(_is_positive_where_defined, value.args))
+    return bool(value.is_Rational and value > 0) or bool(value.is_Pow and _is_positive_where_defined(value.base))
 
 
 def is_root(node: Expr) -> bool:
