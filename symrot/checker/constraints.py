@@ -89,9 +89,10 @@ def constraints_of(ring: FormulaRing) -> Constraints:
             zeros.append(target.gens[sine] ** 2 + target.gens[ring.cosines[atom]] ** 2 - 1)
     signs = {root: radical.below for radical in ring.radicals.values() for root in radical.roots}
     even = set()
+    loose = {root for radical in ring.radicals.values() if radical.loose for root in radical.roots}
     for root, place in sorted(ring.roots.items(), key=lambda item: -item[1]):  # inner roots first
         square = ring._polynomial(root).set_ring(target)
-        if occurring([square]) <= free and root.expression is not I:
+        if occurring([square]) <= free and root.expression is not I and root not in loose:
             free.add(place)
             zeros.append(target.gens[place] ** root.index - square)
             below = signs.get(root)

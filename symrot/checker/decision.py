@@ -15,6 +15,7 @@ from symrot.checker.verdict import Counterexample
 from symrot.errors import InputError
 from symrot.exact import cyclotomic, domain
 from symrot.exact.branches import lifts, proof
+from symrot.exact.budget import one_decision
 from symrot.exact.congruence import proof_by_congruence
 from symrot.exact.counterexample import Counterexample as Witness
 from symrot.exact.counterexample import closed_form_witness, rational_witness
@@ -82,6 +83,14 @@ def decide_problem(problem: Problem) -> Decision:
         If the shapes differ, a side is no finite exact formula, it divides by what is zero everywhere, the hypotheses
         contradict each other, or the degree is beyond the budget.
     """
+    try:
+        with one_decision():
+            return _with_and_without_hypotheses(problem)
+    except RecursionError:
+        return Decision("undecided", reason="the formulas are nested too deeply to be read")
+
+
+def _with_and_without_hypotheses(problem: Problem) -> Decision:
     decision = _decide(problem)
     if decision.verdict == "undecided" and problem.hypotheses:
         try:
@@ -180,6 +189,7 @@ def _needs(problem: Problem, lefts: Sequence[Expr], rights: Sequence[Expr]) -> l
 def _true(grounds: Grounds, conditions: tuple[str, ...], rings: Sequence[FormulaRing]) -> Decision:
     """Return the verdict "true" where a point is known to which it applies, else "undecided"."""
     divided = [Need(source, "!= 0") for ring in (grounds.ring, *rings) for source, _ in domain.divisors(ring)]
+    divided += [Need(formula, ">= 0") for ring in (grounds.ring, *rings) for formula in domain.split_radicands(ring)]
     if grounds.known([need for need in divided if need not in grounds.needs]):
         return Decision("true", conditions)
     hypotheses = " and the hypotheses hold" if grounds.ring.hypotheses else ""
@@ -189,7 +199,7 @@ def _true(grounds: Grounds, conditions: tuple[str, ...], rings: Sequence[Formula
 
 def _can_hold(requirement: Requirement, grounds: Grounds) -> bool:
     """Return whether a point is known at which a condition holds, and the sides are real numbers."""
-    signs = [Need(value, ">= 0") for value in requirement.signs]
+    signs = [Need(value, ">= 0") for value in (*requirement.signs, *domain.split_radicands(grounds.ring))]
     return grounds.allow(requirement.zeros) and grounds.known([*needs_of(requirement.signs), *signs], requirement.zeros)
 
 

@@ -3,7 +3,7 @@
 Arithmetic of mpmath's floating point numbers alone, which shares nothing with the engine: it proves nothing, but tells
 two values apart, and a value from none. The rules are those of real functions: a power ``u^(p/q)``, q > 1, of u >= 0
 only; logarithms of positive numbers; ``asin`` and ``acos`` between -1 and 1; no division by zero. A piece that is
-multiplied by zero must have a value too. Near the edge of a domain, and beyond 10^(10^6), the judge does not know.
+multiplied by zero must have a value too. Near the edge of a domain, and beyond e^100, the judge does not know.
 """
 
 from collections.abc import Mapping, Sequence
@@ -23,8 +23,8 @@ DIGITS, MORE_DIGITS = 60, 200
 EDGE = 25
 """Digits: a number below 10^-25 that is not exactly zero may be one that is."""
 
-_MOST = 10**6
-"""Of an exponent of e."""
+_MOST = 100
+"""Of an exponent of e: larger numbers may cancel beyond the digits."""
 
 Point = Mapping[str, Fraction]
 

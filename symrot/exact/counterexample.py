@@ -20,6 +20,7 @@ from sympy.polys.rings import PolyElement
 from symrot.errors import InputError
 from symrot.exact.angles import base_angle
 from symrot.exact.extent import pieces
+from symrot.exact.floats import NoValue, float_at
 from symrot.exact.intervals import enclosure, is_nonnegative_at, surely_nonnegative_number
 from symrot.exact.ratio import Ratio, TooLarge
 from symrot.exact.ring import FormulaRing
@@ -194,6 +195,8 @@ def closed_form_witness(
                 values[leaf] = source.choice([v for v in choices if _assumed(leaf, v)] or [Rational(1)])
         if attempt >= UNMOVED:
             _move_within(within, values, [leaf for leaf in variables if leaf not in fixed], simple)
+        if not all(_seems_nonnegative(formula, values) for formula in within):
+            continue
         if not all(_nonnegative(formula, values) for formula in within):
             continue
         if not all(_nonzero(source, values) for source in ring.ratios.sources):
@@ -210,11 +213,11 @@ def _move_within(
 ) -> None:
     """Change one value for each formula that is negative, so that it is not: of the first symbol that can do it."""
     for formula in formulas:
-        if _nonnegative(formula, values):
+        if _seems_nonnegative(formula, values) and _nonnegative(formula, values):
             continue
         own = formula.free_symbols
         trials = ({**values, leaf: v} for leaf in movable if leaf in own for v in simple if _assumed(leaf, v))
-        found = next((t for t in trials if _nonnegative(formula, t)), values)
+        found = next((t for t in trials if _seems_nonnegative(formula, t) and _nonnegative(formula, t)), values)
         values.update(found)
 
 
@@ -235,6 +238,14 @@ def _nonnegative(formula: Expr, values: dict[Expr, Expr]) -> bool:
     """Return whether a formula is proven not to be negative; ``1 + cos(x)`` is exactly zero at pi."""
     shown = is_nonnegative_at(formula, values)
     return shown or (_is_flat(formula) and surely_nonnegative_number(formula.xreplace(values)))
+
+
+def _seems_nonnegative(formula: Expr, values: dict[Expr, Expr]) -> bool:
+    """Return whether a formula is not negative in double precision: a quick look before intervals prove it."""
+    try:
+        return float_at(formula, {leaf: float(value) for leaf, value in values.items()}, {}) > -1e-9
+    except (NoValue, TypeError, OverflowError):
+        return False
 
 
 def _nonzero(formula: Expr, values: dict[Expr, Expr]) -> bool:

@@ -18,9 +18,10 @@ from sympy import Expr, Ge, I, Integer, Matrix, MatrixBase, MatrixExpr, Ne, symp
 
 from symrot.errors import InputError
 from symrot.exact.branches import proof, vanishes
+from symrot.exact.budget import one_decision
 from symrot.exact.congruence import proof_by_congruence
 from symrot.exact.counterexample import Counterexample, closed_form_witness, rational_witness
-from symrot.exact.domain import divisors, radicands
+from symrot.exact.domain import divisors, radicands, split_radicands
 from symrot.exact.everywhere import fails_everywhere
 from symrot.exact.known_points import known_point
 from symrot.exact.needs import Need, needs_of
@@ -109,6 +110,13 @@ def decide(left: Any, right: Any, relations: Sequence[Any] = ()) -> Verdict:
         rights, other = list(zeros(*shape)), shape
     if shape != other:
         raise InputError(f"two sides of an equation have one shape, got {_shape_text(shape)} = {_shape_text(other)}")
+    with one_decision():
+        return _decided(lefts, rights, shape, relations)
+
+
+def _decided(
+    lefts: list[Expr], rights: list[Expr], shape: tuple[int, int] | None, relations: Sequence[Any]
+) -> Verdict:
     ring = FormulaRing([*lefts, *rights], [as_zero(relation) for relation in relations])
     differences = [ring.difference(a, b) for a, b in zip(lefts, rights, strict=True)]
     proofs = [proof(ring, value.numerator) for value in differences]
@@ -141,9 +149,10 @@ def _true(residual: Any, sides: Sequence[Expr], ring: FormulaRing, conditions: t
     of which nothing is asked but that no divisor is zero.
     """
     needs = [need for need in needs_of(sides) if not need.formula.has(I)]
+    needs += [Need(formula, ">= 0") for formula in split_radicands(ring) if not any(side.has(I) for side in sides)]
     if all(need.sign == "!= 0" for need in needs):
         return Verdict("true", residual, conditions)
-    nowhere = next((need for need in needs if fails_everywhere(need)), None)
+    nowhere = next((need for need in needs_of(sides) if fails_everywhere(need)), None)
     if nowhere is not None:
         raise InputError(f"the sides are real numbers nowhere: {nowhere} does not hold at any real point")
     nonzero = [Need(condition.lhs, "!= 0") for condition in conditions if isinstance(condition, Ne)]

@@ -7,7 +7,7 @@ from sympy import Abs, Expr, Pow, acos, asin, atan2, log
 from symrot.exact.ring import FormulaRing
 from symrot.exact.roots import Root
 
-__all__ = ["divisors", "radicands", "signs"]
+__all__ = ["divisors", "radicands", "signs", "split_radicands"]
 
 
 def divisors(ring: FormulaRing, granted: Container[int] = ()) -> list[tuple[Expr, Expr]]:
@@ -37,7 +37,17 @@ def radicands(ring: FormulaRing) -> list[Expr]:
     bases = [radical.base for node, radical in ring.radicals.items() if isinstance(node, Pow)]
     found = [base for base in bases if not _is_square(base)]
     found += [formula for leaf in _leaves(ring) for formula in _nonnegative(leaf)]
+    found += split_radicands(ring)
     return [formula for formula in dict.fromkeys(found) if not (formula.is_nonnegative or formula.is_number)]
+
+
+def split_radicands(ring: FormulaRing) -> list[Expr]:
+    """Return what is not negative where proofs hold although the formulas are real elsewhere too.
+
+    ``sqrt(P f^2)`` is read as ``|f| sqrt(P)``, which says nothing where f is zero and P is negative.
+    """
+    loose = [root for radical in ring.radicals.values() if radical.loose for root in radical.roots]
+    return list(dict.fromkeys(root.power_expression for root in loose if not root.power_expression.is_positive))
 
 
 def signs(ring: FormulaRing) -> list[Expr]:

@@ -23,11 +23,15 @@ MOST_TERMS = 60
 Outside = tuple[tuple[Root | Expr, int], ...]
 
 
-def take_squares(above: PolyElement, below: PolyElement, generators: Sequence[Expr]) -> tuple[Expr, Outside]:
-    """Return (P, outside) with ``above/below = P * product(factor^(2 n))``; P a polynomial, no factor negative."""
+def take_squares(above: PolyElement, below: PolyElement, generators: Sequence[Expr]) -> tuple[Expr, Outside, bool]:
+    """Return (P, outside, loose) with ``above/below = P * product(factor^(2 n))``; P a polynomial, no factor negative.
+
+    It is loose if a factor may be zero where P is negative: the root of ``P f^2`` is real there, that of P is not.
+    """
     whole = above.ring.clone(domain=ZZ)
     above, below = above.set_ring(whole), below.set_ring(whole)
     rest, squares = _square_part(above)
+    loose = any(rest.rem([factor]) for factor, _ in squares)
     divisor, inverse = _square_part(below)
     squares += [(factor, -times) for factor, times in inverse]
     outside: list[tuple[Root | Expr, int]] = []
@@ -39,7 +43,7 @@ def take_squares(above: PolyElement, below: PolyElement, generators: Sequence[Ex
             squares += [(factor, -times) for factor, times in _irreducible(divisor)]
         rest = rest * divisor
     outside += [(absolute(factor.as_expr(*generators)), times) for factor, times in squares]
-    return rest.as_expr(*generators), tuple(outside)
+    return rest.as_expr(*generators), tuple(outside), loose
 
 
 def _square_part(poly: PolyElement) -> tuple[PolyElement, list[tuple[PolyElement, int]]]:

@@ -31,6 +31,7 @@ from symrot.exact.angles import (
     constant_cosine_sine,
     linear_form,
 )
+from symrot.exact.budget import spend_ring
 from symrot.exact.constants import Number, cosine_number, root_number, vanishes
 from symrot.exact.functions import REWRITTEN, TRIGONOMETRIC, is_jet
 from symrot.exact.inverse import INVERSE, cosine_sine
@@ -88,11 +89,14 @@ class FormulaRing:
     InputError
         If an expression holds a floating point number, an infinity, or something that is not a scalar formula, if it
         divides by what is zero everywhere, or if the hypotheses contradict each other.
+    TooLarge
+        When the decision that asks for the ring has spent its budget (:mod:`symrot.exact.budget`).
     """
 
     def __init__(
         self, expressions: Sequence[Expr], relations: Sequence[Expr] = (), domain: Sequence[Expr] = ()
     ) -> None:
+        spend_ring()
         self.hypotheses = tuple(relations)
         self.domain = tuple(domain)
         self.forms: dict[Expr, LinearForm] = {}  # argument of a sine or cosine -> its linear form
@@ -192,8 +196,8 @@ class FormulaRing:
             raise TooLarge(f"a root of a formula with roots and more than {MOST_NESTED_TERMS} terms is not taken apart")
         if index != 2:
             return Radicand(content, above.as_expr(*inner.generators), below.as_expr(*inner.generators))
-        rest, outside = take_squares(above, below, inner.generators)
-        return Radicand(content, rest, Integer(1), outside)
+        rest, outside, loose = take_squares(above, below, inner.generators)
+        return Radicand(content, rest, Integer(1), outside, loose)
 
     def _dependences(self) -> dict[Root, Dependence]:
         """Return the square roots that are products of other generators, if there are several."""

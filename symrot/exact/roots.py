@@ -35,13 +35,14 @@ class Radicand:
     """``content * above / below * product(factor^(2 n) of outside)``, ``below`` being 1 under a square root.
 
     ``content`` is a rational >= 0, ``above`` and ``below`` are primitive polynomials over the integers in canonical
-    form; no factor outside is negative.
+    form; no factor outside is negative. ``loose``: a factor may be zero where ``above`` is negative.
     """
 
     content: Rational
     above: Expr
     below: Expr
     outside: tuple[tuple[Root | Expr, int], ...] = ()
+    loose: bool = False
 
 
 @dataclass(frozen=True)
@@ -49,6 +50,7 @@ class Radical:
     """``(rational * product(roots) * product(factor^n of outside) / below)^power``, a root of ``base``.
 
     A factor outside is the absolute value of something, which is a root too, or an expression that is not negative.
+    Where the radical is ``loose`` it is real at some points where a root of its own is not, and the factor is zero.
     """
 
     base: Expr
@@ -57,6 +59,7 @@ class Radical:
     below: Expr
     power: int
     outside: tuple[tuple[Root | Expr, int], ...] = ()
+    loose: bool = False
 
     @property
     def generators(self) -> tuple[Root, ...]:
@@ -113,7 +116,7 @@ def radical(node: Expr, radicand: Callable[[Expr, int], Radicand]) -> Radical:
         inside = (above * below ** (index - 1)).expand()
         shown = below * (above / below) ** Rational(1, index)
         roots.append(Root(shown, inside, index, 1 + _nesting([inside])))
-    return Radical(base, rational, tuple(roots), below, power, found.outside)
+    return Radical(base, rational, tuple(roots), below, power, found.outside, found.loose)
 
 
 def absolute(value: Expr) -> Root | Expr:
