@@ -7,6 +7,7 @@ them. What is true is judged by :mod:`symrot.checker.judge_real`, point by point
 
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from random import Random
 from time import perf_counter
@@ -18,7 +19,7 @@ from symrot.checker.tree import Node, replaced, text, walk
 from symrot.checker.verdict import Verdict
 from symrot.errors import InputError
 
-__all__ = ["REAL_RULES", "TRAPS", "fault", "real_campaign", "real_claims"]
+__all__ = ["REAL_RULES", "TRAPS", "RealOutcome", "fault", "real_campaign", "real_claims"]
 
 REAL_RULES = (
     ("sqrt(X)*sqrt(Y)", "sqrt(X*Y)"), ("sqrt(X)", "X/sqrt(X)"), ("sqrt(X)**2", "X"), ("sqrt(X**2)", "abs(X)"),
@@ -33,9 +34,11 @@ REAL_RULES = (
     ("X", "log(exp(X))"), ("exp(X)", "exp(X/2)**2"), ("exp(X)", "cosh(X) + sinh(X)"), ("exp(log(X)/3)", "X**(1/3)"),
     ("cosh(X)", "sqrt(1 + sinh(X)**2)"), ("tanh(X)", "sinh(X)/cosh(X)"), ("sinh(2*X)", "2*sinh(X)*cosh(X)"),
     ("cosh(X)**2", "1 + sinh(X)**2"), ("sinh(X)", "-sinh(-X)"),
-    ("asin(X)", "pi/2 - acos(X)"), ("acos(X)", "pi/2 - asin(X)"), ("asin(X)", "-asin(-X)"), ("acos(X)", "pi - acos(-X)"),
+    ("asin(X)", "pi/2 - acos(X)"), ("acos(X)", "pi/2 - asin(X)"), ("asin(X)", "-asin(-X)"),
+    ("acos(X)", "pi - acos(-X)"),
     ("asin(X)", "atan2(X, sqrt(1 - X**2))"), ("atan(X)", "asin(X/sqrt(1 + X**2))"), ("atan(X)", "-atan(-X)"),
-    ("sin(asin(X))", "X"), ("cos(asin(X))", "sqrt(1 - X**2)"), ("sin(acos(X))", "sqrt(1 - X**2)"), ("tan(atan(X))", "X"),
+    ("sin(asin(X))", "X"), ("cos(asin(X))", "sqrt(1 - X**2)"), ("sin(acos(X))", "sqrt(1 - X**2)"),
+    ("tan(atan(X))", "X"),
     ("cos(acos(X))", "X"), ("cos(atan(X))", "1/sqrt(1 + X**2)"), ("sin(2*asin(X))", "2*X*sqrt(1 - X**2)"),
     ("sin(X)**2", "1 - cos(X)**2"), ("tan(X)", "sin(X)/cos(X)"), ("sin(X)", "cos(pi/2 - X)"), ("abs(X)", "abs(-X)"),
     ("abs(X*Y)", "abs(X)*abs(Y)"), ("X", "X + 0*log(Y)"), ("X", "X + Y - Y"), ("X", "X*Y/Y"), ("X", "2*X - X"),
@@ -48,7 +51,8 @@ TRAPS = (
     ("sqrt(X**2)", "X"), ("abs(X)", "X"), ("sqrt(X)", "-sqrt(X)"), ("sqrt(X + Y)", "sqrt(X) + sqrt(Y)"),
     ("X**(1/3)", "-(-X)**(1/3)"), ("(-X)**(1/3)", "-X**(1/3)"), ("(X**2)**(1/4)", "sqrt(-X)"), ("X**(2/3)", "X**(1/3)"),
     ("log(X)", "log(-X)"), ("log(X + Y)", "log(X) + log(Y)"), ("log(X**2)", "log(X)"), ("exp(X)", "exp(-X)"),
-    ("asin(X)", "acos(X)"), ("asin(sin(X))", "X"), ("acos(cos(X))", "X"), ("atan(tan(X))", "X"), ("acos(X)", "acos(-X)"),
+    ("asin(X)", "acos(X)"), ("asin(sin(X))", "X"), ("acos(cos(X))", "X"), ("atan(tan(X))", "X"),
+    ("acos(X)", "acos(-X)"),
     ("atan(X)", "pi/2 - atan(1/X)"), ("cosh(X)", "sinh(X)"), ("cosh(X)", "-sqrt(1 + sinh(X)**2)"), ("X", "-X"),
     ("cos(asin(X))", "-sqrt(1 - X**2)"), ("sin(X)", "sqrt(1 - cos(X)**2)"), ("X", "abs(X)"), ("X", "7"), ("X", "5*X"),
     ("sqrt(X)*sqrt(Y)", "-sqrt(X*Y)"), ("X**(1/3)", "(X**3)**(1/9)*X"), ("log(X)", "abs(log(X))"),
@@ -57,7 +61,8 @@ TRAPS = (
 
 PIECES = (
     "x", "y", "z", "-x", "x - 1", "1 - x", "x + y", "x*y", "x/y", "x**2 + 1", "-x**2 - 1", "-x**2", "x**2 - y**2", "2",
-    "1/2", "-8", "-2", "-27", "3", "-1", "-1/2", "sin(x)", "cos(x) - 2", "sin(x) - 1", "2 + cos(y)", "exp(x)", "-exp(x)",
+    "1/2", "-8", "-2", "-27", "3", "-1", "-1/2", "sin(x)", "cos(x) - 2", "sin(x) - 1", "2 + cos(y)", "exp(x)",
+    "-exp(x)",
     "exp(x) + 2", "-abs(x)", "abs(x)", "abs(y) + 1", "log(x)", "log(y)", "sqrt(x)", "-sqrt(x)", "sqrt(x - y)", "-pi",
     "x**(1/3)", "(-x)**(1/3)", "asin(x)", "acos(y)", "atan(x)", "tan(y)", "tanh(x)", "cosh(x)", "-cosh(x)", "pi/4",
     "asin(x) + 3", "log(x) - log(x)", "1/x", "-1/x**2", "sqrt(2)", "-sqrt(2)", "cos(1) - 1", "log(1/2)", "x**4 - x + 5",
@@ -132,7 +137,8 @@ def _rewritten(tree: Node, source: Random, rules: Sequence[tuple[Node, Node]]) -
         found: dict[str, Node] = {}
         if _matched(left, node, found):
             found.setdefault("Y", read_expression(source.choice(PIECES)))
-            return read_expression(text(replaced(tree, path, lambda _, made=_filled(right, found): made)))  # type: ignore[misc]
+            made = _filled(right, found)
+            return read_expression(text(replaced(tree, path, lambda _, made=made: made)))  # type: ignore[misc]
     return tree
 
 
@@ -191,7 +197,7 @@ def fault(claim: str, verdict: Verdict | str, source: Random) -> str:
         return "false without a counterexample"
     try:
         point = {name: _number(value) for name, value in shown.values.items()}
-        same = compare(*(_placed(side, point) for side in (left, right)), dict.fromkeys(NAMES, Fraction(1)))
+        same = compare(_placed(left, point), _placed(right, point), dict.fromkeys(NAMES, Fraction(1)))
     except NoValue:
         return "false by a point at which a side has no value"
     except Unclear:
@@ -252,13 +258,21 @@ def _placed(side: Node, point: dict[str, Node]) -> Node:
     return read_expression(text(_filled(side, point)))
 
 
-def real_campaign(
-    count: int, seed: int = 0, progress: Callable[[int], None] = lambda done: None
-) -> tuple[Counter[str], list[str], float, str]:
-    """Check generated claims; return the number of verdicts of each kind, what is wrong, and the slowest claim."""
+@dataclass(frozen=True)
+class RealOutcome:
+    """What a campaign found: verdicts of each kind, sentences on wrong ones, and the slowest claim, in seconds."""
+
+    counts: dict[str, int]
+    wrong: tuple[str, ...]
+    slowest: float
+    slowest_claim: str
+
+
+def real_campaign(count: int, seed: int = 0, progress: Callable[[int], None] = lambda done: None) -> RealOutcome:
+    """Check generated claims and judge every verdict."""
     counts: Counter[str] = Counter()
     wrong: list[str] = []
-    slowest, slow_claim = 0.0, ""
+    slowest, slowest_claim = 0.0, ""
     for done, claim in enumerate(real_claims(count, seed), start=1):
         before = perf_counter()
         verdict: Verdict | str
@@ -270,12 +284,12 @@ def real_campaign(
             wrong.append(f"{type(failure).__name__}: {claim}")
             counts["traceback"] += 1
             continue
-        took = perf_counter() - before
-        if took > slowest:
-            slowest, slow_claim = took, claim
+        seconds = perf_counter() - before
+        if seconds > slowest:
+            slowest, slowest_claim = seconds, claim
         counts["refused" if isinstance(verdict, str) else verdict.verdict] += 1
         sentence = fault(claim, verdict, Random(f"{seed} {done}"))
         if sentence:
             wrong.append(f"{sentence}: {claim}")
         progress(done)
-    return counts, wrong, slowest, slow_claim
+    return RealOutcome(dict(counts), tuple(wrong), slowest, slowest_claim)

@@ -15,6 +15,7 @@ from sympy import Abs, Add, Expr, Mul, Pow
 from sympy.core.function import AppliedUndef
 from sympy.polys.rings import PolyElement
 
+from symrot.checker.printed import shown
 from symrot.exact.decide import normal_form
 from symrot.exact.ring import FormulaRing
 
@@ -177,7 +178,7 @@ def branch_requirements(ring: FormulaRing, numerators: Sequence[PolyElement]) ->
                 break
             value = normal_form(-without.as_expr(*ring.generators) / rest.as_expr(*ring.generators), ring.hypotheses)
             if not surely_nonnegative(value):
-                signs[f"{value} >= 0"] = value
+                signs[f"{shown(value)} >= 0"] = value
         else:
             stated = tuple(signs[text] for text in sorted(signs))
             return [Requirement("sign_branch", " and ".join(sorted(signs)), signs=stated)] if signs else []

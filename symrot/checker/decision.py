@@ -4,12 +4,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from sympy import Derivative, Expr, I, Mul, Pow, Symbol, pi, zeros
+from sympy import Expr, I, Mul, Pow, Symbol, pi, zeros
 from sympy.polys.rings import PolyElement
-from sympy.printing.str import StrPrinter
 
 from symrot.checker.conditions import Requirement, branch_requirements, requirements, surely_nonnegative
 from symrot.checker.grounds import Grounds
+from symrot.checker.printed import shown
 from symrot.checker.real_points import ATTEMPTS
 from symrot.checker.verdict import Counterexample
 from symrot.errors import InputError
@@ -58,22 +58,6 @@ class Decision:
     products: int = 0
 
 
-class _Printer(StrPrinter):  # type: ignore[misc]
-    """Text that our reader reads back: ``diff(phi(t), t)`` for a derivative."""
-
-    def _print_Derivative(self, node: Derivative) -> str:
-        variables = ", ".join(self._print(v) for v, times in node.variable_count for _ in range(int(times)))
-        return f"diff({self._print(node.expr)}, {variables})"
-
-    def _print_Abs(self, node: Expr) -> str:
-        return f"abs({self._print(node.args[0])})"
-
-
-def shown(value: Any) -> str:
-    """Return a SymPy value as text in the language of claims."""
-    return str(_Printer().doprint(value))
-
-
 def decide_problem(problem: Problem) -> Decision:
     """Return what is known about an equation.
 
@@ -85,22 +69,9 @@ def decide_problem(problem: Problem) -> Decision:
     """
     try:
         with one_decision():
-            return _with_and_without_hypotheses(problem)
+            return _decide(problem)
     except RecursionError:
         return Decision("undecided", reason="the formulas are nested too deeply to be read")
-
-
-def _with_and_without_hypotheses(problem: Problem) -> Decision:
-    decision = _decide(problem)
-    if decision.verdict == "undecided" and problem.hypotheses:
-        try:
-            without = _decide(replace(problem, hypotheses=()))
-        except InputError:
-            return decision
-        if without.verdict == "true":
-            note = "no real point is known at which the hypotheses hold; the claim is true without them"
-            return replace(without, notes=(note,))
-    return decision
 
 
 def _decide(problem: Problem) -> Decision:

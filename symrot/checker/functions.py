@@ -246,7 +246,12 @@ def _integrate(scope: Scope, node: Node) -> Expr:
         if not variable.is_Symbol or lower.has(variable) or upper.has(variable):
             raise scope.fail(place, "a symbol to integrate over, with limits free of it,")
         limits.append((variable, lower, upper))
+    divided, rooted = len(scope.divisors), len(scope.radicands)
     total = scope.scalar(integrand, "to integrate")
+    needs = [d.value for d in scope.divisors[divided:] if not d.value.is_nonzero]
+    needs += [radicand for radicand in scope.radicands[rooted:] if not radicand.is_nonnegative]
+    if any(need.has(variable) for need in needs for variable, _, _ in limits):
+        raise scope.fail(integrand, "an integrand without divisors and roots that hold the variable")
     for (variable, lower, upper), place in zip(limits, ranges, strict=True):
         try:
             total, divisors = definite_integral(total, variable, lower, upper)

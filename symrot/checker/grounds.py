@@ -22,8 +22,8 @@ from symrot.checker.real_points import ATTEMPTS, RealPoint, real_points, value_a
 from symrot.errors import InputError
 from symrot.exact.angles import base_angle
 from symrot.exact.counterexample import Counterexample as Witness
-from symrot.exact.decide import is_zero
-from symrot.exact.everywhere import fails_everywhere
+from symrot.exact.decide import is_zero, normal_form
+from symrot.exact.everywhere import fails_everywhere, range_everywhere
 from symrot.exact.intervals import enclosure
 from symrot.exact.known_points import holds, known_point
 from symrot.exact.needs import Need, is_leaf, leaves_of
@@ -113,13 +113,28 @@ class Grounds:
         if known_point(needs, [*self.ring.hypotheses, *zeros]) is not None:
             return True
         self.refuse_if_empty()
+        self._refuse_if_excluded()
         return bool(self.ring.hypotheses and not zeros and self._drawn_point(needs, ATTEMPTS))
+
+    def _refuse_if_excluded(self) -> None:
+        """Raise ``InputError`` where the hypotheses turn a need into a number that breaks it."""
+        for need in self.needs if self.ring.hypotheses else ():
+            try:
+                reduced = normal_form(need.formula, self.ring.hypotheses)
+            except InputError:
+                continue
+            if reduced.is_Rational and fails_everywhere(Need(reduced, need.sign)):
+                raise InputError(f"the hypotheses exclude that the sides are real numbers: {self._shown_need(need)}")
 
     def refuse_if_nowhere(self) -> None:
         """Raise ``InputError`` where the range of a formula shows that the sides are real numbers nowhere."""
         for need in self.needs:
             if fails_everywhere(need):
                 raise InputError(f"the sides are real numbers nowhere: {self._shown_need(need)} holds at no real point")
+        for hypothesis in self.ring.hypotheses:
+            low, high = range_everywhere(hypothesis)
+            if low > 0 or high < 0:
+                raise InputError(f"the hypotheses hold at no real point: {self.text(hypothesis)} is never zero")
 
     def _polynomial_core(self, needs: Sequence[Need]) -> bool:
         """Return whether the points where nothing vanishes that is divided by are dense, by the theorem of the core."""
@@ -166,7 +181,7 @@ class Grounds:
         return why_empty(self.constraints) if self.matter or self.ring.roots else None
 
     def refuse_if_empty(self) -> None:
-        """Raise ``InputError`` where the hypotheses are proven to hold at no real point, or the sides to be undefined."""
+        """Raise ``InputError`` where hypotheses and sides are proven to have no real point in common."""
         empty = self._empty
         if empty is None:
             return
@@ -174,7 +189,7 @@ class Grounds:
         reason, poly = empty.reason, empty.polynomial
         if poly is not None and not occurring([poly]) - set(range(len(generators))):
             formula = poly.as_expr(*generators, *[Symbol("inverse")] * (poly.ring.ngens - len(generators)))
-            reason = f"{self.text(formula)} would have to be zero and cannot be"
+            reason = f"{self.text(formula)} would have to be zero and cannot be" if formula else reason
         if not self.ring.hypotheses:
             raise InputError(f"the sides are real numbers nowhere: {reason}")
         divisors = " where both sides are defined" if self.constraints.nonzero else ""

@@ -114,9 +114,7 @@ def decide(left: Any, right: Any, relations: Sequence[Any] = ()) -> Verdict:
         return _decided(lefts, rights, shape, relations)
 
 
-def _decided(
-    lefts: list[Expr], rights: list[Expr], shape: tuple[int, int] | None, relations: Sequence[Any]
-) -> Verdict:
+def _decided(lefts: list[Expr], rights: list[Expr], shape: tuple[int, int] | None, relations: Sequence[Any]) -> Verdict:
     ring = FormulaRing([*lefts, *rights], [as_zero(relation) for relation in relations])
     differences = [ring.difference(a, b) for a, b in zip(lefts, rights, strict=True)]
     proofs = [proof(ring, value.numerator) for value in differences]

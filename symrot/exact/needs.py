@@ -5,7 +5,7 @@ lowest terms, odd q included, is real for u >= 0 only, for u > 0 if p < 0: SymPy
 What SymPy cancelled while a formula was built (``0*log(x)``) is not seen here; whoever reads a text notes it there.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 import sympy
@@ -29,7 +29,7 @@ class Need:
         return f"{self.formula} is real" if self.sign == "real" else f"{self.formula} {self.sign}"
 
 
-_NEEDS = {
+_NEEDS: dict[type, Callable[..., list[tuple[Expr, str]]]] = {
     sympy.log: lambda u: [(u, "> 0")],
     sympy.asin: lambda u: [(1 - u, ">= 0"), (1 + u, ">= 0")],
     sympy.acos: lambda u: [(1 - u, ">= 0"), (1 + u, ">= 0")],
