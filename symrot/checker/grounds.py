@@ -23,6 +23,7 @@ from symrot.errors import InputError
 from symrot.exact.angles import base_angle
 from symrot.exact.counterexample import Counterexample as Witness
 from symrot.exact.decide import is_zero, normal_form
+from symrot.exact.domain import is_dense
 from symrot.exact.everywhere import fails_everywhere, range_everywhere
 from symrot.exact.intervals import enclosure
 from symrot.exact.known_points import holds, known_point
@@ -138,7 +139,7 @@ class Grounds:
 
     def _polynomial_core(self, needs: Sequence[Need]) -> bool:
         """Return whether the points where nothing vanishes that is divided by are dense, by the theorem of the core."""
-        return not (self.ring.roots or self.ring.outside_scope) and all(need.sign == "!= 0" for need in needs)
+        return is_dense(self.ring) and all(need.sign == "!= 0" for need in needs)
 
     def _shown_need(self, need: Need) -> str:
         return f"{self.text(need.formula)} {need.sign}"

@@ -21,7 +21,7 @@ from symrot.exact.branches import proof, vanishes
 from symrot.exact.budget import one_decision
 from symrot.exact.congruence import proof_by_congruence
 from symrot.exact.counterexample import Counterexample, closed_form_witness, rational_witness
-from symrot.exact.domain import divisors, radicands, split_radicands
+from symrot.exact.domain import divisors, is_dense, radicands, split_radicands
 from symrot.exact.everywhere import fails_everywhere
 from symrot.exact.known_points import known_point
 from symrot.exact.needs import Need, needs_of
@@ -148,7 +148,7 @@ def _true(residual: Any, sides: Sequence[Expr], ring: FormulaRing, conditions: t
     """
     needs = [need for need in needs_of(sides) if not need.formula.has(I)]
     needs += [Need(formula, ">= 0") for formula in split_radicands(ring) if not any(side.has(I) for side in sides)]
-    if all(need.sign == "!= 0" for need in needs):
+    if not needs or (is_dense(ring) and all(need.sign == "!= 0" for need in needs)):
         return Verdict("true", residual, conditions)
     nowhere = next((need for need in needs_of(sides) if fails_everywhere(need)), None)
     if nowhere is not None:

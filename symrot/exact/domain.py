@@ -4,10 +4,11 @@ from collections.abc import Container, Iterable
 
 from sympy import Abs, Expr, Pow, acos, asin, atan2, log
 
+from symrot.exact.needs import is_leaf
 from symrot.exact.ring import FormulaRing
 from symrot.exact.roots import Root
 
-__all__ = ["divisors", "radicands", "signs", "split_radicands"]
+__all__ = ["divisors", "is_dense", "radicands", "signs", "split_radicands"]
 
 
 def divisors(ring: FormulaRing, granted: Container[int] = ()) -> list[tuple[Expr, Expr]]:
@@ -48,6 +49,24 @@ def split_radicands(ring: FormulaRing) -> list[Expr]:
     """
     loose = [root for radical in ring.radicals.values() if radical.loose for root in radical.roots]
     return list(dict.fromkeys(root.power_expression for root in loose if not root.power_expression.is_positive))
+
+
+def is_dense(ring: FormulaRing) -> bool:
+    """Return whether the points at which nothing vanishes that was divided by are dense: so it is in the core.
+
+    Not with roots, numbers that are not algebraic, or angles and exponents that may depend on each other as
+    ``x log(4)`` and ``x log(2)`` do.
+    """
+    return not ring.roots and not ring.outside_scope and all(map(_is_plain, (*ring.bases, *ring.exponent_bases)))
+
+
+def _is_plain(atom: Expr) -> bool:
+    """Return whether an angle or exponent is made of symbols, functions of time and rational numbers."""
+    if is_leaf(atom):
+        return True
+    if atom.is_Add or atom.is_Mul or (atom.is_Pow and atom.exp.is_Integer):
+        return all(map(_is_plain, atom.args))
+    return bool(atom.is_Rational)
 
 
 def signs(ring: FormulaRing) -> list[Expr]:
