@@ -78,6 +78,15 @@ def test_no_counterexample_breaks_a_hypothesis_on_a_function(claim, given):
     assert verdict_of(claim, given) in ("refused", "undecided")
 
 
+@pytest.mark.parametrize(("claim", "given"), [
+    ("x == 4", ["abs(x) == x - 1"]), ("x == 4", ["sqrt(x**2) == x - 1"]), ("y == 2", ["abs(x) == x + y", "y == -1", "x > 0"]),
+    ("x == 4", ["sqrt(x + 1) == x - 5", "x == 3"]),
+], ids=str)  # fmt: skip
+def test_no_counterexample_breaks_a_hypothesis_on_a_root(claim, given):
+    """|x| = x - 1 was met at x = 3/2: the square of the root was reduced by the hypothesis itself."""
+    assert verdict_of(claim, given) in ("refused", "undecided")
+
+
 DEFINED = (
     "x**(1/3)*x**(2/3) == x", "(x**3)**(1/3) == x", "(x**2)**(1/3) == abs(x)**(2/3)",     "sqrt(1/10000 - (x - 37/10)**2) == sqrt((1/100 - x + 37/10)*(1/100 + x - 37/10))", "log(log(log(x))) == log(log(log(x)))",
     "sqrt(4*x*z - y**2)**2 == 4*x*z - y**2", "acos(x) + asin(x) == pi/2", "8**(1/3) == 2", "(x*y)**(1/3) == (y*x)**(1/3)",

@@ -91,10 +91,12 @@ def constraints_of(ring: FormulaRing) -> Constraints:
     even = set()
     loose = {root for radical in ring.radicals.values() if radical.loose for root in radical.roots}
     for root, place in sorted(ring.roots.items(), key=lambda item: -item[1]):  # inner roots first
-        square = ring._polynomial(root).set_ring(target)
-        if occurring([square]) <= free and root.expression is not I and root not in loose:
+        square = ring.ratio(root.power_expression)  # as it is written: reduced by hypotheses it would say less
+        relation = ring.ring.gens[place] ** root.index * ring.ratios.denominator(square) - square.numerator
+        relation = relation.set_ring(target)
+        if occurring([relation]) <= free | {place} and root.expression is not I and root not in loose:
             free.add(place)
-            zeros.append(target.gens[place] ** root.index - square)
+            zeros.append(relation)
             below = signs.get(root)
             if below is None or below.is_number:
                 even.add(place)

@@ -20,7 +20,7 @@ from symrot.exact.congruence import proof_by_congruence
 from symrot.exact.counterexample import Counterexample as Witness
 from symrot.exact.counterexample import closed_form_witness, rational_witness
 from symrot.exact.decide import flatten
-from symrot.exact.intervals import is_nonnegative_at
+from symrot.exact.intervals import enclosure, is_nonnegative_at
 from symrot.exact.needs import Need, needs_of
 from symrot.exact.ratio import MOST_PRODUCTS, TooLarge
 from symrot.exact.ring import FormulaRing, as_zero
@@ -290,9 +290,16 @@ def _witness(
         for place in places:
             entry = None if shape is None else (place // shape[1] + 1, place % shape[1] + 1)
             found = search(ring, lefts[place], rights[place], entry)
-            if found is not None:
+            if found is not None and not _breaks(found, ring):
                 return found
     return None
+
+
+def _breaks(witness: Witness, ring: FormulaRing) -> bool:
+    """Return whether intervals show that a point breaks a hypothesis, whatever led to it."""
+    values = dict(witness.values)
+    enclosures = [enclosure(hypothesis, values) for hypothesis in ring.hypotheses]
+    return any(held is not None and 0 not in held for held in enclosures)
 
 
 def _as_text(witness: Witness) -> Counterexample:

@@ -135,7 +135,8 @@ class Grounds:
         for hypothesis in self.ring.hypotheses:
             low, high = range_everywhere(hypothesis)
             if low > 0 or high < 0:
-                raise InputError(f"the hypotheses hold at no real point: {self.text(hypothesis)} is never zero")
+                shown = f"{self.text(hypothesis)} would have to be zero and cannot be"
+                raise InputError(f"the hypotheses hold at no real point: {shown}")
 
     def _polynomial_core(self, needs: Sequence[Need]) -> bool:
         """Return whether the points where nothing vanishes that is divided by are dense, by the theorem of the core."""
