@@ -232,7 +232,8 @@ class Grounds:
         if not self.matter or not self.constraints.real or not self.constraints.complete:
             return None
         residual = ring.difference(left, right).numerator.set_ring(self.constraints.ring)
-        if not occurring([residual]) <= self.constraints.free:
+        parts = [part for side in (left, right) for part in self._parts(side)]  # what both sides have cancels
+        if not occurring([residual, *parts]) <= self.constraints.free:
             return self._by_enclosures(left, right, entry, attempts)
         found = []
         for point in self.points(attempts):
@@ -252,10 +253,13 @@ class Grounds:
         return Witness(tuple(values), entry, *(side.xreplace(names) for side in sides))
 
     def _value(self, side: Expr, point: RealPoint) -> Expr:
-        ratio, target = self.ring.ratio(side), self.constraints.ring
-        above = value_at(ratio.numerator.set_ring(target), point)
-        below = value_at(self.ring.ratios.denominator(ratio).set_ring(target), point)
+        above, below = (value_at(part, point) for part in self._parts(side))
         return point.number(above / below)
+
+    def _parts(self, side: Expr) -> tuple[PolyElement, PolyElement]:
+        """Return the numerator and denominator of a side."""
+        ratio, target = self.ring.ratio(side), self.constraints.ring
+        return ratio.numerator.set_ring(target), self.ring.ratios.denominator(ratio).set_ring(target)
 
     def _named(self, point: RealPoint, used: set[Expr]) -> Iterator[tuple[Expr, Expr]]:
         """Yield symbols and angles in use with their values; quarter turns as angles, others as cosine and sine."""

@@ -229,7 +229,7 @@ def drawn_point(source: Random, names: Sequence[str] = NAMES) -> dict[str, Fract
 
 def generic_point(source: Random, names: Sequence[str] = NAMES) -> dict[str, Fraction]:
     """Return a random point on no edge that is likely to matter: no whole numbers."""
-    return _drawn(source, names, 3)
+    return _drawn(source, names, 3)  # never zero
 
 
 def _drawn(source: Random, names: Sequence[str], least: int) -> dict[str, Fraction]:
@@ -243,6 +243,6 @@ def _drawn(source: Random, names: Sequence[str], least: int) -> dict[str, Fracti
             return Fraction(source.randint(-99, 99), 100)
         if kind == 3:
             return Fraction(source.choice((-1, 1)) * source.randint(1, 999), 1) * Fraction(10) ** source.randint(-5, 2)
-        return Fraction(source.randint(-5000, 5000), 997)
+        return Fraction(2 * source.randint(-5000, 5000) + 1, 997)
 
     return {name: value() for name in names}
