@@ -200,7 +200,9 @@ def fault(claim: str, verdict: Verdict | str, source: Random) -> str:
         point = {name: _number(value) for name, value in shown.values.items()}
         same = compare(_placed(left, point), _placed(right, point), dict.fromkeys(NAMES, Fraction(1)))
     except NoValue:
-        return "false by a point at which a side has no value"
+        named = {node.value for side in (left, right) for _, node in walk(side) if node.kind == "name"}
+        whole = named & {*NAMES} <= shown.values.keys()  # names that SymPy cancelled are not named in the point
+        return "false by a point at which a side has no value" if whole else ""
     except Unclear:
         return ""
     return "false by a point at which the sides are equal" if same else ""

@@ -153,7 +153,8 @@ def _needs(problem: Problem, lefts: Sequence[Expr], rights: Sequence[Expr]) -> l
     """Return what sides and hypotheses need to be real numbers, with what the text says and SymPy has cancelled."""
     hypotheses = [as_zero(relation) for relation in problem.hypotheses]
     stated = [Need(divisor, "!= 0") for divisor in (*problem.divisors, *problem.nonzero)]
-    stated += [Need(radicand, ">= 0") for radicand in problem.radicands]
+    divided = {*problem.divisors, *problem.nonzero}  # the argument of a logarithm is noted as both
+    stated += [Need(radicand, "> 0" if radicand in divided else ">= 0") for radicand in problem.radicands]
     return [*needs_of([*lefts, *rights, *hypotheses, *(need.formula for need in stated)]), *stated]
 
 

@@ -268,7 +268,7 @@ class Grounds:
             if leaf in used and place in point.values:
                 yield leaf, point.number(point.values[place])
         for atom, place in self.ring.sines.items():
-            if not atom.atoms(Symbol, AppliedUndef) & used:
+            if not atom.atoms(Symbol, AppliedUndef) & used or place not in point.values:
                 continue
             sine, cosine = (point.number(point.values[n]) for n in (place, self.ring.cosines[atom]))
             base = base_angle(atom, self.ring.bases[atom])
