@@ -242,7 +242,8 @@ def _drawn(source: Random, names: Sequence[str], least: int) -> dict[str, Fracti
         if kind == 2:
             return Fraction(source.randint(-99, 99), 100)
         if kind == 3:
-            return Fraction(source.choice((-1, 1)) * source.randint(1, 999), 1) * Fraction(10) ** source.randint(-5, 2)
+            size = Fraction(10) ** source.choice((-5, -4, -3, -2, -1, 0, 1, 2, 6, 12, 20))
+            return source.choice((-1, 1)) * source.randint(1, 999) * size
         return Fraction(2 * source.randint(-5000, 5000) + 1, 997)
 
     return {name: value() for name in names}
