@@ -2,7 +2,9 @@
 
 True claims are made by rewriting a random formula with rules that hold by name (angle addition, the distributive law,
 ``(A B)^T = B^T A^T``); false ones by one random edit of a true one, confirmed to be false at rational points by exact
-arithmetic of its own, which shares nothing with the engine. Run it by ``python -m symrot.checker.campaign --count N``.
+arithmetic of its own, which shares nothing with the engine. Run it by ``python -m symrot.checker.campaign --count N``;
+with ``--real`` the claims are those of :mod:`symrot.checker.campaign_real`: real powers, roots of negative expressions,
+logarithms, inverse functions outside their domains, and towers of functions.
 """
 
 import sys
@@ -13,6 +15,7 @@ from dataclasses import dataclass
 from random import Random
 from time import perf_counter
 
+from symrot.checker.campaign_real import real_campaign
 from symrot.checker.edits import single_edits
 from symrot.checker.interface import check
 from symrot.checker.judge import ANGLES, FUNCTIONS, QUATERNIONS, SYMBOLS
@@ -303,7 +306,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser = ArgumentParser(prog="python -m symrot.checker.campaign", description=__doc__.splitlines()[0])
     parser.add_argument("--count", type=int, default=1000, help="claims (default: 1000)")
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--real", action="store_true", help="powers, logarithms, inverse functions and towers")
     options = parser.parse_args(argv)
+    if options.real:
+        return _real(options.count, options.seed)
     found = campaign(options.count, options.seed, _shown_progress if sys.stderr.isatty() else lambda done: None)
     for (true, verdict), number_of in sorted(found.counts.items()):
         print(f"{'true' if true else 'false':<6} claims found {verdict:<12} {number_of}")
@@ -312,6 +318,23 @@ def main(argv: Sequence[str] | None = None) -> int:
     for line in (*found.wrong, *found.refused)[:20]:
         print(line)
     return int(bool(found.wrong) or found.undecided + len(found.refused) > options.count / 100)
+
+
+LONGEST_SECONDS = 60.0
+"""In which every claim has its answer."""
+
+
+def _real(count: int, seed: int) -> int:
+    """Run the campaign over real functions; exit code 1 for a wrong verdict, a traceback or a late answer."""
+    start = perf_counter()
+    found = real_campaign(count, seed, _shown_progress if sys.stderr.isatty() else lambda done: None)
+    for verdict, number_of in sorted(found.counts.items()):
+        print(f"{verdict:<12} {number_of}")
+    print(f"wrong {len(found.wrong)} of {count}")
+    print(f"{perf_counter() - start:.1f} s, slowest claim {found.slowest:.2f} s: {found.slowest_claim}")
+    for line in found.wrong[:20]:
+        print(line)
+    return int(bool(found.wrong) or found.slowest > LONGEST_SECONDS)
 
 
 def _shown_progress(done: int) -> None:

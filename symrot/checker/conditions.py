@@ -15,6 +15,7 @@ from sympy import Abs, Add, Expr, Mul, Pow
 from sympy.core.function import AppliedUndef
 from sympy.polys.rings import PolyElement
 
+from symrot.checker.printed import shown
 from symrot.exact.decide import normal_form
 from symrot.exact.ring import FormulaRing
 
@@ -34,11 +35,12 @@ MOST_TERMS_OF_SQUARE = 40
 
 @dataclass(frozen=True)
 class Requirement:
-    """A condition as text, its code, and the expressions that are zero under it (none for an inequality)."""
+    """A condition as text, its code, and the expressions that are zero, or not negative, under it."""
 
     code: str
     text: str
     zeros: tuple[Expr, ...] = ()
+    signs: tuple[Expr, ...] = ()
 
 
 def requirements(
@@ -176,9 +178,10 @@ def branch_requirements(ring: FormulaRing, numerators: Sequence[PolyElement]) ->
                 break
             value = normal_form(-without.as_expr(*ring.generators) / rest.as_expr(*ring.generators), ring.hypotheses)
             if not surely_nonnegative(value):
-                signs[f"{value} >= 0"] = value
+                signs[f"{shown(value)} >= 0"] = value
         else:
-            return [Requirement("sign_branch", " and ".join(sorted(signs)))] if signs else []
+            stated = tuple(signs[text] for text in sorted(signs))
+            return [Requirement("sign_branch", " and ".join(sorted(signs)), signs=stated)] if signs else []
     return None
 
 
@@ -190,7 +193,7 @@ def _split(poly: PolyElement, place: int, generator: PolyElement) -> tuple[PolyE
 
 def surely_nonnegative(value: Expr) -> bool:
     """Return whether a real value cannot be negative by its form alone; roots are real where the claim is defined."""
-    if value.is_nonnegative or isinstance(value, Abs):
+    if value.is_nonnegative or isinstance(value, Abs | sympy.exp):
         return True
     if isinstance(value, Pow) and value.exp.is_Rational:
         even = value.exp.q == 1 and value.exp.p % 2 == 0

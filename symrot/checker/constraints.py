@@ -89,11 +89,14 @@ def constraints_of(ring: FormulaRing) -> Constraints:
             zeros.append(target.gens[sine] ** 2 + target.gens[ring.cosines[atom]] ** 2 - 1)
     signs = {root: radical.below for radical in ring.radicals.values() for root in radical.roots}
     even = set()
+    loose = {root for radical in ring.radicals.values() if radical.loose for root in radical.roots}
     for root, place in sorted(ring.roots.items(), key=lambda item: -item[1]):  # inner roots first
-        square = ring._polynomial(root).set_ring(target)
-        if occurring([square]) <= free and root.expression is not I:
+        square = ring.ratio(root.power_expression)  # as it is written: reduced by hypotheses it would say less
+        relation = ring.ring.gens[place] ** root.index * ring.ratios.denominator(square) - square.numerator
+        relation = relation.set_ring(target)
+        if occurring([relation]) <= free | {place} and root.expression is not I and root not in loose:
             free.add(place)
-            zeros.append(target.gens[place] ** root.index - square)
+            zeros.append(relation)
             below = signs.get(root)
             if below is None or below.is_number:
                 even.add(place)

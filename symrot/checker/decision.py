@@ -4,22 +4,24 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from sympy import Derivative, Expr, Mul, Pow, Symbol, pi, zeros
+from sympy import Expr, I, Mul, Pow, Symbol, pi, zeros
 from sympy.polys.rings import PolyElement
-from sympy.printing.str import StrPrinter
 
 from symrot.checker.conditions import Requirement, branch_requirements, requirements, surely_nonnegative
 from symrot.checker.grounds import Grounds
+from symrot.checker.printed import shown
 from symrot.checker.real_points import ATTEMPTS
 from symrot.checker.verdict import Counterexample
 from symrot.errors import InputError
 from symrot.exact import cyclotomic, domain
 from symrot.exact.branches import lifts, proof
+from symrot.exact.budget import one_decision
 from symrot.exact.congruence import proof_by_congruence
 from symrot.exact.counterexample import Counterexample as Witness
 from symrot.exact.counterexample import closed_form_witness, rational_witness
 from symrot.exact.decide import flatten
-from symrot.exact.intervals import surely_nonnegative_number
+from symrot.exact.intervals import enclosure, is_nonnegative_at
+from symrot.exact.needs import Need, needs_of
 from symrot.exact.ratio import MOST_PRODUCTS, TooLarge
 from symrot.exact.ring import FormulaRing, as_zero
 
@@ -56,22 +58,6 @@ class Decision:
     products: int = 0
 
 
-class _Printer(StrPrinter):  # type: ignore[misc]
-    """Text that our reader reads back: ``diff(phi(t), t)`` for a derivative."""
-
-    def _print_Derivative(self, node: Derivative) -> str:
-        variables = ", ".join(self._print(v) for v, times in node.variable_count for _ in range(int(times)))
-        return f"diff({self._print(node.expr)}, {variables})"
-
-    def _print_Abs(self, node: Expr) -> str:
-        return f"abs({self._print(node.args[0])})"
-
-
-def shown(value: Any) -> str:
-    """Return a SymPy value as text in the language of claims."""
-    return str(_Printer().doprint(value))
-
-
 def decide_problem(problem: Problem) -> Decision:
     """Return what is known about an equation.
 
@@ -81,10 +67,20 @@ def decide_problem(problem: Problem) -> Decision:
         If the shapes differ, a side is no finite exact formula, it divides by what is zero everywhere, the hypotheses
         contradict each other, or the degree is beyond the budget.
     """
+    try:
+        with one_decision():
+            return _decide(problem)
+    except RecursionError:
+        return Decision("undecided", reason="the formulas are nested too deeply to be read")
+
+
+def _decide(problem: Problem) -> Decision:
     lefts, rights, shape = _sides(problem)
     relations = [as_zero(relation) for relation in problem.hypotheses]
     for formula in [*lefts, *rights, *relations, *problem.divisors, *problem.radicands]:
         _affordable(formula)
+        if formula.has(I):
+            raise InputError(f"expected real numbers, got the square root of a negative number in {shown(formula)}")
     try:
         ring = FormulaRing([*lefts, *rights, *problem.divisors, *problem.nonzero], relations, problem.radicands)
     except TooLarge as reason:
@@ -113,9 +109,10 @@ def _decided(
         ring.ratios.invert(ring.ratio(divisor), divisor)
     further = [lift for found in proofs if found for lift in found]
     conditions = _conditions([ring, *further], granted, problem.radicands)
-    grounds = Grounds(ring, shown)
+    grounds = Grounds(ring, shown, _needs(problem, lefts, rights))
+    grounds.refuse_if_nowhere()
     if not wrong:
-        return Decision("true", conditions, notes=grounds.notes())
+        return _true(grounds, conditions, further)
     numerators = [ring.reduce(residuals[place].numerator) for place in wrong]
     closed_form = grounds.checked(closed_form_witness)
     nearest = _within(ring, grounds.near_witness) if ring.hypotheses else closed_form
@@ -123,16 +120,16 @@ def _decided(
     branches, lift = _branches(ring, numerators)
     conditions = _conditions([ring, *further, *lift], granted, problem.radicands)
     if branches is not None and _taken_for_granted(branches, ring, problem.radicands):
-        return Decision("true", conditions, notes=grounds.notes())
+        return _true(grounds, conditions, (*further, *lift))
     if not witness and (ring.hypotheses or branches is None):
         if grounds.imply(numerators):
-            return Decision("true", conditions, notes=grounds.notes())
+            return _true(grounds, conditions, (*further, *lift))
         grounds.refuse_if_empty()
         rest = [_within(ring, grounds.witness), *([closed_form] if ring.hypotheses else [])]
         witness = _witness(rest, ring, lefts, rights, wrong[:4], shape)
     needed = requirements(ring, numerators, [(lefts[n], rights[n]) for n in wrong], len(lefts))
-    needed = [requirement for requirement in needed if grounds.allow(requirement.zeros)]
-    if branches and not needed:
+    needed = [requirement for requirement in needed if _can_hold(requirement, grounds)]
+    if branches and not needed and _can_hold(branches[0], grounds):
         if not witness:  # it may hold everywhere
             signs = " and ".join(requirement.text for requirement in branches)
             reason = f"it is true where {signs}, and no point is known where that fails"
@@ -148,8 +145,34 @@ def _decided(
     if None not in congruent:
         lift = tuple(other for found in congruent if found for other in found)
         conditions = _conditions([ring, *further, *lift], granted, problem.radicands)
-        return Decision("true", conditions, notes=grounds.notes())
+        return _true(grounds, conditions, (*further, *lift))
     return Decision("undecided", conditions, (), None, _stopped_by(ring))
+
+
+def _needs(problem: Problem, lefts: Sequence[Expr], rights: Sequence[Expr]) -> list[Need]:
+    """Return what sides and hypotheses need to be real numbers, with what the text says and SymPy has cancelled."""
+    hypotheses = [as_zero(relation) for relation in problem.hypotheses]
+    stated = [Need(divisor, "!= 0") for divisor in (*problem.divisors, *problem.nonzero)]
+    divided = {*problem.divisors, *problem.nonzero}  # the argument of a logarithm is noted as both
+    stated += [Need(radicand, "> 0" if radicand in divided else ">= 0") for radicand in problem.radicands]
+    return [*needs_of([*lefts, *rights, *hypotheses, *(need.formula for need in stated)]), *stated]
+
+
+def _true(grounds: Grounds, conditions: tuple[str, ...], rings: Sequence[FormulaRing]) -> Decision:
+    """Return the verdict "true" where a point is known to which it applies, else "undecided"."""
+    divided = [Need(source, "!= 0") for ring in (grounds.ring, *rings) for source, _ in domain.divisors(ring)]
+    divided += [Need(formula, ">= 0") for ring in (grounds.ring, *rings) for formula in domain.split_radicands(ring)]
+    if grounds.known([need for need in divided if need not in grounds.needs]):
+        return Decision("true", conditions)
+    hypotheses = " and the hypotheses hold" if grounds.ring.hypotheses else ""
+    reason = f"it follows, but no point is known at which both sides are real numbers{hypotheses}"
+    return Decision("undecided", conditions, reason=reason)
+
+
+def _can_hold(requirement: Requirement, grounds: Grounds) -> bool:
+    """Return whether a point is known at which a condition holds, and the sides are real numbers."""
+    signs = [Need(value, ">= 0") for value in (*requirement.signs, *domain.split_radicands(grounds.ring))]
+    return grounds.allow(requirement.zeros) and grounds.known([*needs_of(requirement.signs), *signs], requirement.zeros)
 
 
 def _sides(problem: Problem) -> tuple[list[Expr], list[Expr], tuple[int, int] | None]:
@@ -255,7 +278,7 @@ def _within(ring: FormulaRing, search: Search) -> Search:
     def searched(ring: FormulaRing, left: Expr, right: Expr, entry: tuple[int, int] | None) -> Witness | None:
         found = search(ring, left, right, entry)
         values = dict(found.values) if found else {}
-        return found if all(surely_nonnegative_number(formula.xreplace(values)) for formula in ring.domain) else None
+        return found if all(is_nonnegative_at(formula, values) for formula in ring.domain) else None
 
     return searched if ring.domain else search
 
@@ -268,9 +291,16 @@ def _witness(
         for place in places:
             entry = None if shape is None else (place // shape[1] + 1, place % shape[1] + 1)
             found = search(ring, lefts[place], rights[place], entry)
-            if found is not None:
+            if found is not None and not _breaks(found, ring):
                 return found
     return None
+
+
+def _breaks(witness: Witness, ring: FormulaRing) -> bool:
+    """Return whether intervals show that a point breaks a hypothesis, whatever led to it."""
+    values = dict(witness.values)
+    enclosures = [enclosure(hypothesis, values) for hypothesis in ring.hypotheses]
+    return any(held is not None and 0 not in held for held in enclosures)
 
 
 def _as_text(witness: Witness) -> Counterexample:

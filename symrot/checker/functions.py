@@ -25,6 +25,7 @@ from symrot.checker.size import (
 from symrot.checker.tree import Node
 from symrot.errors import InputError
 from symrot.exact.extent import pieces
+from symrot.exact.intervals import enclosure
 from symrot.kinematics.quaternion import dcm_of, qmul
 from symrot.kinematics.rotations import elementary_rotation, skew, vee
 
@@ -42,7 +43,10 @@ def _of_scalar(function: Callable[[Expr], Expr], below: Callable[[Expr], Expr] |
             raise scope.fail(node.args[0], f"an angle whose sine has at most {MOST_ANGLE_TERMS} terms")
         if below is not None:
             scope.divide_by(below(value), node)
-        return function(value)
+        made = function(value)
+        if value.is_number and not made.is_Rational and enclosure(made) is None:
+            raise scope.fail(node, "a number whose digits can be computed instead of a tower of functions")
+        return made
 
     return call
 
@@ -242,7 +246,12 @@ def _integrate(scope: Scope, node: Node) -> Expr:
         if not variable.is_Symbol or lower.has(variable) or upper.has(variable):
             raise scope.fail(place, "a symbol to integrate over, with limits free of it,")
         limits.append((variable, lower, upper))
+    divided, rooted = len(scope.divisors), len(scope.radicands)
     total = scope.scalar(integrand, "to integrate")
+    needs = [d.value for d in scope.divisors[divided:] if not d.value.is_nonzero]
+    needs += [radicand for radicand in scope.radicands[rooted:] if not radicand.is_nonnegative]
+    if any(need.has(variable) for need in needs for variable, _, _ in limits):
+        raise scope.fail(integrand, "an integrand without divisors and roots that hold the variable")
     for (variable, lower, upper), place in zip(limits, ranges, strict=True):
         try:
             total, divisors = definite_integral(total, variable, lower, upper)

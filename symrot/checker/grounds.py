@@ -1,14 +1,15 @@
 """Whether what a claim takes for granted holds anywhere, what follows from it, and where it leaves the claim false.
 
-A claim that follows from hypotheses which nothing obeys is true of nothing: such hypotheses are refused where that can
-be proven, and a verdict "true" says so where no point is known at which they hold.
+A claim about sides that are defined nowhere, or under hypotheses that nothing obeys, is true of nothing: it is refused
+where that can be proven, and undecided where no point is known at which the sides are real numbers and the hypotheses
+hold (:mod:`symrot.exact.known_points`).
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property
 
-from sympy import CRootOf, Expr, Rational, Symbol, pi, preorder_traversal
+from sympy import CRootOf, Expr, Rational, Symbol, atan2, pi, preorder_traversal
 from sympy import cos as cosine_of
 from sympy import sin as sine_of
 from sympy.core.function import AppliedUndef
@@ -21,7 +22,12 @@ from symrot.checker.real_points import ATTEMPTS, RealPoint, real_points, value_a
 from symrot.errors import InputError
 from symrot.exact.angles import base_angle
 from symrot.exact.counterexample import Counterexample as Witness
+from symrot.exact.decide import is_zero, normal_form
+from symrot.exact.domain import is_dense
+from symrot.exact.everywhere import fails_everywhere, range_everywhere
 from symrot.exact.intervals import enclosure
+from symrot.exact.known_points import holds, known_point
+from symrot.exact.needs import Need, is_leaf, leaves_of
 from symrot.exact.ring import FormulaRing
 
 __all__ = ["Grounds"]
@@ -46,10 +52,12 @@ class Grounds:
         Into which everything was read that the claim divides by.
     text : function
         From an expression to text.
+    needs : sequence of Need
+        What the sides and hypotheses need to be real numbers, as they are written.
     """
 
-    def __init__(self, ring: FormulaRing, text: Callable[[Expr], str]) -> None:
-        self.ring, self.text = ring, text
+    def __init__(self, ring: FormulaRing, text: Callable[[Expr], str], needs: Sequence[Need] = ()) -> None:
+        self.ring, self.text, self.needs = ring, text, tuple(needs)
         self._drawn: list[RealPoint | None] = []
 
     @cached_property
@@ -78,28 +86,104 @@ class Grounds:
             if point is not None:
                 yield point
 
-    def notes(self) -> tuple[str, ...]:
-        """Return what must be said beside a verdict "true": nothing where a point of the hypotheses is known.
+    # -- a point of the domain ----------------------------------------------------------------------------------------
+
+    def known(self, further: Sequence[Need] = (), zeros: Sequence[Expr] = ()) -> bool:
+        """Return whether a real point is known at which all needs and hypotheses hold.
+
+        Parameters
+        ----------
+        further : sequence of Need
+            Beside the needs of the claim: what a proof divides by, the sign that a condition states.
+        zeros : sequence of Expr
+            What vanishes too, of a condition.
 
         Raises
         ------
         InputError
-            If the hypotheses hold at no real point.
+            If there is proven to be none, were it not for ``further`` and ``zeros``.
         """
-        if not self.ring.hypotheses:
-            return ()
-        for attempts in (FEW, ATTEMPTS):
-            if self.constraints.complete and next(self.points(attempts), None) is not None:
-                return ()
-            self.refuse_if_empty()
-        return (f"no real point is known at which the hypotheses hold: none was found among {ATTEMPTS} drawn",)
+        needs = list(dict.fromkeys([*self.needs, *further]))
+        if not self.ring.hypotheses and not zeros and self._polynomial_core(needs):
+            return True
+        needs = [need for need in needs if leaves_of([need.formula]) or not self._true_number(need)]
+        if any(not leaves_of([need.formula]) for need in needs):
+            return False
+        if self.ring.hypotheses and not zeros and self._drawn_point(needs, FEW):
+            return True
+        if known_point(needs, [*self.ring.hypotheses, *zeros]) is not None:
+            return True
+        self.refuse_if_empty()
+        self._refuse_if_excluded()
+        return bool(self.ring.hypotheses and not zeros and self._drawn_point(needs, ATTEMPTS))
+
+    def _refuse_if_excluded(self) -> None:
+        """Raise ``InputError`` where the hypotheses turn a need into a number that breaks it."""
+        for need in self.needs if self.ring.hypotheses else ():
+            try:
+                reduced = normal_form(need.formula, self.ring.hypotheses)
+            except InputError:
+                continue
+            if reduced.is_Rational and fails_everywhere(Need(reduced, need.sign)):
+                raise InputError(f"the hypotheses exclude that the sides are real numbers: {self._shown_need(need)}")
+
+    def refuse_if_nowhere(self) -> None:
+        """Raise ``InputError`` where the range of a formula shows that the sides are real numbers nowhere."""
+        for need in self.needs:
+            if fails_everywhere(need):
+                raise InputError(f"the sides are real numbers nowhere: {self._shown_need(need)} holds at no real point")
+        for hypothesis in self.ring.hypotheses:
+            low, high = range_everywhere(hypothesis)
+            if low > 0 or high < 0:
+                shown = f"{self.text(hypothesis)} would have to be zero and cannot be"
+                raise InputError(f"the hypotheses hold at no real point: {shown}")
+
+    def _polynomial_core(self, needs: Sequence[Need]) -> bool:
+        """Return whether the points where nothing vanishes that is divided by are dense, by the theorem of the core."""
+        return is_dense(self.ring) and all(need.sign == "!= 0" for need in needs)
+
+    def _shown_need(self, need: Need) -> str:
+        return f"{self.text(need.formula)} {need.sign}"
+
+    def _true_number(self, need: Need) -> bool:
+        """Return whether a need of constants holds; ``InputError`` where it is proven not to."""
+        held = enclosure(need.formula)
+        if held is None:
+            return False
+        zero = 0 in held and is_zero(need.formula)
+        fails = (held.b < 0 and need.sign != "!= 0") or (zero and need.sign != ">= 0")
+        if fails:
+            raise InputError(f"the sides are no real numbers: {self._shown_need(need)} does not hold")
+        return zero or holds(need, {})
+
+    def _drawn_point(self, needs: Sequence[Need], attempts: int) -> bool:
+        """Return whether needs are proven to hold at one of the exact points of the hypotheses."""
+        if not self.constraints.complete:
+            return False
+        leaves = leaves_of(need.formula for need in needs)
+        for point in self.points(attempts):
+            values = self._values(point)
+            values.update((leaf, OTHER_VALUES[n % len(OTHER_VALUES)]) for n, leaf in enumerate(leaves)
+                          if leaf not in values)  # fmt: skip
+            if all(holds(need, values) for need in needs):
+                return True
+        return False
+
+    def _values(self, point: RealPoint) -> dict[Expr, Expr]:
+        """Return the values of symbols and of plain angles at a point."""
+        values = {leaf: point.number(point.values[n]) for leaf, n in self.ring.symbols.items() if n in point.values}
+        for atom, place in self.ring.sines.items():
+            if place in point.values and is_leaf(atom):
+                sine, cosine = (point.number(point.values[n]) for n in (place, self.ring.cosines[atom]))
+                values[atom] = atan2(sine, cosine) * atom / base_angle(atom, self.ring.bases[atom])
+        return values
 
     @cached_property
     def _empty(self) -> Emptiness | None:
-        return why_empty(self.constraints) if self.matter else None
+        return why_empty(self.constraints) if self.matter or self.ring.roots else None
 
     def refuse_if_empty(self) -> None:
-        """Raise ``InputError`` where the hypotheses are proven to hold at no real point."""
+        """Raise ``InputError`` where hypotheses and sides are proven to have no real point in common."""
         empty = self._empty
         if empty is None:
             return
@@ -107,7 +191,9 @@ class Grounds:
         reason, poly = empty.reason, empty.polynomial
         if poly is not None and not occurring([poly]) - set(range(len(generators))):
             formula = poly.as_expr(*generators, *[Symbol("inverse")] * (poly.ring.ngens - len(generators)))
-            reason = f"{self.text(formula)} would have to be zero and cannot be"
+            reason = f"{self.text(formula)} would have to be zero and cannot be" if formula else reason
+        if not self.ring.hypotheses:
+            raise InputError(f"the sides are real numbers nowhere: {reason}")
         divisors = " where both sides are defined" if self.constraints.nonzero else ""
         raise InputError(f"the hypotheses hold at no real point{divisors}: {reason}")
 
@@ -146,7 +232,8 @@ class Grounds:
         if not self.matter or not self.constraints.real or not self.constraints.complete:
             return None
         residual = ring.difference(left, right).numerator.set_ring(self.constraints.ring)
-        if not occurring([residual]) <= self.constraints.free:
+        parts = [part for side in (left, right) for part in self._parts(side)]  # what both sides have cancels
+        if not occurring([residual, *parts]) <= self.constraints.free:
             return self._by_enclosures(left, right, entry, attempts)
         found = []
         for point in self.points(attempts):
@@ -166,10 +253,13 @@ class Grounds:
         return Witness(tuple(values), entry, *(side.xreplace(names) for side in sides))
 
     def _value(self, side: Expr, point: RealPoint) -> Expr:
-        ratio, target = self.ring.ratio(side), self.constraints.ring
-        above = value_at(ratio.numerator.set_ring(target), point)
-        below = value_at(self.ring.ratios.denominator(ratio).set_ring(target), point)
+        above, below = (value_at(part, point) for part in self._parts(side))
         return point.number(above / below)
+
+    def _parts(self, side: Expr) -> tuple[PolyElement, PolyElement]:
+        """Return the numerator and denominator of a side."""
+        ratio, target = self.ring.ratio(side), self.constraints.ring
+        return ratio.numerator.set_ring(target), self.ring.ratios.denominator(ratio).set_ring(target)
 
     def _named(self, point: RealPoint, used: set[Expr]) -> Iterator[tuple[Expr, Expr]]:
         """Yield symbols and angles in use with their values; quarter turns as angles, others as cosine and sine."""
@@ -178,7 +268,7 @@ class Grounds:
             if leaf in used and place in point.values:
                 yield leaf, point.number(point.values[place])
         for atom, place in self.ring.sines.items():
-            if not atom.atoms(Symbol, AppliedUndef) & used:
+            if not atom.atoms(Symbol, AppliedUndef) & used or place not in point.values:
                 continue
             sine, cosine = (point.number(point.values[n]) for n in (place, self.ring.cosines[atom]))
             base = base_angle(atom, self.ring.bases[atom])
@@ -200,20 +290,21 @@ class Grounds:
             values |= {name: OTHER_VALUES[n % len(OTHER_VALUES)] for n, name in enumerate(others)}
             if not self._defined(values):
                 continue
-            sides = left.xreplace(values), right.xreplace(values)
-            held = [enclosure(side) for side in sides]
+            held = [enclosure(side, values) for side in (left, right)]
             if None not in held and 0 not in held[0] - held[1]:
+                sides = left.xreplace(values), right.xreplace(values)
                 used = atoms_of([left, right, *self.ring.hypotheses])
                 shown = sorted(((name, value) for name, value in values.items() if name in used), key=str)
                 return Witness(tuple(shown), entry, *sides)
         return None
 
     def _nowhere_zero(self, values: dict[Expr, Expr]) -> bool:
-        factors = [factor.as_expr(*self.ring.generators).xreplace(values) for factor in self.ring.ratios.factors]
-        return all(held is not None and 0 not in held for held in map(enclosure, factors))
+        factors = [factor.as_expr(*self.ring.generators) for factor in self.ring.ratios.factors]
+        enclosures = [enclosure(factor, values) for factor in factors]
+        return all(held is not None and 0 not in held for held in enclosures)
 
     def _defined(self, values: dict[Expr, Expr]) -> bool:
         if not self._nowhere_zero(values):
             return False
-        roots = [enclosure(found.base.xreplace(values)) for found in self.ring.radicals.values()]
+        roots = [enclosure(found.base, values) for found in self.ring.radicals.values()]
         return all(held is not None and held.a >= 0 for held in roots)

@@ -68,6 +68,13 @@ def check(
     >>> check("cos(2*x) == 1 - 2*sin(x)**2").verdict
     'true'
     """
+    try:
+        return _checked(left, right, assume, units, repair)
+    except RecursionError:
+        raise InputError("expected formulas that are nested less deeply") from None
+
+
+def _checked(left: Any, right: Any, assume: Sequence[Any], units: Mapping[str, str] | None, repair: bool) -> Verdict:
     if isinstance(left, str):
         if right is not None:
             raise InputError("expected the whole claim 'left == right' as one text, got two arguments")
@@ -117,7 +124,10 @@ def verdicts_of_file(
 
 def check_claim(claim: Claim, repair: bool = True) -> Verdict:
     """Return the verdict on a claim that has been read: on its first reading, or on another one that is true."""
-    verdict, other = check_readings(claim, repair)
+    try:
+        verdict, other = check_readings(claim, repair)
+    except RecursionError:
+        raise InputError(f"{claim.id or 'claim'}: expected formulas that are nested less deeply") from None
     if other is None:
         return verdict
     note = f"this is another reading of the claim; the first, {verdict.text}, is {verdict.verdict}"

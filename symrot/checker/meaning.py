@@ -148,10 +148,8 @@ def _power(meaning: Meaning, node: Node) -> Any:
         meaning.divide_by(base, node.args[0])
     if base.is_Rational and abs(exponent.p) * max(int(base.p).bit_length(), int(base.q).bit_length()) > MOST_BITS:
         raise meaning.fail(node, f"a number of at most {MOST_BITS} bits")
-    if exponent.q % 2 == 0:
+    if exponent.q > 1:  # of odd index too: the principal value is real for what is not negative only
         meaning.take_root(base, node.args[0])
-    elif exponent.q > 1:
-        meaning.factorable(base, node.args[0])
     return base**exponent
 
 

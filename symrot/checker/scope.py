@@ -12,6 +12,7 @@ from symrot.checker.size import MOST_PIECES
 from symrot.checker.tree import Node
 from symrot.errors import InputError
 from symrot.exact.extent import pieces
+from symrot.exact.intervals import enclosure
 
 __all__ = ["Divisor", "Scope", "described", "is_matrix"]
 
@@ -107,7 +108,8 @@ class Scope(ABC):
             raise self.fail(node, "a divisor that is not zero")
         for factor in Mul.make_args(value):
             base = factor.as_base_exp()[0]
-            if not base.is_number:
+            held = enclosure(base) if base.is_number else None
+            if held is None or 0 in held:
                 self.divisors.append(Divisor(base, node))
 
     def factorable(self, value: Expr, node: Node) -> None:
@@ -117,8 +119,9 @@ class Scope(ABC):
 
     def take_root(self, value: Expr, node: Node) -> None:
         """Note a radicand; one that is negative is refused."""
-        if value.is_negative:
-            raise self.fail(node, "a number that is not negative under an even root")
+        held = enclosure(value) if value.is_number else None
+        if (held is None and value.is_negative) or (held is not None and held.b < 0):
+            raise self.fail(node, "a number that is not negative under a root")
         self.factorable(value, node)
-        if not value.is_number:
+        if held is None or not held.a >= 0:
             self.radicands.append(value)

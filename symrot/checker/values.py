@@ -6,7 +6,7 @@ from fractions import Fraction
 from mpmath import iv
 
 from symrot.checker.claims import Claim
-from symrot.checker.decision import Decision, shown
+from symrot.checker.decision import Decision, Problem, decide_problem, shown
 from symrot.checker.verdict import Counterexample
 from symrot.errors import InputError
 from symrot.exact.intervals import enclosure
@@ -31,6 +31,11 @@ def decide_value(claim: Claim) -> Decision:
     if getattr(value, "free_symbols", {1}):
         raise InputError(f"{where}: expected a number, got {shown(value)}")
     printed, unit = _printed(claim.printed, claim.label("printed_value"))
+    divisors = tuple(divisor.value for divisor in meaning.divisors)
+    if divisors or meaning.radicands:  # constants about which nothing is known so far
+        decision = decide_problem(Problem(value, value, (), divisors, (), tuple(meaning.radicands)))
+        if decision.verdict != "true":
+            return Decision("undecided", reason=f"it is not known that {shown(value)} is a real number")
     held = enclosure(value)
     if held is None:
         return Decision("undecided", reason=f"no enclosure of {shown(value)} is known here")

@@ -20,7 +20,8 @@ from sympy.polys.rings import PolyElement
 from symrot.errors import InputError
 from symrot.exact.angles import base_angle
 from symrot.exact.extent import pieces
-from symrot.exact.intervals import enclosure, surely_nonnegative_number
+from symrot.exact.floats import NoValue, float_at
+from symrot.exact.intervals import enclosure, is_nonnegative_at, surely_nonnegative_number
 from symrot.exact.ratio import Ratio, TooLarge
 from symrot.exact.ring import FormulaRing
 
@@ -37,6 +38,9 @@ UNMOVED = 20
 
 MOST_ROOTS_SHORTENED = 6
 """Roots in a number that is still multiplied out to see whether it is rational: each doubles its terms."""
+
+MOST_NESTED = 2
+"""Functions inside each other where SymPy still puts numbers in."""
 
 _INVERSE = (asin, acos, atan, atan2)
 _TRIANGLES = [Rational(n, d) for n, d in ((3, 5), (-4, 5), (3, 4), (-4, 3), (1, 1), (-1, 1), (2, 1), (-2, 1), (1, 2))]
@@ -158,7 +162,7 @@ def closed_form_witness(
 
     Hypotheses are met by rational points of spheres and by solving linear ones, as for :func:`rational_witness`.
     """
-    places = {number: leaf for leaf, number in ring.symbols.items()}
+    places = {number: leaf for leaf, number in ring.symbols.items() if ring.leaves[leaf]}
     if any(number not in places for hypothesis in ring.hypothesis_numerators for number in _occurring(hypothesis)):
         return None
     coordinates, solved = _coordinates(ring)
@@ -191,13 +195,15 @@ def closed_form_witness(
                 values[leaf] = source.choice([v for v in choices if _assumed(leaf, v)] or [Rational(1)])
         if attempt >= UNMOVED:
             _move_within(within, values, [leaf for leaf in variables if leaf not in fixed], simple)
-        if not all(surely_nonnegative_number(formula.xreplace(values)) for formula in within):
+        if not all(_seems_nonnegative(formula, values) for formula in within):
             continue
-        if not all(_nonzero(source.xreplace(values)) for source in ring.ratios.sources):
+        if not all(_nonnegative(formula, values) for formula in within):
             continue
-        sides = left.xreplace(values), right.xreplace(values)
-        enclosures = [enclosure(side) for side in sides]
+        if not all(_nonzero(source, values) for source in ring.ratios.sources):
+            continue
+        enclosures = [_enclosure(side, values) for side in (left, right)]
         if None not in enclosures and 0 not in enclosures[0] - enclosures[1]:
+            sides = left.xreplace(values), right.xreplace(values)
             return Counterexample(tuple(sorted(values.items(), key=str)), entry, *map(_shortest, sides))
     return None
 
@@ -207,11 +213,11 @@ def _move_within(
 ) -> None:
     """Change one value for each formula that is negative, so that it is not: of the first symbol that can do it."""
     for formula in formulas:
-        if surely_nonnegative_number(formula.xreplace(values)):
+        if _seems_nonnegative(formula, values) and _nonnegative(formula, values):
             continue
         own = formula.free_symbols
         trials = ({**values, leaf: v} for leaf in movable if leaf in own for v in simple if _assumed(leaf, v))
-        found = next((t for t in trials if surely_nonnegative_number(formula.xreplace(t))), values)
+        found = next((t for t in trials if _seems_nonnegative(formula, t) and _nonnegative(formula, t)), values)
         values.update(found)
 
 
@@ -222,9 +228,35 @@ def _pure_angles(ring: FormulaRing) -> set[Expr]:
     return {atom for atom in inside if not any(other.has(atom) for other in others)}
 
 
-def _nonzero(number: Expr) -> bool:
-    held = enclosure(number)
+def _enclosure(formula: Expr, values: dict[Expr, Expr]) -> Any:
+    """Return an interval that holds a formula at a point, put in by SymPy where only that shows it, or None."""
+    held = enclosure(formula, values)
+    return enclosure(formula.xreplace(values)) if held is None and _is_flat(formula) else held
+
+
+def _nonnegative(formula: Expr, values: dict[Expr, Expr]) -> bool:
+    """Return whether a formula is proven not to be negative; ``1 + cos(x)`` is exactly zero at pi."""
+    shown = is_nonnegative_at(formula, values)
+    return shown or (_is_flat(formula) and surely_nonnegative_number(formula.xreplace(values)))
+
+
+def _seems_nonnegative(formula: Expr, values: dict[Expr, Expr]) -> bool:
+    """Return whether a formula is not negative in double precision: a quick look before intervals prove it."""
+    try:
+        return float_at(formula, {leaf: float(value) for leaf, value in values.items()}, {}) > -1e-9
+    except (NoValue, TypeError, OverflowError):
+        return False
+
+
+def _nonzero(formula: Expr, values: dict[Expr, Expr]) -> bool:
+    held = _enclosure(formula, values)
     return held is not None and 0 not in held
+
+
+def _is_flat(formula: Expr, deep: int = MOST_NESTED) -> bool:
+    """Return whether functions are nested so little that SymPy may put numbers in: of towers it asks for digits."""
+    inside = deep - formula.is_Function
+    return inside >= 0 and all(_is_flat(part, inside) for part in formula.args if part.args)
 
 
 def _shortest(number: Expr) -> Expr:

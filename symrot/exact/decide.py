@@ -1,26 +1,30 @@
 """Decide whether two formulas are equal: the normal form of their difference, and a verdict with its evidence.
 
-Scope, with its theorem (research: VERIFICATION.md, section 1). For rational functions of sines and cosines of
-Q-linear combinations of angles (rational multiples of pi included), of exponentials, of parameters, of rates, and of
-unit-norm groups, the normal form is zero if and only if the identity holds at all real points where both sides are
-defined: circles and spheres are rational, irreducible over the complex numbers, and their real points are dense. The
-same holds when an angle or an exponent also occurs outside (Ax-Schanuel). Numbers made of roots and cosines of rational
-angles are zero or not by proof (:mod:`symrot.exact.constants`). With square roots, inverse functions or other
-hypotheses a zero normal form still proves the identity; a nonzero one proves nothing, and "false" is said only with a
-witness.
+Scope, with its theorem (``SOUNDNESS.md`` beside this module, sections 1 to 3). For rational functions of sines and
+cosines of Q-linear combinations of angles (rational multiples of pi included), of exponentials, of parameters, of
+rates, and of unit-norm groups, the normal form is zero if and only if the identity holds at all real points where both
+sides are defined: circles and spheres are rational, irreducible over the complex numbers, and their real points are
+dense. The same holds when an angle or an exponent also occurs outside (Ax-Schanuel). Numbers made of roots and cosines
+of rational angles are zero or not by proof (:mod:`symrot.exact.constants`). With square roots, inverse functions or
+other hypotheses a zero normal form still proves the identity where all of them are real; a nonzero one proves nothing,
+and "false" is said only with a witness. Nothing is true of sides that are real numbers nowhere.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from sympy import Expr, Ge, Integer, Matrix, MatrixBase, MatrixExpr, Ne, sympify, zeros
+from sympy import Expr, Ge, I, Integer, Matrix, MatrixBase, MatrixExpr, Ne, sympify, zeros
 
 from symrot.errors import InputError
 from symrot.exact.branches import proof, vanishes
+from symrot.exact.budget import one_decision
 from symrot.exact.congruence import proof_by_congruence
 from symrot.exact.counterexample import Counterexample, closed_form_witness, rational_witness
-from symrot.exact.domain import divisors, radicands
+from symrot.exact.domain import divisors, is_dense, radicands, split_radicands
+from symrot.exact.everywhere import fails_everywhere
+from symrot.exact.known_points import known_point
+from symrot.exact.needs import Need, needs_of
 from symrot.exact.ring import FormulaRing, as_zero
 
 __all__ = ["Verdict", "decide", "is_zero", "normal_form"]
@@ -30,10 +34,10 @@ __all__ = ["Verdict", "decide", "is_zero", "normal_form"]
 class Verdict:
     """What is known about ``left = right`` and why.
 
-    ``verdict`` is ``"true"`` (proven wherever both sides are defined), ``"false"`` (``counterexample`` shows it) or
-    ``"undecided"`` (``stopped_by`` holds the terms about which too little is known). ``conditions`` are the
-    denominators that must not vanish and the radicands that must not be negative; ``residual`` is the normal form of
-    left - right.
+    ``verdict`` is ``"true"`` (proven wherever both sides are defined, and a point is known where they are),
+    ``"false"`` (``counterexample`` shows it) or ``"undecided"`` (``stopped_by`` holds the terms about which too little
+    is known). ``conditions`` are the denominators that must not vanish and the radicands that must not be negative;
+    ``residual`` is the normal form of left - right.
     """
 
     verdict: str
@@ -98,13 +102,19 @@ def decide(left: Any, right: Any, relations: Sequence[Any] = ()) -> Verdict:
     Raises
     ------
     InputError
-        If the shapes differ, or for what :func:`normal_form` refuses.
+        If the shapes differ, for what :func:`normal_form` refuses, or if a side is proven to be no real number
+        anywhere.
     """
     (lefts, shape), (rights, other) = flatten(left), flatten(right)
     if shape is not None and other is None and rights == [0]:
         rights, other = list(zeros(*shape)), shape
     if shape != other:
         raise InputError(f"two sides of an equation have one shape, got {_shape_text(shape)} = {_shape_text(other)}")
+    with one_decision():
+        return _decided(lefts, rights, shape, relations)
+
+
+def _decided(lefts: list[Expr], rights: list[Expr], shape: tuple[int, int] | None, relations: Sequence[Any]) -> Verdict:
     ring = FormulaRing([*lefts, *rights], [as_zero(relation) for relation in relations])
     differences = [ring.difference(a, b) for a, b in zip(lefts, rights, strict=True)]
     proofs = [proof(ring, value.numerator) for value in differences]
@@ -114,7 +124,7 @@ def decide(left: Any, right: Any, relations: Sequence[Any] = ()) -> Verdict:
     residual = _shaped(residuals, shape)
     wrong = [place for place, value in enumerate(residuals) if value != 0]
     if not wrong:
-        return Verdict("true", residual, conditions)
+        return _true(residual, [*lefts, *rights], ring, conditions)
     for search in (rational_witness, closed_form_witness):
         for place in wrong[:4]:
             entry = None if shape is None else (place // shape[1] + 1, place % shape[1] + 1)
@@ -124,9 +134,29 @@ def decide(left: Any, right: Any, relations: Sequence[Any] = ()) -> Verdict:
     lifted = [_congruent(ring, lefts[place], rights[place]) for place in wrong]
     if all(found is not None for found in lifted):
         conditions = _conditions([ring, *(lift for found in lifted if found for lift in found)])
-        return Verdict("true", _shaped([Integer(0)] * len(lefts), shape), conditions)
+        return _true(_shaped([Integer(0)] * len(lefts), shape), [*lefts, *rights], ring, conditions)
     stopped_by = (*ring.outside_scope, *(root.expression for root in ring.roots), *ring.hypotheses)
     return Verdict("undecided", residual, conditions, None, stopped_by)
+
+
+def _true(residual: Any, sides: Sequence[Expr], ring: FormulaRing, conditions: tuple[Any, ...]) -> Verdict:
+    """Return the verdict "true", or "undecided" where no point is known at which the sides are defined.
+
+    In the polynomial core the sides are defined on a dense set; with roots, logarithms and inverse functions a point
+    is looked for. Whether the hypotheses can hold is for the caller to know. Formulas with ``i`` are complex numbers,
+    of which nothing is asked but that no divisor is zero.
+    """
+    needs = [need for need in needs_of(sides) if not need.formula.has(I)]
+    needs += [Need(formula, ">= 0") for formula in split_radicands(ring) if not any(side.has(I) for side in sides)]
+    if not needs or (is_dense(ring) and all(need.sign == "!= 0" for need in needs)):
+        return Verdict("true", residual, conditions)
+    nowhere = next((need for need in needs_of(sides) if fails_everywhere(need)), None)
+    if nowhere is not None:
+        raise InputError(f"the sides are real numbers nowhere: {nowhere} does not hold at any real point")
+    nonzero = [Need(condition.lhs, "!= 0") for condition in conditions if isinstance(condition, Ne)]
+    if known_point([*(need for need in needs if need.sign != "real"), *nonzero]) is None:
+        return Verdict("undecided", residual, conditions, None, tuple(need.formula for need in needs))
+    return Verdict("true", residual, conditions)
 
 
 def _congruent(ring: FormulaRing, left: Expr, right: Expr) -> tuple[FormulaRing, ...] | None:

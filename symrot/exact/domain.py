@@ -4,10 +4,11 @@ from collections.abc import Container, Iterable
 
 from sympy import Abs, Expr, Pow, acos, asin, atan2, log
 
+from symrot.exact.needs import is_leaf
 from symrot.exact.ring import FormulaRing
 from symrot.exact.roots import Root
 
-__all__ = ["divisors", "radicands", "signs"]
+__all__ = ["divisors", "is_dense", "radicands", "signs", "split_radicands"]
 
 
 def divisors(ring: FormulaRing, granted: Container[int] = ()) -> list[tuple[Expr, Expr]]:
@@ -33,10 +34,39 @@ def _inside(root: Root) -> Expr:
 
 
 def radicands(ring: FormulaRing) -> list[Expr]:
-    """Return what must not be negative: under roots of even index, in logarithms, 1 - x^2 for asin(x) and acos(x)."""
-    found = [radical.base for radical in ring.radicals.values() if radical.power % 2 and not _is_square(radical.base)]
+    """Return what must not be negative: under roots, in logarithms, 1 - x^2 for asin(x) and acos(x)."""
+    bases = [radical.base for node, radical in ring.radicals.items() if isinstance(node, Pow)]
+    found = [base for base in bases if not _is_square(base)]
     found += [formula for leaf in _leaves(ring) for formula in _nonnegative(leaf)]
+    found += split_radicands(ring)
     return [formula for formula in dict.fromkeys(found) if not (formula.is_nonnegative or formula.is_number)]
+
+
+def split_radicands(ring: FormulaRing) -> list[Expr]:
+    """Return what is not negative where proofs hold although the formulas are real elsewhere too.
+
+    ``sqrt(P f^2)`` is read as ``|f| sqrt(P)``, which says nothing where f is zero and P is negative.
+    """
+    loose = [root for radical in ring.radicals.values() if radical.loose for root in radical.roots]
+    return list(dict.fromkeys(root.power_expression for root in loose if not root.power_expression.is_positive))
+
+
+def is_dense(ring: FormulaRing) -> bool:
+    """Return whether the points at which nothing vanishes that was divided by are dense: so it is in the core.
+
+    Not with roots, numbers that are not algebraic, or angles and exponents that may depend on each other as
+    ``x log(4)`` and ``x log(2)`` do.
+    """
+    return not ring.roots and not ring.outside_scope and all(map(_is_plain, (*ring.bases, *ring.exponent_bases)))
+
+
+def _is_plain(atom: Expr) -> bool:
+    """Return whether an angle or exponent is made of symbols, functions of time and rational numbers."""
+    if is_leaf(atom):
+        return True
+    if atom.is_Add or atom.is_Mul or (atom.is_Pow and atom.exp.is_Integer):
+        return all(map(_is_plain, atom.args))
+    return bool(atom.is_Rational)
 
 
 def signs(ring: FormulaRing) -> list[Expr]:
@@ -63,5 +93,5 @@ def _nonnegative(leaf: Expr) -> list[Expr]:
 
 
 def _is_square(base: Expr) -> bool:
-    """Return whether a radicand comes from an absolute value, which the ring keeps as the root of a square."""
+    """Return whether a radicand is the even power of a real number."""
     return bool(isinstance(base, Pow) and base.exp.is_Integer and base.exp % 2 == 0)

@@ -1,28 +1,62 @@
-"""Closed-form real numbers in intervals of 50 digits, by mpmath's interval arithmetic."""
+"""Closed-form real numbers in intervals of 50 digits, by mpmath's interval arithmetic; formulas at real points.
 
+What is rational stays an exact fraction, so that zero is told from a small number. A value is given only where the
+formula is proven to be a real number: under an even or odd root nothing negative, in a logarithm something positive,
+nothing zero below a fraction line. The work is bounded: a number beyond 2^1000 has no enclosure here.
+"""
+
+from collections.abc import Mapping
+from fractions import Fraction
 from typing import Any
 
 import sympy
 from mpmath import iv
 from sympy import Expr, S, pi
 
-__all__ = ["DIGITS", "enclosure", "surely_nonnegative_number"]
+__all__ = ["DIGITS", "Undefined", "enclosure", "is_negative_at", "is_nonnegative_at", "surely_nonnegative_number"]
 
 DIGITS = 50
 
+MOST_BITS = 1000
+"""Of the whole part of a number, the argument of an exponential or a sine say: digits to compute grow with it."""
+
+MOST_BITS_EXACT = 4000
+"""Of a fraction that is still exact."""
+
+Value = Any  # Fraction or an interval of mpmath
+
+
+class Undefined(ValueError):
+    """A formula that is proven to be no real number at a point."""
+
 
 def _asin(x: Any) -> Any:
+    _refuse(x.a > 1 or x.b < -1)
     return iv.atan2(x, _root(1 - x * x))
 
 
 def _acos(x: Any) -> Any:
+    _refuse(x.a > 1 or x.b < -1)
     return iv.atan2(_root(1 - x * x), x)
 
 
+def _refuse(outside: bool) -> None:
+    if outside:
+        raise Undefined
+
+
 def _root(x: Any) -> Any:
+    _refuse(x.b < 0)
     if not x.a >= 0:
-        raise ValueError("a square root is taken of numbers that are not negative")
+        raise ValueError("a root is taken of numbers that are not negative")
     return iv.sqrt(x)
+
+
+def _log(x: Any) -> Any:
+    _refuse(x.b <= 0)
+    if not x.a > 0:
+        raise ValueError("a logarithm is taken of positive numbers")
+    return iv.log(x)
 
 
 def _atan2(y: Any, x: Any) -> Any:
@@ -31,74 +65,148 @@ def _atan2(y: Any, x: Any) -> Any:
     return iv.atan2(y, x)
 
 
+def _bounded(x: Any) -> Any:
+    limit = iv.mpf(2) ** MOST_BITS
+    if not (x.a >= -limit.a and x.b <= limit.a):
+        raise ValueError(f"a number of more than {MOST_BITS} bits")
+    return x
+
+
+def _sign(x: Any) -> Any:
+    if 0 in x:
+        raise ValueError("a sign is taken of numbers that are not zero")
+    return iv.mpf(1 if x.a > 0 else -1)
+
+
+def _over(above: Any, below: Any) -> Any:
+    if 0 in below:
+        raise ZeroDivisionError
+    return above / below
+
+
 INTERVAL = {
     sympy.sin: iv.sin,
     sympy.cos: iv.cos,
-    sympy.tan: lambda x: iv.sin(x) / iv.cos(x),
-    sympy.cot: lambda x: iv.cos(x) / iv.sin(x),
-    sympy.sec: lambda x: 1 / iv.cos(x),
-    sympy.csc: lambda x: 1 / iv.sin(x),
+    sympy.tan: lambda x: _over(iv.sin(x), iv.cos(x)),
+    sympy.cot: lambda x: _over(iv.cos(x), iv.sin(x)),
+    sympy.sec: lambda x: _over(1, iv.cos(x)),
+    sympy.csc: lambda x: _over(1, iv.sin(x)),
     sympy.asin: _asin,
     sympy.acos: _acos,
     sympy.atan: lambda x: iv.atan2(x, iv.mpf(1)),
     sympy.atan2: _atan2,
     sympy.exp: iv.exp,
-    sympy.log: iv.log,
+    sympy.log: _log,
     sympy.sinh: lambda x: (iv.exp(x) - iv.exp(-x)) / 2,
     sympy.cosh: lambda x: (iv.exp(x) + iv.exp(-x)) / 2,
     sympy.tanh: lambda x: 1 - 2 / (iv.exp(2 * x) + 1),
+    sympy.coth: lambda x: 1 + _over(2, iv.exp(2 * x) - 1),
     sympy.asinh: lambda x: iv.log(x + iv.sqrt(x * x + 1)),
     sympy.acosh: lambda x: iv.log(x + _root(x - 1) * iv.sqrt(x + 1)),
-    sympy.atanh: lambda x: (iv.log(1 + x) - iv.log(1 - x)) / 2,
+    sympy.atanh: lambda x: (_log(1 + x) - _log(1 - x)) / 2,
     sympy.Abs: abs,
+    sympy.sign: _sign,
 }
 _NUMBERS = {pi: lambda: +iv.pi, S.Exp1: lambda: +iv.e}
 
 
 def surely_nonnegative_number(number: Expr) -> bool:
     """Return whether a closed-form number is proven not to be negative."""
-    if number.is_Rational:
-        return bool(number >= 0)
-    held = enclosure(number)
+    return is_nonnegative_at(number, {})
+
+
+def is_nonnegative_at(formula: Expr, values: Mapping[Expr, Any]) -> bool:
+    """Return whether a formula is proven to be real and not negative at a point."""
+    held = enclosure(formula, values)
     return held is not None and bool(held.a >= 0)
 
 
-def enclosure(number: Expr) -> Any:
-    """Return a 50-digit interval that holds a closed-form real number, or None where it cannot tell."""
+def is_negative_at(formula: Expr, values: Mapping[Expr, Any]) -> bool:
+    """Return whether a formula is proven to be real and negative at a point."""
+    held = enclosure(formula, values)
+    return held is not None and bool(held.b < 0)
+
+
+def enclosure(formula: Expr, values: Mapping[Expr, Any] | None = None) -> Any:
+    """Return a 50-digit interval that holds a closed-form real number, or a formula at a point, or None.
+
+    Parameters
+    ----------
+    formula : Expr
+    values : mapping, optional
+        From symbols and functions of time to their values: numbers of SymPy, fractions, or intervals of mpmath.
+
+    Returns
+    -------
+    interval or None
+        None where the formula is not proven to be real, where a function is unknown, or where the digits would be too
+        many. What SymPy has cancelled is not looked at.
+    """
     iv.dps = DIGITS
     try:
-        return _enclose(number)
-    except (KeyError, ZeroDivisionError, ValueError, TypeError):  # an unknown function, a pole, a complex number
+        return _interval(_value(formula, values or {}, {}))
+    except (KeyError, ZeroDivisionError, ValueError, TypeError, OverflowError):  # unknown function, pole, not real
         return None
 
 
-def _enclose(node: Expr) -> Any:
+def _interval(value: Value) -> Any:
+    return iv.mpf(value.numerator) / value.denominator if isinstance(value, Fraction) else value
+
+
+def _value(node: Expr, values: Mapping[Expr, Any], known: dict[Expr, Value]) -> Value:
+    if node not in known:
+        found = _computed(node, values, known)
+        if isinstance(found, Fraction):
+            if max(found.numerator.bit_length(), found.denominator.bit_length()) > MOST_BITS_EXACT:
+                found = _interval(found)
+        elif not (found.a > -iv.inf and found.b < iv.inf):
+            raise ValueError(f"{node} has a pole in its interval")
+        known[node] = found
+    return known[node]
+
+
+def _computed(node: Expr, values: Mapping[Expr, Any], known: dict[Expr, Value]) -> Value:
     if node.is_Rational:
-        return iv.mpf(int(node.p)) / int(node.q)
+        return Fraction(int(node.p), int(node.q))
+    if node in values:
+        given = values[node]
+        return _value(given, {}, {}) if isinstance(given, Expr) else given
     if node in _NUMBERS:
         return _NUMBERS[node]()
-    if node.is_Add:
-        return sum((_enclose(term) for term in node.args), iv.mpf(0))
-    if node.is_Mul:
-        total = iv.mpf(1)
-        for factor in node.args:
-            total = total * _enclose(factor)
+    if node.is_Add or node.is_Mul:
+        parts = [_value(part, values, known) for part in node.args]
+        exact = all(isinstance(part, Fraction) for part in parts)
+        parts = parts if exact else [_interval(part) for part in parts]
+        total = parts[0]
+        for part in parts[1:]:
+            total = total + part if node.is_Add else total * part
         return total
     if node.is_Pow:
-        return _enclose_power(_enclose(node.base), node.exp)
-    value = INTERVAL[type(node)](*(_enclose(argument) for argument in node.args))
-    if not (value.a > -iv.inf and value.b < iv.inf):
-        raise ValueError(f"{node} has a pole in its interval")
-    return value
+        return _power(_value(node.base, values, known), node.exp, values, known)
+    arguments = [_interval(_value(argument, values, known)) for argument in node.args]
+    return INTERVAL[type(node)](*map(_bounded, arguments))
 
 
-def _enclose_power(base: Any, exponent: Expr) -> Any:
-    if exponent.is_Rational and exponent.q <= 2:
-        power = int(exponent.p)
-        base = base if exponent.q == 1 else _root(base)
-        if power < 0 and 0 in base:
-            raise ZeroDivisionError
-        return base**power
-    if not base.a > 0:
+def _power(base: Value, exponent: Expr, values: Mapping[Expr, Any], known: dict[Expr, Value]) -> Value:
+    if exponent.is_Integer:
+        return _whole_power(base, int(exponent))
+    if isinstance(base, Fraction) and base == 0 and exponent.is_Rational and exponent.p > 0:
+        return base
+    held = _interval(base)
+    _refuse(held.b < 0)
+    if exponent.is_Rational and exponent.q == 2:
+        return _whole_power(_root(held), int(exponent.p))
+    if not held.a > 0:
         raise ValueError("a fractional power is taken of positive numbers here")
-    return iv.exp(_enclose(exponent) * iv.log(base))
+    return iv.exp(_bounded(_interval(_value(exponent, values, known)) * iv.log(held)))
+
+
+def _whole_power(base: Value, power: int) -> Value:
+    if power < 0 and (0 in base if not isinstance(base, Fraction) else base == 0):
+        raise ZeroDivisionError
+    if isinstance(base, Fraction):
+        size = max(base.numerator.bit_length(), base.denominator.bit_length())
+        if size * abs(power) <= MOST_BITS_EXACT:
+            return base**power
+        base = _interval(base)
+    return base**power

@@ -12,7 +12,7 @@ from sympy import Abs, Expr, Rational
 from sympy.polys.domains import ZZ
 from sympy.polys.rings import PolyElement
 
-from symrot.exact.roots import Root, absolute
+from symrot.exact.roots import Root, absolute, sign_of
 
 __all__ = ["Dependence", "dependences", "take_squares"]
 
@@ -23,28 +23,27 @@ MOST_TERMS = 60
 Outside = tuple[tuple[Root | Expr, int], ...]
 
 
-def take_squares(above: PolyElement, below: PolyElement, generators: Sequence[Expr]) -> tuple[Expr, Outside]:
-    """Return (P, outside) with ``above/below = P * product(factor^(2 n))``; P a polynomial, no factor negative."""
+def take_squares(above: PolyElement, below: PolyElement, generators: Sequence[Expr]) -> tuple[Expr, Outside, bool]:
+    """Return (P, outside, loose) with ``above/below = P * product(factor^(2 n))``; P a polynomial, no factor negative.
+
+    It is loose if a factor may be zero where P is negative: the root of ``P f^2`` is real there, that of P is not.
+    """
     whole = above.ring.clone(domain=ZZ)
     above, below = above.set_ring(whole), below.set_ring(whole)
     rest, squares = _square_part(above)
+    loose = any(rest.rem([factor]) for factor, _ in squares)
     divisor, inverse = _square_part(below)
     squares += [(factor, -times) for factor, times in inverse]
     outside: list[tuple[Root | Expr, int]] = []
     if not divisor.is_ground:
-        shown, sign = divisor.as_expr(*generators), _sign(rest.as_expr(*generators))
+        shown, sign = divisor.as_expr(*generators), sign_of(rest.as_expr(*generators))
         if sign:  # rest/divisor is not negative
             outside.append((sign * shown, -1))
         else:
             squares += [(factor, -times) for factor, times in _irreducible(divisor)]
         rest = rest * divisor
     outside += [(absolute(factor.as_expr(*generators)), times) for factor, times in squares]
-    return rest.as_expr(*generators), tuple(outside)
-
-
-def _sign(value: Expr) -> int:
-    """Return 1 or -1 for a real expression that is never of the other sign, 0 where that is not known."""
-    return 1 if value.is_nonnegative else -1 if value.is_nonpositive else 0
+    return rest.as_expr(*generators), tuple(outside), loose
 
 
 def _square_part(poly: PolyElement) -> tuple[PolyElement, list[tuple[PolyElement, int]]]:

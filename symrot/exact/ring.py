@@ -8,7 +8,7 @@ lexicographic, so each relation
     number:  M(2 cos(pi/N)) = 0, its minimal polynomial
 
 leads with a power of its own generator, and replacing leading powers gives the unique normal form
-(:mod:`symrot.exact.relations`; research: VERIFICATION.md, section 1, steps (b) to (f)).
+(:mod:`symrot.exact.relations`; ``SOUNDNESS.md`` beside this module, sections 2 to 4).
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -31,6 +31,7 @@ from symrot.exact.angles import (
     constant_cosine_sine,
     linear_form,
 )
+from symrot.exact.budget import spend_ring
 from symrot.exact.constants import Number, cosine_number, root_number, vanishes
 from symrot.exact.functions import REWRITTEN, TRIGONOMETRIC, is_jet
 from symrot.exact.inverse import INVERSE, cosine_sine
@@ -88,11 +89,14 @@ class FormulaRing:
     InputError
         If an expression holds a floating point number, an infinity, or something that is not a scalar formula, if it
         divides by what is zero everywhere, or if the hypotheses contradict each other.
+    TooLarge
+        When the decision that asks for the ring has spent its budget (:mod:`symrot.exact.budget`).
     """
 
     def __init__(
         self, expressions: Sequence[Expr], relations: Sequence[Expr] = (), domain: Sequence[Expr] = ()
     ) -> None:
+        spend_ring()
         self.hypotheses = tuple(relations)
         self.domain = tuple(domain)
         self.forms: dict[Expr, LinearForm] = {}  # argument of a sine or cosine -> its linear form
@@ -112,7 +116,7 @@ class FormulaRing:
             relations_found = self._relate(ZZ) or self._relate(QQ)
             assert relations_found is not None  # the rationals suffice for any polynomial
             self.relations: Relations = relations_found
-            found = self._dependences()
+            found = self._without_circles(self._dependences())
             if not found:
                 break
             self.dependences |= found
@@ -192,8 +196,8 @@ class FormulaRing:
             raise TooLarge(f"a root of a formula with roots and more than {MOST_NESTED_TERMS} terms is not taken apart")
         if index != 2:
             return Radicand(content, above.as_expr(*inner.generators), below.as_expr(*inner.generators))
-        rest, outside = take_squares(above, below, inner.generators)
-        return Radicand(content, rest, Integer(1), outside)
+        rest, outside, loose = take_squares(above, below, inner.generators)
+        return Radicand(content, rest, Integer(1), outside, loose)
 
     def _dependences(self) -> dict[Root, Dependence]:
         """Return the square roots that are products of other generators, if there are several."""
@@ -202,6 +206,20 @@ class FormulaRing:
         if not plain or len(places) < 2:
             return {}
         return dependences({root: self._polynomial(root) for root in places}, self.generators)
+
+    def _without_circles(self, found: dict[Root, Dependence]) -> dict[Root, Dependence]:
+        """Return those dependences by which no root comes to be expressed by itself, through others."""
+        accepted: dict[Root, Dependence] = {}
+        for root, dependence in found.items():
+            stack, seen = _named(dependence), set()
+            while stack:
+                other = stack.pop()
+                if other not in seen:
+                    seen.add(other)
+                    stack.extend(_named((self.dependences | accepted).get(other)))
+            if root not in seen:
+                accepted[root] = dependence
+        return accepted
 
     def _take_fine_constants(self) -> int:
         """Return N of the generator 2 cos(pi/N) for constants of angles that are no multiples of pi/24; 0 for none."""
@@ -438,6 +456,13 @@ class FormulaRing:
         contents, (above, below) = zip(*(poly.primitive() for poly in parts), strict=True)
         constant = Rational(int(contents[0]) * int(scales[1]), int(contents[1]) * int(scales[0]))
         return constant, above, below
+
+
+def _named(dependence: Dependence | None) -> list[Root]:
+    """Return the roots by which a root is expressed."""
+    if dependence is None:
+        return []
+    return [*dependence.roots, *(factor for factor, _ in dependence.divisors if isinstance(factor, Root))]
 
 
 def _occurring(poly: PolyElement) -> set[int]:

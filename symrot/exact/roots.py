@@ -12,12 +12,12 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from math import prod
 
-from sympy import Abs, Expr, I, Integer, Pow, Rational, Symbol, factorint, sqrt
+from sympy import Abs, Expr, I, Integer, Pow, Rational, Symbol, exp, factorint, sqrt
 from sympy.core.function import AppliedUndef
 
 from symrot.errors import InputError
 
-__all__ = ["Radical", "Radicand", "Root", "absolute", "is_root", "radical", "square_root_of_number"]
+__all__ = ["Radical", "Radicand", "Root", "absolute", "is_root", "radical", "sign_of", "square_root_of_number"]
 
 
 @dataclass(frozen=True)
@@ -35,13 +35,14 @@ class Radicand:
     """``content * above / below * product(factor^(2 n) of outside)``, ``below`` being 1 under a square root.
 
     ``content`` is a rational >= 0, ``above`` and ``below`` are primitive polynomials over the integers in canonical
-    form; no factor outside is negative.
+    form; no factor outside is negative. ``loose``: a factor may be zero where ``above`` is negative.
     """
 
     content: Rational
     above: Expr
     below: Expr
     outside: tuple[tuple[Root | Expr, int], ...] = ()
+    loose: bool = False
 
 
 @dataclass(frozen=True)
@@ -49,6 +50,7 @@ class Radical:
     """``(rational * product(roots) * product(factor^n of outside) / below)^power``, a root of ``base``.
 
     A factor outside is the absolute value of something, which is a root too, or an expression that is not negative.
+    Where the radical is ``loose`` it is real at some points where a root of its own is not, and the factor is zero.
     """
 
     base: Expr
@@ -57,6 +59,7 @@ class Radical:
     below: Expr
     power: int
     outside: tuple[tuple[Root | Expr, int], ...] = ()
+    loose: bool = False
 
     @property
     def generators(self) -> tuple[Root, ...]:
@@ -82,7 +85,9 @@ def radical(node: Expr, radicand: Callable[[Expr, int], Radicand]) -> Radical:
     Raises
     ------
     InputError
-        If a negative power of an expression is asked for which is zero everywhere.
+        If a negative power of an expression is asked for which is zero everywhere, or a root that is no real number
+        of a negative one: ``(-8)^(1/3)`` is ``1 + sqrt(3) i`` on the principal branch. Square roots of negative
+        numbers are read as multiples of ``i``.
     """
     if node is I:
         return Radical(Integer(-1), Integer(1), (_imaginary_unit(),), Integer(1), 1)
@@ -105,20 +110,35 @@ def radical(node: Expr, radicand: Callable[[Expr, int], Radicand]) -> Radical:
         rational, roots = square_root_of_number(content)
     if above == -1 and below == 1 and index == 2:
         roots.append(_imaginary_unit())
+    elif above.is_Rational and above < 0 and index != 2:
+        raise InputError(f"a root of a negative number is no real number: {node}")
     elif above != 1 or below != 1:
         inside = (above * below ** (index - 1)).expand()
         shown = below * (above / below) ** Rational(1, index)
         roots.append(Root(shown, inside, index, 1 + _nesting([inside])))
-    return Radical(base, rational, tuple(roots), below, power, found.outside)
+    return Radical(base, rational, tuple(roots), below, power, found.outside, found.loose)
 
 
 def absolute(value: Expr) -> Root | Expr:
     """Return the absolute value of a real expression: itself or its negative where that is known, or a root."""
-    if value.is_nonnegative:
-        return value
-    if value.is_nonpositive:
-        return -value
-    return Root(Abs(value), (value**2).expand(), 2, 1 + _nesting([value]))
+    sign = sign_of(value)
+    return sign * value if sign else Root(Abs(value), (value**2).expand(), 2, 1 + _nesting([value]))
+
+
+def sign_of(value: Expr) -> int:
+    """Return 1 or -1 for a real expression that is never of the other sign, 0 where that is not known."""
+    if value.is_nonnegative or _is_positive_where_defined(value):
+        return 1
+    return -1 if value.is_nonpositive or _is_positive_where_defined(-value) else 0
+
+
+def _is_positive_where_defined(value: Expr) -> bool:
+    """Return whether a formula is made of exponentials and positive numbers: SymPy takes infinite exponents along."""
+    if isinstance(value, exp):
+        return True
+    if value.is_Add or value.is_Mul:
+        return all(map(_is_positive_where_defined, value.args))
+    return bool(value.is_Rational and value > 0) or bool(value.is_Pow and _is_positive_where_defined(value.base))
 
 
 def is_root(node: Expr) -> bool:

@@ -1,0 +1,24 @@
+"""SymPy values as text in the language of claims."""
+
+from typing import Any
+
+from sympy import Derivative, Expr
+from sympy.printing.str import StrPrinter
+
+__all__ = ["shown"]
+
+
+class _Printer(StrPrinter):  # type: ignore[misc]
+    """Text that our reader reads back: ``diff(phi(t), t)`` for a derivative."""
+
+    def _print_Derivative(self, node: Derivative) -> str:
+        variables = ", ".join(self._print(v) for v, times in node.variable_count for _ in range(int(times)))
+        return f"diff({self._print(node.expr)}, {variables})"
+
+    def _print_Abs(self, node: Expr) -> str:
+        return f"abs({self._print(node.args[0])})"
+
+
+def shown(value: Any) -> str:
+    """Return a SymPy value as text in the language of claims."""
+    return str(_Printer().doprint(value))

@@ -1,0 +1,71 @@
+"""Formulas in double precision: a quick look at many points, of which nothing is concluded."""
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import sympy
+from sympy import Expr, S, pi
+
+__all__ = ["NoValue", "float_at"]
+
+
+class NoValue(ArithmeticError):
+    """No real value here, or a function that is not known."""
+
+
+def _cosecant(function: Any) -> Any:
+    return lambda x: 1 / function(x)
+
+
+_FUNCTIONS = {
+    sympy.sin: math.sin, sympy.cos: math.cos, sympy.tan: math.tan, sympy.asin: math.asin, sympy.acos: math.acos,
+    sympy.atan: math.atan, sympy.atan2: math.atan2, sympy.exp: math.exp, sympy.log: math.log, sympy.sinh: math.sinh,
+    sympy.cosh: math.cosh, sympy.tanh: math.tanh, sympy.asinh: math.asinh, sympy.acosh: math.acosh,
+    sympy.atanh: math.atanh, sympy.Abs: abs, sympy.cot: _cosecant(math.tan), sympy.sec: _cosecant(math.cos),
+    sympy.csc: _cosecant(math.sin), sympy.coth: _cosecant(math.tanh), sympy.sign: lambda x: math.copysign(1.0, x),
+}  # fmt: skip
+_NUMBERS = {pi: math.pi, S.Exp1: math.e}
+
+
+def float_at(formula: Expr, values: Mapping[Expr, float], known: dict[Expr, float]) -> float:
+    """Return the value of a formula in double precision.
+
+    Parameters
+    ----------
+    formula : Expr
+    values : mapping
+        Of symbols, functions of time and derivatives.
+    known : dict
+        Values of pieces at the same point; filled.
+
+    Raises
+    ------
+    NoValue
+    """
+    if formula not in known:
+        try:
+            found = _computed(formula, values, known)
+        except (KeyError, ValueError, OverflowError, ZeroDivisionError, TypeError):
+            raise NoValue from None
+        if isinstance(found, complex) or not math.isfinite(found):
+            raise NoValue
+        known[formula] = found
+    return known[formula]
+
+
+def _computed(node: Expr, values: Mapping[Expr, float], known: dict[Expr, float]) -> Any:
+    if node in values:
+        return values[node]
+    if node.is_Rational:
+        return int(node.p) / int(node.q)
+    if node in _NUMBERS:
+        return _NUMBERS[node]
+    parts = [float_at(part, values, known) for part in node.args]
+    if node.is_Add:
+        return math.fsum(parts)
+    if node.is_Mul:
+        return math.prod(parts)
+    if node.is_Pow:
+        return parts[0] ** parts[1]
+    return _FUNCTIONS[type(node)](*parts)

@@ -1,0 +1,117 @@
+"""What a formula needs to be a real number, read off its pieces: signs of radicands, of logarithms, divisors.
+
+All functions have real values of real arguments, on their principal branch. A power ``u^(p/q)`` with a fraction in
+lowest terms, odd q included, is real for u >= 0 only, for u > 0 if p < 0: SymPy's cube root of -8 is ``1 + sqrt(3) i``.
+What SymPy cancelled while a formula was built (``0*log(x)``) is not seen here; whoever reads a text notes it there.
+"""
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+
+import sympy
+from sympy import Expr, cos, sin, sinh
+from sympy.core.function import AppliedUndef
+from sympy.matrices.expressions.matexpr import MatrixElement
+
+from symrot.exact.intervals import INTERVAL
+
+__all__ = ["Need", "assumptions_of", "is_leaf", "leaves_of", "needs_of"]
+
+
+@dataclass(frozen=True)
+class Need:
+    """``formula sign 0`` with the sign ``">= 0"``, ``"> 0"`` or ``"!= 0"``; ``"real"`` for what no table knows."""
+
+    formula: Expr
+    sign: str
+
+    def __str__(self) -> str:
+        return f"{self.formula} is real" if self.sign == "real" else f"{self.formula} {self.sign}"
+
+
+_NEEDS: dict[type, Callable[..., list[tuple[Expr, str]]]] = {
+    sympy.log: lambda u: [(u, "> 0")],
+    sympy.asin: lambda u: [(1 - u, ">= 0"), (1 + u, ">= 0")],
+    sympy.acos: lambda u: [(1 - u, ">= 0"), (1 + u, ">= 0")],
+    sympy.acosh: lambda u: [(u - 1, ">= 0")],
+    sympy.atanh: lambda u: [(1 - u, "> 0"), (1 + u, "> 0")],
+    sympy.tan: lambda u: [(cos(u), "!= 0")],
+    sympy.sec: lambda u: [(cos(u), "!= 0")],
+    sympy.cot: lambda u: [(sin(u), "!= 0")],
+    sympy.csc: lambda u: [(sin(u), "!= 0")],
+    sympy.coth: lambda u: [(sinh(u), "!= 0")],
+    sympy.sign: lambda u: [(u, "!= 0")],
+    sympy.atan2: lambda y, x: [(x**2 + y**2, "!= 0")],
+}
+"""Function -> what its arguments must be; functions of :data:`symrot.exact.intervals.INTERVAL` beside these need
+nothing. A sign comes from the derivative of an absolute value, which has none at zero."""
+
+
+def is_leaf(node: Expr) -> bool:
+    """Return whether a node is a free real number: a symbol, a function of time, a derivative of one, an entry."""
+    if isinstance(node, sympy.Derivative):
+        return isinstance(node.expr, AppliedUndef)
+    return bool(node.is_Symbol) or isinstance(node, AppliedUndef | MatrixElement)
+
+
+def leaves_of(formulas: Iterable[Expr]) -> list[Expr]:
+    """Return symbols, functions of time and derivatives that occur, each once, in an order free of hashing."""
+    found = {node for node in _pieces(formulas) if is_leaf(node)}
+    return sorted(found, key=lambda leaf: (str(leaf), type(leaf).__name__))
+
+
+def assumptions_of(leaf: Expr) -> list[Need]:
+    """Return the signs that a symbol is assumed to have."""
+    known = ((leaf, "> 0", leaf.is_positive), (-leaf, "> 0", leaf.is_negative), (leaf, ">= 0", leaf.is_nonnegative),
+             (-leaf, ">= 0", leaf.is_nonpositive), (leaf, "!= 0", leaf.is_nonzero))  # fmt: skip
+    return [Need(formula, sign) for formula, sign, assumed in known if assumed]
+
+
+def needs_of(formulas: Iterable[Expr]) -> list[Need]:
+    """Return what formulas need to be real numbers, the needs of needs included, less what their form alone grants."""
+    found: dict[Need, None] = {}
+    for node in _pieces(formulas):
+        for need in _needs(node):
+            if not _granted(need):
+                found[need] = None
+    return list(found)
+
+
+def _needs(node: Expr) -> Iterator[Need]:
+    if is_leaf(node) or node.is_Rational or node.is_Add or node.is_Mul:
+        return
+    if node.is_Pow:
+        base, exponent = node.args
+        if exponent.is_Integer:
+            if exponent < 0:
+                yield Need(base, "!= 0")
+        elif exponent.is_Rational:
+            yield Need(base, ">= 0" if exponent > 0 else "> 0")
+        else:
+            yield Need(base, "> 0")
+    elif type(node) in _NEEDS:
+        yield from (Need(formula, sign) for formula, sign in _NEEDS[type(node)](*node.args))
+    elif type(node) not in INTERVAL and node not in (sympy.pi, sympy.S.Exp1):
+        yield Need(node, "real")
+
+
+def _granted(need: Need) -> bool:
+    """Return whether SymPy knows a need of the assumptions on symbols; of constants nothing is taken on trust."""
+    formula = need.formula
+    if need.sign == "real" or not (formula.is_Rational or formula.free_symbols):
+        return False
+    known = {">= 0": formula.is_nonnegative, "> 0": formula.is_positive, "!= 0": formula.is_nonzero}
+    return bool(known[need.sign])
+
+
+def _pieces(formulas: Iterable[Expr]) -> Iterator[Expr]:
+    """Yield every piece once, without recursion; the insides of leaves are their own."""
+    stack, seen = list(formulas), set()
+    while stack:
+        node = stack.pop()
+        if node in seen:
+            continue
+        seen.add(node)
+        yield node
+        if not is_leaf(node):
+            stack.extend(node.args)

@@ -1,0 +1,164 @@
+"""The campaign over real functions: a slice of it, and judges that refuse wrong verdicts."""
+
+from fractions import Fraction
+from pathlib import Path
+from random import Random
+
+import pytest
+
+import symrot
+from symrot.checker import campaign_real as module
+from symrot.checker.campaign import main
+from symrot.checker.campaign_real import REAL_RULES, TRAPS, fault, real_campaign, real_claims
+from symrot.checker.judge_real import Edge, NoValue, Unclear, compare, drawn_point, generic_point, real_value
+from symrot.checker.reader import read_expression
+from symrot.checker.verdict import Counterexample, Verdict
+from symrot.errors import InputError
+
+HALF = {"x": Fraction(1, 2), "y": Fraction(3), "z": Fraction(-2)}
+
+
+def value(text, point=HALF):
+    return real_value(read_expression(text), point)
+
+
+def test_a_slice_of_the_campaign_has_no_wrong_verdict():
+    found = real_campaign(24, seed=5)
+    assert found.wrong == ()
+    assert sum(found.counts.values()) == 24
+    assert set(found.counts) >= {"true", "false", "refused"}
+    assert found.slowest_claim
+
+
+def test_claims_are_repeatable():
+    assert list(real_claims(30, 4)) == list(real_claims(30, 4)) != list(real_claims(30, 5))
+
+
+@pytest.mark.parametrize(("left", "right"), REAL_RULES)
+def test_every_rule_holds_wherever_both_sides_have_a_value(left, right):
+    source, sides = (
+        Random(1),
+        [read_expression(side.replace("X", "(x + z)").replace("Y", "y")) for side in (left, right)],
+    )
+    defined = 0
+    for _ in range(400):
+        try:
+            assert compare(*sides, drawn_point(source))
+        except (NoValue, Unclear):
+            continue
+        defined += 1
+    assert defined >= 10
+
+
+@pytest.mark.parametrize(("left", "right"), TRAPS)
+def test_every_trap_fails_somewhere_or_has_no_values(left, right):
+    source, sides = (
+        Random(1),
+        [read_expression(side.replace("X", "(x + z)").replace("Y", "y")) for side in (left, right)],
+    )
+    equal = different = 0
+    for _ in range(300):
+        try:
+            same = compare(*sides, drawn_point(source))
+        except (NoValue, Unclear):
+            continue
+        equal, different = equal + same, different + (not same)
+    assert different > 0 or equal < 60
+
+
+@pytest.mark.parametrize("formula", [
+    "(-8)**(1/3)", "x**(1/3)*0 + log(-x)*0", "sqrt(x - y)", "log(x - x)", "asin(y)", "acos(z)", "1/(x - 1/2)", "z**(2/3)",
+    "0*log(z)", "(x - 1/2)**(-1/3)", "atan2(x - x, 0)", "exp(log(z))", "sqrt(z)**2", "(x - x)**(-1)", "log(z)/log(z)",
+])  # fmt: skip
+def test_the_judge_finds_no_value_where_there_is_none(formula):
+    with pytest.raises(NoValue):
+        value(formula)
+
+
+@pytest.mark.parametrize("formula", ["1/(sin(x)**2 + cos(x)**2 - 1)", "log(exp(x)*exp(-x) - 1)"])
+def test_the_judge_says_that_it_is_on_an_edge(formula):
+    with pytest.raises((Edge, NoValue)):
+        value(formula)
+
+
+@pytest.mark.parametrize("formula", ["exp(exp(exp(y)))", "gamma(x)", "x**y", "Matrix([x])"])
+def test_the_judge_says_what_it_does_not_know(formula):
+    with pytest.raises(Unclear):
+        value(formula)
+
+
+@pytest.mark.parametrize(("formula", "number"), [
+    ("8**(1/3)", 2), ("asin(x)*6/pi", 1), ("acos(x)*3/pi", 1), ("log(exp(y))", 3), ("atan2(0, z)/pi", 1), ("abs(z)", 2),
+    ("cosh(y)**2 - sinh(y)**2", 1), ("tan(pi/4)", 1), ("y**0", 1), ("(x - x)**(1/3)", 0), ("27**(-2/3)*9", 1), ("tanh(x - x)", 0),
+])  # fmt: skip
+def test_the_judge_knows_values(formula, number):
+    assert abs(value(formula) - number) < 1e-50
+
+
+def test_generic_points_are_no_whole_numbers_for_the_most_part():
+    points = [generic_point(Random(n))["x"] for n in range(200)]
+    assert sum(point.denominator > 1 for point in points) > 100
+
+
+# -- wrong verdicts ---------------------------------------------------------------------------------------------------
+
+AT_HALF = Counterexample({"x": "1/2"}, "", "")
+
+WRONG = (
+    ("sqrt(x**2) == x", Verdict("true"), "true, but not at"),
+    ("(-8)**(1/3) == 7", Verdict("true"), "true of nothing"),
+    ("sqrt(x)*sqrt(-x-1) == 5", Verdict("true"), "true of nothing"),
+    ("x**(1/3) == x**(1/3)", Verdict("false"), "without a counterexample"),
+    ("sqrt(x)**2 == x", Verdict("false", counterexample=AT_HALF), "the sides are equal"),
+    ("sqrt(x - 1) == 7", Verdict("false", counterexample=AT_HALF), "has no value"),
+    ("0*log(-x) == 3", Verdict("false", counterexample=AT_HALF), "has no value"),
+    ("sqrt(x**2) == x", Verdict("conditional", requires=("x <= 1",)), ""),
+    ("sqrt(x**2) == x", Verdict("conditional", requires=("-x >= 0",)), "under its condition"),
+    ("sqrt(x**2) == x", Verdict("conditional", requires=("x >= 0", "y >= 0")), "under its condition"),
+    ("sqrt(x**2)*log(-x) == x*log(-x)", Verdict("conditional", requires=("x >= 0",)), "under its condition"),
+    ("log(x) == 3", "the sides are real numbers nowhere: x > 0 holds at no real point", "refused as if"),
+    ("x**(1/3) == 3", "expected a number that is not negative under a root", "refused as if"),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(("claim", "verdict", "words"), [row for row in WRONG if row[2]], ids=str)
+def test_the_judge_refuses_a_wrong_verdict(claim, verdict, words):
+    assert words in fault(claim, verdict, Random(1))
+
+
+@pytest.mark.parametrize(("claim", "verdict"), [
+    ("sqrt(x**2) == abs(x)", Verdict("true")), ("log(log(x)**(1/5) - 2) == log(log(x)**(1/5) - 2)", Verdict("true")), ("sqrt(x**2) == x", Verdict("conditional", requires=("x >= 0",))),
+    ("sqrt(x) == x", Verdict("false", counterexample=AT_HALF)), ("sqrt(x) == x", Verdict("undecided")),
+    ("(-8)**(1/3) == 7", "expected a number that is not negative under a root"), ("x == 1/0", "expected fewer pieces"),
+    ("sin(x) == 1", Verdict("false", counterexample=Counterexample({"sin(x)": "1/2"}, "", ""))),
+])  # fmt: skip
+def test_the_judge_accepts_a_right_verdict(claim, verdict):
+    assert fault(claim, verdict, Random(1)) == ""
+
+
+@pytest.mark.parametrize("answer", ["true", "traceback", "nowhere"])
+def test_a_wrong_engine_is_caught(monkeypatch, answer):
+    def wrong(claim, repair):
+        if answer == "traceback":
+            raise RecursionError
+        if answer == "nowhere":
+            raise InputError("the sides are real numbers nowhere")
+        return Verdict("true")
+
+    monkeypatch.setattr(module, "check", wrong)
+    found = real_campaign(16, seed=1)
+    assert len(found.wrong) >= 3
+    assert main(["--real", "--count", "4"]) == 1
+
+
+def test_a_late_answer_fails_the_command(monkeypatch):
+    monkeypatch.setattr("symrot.checker.campaign.LONGEST_SECONDS", 0.0)
+    assert main(["--real", "--count", "2"]) == 1
+    monkeypatch.undo()
+    assert main(["--real", "--count", "2"]) == 0
+
+
+def test_the_document_on_soundness_is_beside_the_modules_that_cite_it():
+    document = Path(symrot.exact.__path__[0]) / "SOUNDNESS.md"
+    sections = [line for line in document.read_text().splitlines() if line.startswith("## ")]
+    assert [line.split()[1] for line in sections] == [f"{n}." for n in range(1, len(sections) + 1)]

@@ -1,0 +1,222 @@
+"""Nothing follows from a side that is no real number, nor from hypotheses that nothing obeys."""
+
+import pytest
+from sympy import I, Rational, acos, asin, cos, exp, log, sqrt, symbols
+
+import symrot
+from symrot.errors import InputError
+from symrot.exact import is_zero, normal_form
+from symrot.exact.decide import decide
+
+x, y = symbols("x y", real=True)
+THIRD = Rational(1, 3)
+
+
+def verdict_of(claim, given=()):
+    """Return the verdict, "refused" for a claim that is refused in one sentence."""
+    try:
+        return symrot.check(claim, assume=given, repair=False).verdict
+    except InputError as reason:
+        assert "\n" not in str(reason)
+        return "refused"
+
+
+ROOTS_OF_NEGATIVES = (
+    "(-8)**(1/3) == 7", "x + (-2)**(1/5) == x", "(-27)**(2/3) == 1", "(-pi)**(1/3) == 4", "x*(-8)**(1/3) == 5*x",
+    "sqrt((-8)**(1/3)) == 8", "(-abs(x))**(1/3) == 8", "(-x**2-1)**(1/3) == 7", "((-8)**(1/3))**3 == -8",
+    "abs((-8)**(1/3)) == 2", "(-x**2-1)**(1/3) == (-x**2-1)**(1/3)", "(-exp(x))**(1/3) == 3", "sqrt(-x**2-1) == 7",
+    "(-1)**(1/4) == 0", "(-1)**(2/3)*x == x", "(cos(x) - 2)**(1/3) == 7", "(cos(1) - 1)**(1/7) == 0",
+    "Matrix([(-8)**(1/3), x]) == Matrix([7, x])", "diff(x*(-8)**(1/3), x) == 5",
+)  # fmt: skip
+
+NOWHERE = (
+    "sqrt(cos(x)-2) == 7", "sqrt(cos(x)-2) == sqrt(cos(x)-2)", "log(cos(x)-2) == 3", "asin(x**2+2) == 1",
+    "asin(2+exp(x)) == asin(2+exp(x))", "0*log(-1) == 0", "0*log(cos(1)-2) == 0", "x - x + sqrt(-1) == 3",
+    "log(-abs(x)) == 3", "0*log(sin(x) - 1) + x == x", "exp(log(-x**2)) == 1", "0/(sqrt(5+2*sqrt(6))-sqrt(2)-sqrt(3)) == 0",
+    "log(sqrt(5+2*sqrt(6))-sqrt(2)-sqrt(3)) == 1", "atan2(x-x, y-y) == 1", "tan(pi/2) == 1", "0**(-1/2) == 0",
+    "Matrix([[1, sqrt(cos(x)-2)], [0, 1]]) == Matrix([[1, sqrt(cos(x)-2)], [0, 1]])",
+)  # fmt: skip
+
+EMPTY_TOGETHER = (
+    "sqrt(x)*sqrt(-x-1) == sqrt(-x-x**2)", "sqrt(x-1)*sqrt(-x) == sqrt(x-1)*sqrt(-x)", "log(x)*0 + log(-x)*0 == 0",
+    "asin(x) + asin(x+3) == asin(x) + asin(x+3)", "sqrt(x)*sqrt(-x-1) == 5", "sqrt(sin(x)-2+cos(y)) == 4",
+    "inverse(diag(sqrt(x), sqrt(-x))) == diag(1/sqrt(x), 1/sqrt(-x))", "cos(asin(-x**2 - 1)) == 3",
+)  # fmt: skip
+"""Each side has values by itself, or at single points only."""
+
+UNDER_NOTHING = (
+    ("x == 1", ["x**2 + 1 == 0"]), ("x == 1", ["x > 0", "x == -1"]), ("x == 5", ["log(x) == y", "x == -3"]),
+    ("x == 1", ["sqrt(x) == -1"]), ("x == 1", ["cos(x) == 2"]), ("x == 1", ["exp(x) == -1"]), ("x == x", ["cos(y) == 2"]),
+    ("x == 1", ["x**(1/3) == -1"]), ("x == x", ["sqrt(x) == -1"]), ("x == y", ["(-8)**(1/3) == 2"]),
+    ("sqrt(x) == 7", ["x == -1"]), ("log(x) == 7", ["x == -1"]), ("sqrt(x)*0 == 0", ["x == -1"]),
+    ("x**(1/3) == 7", ["x == -8"]), ("asin(x) == asin(x)", ["x == 2"]), ("acos(x) + asin(x) == pi/2", ["x == 2"]),
+    ("sqrt(y-2) == sqrt(y-2)", ["y == sin(x)"]), ("Matrix([x, log(y)])*0 == Matrix([0, 0])", ["y == -2"]),
+    ("1/x + 1/y == 5", ["x*y == 0"]), ("x == 3", ["x != 0", "x == 0"]), ("x + y == y + x", ["x**2 + y**2 == -1"]),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("claim", [*ROOTS_OF_NEGATIVES, *NOWHERE])
+def test_a_side_that_is_real_nowhere_is_refused(claim):
+    assert verdict_of(claim) == "refused"
+
+
+@pytest.mark.parametrize("claim", EMPTY_TOGETHER)
+def test_sides_without_a_common_point_are_not_equal(claim):
+    assert verdict_of(claim) in ("refused", "undecided")
+
+
+@pytest.mark.parametrize(("claim", "given"), UNDER_NOTHING, ids=str)
+def test_nothing_follows_from_hypotheses_that_nothing_obeys(claim, given):
+    assert verdict_of(claim, given) in ("refused", "undecided")
+
+
+@pytest.mark.parametrize(("claim", "given"), [
+    ("x == 1", ["asin(x) == 4"]), ("x == 1", ["log(x) == 0"]), ("x == 0", ["asin(x) == 0"]), ("x == y", ["exp(x) == exp(y)"]),
+], ids=str)  # fmt: skip
+def test_no_counterexample_breaks_a_hypothesis_on_a_function(claim, given):
+    """asin(x) = 4 was given a value of its own, beside that of x."""
+    assert verdict_of(claim, given) in ("refused", "undecided")
+
+
+@pytest.mark.parametrize(("claim", "given"), [
+    ("x == 4", ["abs(x) == x - 1"]), ("x == 4", ["sqrt(x**2) == x - 1"]), ("y == 2", ["abs(x) == x + y", "y == -1", "x > 0"]),
+    ("x == 4", ["sqrt(x + 1) == x - 5", "x == 3"]),
+], ids=str)  # fmt: skip
+def test_no_counterexample_breaks_a_hypothesis_on_a_root(claim, given):
+    """|x| = x - 1 was met at x = 3/2: the square of the root was reduced by the hypothesis itself."""
+    assert verdict_of(claim, given) in ("refused", "undecided")
+
+
+@pytest.mark.parametrize(("claim", "given"), [
+    ("x + log(z) == y + log(z)", ["x**2 == 2*y"]), ("x + asin(z) == y + asin(z)", ["x + y == 3"]),
+    ("x*exp(z) == y*exp(z)", ["x**2 == 2*y"]),
+], ids=str)  # fmt: skip
+def test_a_point_is_looked_for_although_both_sides_share_a_function(claim, given):
+    """The function cancels in the difference, and has no value at points of the symbols alone: KeyError."""
+    assert verdict_of(claim, given) in ("false", "undecided")
+
+
+DEFINED = (
+    "x**(1/3)*x**(2/3) == x", "(x**3)**(1/3) == x", "(x**2)**(1/3) == abs(x)**(2/3)",     "sqrt(1/10000 - (x - 37/10)**2) == sqrt((1/100 - x + 37/10)*(1/100 + x - 37/10))", "log(log(log(x))) == log(log(log(x)))",
+    "sqrt(4*x*z - y**2)**2 == 4*x*z - y**2", "acos(x) + asin(x) == pi/2", "8**(1/3) == 2", "(x*y)**(1/3) == (y*x)**(1/3)",
+    "sqrt(sqrt(5+2*sqrt(6))-sqrt(2)-sqrt(3)) == 0", "integrate(sqrt(x**2)**2, (x, -1, 1)) == 2/3",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("claim", DEFINED)
+def test_what_holds_where_it_is_defined_is_true(claim):
+    assert verdict_of(claim) == "true"
+
+
+@pytest.mark.parametrize(("claim", "given"), [
+    ("sqrt(y) == sqrt(y)", ["y == sin(x)"]), ("2*log(x) == 2*y", ["log(x) == y"]), ("cos(x)**2 == y**2", ["cos(x) == y"]),
+    ("acos(x) + asin(x) == pi/2", ["x == 1/2"]), ("x + y == y + x", ["x**5 + y**5 + exp(x) == 3"]),
+], ids=str)  # fmt: skip
+def test_what_follows_from_hypotheses_on_functions_is_true_of_a_point_in_a_proven_box(claim, given):
+    assert verdict_of(claim, given) == "true"
+
+
+@pytest.mark.parametrize("claim", [
+    "integrate(sqrt(x)**2, (x, -1, 1)) == 0", "integrate(x/x, (x, -1, 1)) == 2", "integrate(0*log(x) + x, (x, -1, 1)) == 0",
+])  # fmt: skip
+def test_an_integrand_has_values_on_the_whole_interval(claim):
+    assert verdict_of(claim) == "refused"
+
+
+def test_a_point_is_shown_without_the_angles_that_are_not_chosen():
+    claim = "sqrt(abs(sqrt(x - y) + tanh(x) - tanh(x))) == sqrt(abs(sqrt(-x - y) + 0*log(sin(x) - 1)))"
+    assert verdict_of(claim) in ("false", "undecided", "refused")
+
+
+def test_a_condition_is_given_only_where_it_can_hold():
+    assert verdict_of("sqrt(x**2) == x") == "conditional"
+    assert verdict_of("sqrt(x**2)*log(-x) == x*log(-x)") == "false"
+    assert verdict_of("abs(x)*sqrt(-x-1) == x*sqrt(-x-1)") == "false"
+
+
+def test_a_root_of_a_product_with_a_square_is_split_only_where_both_parts_are_real():
+    """sqrt((x-1)^2 a) = |x-1| sqrt(a) for a >= 0; at x = 1 the left side has a value for a < 0 too."""
+    verdict = symrot.check("sqrt(a*x**2 - 2*a*x + a) == abs(x-1)*sqrt(a*b)/sqrt(b)", repair=False)
+    assert verdict.verdict == "true"
+    assert "a >= 0" in verdict.conditions
+
+
+# -- the exact core ---------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "formula", [(-8) ** THIRD, (-abs(x)) ** THIRD, x + (-2) ** Rational(1, 5), (-27) ** Rational(2, 3)]
+)
+def test_the_core_refuses_a_root_that_is_no_real_number(formula):
+    for read in (normal_form, is_zero):
+        with pytest.raises(InputError, match="no real number"):
+            read(formula)
+
+
+@pytest.mark.parametrize(("left", "right"), [
+    (sqrt(cos(x) - 2), sqrt(cos(x) - 2)), ((-(x**2) - 1) ** THIRD, (-(x**2) - 1) ** THIRD),
+    (asin(exp(x) + 2) + acos(exp(x) + 2), asin(exp(x) + 2) + acos(exp(x) + 2)), (log(-exp(x) - 1), log(-exp(x) - 1)),
+])  # fmt: skip
+def test_the_core_refuses_sides_that_are_real_nowhere(left, right):
+    with pytest.raises(InputError, match="nowhere"):
+        decide(left, right)
+
+
+def test_the_core_says_undecided_where_no_point_of_both_sides_is_known():
+    assert decide(sqrt(x) * sqrt(-x - 1), sqrt(-x * (x + 1))).verdict == "undecided"
+    assert decide(sqrt(x) * sqrt(x + 1), sqrt(x * (x + 1))).verdict == "true"
+
+
+def test_complex_numbers_that_are_written_out_stay_readable_in_the_core_and_are_refused_in_claims():
+    assert decide((cos(x) + I) * (cos(x) - I), cos(x) ** 2 + 1).verdict == "true"
+    with pytest.raises(InputError, match="real"):
+        symrot.check((cos(x) + I) * (cos(x) - I), cos(x) ** 2 + 1)
+
+
+# -- towers and deep nestings -----------------------------------------------------------------------------------------
+
+FUNCTIONS = ("log", "exp", "sqrt", "sin", "asin", "acos", "atan", "cosh", "tanh", "abs", "tan")
+
+
+@pytest.mark.parametrize("deep", [5, 12, 50])
+@pytest.mark.parametrize("function", FUNCTIONS)
+def test_a_tower_of_functions_has_an_answer(function, deep):
+    tower = f"{function}(" * deep + "x" + ")" * deep
+    assert verdict_of(f"{tower} == x") in ("false", "undecided", "conditional")
+
+
+@pytest.mark.parametrize("function", FUNCTIONS)
+def test_a_tower_over_a_number_has_an_answer(function):
+    assert verdict_of(f"{function}(" * 12 + "3" + ")" * 12 + " == 1") in ("false", "undecided", "refused")
+
+
+def test_the_readings_of_one_decision_are_counted():
+    tower = "tan(asin(atan(exp(asin(atan(cosh(abs(sin(atan(x))))))))))"
+    other = "tan(asin(atan(exp(pi/2 - acos(atan(cosh(abs(sin(atan(x))))))*2**(1/6)/2**(1/6)))))"
+    assert verdict_of(f"{tower} == {other}") == "undecided"
+
+
+RECURSIVE = (
+    "cosh(y**2/tan(-x)) == sqrt(1 + sinh(y**2/tan(-x))**2)", "cosh(y/sin(x)) == sqrt(1 + sinh(y/sin(x))**2)",
+    "cosh(1/tan(x)**3) == sqrt(1 + sinh(1/tan(x)**3)**2)", "cosh(sqrt(x)) == sqrt(1 + sinh(sqrt(x))**2)",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("claim", RECURSIVE)
+def test_roots_that_depend_on_each_other_in_a_circle_are_read(claim):
+    assert verdict_of(claim) == "true"
+
+
+@pytest.mark.parametrize("deep", [40, 80])
+def test_a_deep_formula_of_sympy_has_an_answer(deep):
+    tower = x
+    for _ in range(deep):
+        tower = cos(1 + tower**2)
+    try:
+        assert symrot.check(tower, x, repair=False).verdict in ("false", "undecided")
+    except InputError as reason:
+        assert "\n" not in str(reason)
+
+
+def test_a_long_sum_is_read():
+    assert verdict_of(" + ".join(["x"] * 2000) + " == 2000*x") == "true"
