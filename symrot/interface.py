@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from symrot.errors import InputError
-from symrot.planner import Plan, make_plan
+from symrot.planner import Plan, make_plan, switched
 from symrot.scene import Scene, load_scene
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ def plan(scene: Scene | str | Path) -> Plan:
         A scene, the name of a shipped one, or the path of a scene file.
     """
     found = _scene(scene)
-    return make_plan(found, driven=found.table is not None)
+    return make_plan(found, driven=found.table is not None, switched=switched(found))
 
 
 def _formulas(scene: Scene | str | Path) -> Plan:

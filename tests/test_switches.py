@@ -217,10 +217,10 @@ def test_another_start_has_its_own_modes():
 @pytest.mark.parametrize(
     "use",
     [
-        lambda made: symrot.plan(made), lambda made: symrot.propagator(made, state="ZXZ"),
+        lambda made: symrot.emit(made, "c"), lambda made: symrot.propagator(made, state="ZXZ"),
         lambda made: symrot.propagator(made, torque=lambda t, omega, quaternion: omega),
     ],
-    ids=["plan", "angles", "another torque"],
+    ids=["emit", "angles", "another torque"],
 )  # fmt: skip
 def test_who_cannot_follow_switches_says_so(use):
     with pytest.raises(InputError, match=r"expected .*(switches|jump or bend)"):

@@ -35,7 +35,9 @@ def _closed_form(plan: Plan) -> str:
 
 
 def _series(plan: Plan) -> str:
-    return "" if library.missing() or roughness(plan) else "the torque is smooth, and a C compiler is there"
+    if library.missing() or roughness(plan):
+        return ""
+    return f"the torque is smooth{' between its switches' if plan.switches else ''}, and a C compiler is there"
 
 
 AUTO: tuple[tuple[str, Callable[[Plan], str]], ...] = (

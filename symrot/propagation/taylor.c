@@ -65,7 +65,7 @@ enum { SYMROT_BLOCK_COUNT = (int)(sizeof(symrot_scales)/sizeof(symrot_scales[0])
 
 static const double SYMROT_LEAST_TAIL = 1e-18;   /* below round-off nothing is gained */
 #if SYMROT_ENCLOSED
-static const double SYMROT_SLACK = 30.0;  /* what enclosures exceed by, in the middle: see tests/test_enclosure.py */
+static const double SYMROT_SLACK = 30.0;        /* what enclosures exceed errors by, and less: see ENCLOSURES.md */
 static const double SYMROT_GROWTH = 1.5;         /* most that a step grows after one that was held back */
 #endif
 static const double SYMROT_RATE_FLOOR = 1e-3;    /* a rate turns the body by less than this in a step: no need to see it */

@@ -33,7 +33,7 @@ def _ladder(plan: Plan) -> list[dict[str, Any]]:
     """Return the rows of the rules, from the general structure down, with what each leaves and saves."""
     from symrot.planner import general_structure
 
-    general = _operations(general_structure(plan.scene))
+    general = _operations(general_structure(plan.scene, bool(plan.switches)))
     rows = [_row("general motion", False, "any tensor, any direction of every torque, full attitude", "", general)]
     before = general
     for rule in plan.rows:
