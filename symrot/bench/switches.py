@@ -1,0 +1,107 @@
+"""Switched torques against their closed forms: error, steps, switches and time, for tolerances from 1e-6 to 1e-12.
+
+Dry friction stops a wheel and lets it go again, a relay swings a body in parabolas, a thruster fires 10 ms in each of
+1000 seconds. Run it as ``python -m symrot.bench.switches``.
+"""
+
+import math
+from collections.abc import Callable
+from time import perf_counter
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symrot.propagation.propagator import propagator
+from symrot.report.layout import columns, duration
+from symrot.scene import Scene
+
+__all__ = ["main"]
+
+Floats = NDArray[np.float64]
+METHODS = ("taylor", "dop853")
+TOLERANCES = (1e-6, 1e-8, 1e-10, 1e-12)
+MOMENT = 3.0  # kg m^2, about axis 3
+ROUNDS = 3
+
+
+class Problem(NamedTuple):
+    """A torque about axis 3, N m, its span, s, a start, rad/s, and omega_3 as a function of time."""
+
+    torque: str
+    parameters: dict[str, float]
+    stop: float
+    omega: float
+    solution: Callable[[Floats], Floats]
+
+
+def _friction(times: Floats) -> Floats:
+    """Return omega_3 under 2 sin t - sign(omega_3), from rest: slipping from t = pi/6 on, for as long as it rises."""
+    loose = math.asin(0.5)
+    slip = np.maximum(times, loose)
+    rise: Floats = (2.0 * (math.cos(loose) - np.cos(slip)) - (slip - loose)) / MOMENT
+    return rise
+
+
+def _relay(times: Floats) -> Floats:
+    """Return omega_3 under -sign(angle): a period of four times 3 s, in arcs of constant torque."""
+    phase = np.mod(times, 4.0 * MOMENT)
+    swing: Floats = np.where(phase < 2 * MOMENT, 1.0 - phase / MOMENT, -1.0 + (phase - 2 * MOMENT) / MOMENT)
+    return swing
+
+
+def _thruster(times: Floats) -> Floats:
+    """Return omega_3 under pulses of 10 ms at each full second."""
+    whole = np.floor(times)
+    burned: Floats = (0.01 * whole + np.minimum(times - whole, 0.01)) / MOMENT
+    return burned
+
+
+PROBLEMS = {
+    "dry friction": Problem("2*sin(t) - sign(omega_3)", {}, 2.5, 0.0, _friction),
+    "relay": Problem("-sign(2*atan2(q3, q0))", {}, 120.0, 1.0, _relay),
+    "thruster": Problem("where(mod(t, 1) < d, 1, 0)", {"d": 0.01}, 1000.0, 0.0, _thruster),
+}
+
+
+def scene(problem: Problem) -> Scene:
+    """Return the scene of a problem."""
+    torque = {"kind": "expression", "torque": ["0", "0", problem.torque], "parameters": problem.parameters}
+    return Scene.from_dict({
+        "schema": 1, "body": {"principal": [1, 2, MOMENT]}, "initial": {"omega": [0, 0, problem.omega]},
+        "torque": [torque], "span": {"t": [0, problem.stop]}, "output": {"quantities": ["omega", "quaternion"]},
+    })  # fmt: skip
+
+
+def _measured(problem: Problem, method: str, tolerance: float) -> tuple[float, Any, float]:
+    """Return the largest error in tolerances, at samples and between them, the stats, and the least seconds."""
+    made = propagator(scene(problem), method, tolerance)
+    times = np.linspace(0.0, problem.stop, 1001)
+    least, motion = math.inf, made(times)
+    for _ in range(ROUNDS):
+        began = perf_counter()
+        motion = made(times)
+        least = min(least, perf_counter() - began)
+    between = 0.5 * (times[1:] + times[:-1])
+    size = max(float(np.abs(problem.solution(times)).max()), 1e-300)
+    errors = [
+        float(np.abs(motion.omega[:, 2] - problem.solution(times)).max()),
+        float(np.abs(motion.sol(between)[2] - problem.solution(between)).max()),
+    ]
+    return max(errors) / size / tolerance, motion.stats, least
+
+
+def main() -> None:
+    """Print the table."""
+    rows = [("torque", "method", "tolerance", "error, tolerances", "steps", "switches", "time")]
+    for name, problem in PROBLEMS.items():
+        for method in METHODS:
+            for tolerance in TOLERANCES:
+                error, stats, seconds = _measured(problem, method, tolerance)
+                counts = str(stats.accepted), str(stats.switches)
+                rows.append((name, method, f"{tolerance:g}", f"{error:.2g}", *counts, duration(seconds)))
+    print("\n".join(columns(rows, right=(2, 3, 4, 5, 6))))
+
+
+if __name__ == "__main__":
+    main()
