@@ -333,11 +333,11 @@ def test_only_what_has_no_closed_form_is_stepped():
 
 
 def test_torques_that_are_not_smooth_are_followed_by_dop853():
-    torque = [{"kind": "expression", "torque": ["-abs(omega_1)/10", "0", "0"]}]
-    found = symrot.propagate_ensemble(scene(torque=torque), **states(2), t=[0, 1.0], tolerance=1e-9)
-    assert found.methods == ("dop853",) * 2 and found.success
-    with pytest.raises(InputError, match="abs"):
-        symrot.propagate_ensemble(scene(torque=torque), **states(2), t=[0, 1.0], method="taylor")
+    """A root by dop853; a size, whose switches are located, by Taylor series: as each motion would be alone."""
+    for formula, method in (("-sqrt(omega_1**2 + omega_2**2)/10", "dop853"), ("-abs(omega_1)/10", "taylor")):
+        made = scene(torque=[{"kind": "expression", "torque": [formula, "0", "0"]}])
+        found = symrot.propagate_ensemble(made, **states(2), t=[0, 1.0], tolerance=1e-9)
+        assert found.methods == (method,) * 2 and found.success
 
 
 def test_without_a_compiler_scipy_steps(monkeypatch):

@@ -67,7 +67,7 @@ def test_an_interrupt_ends_a_search(method):
     run(scene(), ["sin(1/(t - 4))", "t - 40"], method, t=[0.0, 1.0])  # compile
     before = signal.signal(signal.SIGALRM, stop)
     try:
-        signal.setitimer(signal.ITIMER_REAL, 0.2)
+        signal.setitimer(signal.ITIMER_REAL, 0.2, 1.0)  # again, should the first one fall into a finaliser
         with pytest.raises(Interrupt):
             run(scene(), ["sin(1/(t - 4))", "t - 40"], method)
     finally:

@@ -24,6 +24,7 @@ from symrot.propagation.kernels import (
     taylor_library,
 )
 from symrot.propagation.method import METHODS, choose_method
+from symrot.propagation.smoothness import roughness
 from symrot.propagation.stepping import NOT_FINITE_SENTENCE, CutOff, Floats
 from symrot.propagation.trajectory import ARRAY_FUNCTIONS, Trajectory
 from symrot.scene_kernel import SceneKernel
@@ -151,7 +152,7 @@ def _stepping_method(problem: Problem) -> str:
         return "constant"
     if missing_compiler():
         return "scipy"
-    return "dop853" if taylor.refusal(scene_kernel(problem.plan).rates) else "taylor"
+    return "dop853" if roughness(problem.plan) else "taylor"
 
 
 def lane_library(plan: Plan, kernel: SceneKernel, tolerance: float) -> Any:
