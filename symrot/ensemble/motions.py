@@ -18,6 +18,7 @@ from symrot.propagation.kernels import (
     compiled,
     error_blocks,
     formula_deviations,
+    has_formulas,
     kernel_key,
     missing_compiler,
     scene_kernel,
@@ -152,7 +153,8 @@ def _stepping_method(problem: Problem) -> str:
         return "constant"
     if missing_compiler():
         return "scipy"
-    return "dop853" if roughness(problem.plan) else "taylor"
+    rough = has_formulas(problem.plan) and roughness(problem.plan)  # drag at rest is smooth enough for lanes
+    return "dop853" if rough or taylor.refusal(scene_kernel(problem.plan).rates) else "taylor"
 
 
 def lane_library(plan: Plan, kernel: SceneKernel, tolerance: float) -> Any:
