@@ -30,7 +30,9 @@ FUNCTIONS: dict[str, int] = {  # name -> number of arguments
 SWITCHING: dict[str, int] = {  # functions that jump or bend, of formulas of torques; min and max take two or more
     "step": 1, "sign": 1, "min": 2, "max": 2, "clip": 3, "floor": 1, "mod": 2, "where": 3,
 }  # fmt: skip
-COMPARISONS = {"<": False, "<=": False, ">": True, ">=": True}  # in the condition of where; whether the sides change
+COMPARISONS = {  # in the condition of where: whether the sides change, whether it is the opposite of less
+    "<": (False, False), "<=": (True, True), ">": (True, False), ">=": (False, True),
+}  # fmt: skip
 LOGIC = {"or": 2, "and": 4}  # how tightly they bind, below all operators
 LONGEST_TEXT = 10_000
 DEEPEST_NESTING = 100
@@ -104,7 +106,9 @@ class _Reader:
         right = self.expression(_BINDING[mark])
         if mark in LOGIC:
             return ("call", mark, (left, right))
-        return ("call", "less", (right, left) if COMPARISONS[mark] else (left, right))
+        turned, opposite = COMPARISONS[mark]
+        less: Node = ("call", "less", (right, left) if turned else (left, right))
+        return ("call", "not", (less,)) if opposite else less
 
     def operand(self) -> Node:
         kind, found, position = self.next()

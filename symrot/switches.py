@@ -54,6 +54,8 @@ class Switch(NamedTuple):
         A mode and the value of it without which the guard does not matter.
     label : str
         The function that switches, as it was written.
+    at_zero : int
+        The mode for as long as the guard is zero: sign(0) = 0, step(0) = 0, 0 < 0 is false.
     """
 
     mode: str
@@ -61,6 +63,7 @@ class Switch(NamedTuple):
     guard: Node
     where: tuple[str, int] | None
     label: str
+    at_zero: int = 1
 
 
 class Smooth(NamedTuple):
@@ -112,15 +115,15 @@ def smooth(sources: tuple[str, ...]) -> Smooth:
 class _Writer:
     def __init__(self, prefix: str) -> None:
         self.prefix, self.switches = prefix, list[Switch]()
-        self.known: dict[tuple[str, Node, tuple[str, int] | None], Node] = {}
+        self.known: dict[tuple[str, Node, tuple[str, int] | None, int], Node] = {}
         self.label = ""  # the function that is being rewritten
 
-    def mode(self, kind: str, guard: Node, where: tuple[str, int] | None = None) -> Node:
+    def mode(self, kind: str, guard: Node, where: tuple[str, int] | None = None, at_zero: int = 1) -> Node:
         """Return the mode of a guard, made when it is first asked for."""
-        key = (kind, guard, where)
+        key = (kind, guard, where, at_zero)
         if key not in self.known:
             name = f"{self.prefix}{len(self.switches) + 1}"
-            self.switches.append(Switch(name, kind, guard, where, self.label))
+            self.switches.append(Switch(name, kind, guard, where, self.label, at_zero))
             self.known[key] = ("symbol", name)
         return self.known[key]
 
@@ -153,13 +156,13 @@ class _Writer:
         return both if name == "and" else ("-", ("+", *shares), both)
 
     def _sign(self, u: Node) -> Node:
-        return self.mode("sign", u)
+        return self.mode("sign", u, at_zero=0)
 
     def _step(self, u: Node) -> Node:
-        return ("*", HALF, ("+", ONE, self._sign(u)))
+        return ("*", HALF, ("+", ONE, self.mode("sign", u, at_zero=-1)))
 
     def _abs(self, u: Node) -> Node:
-        return ("*", self._sign(u), u)
+        return ("*", self.mode("sign", u), u)
 
     def _max(self, a: Node, b: Node) -> Node:
         return _blend(self._step(("-", a, b)), a, b)
@@ -177,7 +180,7 @@ class _Writer:
         return ("-", a, ("*", b, self._floor(("/", a, b))))
 
     def _atan2(self, y: Node, x: Node) -> Node:
-        right = self._sign(x)
+        right = self.mode("sign", x)
         above = self.mode("sign", y, (right[1], -1))
         angle: Node = ("*", right, ("call", "atan2", (y, ("*", right, x))))
         return ("+", angle, ("*", ("*", HALF, ("-", ONE, right)), ("*", above, PI)))

@@ -5,8 +5,9 @@ from fractions import Fraction
 import pytest
 
 from symrot.bench import taylor as bench
+from symrot.codegen.coefficients import coefficients
 from symrot.codegen.companions import with_companions
-from symrot.codegen.recurrences import coefficients, recurrences
+from symrot.codegen.recurrences import recurrences
 from symrot.codegen.taylor_lanes import cost, lay_out
 from tests.test_recurrences import program
 

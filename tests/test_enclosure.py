@@ -12,13 +12,14 @@ import pytest
 
 import symrot
 from symrot.codegen import library
+from symrot.codegen.coefficients import coefficients
 from symrot.codegen.enclosure import BEYOND, enclosure
 from symrot.codegen.enclosure_source import enclosure_source
-from symrot.codegen.recurrences import coefficients, recurrences
+from symrot.codegen.recurrences import recurrences
 from symrot.errors import PropagationError
 from symrot.expression import parse
 from symrot.planner import make_plan
-from symrot.propagation import dop853, stepping, taylor
+from symrot.propagation import cut_off, dop853, stepping, taylor
 from symrot.propagation.enclosure import FUNCTIONS, Deviations, Disc, longest_followed
 from symrot.propagation.kernels import error_blocks, scene_kernel
 from symrot.scene import Scene
@@ -230,7 +231,7 @@ def test_a_function_without_series_is_not_enclosed():
 @pytest.mark.parametrize("method", ["taylor", "dop853"])
 def test_a_hopeless_motion_is_given_up_with_its_samples(method, monkeypatch):
     monkeypatch.setattr(stepping, "PATIENCE", 2000)
-    monkeypatch.setattr(stepping, "HOPELESS", 1e-3)
+    monkeypatch.setattr(cut_off, "HOPELESS", 1e-3)
     times = np.linspace(0, 20, 81)
     with pytest.raises(PropagationError, match=r"beyond t = \d.* more than the limit of 100000000") as caught:
         symrot.propagator(scene("exp(t**3)", (0, 0, 1)), method)(times)

@@ -17,8 +17,9 @@ import pytest
 import symrot
 from symrot.bench import taylor as bench
 from symrot.codegen import library
+from symrot.codegen.coefficients import coefficients
 from symrot.codegen.ensemble_source import lane_definitions, multiplications
-from symrot.codegen.recurrences import coefficients, recurrences
+from symrot.codegen.recurrences import recurrences
 from symrot.ensemble import lanes
 from symrot.ensemble.variation import read_variation
 from symrot.errors import InputError

@@ -9,7 +9,8 @@ import pytest
 import sympy
 from sympy import Rational, Symbol
 
-from symrot.codegen.recurrences import coefficients, recurrences, split_sign
+from symrot.codegen.coefficients import coefficients
+from symrot.codegen.recurrences import recurrences, split_sign
 from symrot.errors import InputError
 from symrot.expression import FUNCTIONS, evaluate, parse
 from symrot.kernel import Argument, Program, Signature

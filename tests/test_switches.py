@@ -44,6 +44,7 @@ def test_the_smooth_formula_with_the_modes_of_a_state_is_the_formula(formula):
         expected = evaluate(parse(formula, switching=True), values, REFERENCE, float)
         for switch in form.switches:
             guard = evaluate(switch.guard, values, REFERENCE, float)
+            assert switch.at_zero in (-1, 0, 1)
             values[switch.mode] = math.floor(guard) if switch.kind == "floor" else math.copysign(1, guard)
         assert evaluate(form.formulas[0], values, REFERENCE, float) == pytest.approx(expected, abs=1e-13)
         assert not has_switches(form.formulas[0]) or "atan2" in formula
@@ -206,6 +207,29 @@ def test_parameters_of_any_name_stand_in_guards():
     for name in ("p0", "p1", "p2", "x0"):
         motion = symrot.propagator(scene(f"floor(t/{name}) - 2*floor(t/(2*{name}))", stop=2.0, **{name: 0.25}))
         assert motion([2.0]).omega[0, 2] == pytest.approx(1 / 3, abs=1e-10), name
+
+
+@needs_compiler
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize(
+    ("torque", "expected"),
+    [
+        ("where(q1 > 0, 1, 0)", 0), ("step(q1)", 0), ("sign(q2)", 0), ("where(q1 >= 0, 1, 0)", 3), ("step(-q1)", 0),
+        ("where(not q1 > 0, 1, 0)", 3), ("sign(max(t - 2, 0))", 1), ("-sign(min(t - 2, 0))", 2),
+        ("step(max(1 - t, 0))", 1), ("abs(q1) + max(q1, 1)", 3),
+    ],
+)  # fmt: skip
+def test_guards_that_stay_at_zero_have_the_value_at_zero(method, torque, expected):
+    """About axis 3, q1 and q2 are zero all along; a maximum is zero for a part of the span. Impulse after 3 s."""
+    motion = symrot.propagator(scene(torque, (0, 0, 0.1), 3.0), method, 1e-10)([3.0])
+    assert motion.omega[0, 2] == pytest.approx(0.1 + expected / 3, abs=1e-9)
+
+
+@needs_compiler
+def test_friction_above_a_speed_ends_there():
+    """-sign(max(omega_3 - 1, 0)) slows the body to 1 rad/s and lets it be."""
+    motion = symrot.propagator(scene("-sign(max(omega_3 - 1, 0))", (0, 0, 2), 10.0), "taylor", 1e-10)([1.5, 3, 10])
+    assert motion.omega[:, 2] == pytest.approx([1.5, 1.0, 1.0], abs=1e-9)
 
 
 @needs_compiler

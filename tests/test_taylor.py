@@ -13,7 +13,8 @@ import pytest
 
 from symrot.bench import taylor as bench
 from symrot.codegen import library
-from symrot.codegen.recurrences import coefficients, recurrences
+from symrot.codegen.coefficients import coefficients
+from symrot.codegen.recurrences import recurrences
 from symrot.codegen.taylor_source import taylor_definitions
 from symrot.errors import CompilerError, InputError, PropagationError
 from symrot.expression import FUNCTIONS, parse

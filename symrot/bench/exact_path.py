@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symrot import number
-from symrot.codegen.recurrences import coefficients, recurrences
+from symrot.codegen.coefficients import coefficients
+from symrot.codegen.recurrences import recurrences
 from symrot.errors import InputError
 from symrot.expression import evaluate
 from symrot.propagation.motion import Motion

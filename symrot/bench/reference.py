@@ -35,8 +35,9 @@ from symrot import number
 from symrot.bench.problem import Problem, State
 from symrot.closed_form.choose import exact_form
 from symrot.codegen import library
+from symrot.codegen.coefficients import coefficients
 from symrot.codegen.enclosure import enclosure
-from symrot.codegen.recurrences import coefficients, recurrences
+from symrot.codegen.recurrences import recurrences
 from symrot.errors import SymrotError
 from symrot.expression import evaluate
 from symrot.planner import Plan, general_structure

@@ -29,7 +29,8 @@ from numpy.typing import NDArray
 
 from symrot.bench.peers import heyoka_integrator
 from symrot.codegen import library
-from symrot.codegen.recurrences import coefficients, recurrences
+from symrot.codegen.coefficients import coefficients
+from symrot.codegen.recurrences import recurrences
 from symrot.planner import Plan, make_plan
 from symrot.propagation import dop853, taylor
 from symrot.propagation.invariants import invariant_parameters, invariant_source

@@ -20,7 +20,8 @@ from symrot.codegen import library
 from symrot.codegen.address import address
 from symrot.errors import CompilerError
 from symrot.kernel import Program
-from symrot.propagation.stepping import DONE, NOT_FINITE, UNDERFLOW, CutOff, Floats, PathLike, rising, why_stuck
+from symrot.propagation.cut_off import CutOff, why_stuck
+from symrot.propagation.stepping import DONE, NOT_FINITE, UNDERFLOW, Floats, PathLike, rising
 from symrot.propagation.taylor import step_tail
 
 __all__ = ["FLAGS", "Lanes", "Outcome", "Task", "around", "follow", "lanes", "order_for", "translation_unit"]

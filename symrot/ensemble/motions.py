@@ -14,6 +14,7 @@ from symrot.errors import InputError, PropagationError
 from symrot.expression import names
 from symrot.planner import STATES, Plan
 from symrot.propagation import dop853, epoch, taylor
+from symrot.propagation.cut_off import CutOff
 from symrot.propagation.kernels import (
     compiled,
     error_blocks,
@@ -26,7 +27,7 @@ from symrot.propagation.kernels import (
 )
 from symrot.propagation.method import METHODS, choose_method
 from symrot.propagation.smoothness import roughness
-from symrot.propagation.stepping import NOT_FINITE_SENTENCE, CutOff, Floats
+from symrot.propagation.stepping import NOT_FINITE_SENTENCE, Floats
 from symrot.propagation.trajectory import ARRAY_FUNCTIONS, Trajectory
 from symrot.scene_kernel import SceneKernel
 

@@ -21,9 +21,10 @@ from symrot import number
 from symrot.codegen import library
 from symrot.expression import Node, children, evaluate, names
 from symrot.planner import Plan
+from symrot.propagation.cut_off import CutOff
 from symrot.propagation.dop853 import Clock
 from symrot.propagation.kernels import kernel_key, motion_library
-from symrot.propagation.stepping import NOT_FINITE_SENTENCE, CutOff
+from symrot.propagation.stepping import NOT_FINITE_SENTENCE
 from symrot.scene_kernel import EPOCH, EXACT_FUNCTIONS, SceneKernel
 
 __all__ = ["Following", "clock", "compiled", "far", "moved", "moved_parameters"]

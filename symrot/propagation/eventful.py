@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 
 from symrot.codegen import library
 from symrot.errors import InputError, PropagationError
+from symrot.propagation.cut_off import CutOff
 from symrot.propagation.events import Event, Found, event_library_source, search, stepped, timed, uses_attitude
 from symrot.propagation.kernels import error_blocks
 from symrot.propagation.polynomials import Piece, fitted, fitted_pieces
-from symrot.propagation.stepping import CutOff, Stats, both_sides
+from symrot.propagation.stepping import Stats, both_sides
 from symrot.scene_kernel import bind
 
 if TYPE_CHECKING:

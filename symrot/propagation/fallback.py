@@ -16,20 +16,18 @@ from numpy.typing import ArrayLike, NDArray
 
 from symrot.errors import InputError
 from symrot.propagation import progress
+from symrot.propagation.cut_off import CutOff, add_samples, why_hopeless
 from symrot.propagation.enclosure import Deviations, longest_followed
 from symrot.propagation.stepping import (
     NOT_FINITE_SENTENCE,
-    CutOff,
     Floats,
     Recording,
     Stats,
     Stretch,
-    add_samples,
     both_sides,
     check_longest_step,
     check_tolerance,
     stretches,
-    why_hopeless,
 )
 
 __all__ = ["METHODS", "FallbackRecording", "integrate", "method_name", "record"]

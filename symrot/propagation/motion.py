@@ -15,10 +15,11 @@ from symrot.closed_form.choose import Exact, Form, exact_form
 from symrot.planner import Plan, Row, general_structure
 from symrot.propagation import dop853, epoch, taylor
 from symrot.propagation.binding import Binding, two_doubles
+from symrot.propagation.cut_off import CutOff
 from symrot.propagation.dop853 import Stats
 from symrot.propagation.kernels import compiled, error_blocks, formula_deviations, scene_kernel, taylor_library
 from symrot.propagation.method import Choice
-from symrot.propagation.stepping import NOT_FINITE_SENTENCE, CutOff, Recording, Task
+from symrot.propagation.stepping import NOT_FINITE_SENTENCE, Recording, Task
 from symrot.propagation.trajectory import ARRAY_FUNCTIONS, Trajectory
 from symrot.scene import Initial
 from symrot.scene_kernel import EPOCH, SceneKernel

@@ -12,10 +12,11 @@ from numpy.typing import ArrayLike, NDArray
 from symrot import number
 from symrot.errors import InputError, PropagationError
 from symrot.planner import Plan, make_plan, structure_key, switched
+from symrot.propagation.cut_off import Samples
 from symrot.propagation.method import choose_method
 from symrot.propagation.motion import Motion
 from symrot.propagation.real_array import real_array
-from symrot.propagation.stepping import Samples, Stats, rising
+from symrot.propagation.stepping import Stats, rising
 from symrot.propagation.trajectory import Trajectory
 from symrot.scene import Initial, Scene, load_scene
 from symrot.scene_kernel import SceneKernel

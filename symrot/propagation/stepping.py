@@ -19,8 +19,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from symrot.codegen.address import address
-from symrot.errors import CompilerError, InputError, PropagationError
+from symrot.errors import CompilerError, InputError
 from symrot.propagation import progress
+from symrot.propagation.cut_off import CutOff, Samples, add_samples, why_hopeless, why_stuck
 
 __all__ = [
     "DONE",
@@ -29,32 +30,25 @@ __all__ = [
     "NOT_FINITE_SENTENCE",
     "PAUSED",
     "UNDERFLOW",
-    "CutOff",
     "Floats",
     "PathLike",
     "Recording",
-    "Samples",
     "Stats",
     "SteppedRecording",
     "Stepper",
     "Stretch",
     "Task",
-    "add_samples",
     "both_sides",
     "check_longest_step",
     "check_tolerance",
     "rising",
     "stretches",
-    "why_hopeless",
-    "why_stuck",
 ]
 
 MAX_STEPS = 100_000_000  # of a motion, unless another limit is given: a minute or two
 PATIENCE = 200_000  # steps after each of which the pace is judged
-HOPELESS = 3.0  # times the limit: a motion is given up that needs so many more steps at its pace
 FEW = 40  # sample times
 SLIVER = 2.0**-100  # of a stretch: a time that no formula tells from its end
-MANY_TICKS = 2**20  # of the clock between two ends: with fewer, it is the clock that ends short steps
 
 Floats = NDArray[np.float64]
 PathLike = str | os.PathLike[str]
@@ -91,55 +85,6 @@ def check_longest_step(max_step: float) -> None:
     """Refuse a longest step, s, that is not positive; infinity is none."""
     if not max_step > 0.0:
         raise InputError(f"the longest step is a positive number of seconds, got {max_step}")
-
-
-class CutOff(PropagationError):
-    """A motion that ends at t, s, on the way to ``stop``."""
-
-    def __init__(self, t: float, reason: str, stop: float | None = None) -> None:
-        way = "" if stop is None else f" on the way to {stop!r} s"
-        super().__init__(f"the motion cannot be followed beyond t = {t!r} s{way}: {reason}")
-        self.t, self.reason, self.stop = t, reason, stop
-        self.samples: Samples | None = None  # those before t
-
-    def later(self, epoch: float) -> "CutOff":
-        """Return the error for a clock that shows ``epoch`` where this one shows 0."""
-        later = CutOff(self.t + epoch, self.reason, None if self.stop is None else self.stop + epoch)
-        later.samples = self.samples
-        return later
-
-
-class Samples(NamedTuple):
-    """The samples that were computed before a motion was cut off: their numbers, shape (k,), and states, (k, N)."""
-
-    numbers: NDArray[np.intp]
-    states: Floats
-
-
-def add_samples(error: BaseException, numbers: NDArray[np.intp], states: Floats) -> None:
-    """Have an error, or an interrupt, carry the samples computed before it in ``samples``."""
-    before: Samples | None = getattr(error, "samples", None)
-    if before is not None:  # of one side: the other side was finished first
-        numbers, states = np.concatenate([numbers, before.numbers]), np.concatenate([states, before.states])
-    error.samples = Samples(numbers, states)  # type: ignore[attr-defined]
-
-
-def why_stuck(reason: str, t: float, t0: float, stop: float) -> str:
-    """Return why steps shrank to nothing at t: for ``reason``, or since the clock has few numbers on the whole way."""
-    apart = math.ulp(t)
-    if abs(stop - t0) > MANY_TICKS * apart:
-        return reason
-    return (
-        f"the clock is too coarse for its steps: numbers lie {apart:.3g} s apart there; count the time from nearer by"
-    )
-
-
-def why_hopeless(steps: int, way: float, left: float, limit: int) -> str:
-    """Return why a motion is given up, or nothing; it took the steps for the last ``way``, s, with ``left`` to go."""
-    if steps * left <= HOPELESS * limit * way:
-        return ""
-    more = f"{steps * left / way:.0e} of them, far" if way > 0.0 else "endlessly many,"
-    return f"steps of {way / steps:.1e} s would take {more} more than the limit of {limit}"
 
 
 def _numbers(what: str, values: ArrayLike, length: int) -> list[float]:

@@ -27,13 +27,14 @@ from symrot.kernel import Argument, Program
 from symrot.number import PI
 from symrot.planner import Plan, make_plan
 from symrot.propagation import dop853, taylor
+from symrot.propagation.cut_off import CutOff, add_samples
 from symrot.propagation.events import Event, guard_library_source, search, signs_at_ends
 from symrot.propagation.kernels import error_blocks, formula_deviations
 from symrot.propagation.method import choose_method
 from symrot.propagation.motion import Motion
 from symrot.propagation.polynomials import Piece, fitted, rows_of
 from symrot.propagation.propagator import Propagator
-from symrot.propagation.stepping import CutOff, Floats, Recording, Stats, add_samples, both_sides
+from symrot.propagation.stepping import Floats, Recording, Stats, both_sides
 from symrot.scene import Initial
 from symrot.scene_kernel import SceneKernel, bind
 
@@ -293,6 +294,7 @@ class _Run:
         self.cost = np.zeros(3, dtype=np.int64)  # steps accepted and rejected, evaluations
         self.switching: list[float] = []
         self.flipped: dict[str, int] = {}  # modes changed at this very time, and how often
+        self.settled = 0
         self.recent: deque[float] = deque(maxlen=CHATTER)
 
     def follow(self, consume: Consumer) -> None:
@@ -338,7 +340,7 @@ class _Run:
         def watched() -> Generator[Piece, None, None]:
             for piece, states in source.pieces():
                 first, last = self._negative(regime, active, values, piece)
-                if passed[-1] == start and first:
+                if passed[-1] == start and (first or self._settle(regime, active, values, piece)):
                     violated.extend(first)
                     return
                 current[:] = [(piece, states)]
@@ -361,7 +363,7 @@ class _Run:
         if violated:
             return violated[0]
         if stop is None:
-            self.t = self.end
+            self.t = self.end if current else self.t  # a mode was settled: once more from here
             return None
         piece, states = current[0]
         if abs(stop - self.motion.start) > abs(passed[-1] - self.motion.start):
@@ -383,6 +385,42 @@ class _Run:
             for signs in signs_at_ends(regime.path, formulas, values, piece)
         )
         return first, last
+
+    def _settle(self, regime: _Regime, active: list[bool], values: list[float], piece: Piece) -> bool:
+        """Give each mode whose guard is zero, and stays it, its value at zero; return whether a mode changed.
+
+        A mode that is 0 takes the sign of its guard as soon as that is other than zero.
+        """
+        formulas, settled = [guard.formula for guard in regime.guards], dict(self.modes)
+        alive = {**self.modes, **{mode: 1 for mode, value in self.modes.items() if value == 0}}
+        signs, _ = signs_at_ends(regime.path, formulas, regime.bound(alive)[1], piece)
+        for switch in self.motion.switches:
+            mode = switch["mode"]
+            numbers = [n for n, guard in enumerate(regime.guards) if guard.mode == mode and active[n]]
+            if switch["kind"] != "sign" or mode in self.held or not numbers:
+                continue
+            sign = signs[numbers[0]]
+            if sign and self.modes[mode] == 0:
+                settled[mode] = sign
+            elif not sign and self._guard_value(switch["guard"]) == 0.0:
+                settled[mode] = switch["at_zero"]
+        changed = settled != self.modes
+        if changed:
+            self.settled += 1
+            if self.settled > MOST_SWITCHES:
+                raise CutOff(self.t, "its switches settle endlessly", self.end)
+        self.modes = settled
+        return changed
+
+    def _guard_value(self, guard: Any) -> float:
+        """Return a guard at the present time and state."""
+        names = [f"omega_{i} of t" for i in (1, 2, 3)]
+        names += [f"q{i} of t" for i in range(4)] if self.motion.plan.structure["attitude"] else []
+        quantities = self.motion.evaluate(np.array([self.t]), self.y[None], names)[0].tolist()
+        values = {name.removesuffix(" of t"): value for name, value in zip(names, quantities, strict=True)}
+        values |= {name: float(value) for name, value in self.motion.constants.items()}
+        values |= {"t": self.t, **{name: float(mode) for name, mode in self.modes.items()}}
+        return float(evaluate(guard, values, MATH, float))
 
     def _switch(self, regime: _Regime, guard: _Guard) -> None:
         """Change the mode of a guard; hold the guard at zero where both sides send the motion back."""

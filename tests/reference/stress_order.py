@@ -14,7 +14,8 @@ import numpy as np
 from mpmath import mp
 
 from symrot.codegen import library
-from symrot.codegen.recurrences import coefficients, recurrences
+from symrot.codegen.coefficients import coefficients
+from symrot.codegen.recurrences import recurrences
 from symrot.codegen.taylor_source import taylor_definitions
 from symrot.propagation import taylor
 from symrot.propagation.kernels import error_blocks
