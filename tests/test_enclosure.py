@@ -78,7 +78,8 @@ def test_the_angle_of_two_discs_is_enclosed():
 @needs_compiler
 def test_the_rules_in_c_are_those_in_python():
     names = sorted(set(FUNCTIONS) - {"atan2"})
-    cases = "\n".join(f"case {k}: d = symrot_disc_{name}(a); break;" for k, name in enumerate(names))
+    called = {"log": "ln"}
+    cases = "\n".join(f"case {k}: d = symrot_disc_{called.get(n, n)}(a); break;" for k, n in enumerate(names))
     text = f"""#include <stdint.h>
 #define SYMROT_ROUGH
 {taylor.Path(taylor.__file__).with_name("disc.h").read_text()}
@@ -91,9 +92,18 @@ void image(int which, double c, double r, double *out)
         low, high = DOMAINS.get(name, (-20.0, 20.0))
         for _ in range(100):
             disc = Disc(RANDOM.uniform(low, high), 10 ** RANDOM.uniform(-5, 0.5))
-            function(k, *disc, out)
+            function(k, disc.centre, disc.radius, out)
             expected = FUNCTIONS[name](disc)
-            assert list(out) == pytest.approx(list(expected), rel=1e-12, nan_ok=True), (name, disc)
+            assert list(out) == pytest.approx(list(expected[:2]), rel=1e-12, nan_ok=True), (name, disc)
+
+
+@needs_compiler
+@pytest.mark.parametrize("method", ["taylor", "dop853", "scipy:DOP853"])
+def test_a_wave_within_a_vanished_pulse_costs_no_steps(method):
+    """Far from its pulse a chirp is exp(-1e6) times a wave whose own bound overflows: logarithms keep the product."""
+    made = scene("exp(-((t-5)/w)**2)*sin(a*(t-5)**2)", (0, 0, 0.1), 10.0, w=1e-3, a=1e7)
+    stats = symrot.propagator(made, method)([10.0]).stats
+    assert stats.accepted < 5000  # without: millions
 
 
 def rates(made):

@@ -103,4 +103,5 @@ def _disc(system: Recurrences, number: int, places: Mapping[str, str]) -> str:
     if series.rule == "quotient":
         inverse = f"symrot_disc_inverse({own[-1]})"
         return f"symrot_disc_product({own[0]}, {inverse})" if len(own) > 1 else inverse
-    return f"symrot_disc_{series.function}({', '.join(own)})"
+    name = "ln" if series.function == "log" else series.function
+    return f"symrot_disc_{name}({', '.join(own)})"

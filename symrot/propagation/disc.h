@@ -8,19 +8,36 @@
  */
 #include <math.h>
 
-typedef struct { double c, r; } symrot_disc;  /* |z - c| <= r */
+/* |z - c| <= r. Where numbers over- or underflow, log|z| <= g says more; g is NAN where it says no more. */
+typedef struct { double c, r, g; } symrot_disc;
 
 static inline symrot_disc symrot_disc_of(double c, double r)
 {
     symrot_disc d;
     d.c = c;
     d.r = r;
+    d.g = NAN;
     return d;
 }
 
+static inline symrot_disc symrot_disc_up_to(double c, double r, double g)
+{
+    symrot_disc d = symrot_disc_of(c, r);
+    d.g = g;
+    return d;
+}
+
+static inline double symrot_disc_log(symrot_disc a) { return a.g == a.g ? a.g : log(fabs(a.c) + a.r); }
+
+/* A vanishing pulse times a wave whose bound overflows is as small as their logarithms say. */
 static inline symrot_disc symrot_disc_product(symrot_disc a, symrot_disc b)
 {
-    return symrot_disc_of(a.c*b.c, fabs(a.c)*b.r + fabs(b.c)*a.r + a.r*b.r);
+    symrot_disc d = symrot_disc_of(a.c*b.c, fabs(a.c)*b.r + fabs(b.c)*a.r + a.r*b.r);
+    if (a.g == a.g || b.g == b.g) {
+        d.g = symrot_disc_log(a) + symrot_disc_log(b);
+        if (!(d.r < INFINITY)) d = symrot_disc_up_to(0.0, exp(d.g), d.g);
+    }
+    return d;
 }
 
 static inline symrot_disc symrot_disc_square(symrot_disc a) { return symrot_disc_product(a, a); }
@@ -47,25 +64,33 @@ static inline symrot_disc symrot_disc_sqrt(symrot_disc a)
 static inline symrot_disc symrot_disc_exp(symrot_disc a)
 {
     const double value = exp(a.c);
-    return symrot_disc_of(value, a.r < 1.0 ? value*expm1(a.r) : exp(a.c + a.r) - value);
+    return symrot_disc_up_to(value, a.r < 1.0 ? value*expm1(a.r) : exp(a.c + a.r) - value, a.c + a.r);
 }
 
-static inline symrot_disc symrot_disc_log(symrot_disc a)
+static inline symrot_disc symrot_disc_ln(symrot_disc a)
 {
     return a.c > a.r ? symrot_disc_of(log(a.c), -log1p(-a.r/a.c)) : symrot_disc_of(0.0, INFINITY);
 }
 
 /* sin(c + z) - sin(c) = cos(c) sin(z) + sin(c) (cos(z) - 1), |sin(z)| <= sinh(r), |cos(z) - 1| <= cosh(r) - 1. */
-static inline symrot_disc symrot_disc_wave(double value, double slope, double r)
+static inline symrot_disc symrot_disc_wave(double value, double slope, double r, double g)
 {
     const double half = sinh(0.5*r);
-    return symrot_disc_of(value, fabs(slope)*sinh(r) + 2.0*fabs(value)*half*half);
+    return symrot_disc_up_to(value, fabs(slope)*sinh(r) + 2.0*fabs(value)*half*half, g);
 }
 
-static inline symrot_disc symrot_disc_sin(symrot_disc a) { return symrot_disc_wave(sin(a.c), cos(a.c), a.r); }
-static inline symrot_disc symrot_disc_cos(symrot_disc a) { return symrot_disc_wave(cos(a.c), sin(a.c), a.r); }
-static inline symrot_disc symrot_disc_sinh(symrot_disc a) { return symrot_disc_wave(sinh(a.c), cosh(a.c), a.r); }
-static inline symrot_disc symrot_disc_cosh(symrot_disc a) { return symrot_disc_wave(cosh(a.c), sinh(a.c), a.r); }
+static inline symrot_disc symrot_disc_sin(symrot_disc a) { return symrot_disc_wave(sin(a.c), cos(a.c), a.r, a.r); }
+static inline symrot_disc symrot_disc_cos(symrot_disc a) { return symrot_disc_wave(cos(a.c), sin(a.c), a.r, a.r); }
+
+static inline symrot_disc symrot_disc_sinh(symrot_disc a)
+{
+    return symrot_disc_wave(sinh(a.c), cosh(a.c), a.r, fabs(a.c) + a.r);
+}
+
+static inline symrot_disc symrot_disc_cosh(symrot_disc a)
+{
+    return symrot_disc_wave(cosh(a.c), sinh(a.c), a.r, fabs(a.c) + a.r);
+}
 
 /* Far from zero |sech(z)| <= 2 e/(1 - e^2) with e = exp(-(|c| - r)); near it, one over the hyperbolic cosine. */
 static inline symrot_disc symrot_disc_sech(symrot_disc a)

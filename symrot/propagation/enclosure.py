@@ -14,18 +14,41 @@ from symrot.expression import evaluate
 
 __all__ = ["Deviations", "Disc", "longest_followed"]
 
+LARGEST_EXPONENT = 700.0  # of e, well within doubles
 SHRINK = 0.3  # least that a step is shortened to at once
 
 
 class Disc(NamedTuple):
-    """All complex numbers within ``radius`` of a real ``centre``."""
+    """All complex numbers within ``radius`` of a real ``centre``.
+
+    Where numbers over- or underflow, the logarithm of their size, which is at most ``log_size``, says more.
+    """
 
     centre: float
     radius: float
+    log_size: float | None = None
 
 
 def _product(a: Disc, b: Disc) -> Disc:
-    return Disc(a.centre * b.centre, abs(a.centre) * b.radius + abs(b.centre) * a.radius + a.radius * b.radius)
+    centre = a.centre * b.centre
+    radius = abs(a.centre) * b.radius + abs(b.centre) * a.radius + a.radius * b.radius
+    if a.log_size is None and b.log_size is None:
+        return Disc(centre, radius)
+    size = _log_size(a) + _log_size(b)
+    return Disc(centre, radius, size) if radius < math.inf else Disc(0.0, _exp_of(size), size)
+
+
+def _log_size(a: Disc) -> float:
+    size = abs(a.centre) + a.radius
+    return a.log_size if a.log_size is not None else math.log(size) if size > 0.0 else -math.inf
+
+
+def _exp_of(x: float) -> float:
+    return math.exp(x) if x < LARGEST_EXPONENT else math.inf
+
+
+def _sinh_of(x: float) -> float:
+    return math.sinh(x) if abs(x) < LARGEST_EXPONENT else math.copysign(math.inf, x)
 
 
 def _inverse(a: Disc) -> Disc:
@@ -42,8 +65,8 @@ def _sqrt(a: Disc) -> Disc:
 
 
 def _exp(a: Disc) -> Disc:
-    value = math.exp(a.centre)
-    return Disc(value, value * math.expm1(a.radius) if a.radius < 1.0 else math.exp(a.centre + a.radius) - value)
+    value, size = math.exp(a.centre), a.centre + a.radius
+    return Disc(value, value * math.expm1(a.radius) if a.radius < 1.0 else _exp_of(size) - value, size)
 
 
 def _log(a: Disc) -> Disc:
@@ -52,10 +75,13 @@ def _log(a: Disc) -> Disc:
     return Disc(0.0, math.inf)
 
 
-def _wave(value: Callable[[float], float], slope: Callable[[float], float]) -> Callable[[Disc], Disc]:
+def _wave(
+    value: Callable[[float], float], slope: Callable[[float], float], grows: bool = False
+) -> Callable[[Disc], Disc]:
     def rule(a: Disc) -> Disc:
-        own, half = value(a.centre), math.sinh(0.5 * a.radius)
-        return Disc(own, abs(slope(a.centre)) * math.sinh(a.radius) + 2.0 * abs(own) * half * half)
+        own, half = value(a.centre), _sinh_of(0.5 * a.radius)
+        size = a.radius + abs(a.centre) * grows
+        return Disc(own, abs(slope(a.centre)) * _sinh_of(a.radius) + 2.0 * abs(own) * half * half, size)
 
     return rule
 
@@ -107,7 +133,7 @@ def _atan2(y: Disc, x: Disc) -> Disc:
 FUNCTIONS: dict[str, Callable[..., Disc]] = {
     "sqrt": _sqrt, "exp": _exp, "log": _log, "tan": _tan, "tanh": _tanh, "atan": _atan, "atan2": _atan2,
     "sin": _wave(math.sin, math.cos), "cos": _wave(math.cos, math.sin),
-    "sinh": _wave(math.sinh, math.cosh), "cosh": _wave(math.cosh, math.sinh),
+    "sinh": _wave(math.sinh, math.cosh, True), "cosh": _wave(math.cosh, math.sinh, True),
     "asin": _arc(math.asin), "acos": _arc(math.acos), "sech": _sech,
 }  # fmt: skip
 

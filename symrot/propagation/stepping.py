@@ -46,6 +46,7 @@ __all__ = [
 ]
 
 MAX_STEPS = 100_000_000  # of a motion, unless another limit is given: a minute or two
+MOST_RECORDED = 2 << 30  # bytes, of the steps of a dense output
 PATIENCE = 200_000  # steps after each of which the pace is judged
 FEW = 40  # sample times
 SLIVER = 2.0**-100  # of a stretch: a time that no formula tells from its end
@@ -429,6 +430,9 @@ class Task:
                 rows = np.empty((room, self.stepper.row))
                 self.advance(run, None, 0, None, rows.ctypes.data, room)
                 pieces.append(rows[: run.recorded])
+                if len(pieces) * rows.nbytes > MOST_RECORDED:
+                    reason = f"recording its steps takes more than {MOST_RECORDED >> 30} GiB; ask for samples instead"
+                    raise CutOff(run.t, reason, run.stop)
         return pieces
 
     def runs(self, end: float) -> Iterator[Any]:
