@@ -28,7 +28,7 @@ from typing import NamedTuple
 
 from symrot.expression import SWITCHING, Node, children, names, parse, text
 
-__all__ = ["MODES", "Smooth", "Switch", "condition_error", "has_switches", "smooth"]
+__all__ = ["CHANGING", "MODES", "Smooth", "Switch", "condition_error", "has_switches", "smooth"]
 
 ONE: Node = ("number", Fraction(1))
 HALF: Node = ("number", Fraction(1, 2))
@@ -165,9 +165,13 @@ class _Writer:
         return ("*", self.mode("sign", u), u)
 
     def _max(self, a: Node, b: Node) -> Node:
+        if a == b:
+            return a
         return _blend(self._step(("-", a, b)), a, b)
 
     def _min(self, a: Node, b: Node) -> Node:
+        if a == b:
+            return a
         return _blend(self._step(("-", a, b)), b, a)
 
     def _clip(self, u: Node, low: Node, high: Node) -> Node:

@@ -226,6 +226,24 @@ def test_guards_that_stay_at_zero_have_the_value_at_zero(method, torque, expecte
 
 
 @needs_compiler
+@pytest.mark.parametrize("method", ["taylor", "dop853"])
+@pytest.mark.parametrize(
+    ("torque", "stop", "impulse"),
+    [
+        ("mod(floor(t), 2)", 4, 2), ("where(mod(floor(t), 2) > 0, 1, 0)", 4, 2),
+        ("where(floor(t) >= 1 and floor(t) <= 1, 1, 0)", 4, 1), ("step(floor(t))", 4, 3), ("sign(step(t - 1))", 4, 3),
+        ("floor(2*step(t - 1))", 3, 4), ("floor(min(t, 1))", 4, 3), ("where(clip(t - 1, 0, 1) > 0, 1, 0)", 3, 2),
+        ("where(clip(t - 1, 0, 1) < 1 and clip(t - 1, 0, 1) > 0, 1, 0)", 4, 1), ("step(0*t)", 4, 0),
+        ("min(t, t) + max(t**2, t*t)", 3, 13.5), ("sign(omega_1) + 1", 3, 3), ("where(omega_1 > 0, 1, 2)", 3, 6),
+    ],
+)  # fmt: skip
+def test_guards_of_steps_jump_as_they_are_written(method, torque, stop, impulse):
+    """Guards that are whole numbers, or zero for a while: the value of the formula there, not that beside it."""
+    motion = symrot.propagator(scene(torque, stop=float(stop)), method, 1e-10)([float(stop)])
+    assert motion.omega[0, 2] == pytest.approx(impulse / 3, abs=1e-9)
+
+
+@needs_compiler
 def test_friction_above_a_speed_ends_there():
     """-sign(max(omega_3 - 1, 0)) slows the body to 1 rad/s and lets it be."""
     motion = symrot.propagator(scene("-sign(max(omega_3 - 1, 0))", (0, 0, 2), 10.0), "taylor", 1e-10)([1.5, 3, 10])

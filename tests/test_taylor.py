@@ -16,14 +16,16 @@ from symrot.codegen import library
 from symrot.codegen.coefficients import coefficients
 from symrot.codegen.recurrences import recurrences
 from symrot.codegen.taylor_source import taylor_definitions
+from symrot.ensemble.ensemble import propagate_ensemble
 from symrot.errors import CompilerError, InputError, PropagationError
 from symrot.expression import FUNCTIONS, parse
 from symrot.kernel import Argument, Program, Signature
 from symrot.planner import make_plan
 from symrot.propagation import dop853, taylor
 from symrot.propagation.kernels import error_blocks, scene_kernel
+from symrot.propagation.propagator import propagator
 from symrot.propagation.stepping import Task
-from symrot.scene import load_scene
+from symrot.scene import Scene, load_scene
 from symrot.scene_kernel import bind
 from tests.reference.tops import MOTIONS, TIMES, error, parameters, state
 from tests.reference.tops import taylor as reference
@@ -461,3 +463,30 @@ def test_the_benchmark_runs_and_ranks():
     best = bench.best_of(runs, 1e-9, ["taylor"])
     assert best is not None and best.error <= 1e-9
     assert bench.best_of(runs, 1e-30, ["taylor"]) is None
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-6, 1e-9, 1e-12])
+@pytest.mark.parametrize("power", range(1, 7))
+def test_series_with_gaps_are_followed(power, tolerance):
+    """A sphere from rest under t^k: its angle is t^(k+2)/((k+1)(k+2)), its attitude skips k + 1 coefficients."""
+    made = load_scene_of([f"t**{power}", "0", "0"], 4.0)
+    motion = propagator(made, "taylor", tolerance)(np.linspace(0, 4, 33))
+    half = motion.t ** (power + 2) / (power + 1) / (power + 2) / 2
+    expected = np.stack([np.cos(half), np.sin(half)], axis=1)
+    assert abs(motion.quaternion[:, :2] - expected).max() < 20 * tolerance + 1e-13 * half[-1]
+
+
+def test_powers_beyond_the_order_are_followed():
+    """omega_1 = t^7/7 drives omega_2 = t^43/(43 7^6), which has no coefficient within the order."""
+    made = load_scene_of(["t**6", "omega_1**6", "0"], 2.0)
+    expected = 2.0**43 / 43 / 7**6
+    assert propagator(made, "taylor", 1e-9)([2.0]).omega[0, 1] == pytest.approx(expected, rel=1e-7)
+    many = propagate_ensemble(made, omega=np.zeros((3, 3)), t=[2.0], tolerance=1e-9)
+    assert many.omega[:, 0, 1] == pytest.approx(expected, rel=1e-7)
+
+
+def load_scene_of(torque, stop):
+    return Scene.from_dict({
+        "schema": 1, "body": {"principal": [1, 1, 1]}, "initial": {"omega": [0, 0, 0]}, "span": {"t": [0, stop]},
+        "torque": [{"kind": "expression", "torque": torque}], "output": {"quantities": ["omega", "quaternion"]},
+    })  # fmt: skip

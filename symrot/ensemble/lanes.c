@@ -51,6 +51,8 @@ typedef struct {
 
 static const int symrot_edges[] = SYMROT_EDGES;
 static const double symrot_scales[] = SYMROT_SCALES;
+enum { SYMROT_LEAST_CHECKED = SYMROT_ORDER - 8 > SYMROT_ORDER/2 ? SYMROT_ORDER - 8 : SYMROT_ORDER/2 };
+static const double SYMROT_GAP_SLACK = 1e4;     /* see taylor.c */
 static const double SYMROT_LEAST_TAIL = 1e-18;  /* below round-off nothing is gained */
 static const double SYMROT_RATE_FLOOR = 1e-3;   /* a rate turns the body by less than this in a step: no need to see it */
 
@@ -113,17 +115,23 @@ static inline symrot_v symrot_block(symrot_v (*x)[SYMROT_ORDER + 1], int n, int 
 static inline symrot_v symrot_step_log(symrot_v (*x)[SYMROT_ORDER + 1], symrot_v tail, symrot_v unit)
 {
     symrot_v shortest = V_ALL(60.0);  /* the series of a motion that is a polynomial in time ends early */
+    const symrot_v share = V_MUL(symrot_log2(tail, V_ALL(1.0)), V_ALL(1.0/SYMROT_ORDER));
     SYMROT_UNROLLED for (int b = 0; b < SYMROT_BLOCKS; ++b) {
         symrot_v size = V_ALL(symrot_scales[b]);
         if (symrot_scales[b] == 0.0) {
             const symrot_v now = symrot_larger(symrot_block(x, 0, b), symrot_block(x, 1, b));
             size = symrot_larger(now, V_DIV(V_ALL(SYMROT_RATE_FLOOR), unit));
         }
+        const symrot_v whole = V_MUL(size, V_ALL(SYMROT_GAP_SLACK));
         size = V_MUL(size, tail);
         const symrot_v last = symrot_log2(size, symrot_block(x, SYMROT_ORDER, b));
         const symrot_v before = symrot_log2(size, symrot_block(x, SYMROT_ORDER - 1, b));
         shortest = symrot_smaller(shortest, V_MUL(last, V_ALL(1.0/SYMROT_ORDER)));
         shortest = symrot_smaller(shortest, V_MUL(before, V_ALL(1.0/(SYMROT_ORDER - 1))));
+        for (int n = SYMROT_ORDER - 2; n >= SYMROT_LEAST_CHECKED; --n) {  /* as in taylor.c */
+            const symrot_v early = V_MUL(symrot_log2(whole, symrot_block(x, n, b)), V_ALL(1.0/n));
+            shortest = symrot_smaller(shortest, V_ADD(early, share));
+        }
     }
     return symrot_larger(shortest, V_ALL(-60.0));
 }

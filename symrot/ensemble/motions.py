@@ -19,6 +19,7 @@ from symrot.propagation.kernels import (
     compiled,
     error_blocks,
     formula_deviations,
+    grows_late,
     has_formulas,
     kernel_key,
     missing_compiler,
@@ -250,7 +251,7 @@ class _Stepped:
 
 def _taylor(stepped: _Stepped, method: str) -> lanes.Outcome:
     problem = stepped.problem
-    if formula_deviations(*stepped.moved, [0.0] * stepped.p.shape[1]) is not None:
+    if grows_late(stepped.plan) or formula_deviations(*stepped.moved, [0.0] * stepped.p.shape[1]) is not None:
         return _enclosed(stepped)
     path = lane_library(*stepped.moved, problem.tolerance)
     return lanes.follow(
@@ -260,7 +261,7 @@ def _taylor(stepped: _Stepped, method: str) -> lanes.Outcome:
 
 
 def _enclosed(stepped: _Stepped) -> lanes.Outcome:
-    """Follow motions whose steps an enclosure holds: one after the other, for lanes have none."""
+    """Follow motions whose steps are held by an enclosure, or checked, one after the other: lanes do neither."""
     problem, (plan, kernel) = stepped.problem, stepped.moved
     path = taylor_library(plan, kernel, problem.tolerance, projected=False)
 

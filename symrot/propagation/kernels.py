@@ -13,10 +13,12 @@ from typing import TYPE_CHECKING
 
 from symrot.codegen import library
 from symrot.errors import InputError
+from symrot.expression import Node, children, parse
 from symrot.kernel import Program
 from symrot.planner import Plan
 from symrot.propagation.dop853 import DENSE_ORDER, translation_unit
 from symrot.scene_kernel import SceneKernel
+from symrot.switches import CHANGING
 
 if TYPE_CHECKING:
     from symrot.propagation.enclosure import Deviations
@@ -26,6 +28,7 @@ __all__ = [
     "enclosure_text",
     "error_blocks",
     "formula_deviations",
+    "grows_late",
     "has_formulas",
     "kernel_key",
     "library_source",
@@ -165,6 +168,27 @@ def _unit(plan: Plan, source: str, parameters: int, rates: Callable[[], Program]
 def has_formulas(plan: Plan) -> bool:
     """Return whether a torque is given by formulas, which may have features that no step sees."""
     return any(torque["kind"] == "expression" for torque in plan.structure["torques"])
+
+
+def grows_late(plan: Plan) -> bool:
+    """Return whether a torque given by formulas may move a body from rest as a high power of time, of degree 3 or more.
+
+    Such a motion has no coefficient within the order of a series; steps of single motions are checked for it.
+    """
+    formulas = [text for torque in plan.structure["torques"] for text in torque.get("formulas", ())]
+    return any(_degree(parse(text)) >= 3 for text in formulas)
+
+
+def _degree(node: Node) -> int:
+    """Return the degree of a formula in time and states, functions and quotients counted as one."""
+    if node[0] == "symbol":
+        return int(node[1] in CHANGING)
+    degrees = [_degree(child) for child in children(node)]
+    if node[0] == "**":
+        return degrees[0] * abs(int(node[2]))
+    if node[0] == "call":
+        return min(1, max(degrees))
+    return sum(degrees) if node[0] == "*" else max(degrees, default=0)
 
 
 def formula_deviations(plan: Plan, kernel: SceneKernel, parameters: Iterable[float]) -> "Deviations | None":

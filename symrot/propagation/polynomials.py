@@ -27,6 +27,7 @@ EPS = float(np.finfo(float).eps)
 NOISE = 16.0  # units in the last place by which samples of a motion are taken to be off
 ROUGH = 1e-9  # relative: a fit that is off by more does not follow the motion
 SURE, HALVINGS = 6, 40  # of a piece: after the first number, ROUGH is enough; the second is the most
+MOST_PIECES = 100_000
 FEWEST, MOST = 16, 1024  # pieces fitted at a time
 
 
@@ -100,6 +101,8 @@ def fitted(
     PropagationError
         If some piece cannot be followed however short it is.
     """
+    if len(edges) > MOST_PIECES:
+        raise PropagationError(f"expected a motion that {MOST_PIECES} polynomials can follow, near t = {edges[0]!r} s")
     points, to_series, to_powers = _chebyshev()
     half, centre = 0.5 * np.diff(edges), edges[:-1] + 0.5 * np.diff(edges)
     at = np.concatenate([points, CHECKS])
@@ -116,6 +119,8 @@ def fitted(
     doubt = EPS * (NOISE + rate * np.abs(times).max(axis=1))[:, None] * size  # a phase is as good as the time
     series[np.abs(series) < 0.25 * EPS * size[:, None, :]] = 0.0  # what is left of rounding would grow outside
     powers = np.einsum("mk,nki->nmi", to_powers, series)
+    slope = np.abs(powers[:, 1]) / np.abs(half)[:, None]
+    doubt = doubt + EPS * np.abs(times).max(axis=1)[:, None] * slope  # the time itself is rounded
     check = np.einsum("cm,nmi->nci", CHECKS[:, None] ** np.arange(POINTS), powers)
     off = np.maximum(np.abs(check - values[:, POINTS:]).max(axis=1), np.abs(series[:, -3:]).max(axis=1))
     bad = ~(off <= 4.0 * doubt).all(axis=1)

@@ -294,6 +294,7 @@ class _Run:
         self.cost = np.zeros(3, dtype=np.int64)  # steps accepted and rejected, evaluations
         self.switching: list[float] = []
         self.flipped: dict[str, int] = {}  # modes changed at this very time, and how often
+        self.left: set[tuple[str, int]] = set()  # modes and their values left at this very time
         self.settled = 0
         self.recent: deque[float] = deque(maxlen=CHATTER)
 
@@ -340,7 +341,7 @@ class _Run:
         def watched() -> Generator[Piece, None, None]:
             for piece, states in source.pieces():
                 first, last = self._negative(regime, active, values, piece)
-                if passed[-1] == start and (first or self._settle(regime, active, values, piece)):
+                if passed[-1] == start and (first or self._settle(regime, active, piece, states)):
                     violated.extend(first)
                     return
                 current[:] = [(piece, states)]
@@ -348,7 +349,8 @@ class _Run:
                 if last:  # though no crossing was seen: within rounding it was there from the start of the piece
                     violated.extend(last)
                     if passed[-1] != start:
-                        self.t, self.y, self.flipped = passed[-1], states(np.array(passed[-1:]))[0], {}
+                        self.t, self.y = passed[-1], states(np.array(passed[-1:]))[0]
+                        self.flipped, self.left = {}, set()
                     return
                 consume(Chunk(passed[-1], float(piece.edges[-1]), states, piece))
                 passed.append(float(piece.edges[-1]))
@@ -371,7 +373,7 @@ class _Run:
             consume(Chunk(passed[-1], stop, states, Piece(np.append(piece.edges[:rows], stop), piece.rows[:rows])))
         self.y = states(np.array([stop]))[0]
         self.t = stop
-        self.flipped = {}
+        self.flipped, self.left = {}, set()
         ended = next(each.event for each in reversed(found) if each.t == stop and active[each.event])
         return regime.guards[ended]
 
@@ -386,23 +388,31 @@ class _Run:
         )
         return first, last
 
-    def _settle(self, regime: _Regime, active: list[bool], values: list[float], piece: Piece) -> bool:
+    def _settle(self, regime: _Regime, active: list[bool], piece: Piece, states: Callable[[Floats], Floats]) -> bool:
         """Give each mode whose guard is zero, and stays it, its value at zero; return whether a mode changed.
 
         A mode that is 0 takes the sign of its guard as soon as that is other than zero.
         """
         formulas, settled = [guard.formula for guard in regime.guards], dict(self.modes)
-        alive = {**self.modes, **{mode: 1 for mode, value in self.modes.items() if value == 0}}
+        resting = {s["mode"]: 1 for s in self.motion.switches if s["kind"] == "sign" and self.modes[s["mode"]] == 0}
+        alive = {**self.modes, **resting}
         signs, _ = signs_at_ends(regime.path, formulas, regime.bound(alive)[1], piece)
+        end = float(piece.edges[-1])
+        later = end, states(np.array([end]))[0]  # a guard may leave zero more slowly than rounding shows
         for switch in self.motion.switches:
             mode = switch["mode"]
             numbers = [n for n, guard in enumerate(regime.guards) if guard.mode == mode and active[n]]
-            if switch["kind"] != "sign" or mode in self.held or not numbers:
+            if mode in self.held or not numbers:
                 continue
             sign = signs[numbers[0]]
+            if switch["kind"] == "floor":  # closed on the left: at n + 1 it is n + 1
+                upper = signs[numbers[1]]
+                if not upper and self._guard_value(switch["guard"]) == self.modes[mode] + 1:
+                    settled[mode] = self.modes[mode] + 1
+                continue
             if sign and self.modes[mode] == 0:
                 settled[mode] = sign
-            elif not sign and self._guard_value(switch["guard"]) == 0.0:
+            elif not sign and self._guard_value(switch["guard"]) == 0.0 == self._guard_value(switch["guard"], later):
                 settled[mode] = switch["at_zero"]
         changed = settled != self.modes
         if changed:
@@ -412,36 +422,41 @@ class _Run:
         self.modes = settled
         return changed
 
-    def _guard_value(self, guard: Any) -> float:
-        """Return a guard at the present time and state."""
+    def _guard_value(self, guard: Any, place: tuple[float, Floats] | None = None) -> float:
+        """Return a guard at a time and a state, or at the present ones, under the present modes."""
+        t, y = place or (self.t, self.y)
         names = [f"omega_{i} of t" for i in (1, 2, 3)]
         names += [f"q{i} of t" for i in range(4)] if self.motion.plan.structure["attitude"] else []
-        quantities = self.motion.evaluate(np.array([self.t]), self.y[None], names)[0].tolist()
+        quantities = self.motion.evaluate(np.array([t]), y[None], names)[0].tolist()
         values = {name.removesuffix(" of t"): value for name, value in zip(names, quantities, strict=True)}
         values |= {name: float(value) for name, value in self.motion.constants.items()}
-        values |= {"t": self.t, **{name: float(mode) for name, mode in self.modes.items()}}
+        values |= {"t": t, **{name: float(mode) for name, mode in self.modes.items()}}
         return float(evaluate(guard, values, MATH, float))
 
     def _switch(self, regime: _Regime, guard: _Guard) -> None:
         """Change the mode of a guard; hold the guard at zero where both sides send the motion back."""
-        mode, kind = guard.mode, next(s["kind"] for s in self.motion.switches if s["mode"] == guard.mode)
+        mode, switch = guard.mode, next(s for s in self.motion.switches if s["mode"] == guard.mode)
+        kind = switch["kind"]
+        self.left.add((mode, self.modes[mode]))
         again = self.flipped.get(mode, 0)
         if again == 0:
             self._count()
         self.flipped[mode] = again + 1
-        if again > 2:
+        if again > 2 and kind == "sign":
             raise CutOff(self.t, f"the switch {self._name(mode)} leaves no way to go on", self.end)
         if mode in self.held:
             self.held -= {mode}
             self.modes[mode] = guard.change
         elif again and kind == "sign":
             self._hold(regime, mode)
-        elif again:
-            raise CutOff(self.t, f"the motion would slide along the jump of {self._name(mode)}", self.end)
         elif kind == "sign":
             self.modes[mode] = -self.modes[mode]
         else:
-            self.modes[mode] += guard.change
+            whole = math.floor(self._guard_value(switch["guard"]))
+            far = abs(whole - self.modes[mode]) > 1  # it jumped over some whole numbers
+            self.modes[mode] = whole if far else self.modes[mode] + guard.change
+            if (mode, self.modes[mode]) in self.left:
+                raise CutOff(self.t, f"the motion would slide along the jump of {self._name(mode)}", self.end)
 
     def _hold(self, regime: _Regime, mode: str) -> None:
         if self.end < self.motion.start:
@@ -475,6 +490,8 @@ class _Stepped:
     def __init__(self, run: _Run, regime: _Regime, rates: list[float]) -> None:
         motion = regime.motion
         assert motion.library is not None
+        if not np.isfinite(run.y).all():
+            raise CutOff(run.t, "its states are not finite there", run.end)
         stepping = taylor if motion.choice.method == "taylor" else dop853
         self.task = stepping.task(motion.library, rates, run.y, run.t, motion.tolerance)
         self.task.way, self.end = run.span, run.end

@@ -63,6 +63,10 @@ enum { SYMROT_BLOCK_COUNT = (int)(sizeof(symrot_scales)/sizeof(symrot_scales[0])
 #define EACH_ROW(r) SYMROT_UNROLLED for (int r = 0; r < SYMROT_ROWS; ++r)
 #define EACH_BLOCK(b) SYMROT_UNROLLED for (int b = 0; b < SYMROT_BLOCK_COUNT; ++b)
 
+enum { SYMROT_LEAST_CHECKED = SYMROT_ORDER - 8 > SYMROT_ORDER/2 ? SYMROT_ORDER - 8 : SYMROT_ORDER/2 };
+static const double SYMROT_GAP_SLACK = 1e4;      /* earlier terms of smooth motions exceed the geometric series less */
+static const double SYMROT_LEAP = 3.0;           /* log2 of a step over the last one that is checked */
+static const double SYMROT_DEFECT = 1e4;         /* times the tail: how far a first step may fail the equations */
 static const double SYMROT_LEAST_TAIL = 1e-18;   /* below round-off nothing is gained */
 #if SYMROT_ENCLOSED
 static const double SYMROT_SLACK = 30.0;        /* what enclosures exceed errors by, and less: see ENCLOSURES.md */
@@ -114,16 +118,26 @@ static inline double symrot_reference(symrot_v4 (*x)[SYMROT_ORDER + 1], double u
     return symrot_larger(now, SYMROT_RATE_FLOOR/unit);
 }
 
-/* Return the logarithm of the step in units: the shortest at which a last term reaches the accepted tail of its block. */
+/*
+ * Return the logarithm of the step in units: the shortest at which a last term reaches the accepted tail of its block.
+ *
+ * The last terms may vanish, as those of a body do that a torque t moves from rest: its attitude has every third
+ * coefficient alone. So earlier terms count too, where they are far above a geometric series from 1 to the tail.
+ */
 static inline double symrot_step_log(symrot_v4 (*x)[SYMROT_ORDER + 1], double tail, double unit)
 {
     double shortest = 60.0;  /* the series of a motion that is a polynomial in time ends early */
+    const double share = symrot_log2(tail, 1.0)*(1.0/SYMROT_ORDER);
     EACH_BLOCK(b) {
-        const double size = tail*symrot_reference(x, unit, b);
+        const double reference = symrot_reference(x, unit, b), size = tail*reference, whole = SYMROT_GAP_SLACK*reference;
         const double last = symrot_log2(size, symrot_size(x, SYMROT_ORDER, b))*(1.0/SYMROT_ORDER);
         const double before = symrot_log2(size, symrot_size(x, SYMROT_ORDER - 1, b))*(1.0/(SYMROT_ORDER - 1));
         shortest = last < shortest ? last : shortest;
         shortest = before < shortest ? before : shortest;
+        for (int n = SYMROT_ORDER - 2; n >= SYMROT_LEAST_CHECKED; --n) {
+            const double early = symrot_log2(whole, symrot_size(x, n, b))*(1.0/n) + share;
+            shortest = early < shortest ? early : shortest;
+        }
     }
     return shortest > -60.0 ? shortest : -60.0;
 }
@@ -191,6 +205,38 @@ static SYMROT_APART double symrot_first_unit(const symrot_v4 *c, double t, doubl
     const double first = fastest*span > 1.0 ? 1.0/fastest : span;
     frexp(first, &exponent);
     return ldexp(1.0, exponent);
+}
+
+/*
+ * Return the longest part of a step of s units at whose end, and at whose middle, the series obeys the equations.
+ *
+ * No coefficient shows a power beyond the last one: omega_2 that grows as t^43 from rest has none.
+ */
+static SYMROT_APART double symrot_checked(const symrot_v4 *c, symrot_v4 (*x)[SYMROT_ORDER + 1], const symrot_v4 *carry,
+    double t, double s, const double *step, double tail, double unit)
+{
+    symrot_v4 y[SYMROT_ROWS][SYMROT_ORDER + 1];
+    for (int tries = 0; tries < 200; ++tries, s *= 0.5) {
+        double worst = 0.0;
+        for (int half = 1; half <= 2; ++half) {
+            const double at = s/half;
+            EACH_ROW(r) y[r][0] = symrot_inside(x[r], V_ALL(at), carry[r]);
+            symrot_jet(c, t + at*step[1], 0.0, step, 2, y);
+            EACH_ROW(r) for (int i = 0; i < symrot_sizes[r]; ++i) {
+                double slope = 0.0, size = 0.0;
+                for (int n = SYMROT_ORDER; n > 0; --n) {
+                    slope = slope*at + n*V_LANE(x[r][n], i);
+                    size = size*fabs(at) + n*fabs(V_LANE(x[r][n], i));
+                }
+                const double off = fabs((slope - V_LANE(y[r][1], i))*at), rounding = 1e-13*size*fabs(at);
+                const double reference = symrot_reference(x, unit, symrot_blocks[r]);
+                const double own = off > rounding ? off/(SYMROT_DEFECT*tail*reference + 1e-13*reference) : 0.0;
+                if (!(own <= worst)) worst = own == own ? own : INFINITY;
+            }
+        }
+        if (worst <= 1.0) break;
+    }
+    return s;
 }
 
 /* Write the lanes of all rows as one vector of states. What a row has too many, the next one writes over. */
@@ -290,7 +336,7 @@ SYMROT_EXPORT int symrot_taylor(symrot_run *run, const double *p, const double *
     const double stop = run->stop, side = stop < run->t ? -1.0 : 1.0, tiny = 1e-300 + 1e-30*fabs(stop - run->t);
     double t = run->t, t_low = run->t_low, unit = run->unit;
     int64_t next = run->next, accepted = 0, jets = 0, recorded = 0;
-    int status = SYMROT_PAUSED, halvings = 0;
+    int status = SYMROT_PAUSED, halvings = 0, fresh = unit == 0.0;
 
 #if SYMROT_INVARIANTS
     if (run->every > 0 && run->kept[2*SYMROT_INVARIANTS] == 0.0) {
@@ -353,6 +399,16 @@ SYMROT_EXPORT int symrot_taylor(symrot_run *run, const double *p, const double *
             logarithm = symrot_log2(s, 1.0);
         }
 #endif
+        if (fresh || logarithm > SYMROT_LEAP) {  /* many coefficients may vanish at a start, and far beyond the last step */
+            const double held = symrot_checked(c, x, carry, t, s, step, allowed, fabs(unit));
+            if (held != s) {
+                s = held;
+                h = s*unit;
+                at_stop = 0;
+                logarithm = symrot_log2(s, 1.0);
+            }
+        }
+        fresh = 0;
         if (!at_stop && fabs(h) <= tiny + 4.0*DBL_EPSILON*fabs(t)) {
             status = SYMROT_UNDERFLOW;
             break;
