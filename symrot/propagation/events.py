@@ -303,15 +303,17 @@ def signs_at_ends(
 
 
 def _first_sign(task: _Search, number: int, piece: Piece) -> int:
-    """Return the first sign of a formula after the start of a piece that is beyond rounding."""
+    """Return the first sign of a formula after the start of a piece that is beyond rounding, and holds twice as far."""
     first, last = float(piece.edges[0]), float(piece.edges[-1])
     width, side = 4 * NEAR * max(abs(first), abs(last - first)), 1.0 if last >= first else -1.0
+    before = 0
     while width < abs(last - first):
         sign = task.sign(number, first + side * width, piece)
-        if sign:
+        if sign and sign == before:
             return sign
+        before = sign
         width *= 2
-    return 0
+    return before
 
 
 def _merged(entries: list[list[float]], last: float) -> tuple[list[list[float]], list[list[float]]]:

@@ -294,6 +294,7 @@ class _Run:
         self.cost = np.zeros(3, dtype=np.int64)  # steps accepted and rejected, evaluations
         self.switching: list[float] = []
         self.flipped: dict[str, int] = {}  # modes changed at this very time, and how often
+        self.released: set[str] = set()  # modes whose guards were held until this very time: they leave zero slowly
         self.left: set[tuple[str, int]] = set()  # modes and their values left at this very time
         self.settled = 0
         self.recent: deque[float] = deque(maxlen=CHATTER)
@@ -341,6 +342,7 @@ class _Run:
         def watched() -> Generator[Piece, None, None]:
             for piece, states in source.pieces():
                 first, last = self._negative(regime, active, values, piece)
+                first = [guard for guard in first if guard.mode not in self.released or guard in last]
                 if passed[-1] == start and (first or self._settle(regime, active, piece, states)):
                     violated.extend(first)
                     return
@@ -350,7 +352,7 @@ class _Run:
                     violated.extend(last)
                     if passed[-1] != start:
                         self.t, self.y = passed[-1], states(np.array(passed[-1:]))[0]
-                        self.flipped, self.left = {}, set()
+                        self.flipped, self.left, self.released = {}, set(), set()
                     return
                 consume(Chunk(passed[-1], float(piece.edges[-1]), states, piece))
                 passed.append(float(piece.edges[-1]))
@@ -373,7 +375,7 @@ class _Run:
             consume(Chunk(passed[-1], stop, states, Piece(np.append(piece.edges[:rows], stop), piece.rows[:rows])))
         self.y = states(np.array([stop]))[0]
         self.t = stop
-        self.flipped, self.left = {}, set()
+        self.flipped, self.left, self.released = {}, set(), set()
         ended = next(each.event for each in reversed(found) if each.t == stop and active[each.event])
         return regime.guards[ended]
 
@@ -447,6 +449,7 @@ class _Run:
         if mode in self.held:
             self.held -= {mode}
             self.modes[mode] = guard.change
+            self.released.add(mode)
         elif again and kind == "sign":
             self._hold(regime, mode)
         elif kind == "sign":
