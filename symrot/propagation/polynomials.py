@@ -27,7 +27,7 @@ EPS = float(np.finfo(float).eps)
 NOISE = 16.0  # units in the last place by which samples of a motion are taken to be off
 ROUGH = 1e-9  # relative: a fit that is off by more does not follow the motion
 SURE, HALVINGS = 6, 40  # of a piece: after the first number, ROUGH is enough; the second is the most
-MOST_PIECES = 100_000
+MOST_PIECES = 20_000  # that one call may cut the motion into, beyond those asked for
 FEWEST, MOST = 16, 1024  # pieces fitted at a time
 
 
@@ -83,8 +83,9 @@ CHECKS = np.array([-1.0, -0.9037, -0.1618, 0.6543, 1.0])  # on [-1, 1]: where a 
 
 
 def fitted(
-    states: Callable[[Floats], Floats], edges: Floats, blocks: Sequence[int], scales: Sequence[float], depth: int = 0
-) -> Piece:
+    states: Callable[[Floats], Floats], edges: Floats, blocks: Sequence[int], scales: Sequence[float], depth: int = 0,
+    left: list[int] | None = None,
+) -> Piece:  # fmt: skip
     """Return polynomials that follow a motion to rounding, between edges or, where they do not, between more of them.
 
     Parameters
@@ -95,14 +96,21 @@ def fitted(
         Rising or falling.
     blocks, scales
         As :func:`symrot.propagation.dop853.translation_unit` takes them: what states are compared with.
+    depth, left : int, list of int
+        How often a piece was halved, and how many more pieces there may be: of the function itself.
 
     Raises
     ------
     PropagationError
         If some piece cannot be followed however short it is.
     """
-    if len(edges) > MOST_PIECES:
-        raise PropagationError(f"expected a motion that {MOST_PIECES} polynomials can follow, near t = {edges[0]!r} s")
+    left = [MOST_PIECES + len(edges)] if left is None else left
+    left[0] -= len(edges) - 1
+    if left[0] < 0:
+        raise PropagationError(
+            f"expected a motion that polynomials can follow, but {MOST_PIECES} were not enough near "
+            f"t = {float(edges[0])!r} s"
+        )
     points, to_series, to_powers = _chebyshev()
     half, centre = 0.5 * np.diff(edges), edges[:-1] + 0.5 * np.diff(edges)
     at = np.concatenate([points, CHECKS])
@@ -141,7 +149,7 @@ def fitted(
         piece = Piece(edges[i : i + 2], rows[i : i + 1])
         middle = float(centre[i])
         if bad[i] and (depth < SURE or (off[i] > ROUGH * size[i]).any()) and middle not in (edges[i], edges[i + 1]):
-            piece = fitted(states, np.array([edges[i], middle, edges[i + 1]]), blocks, scales, depth + 1)
+            piece = fitted(states, np.array([edges[i], middle, edges[i + 1]]), blocks, scales, depth + 1, left)
         parts.append(piece.rows)
         ends.append(piece.edges[1:])
     return Piece(np.concatenate(ends), np.concatenate(parts))
