@@ -2,6 +2,7 @@
 
 import os
 import signal
+import threading
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
@@ -10,6 +11,10 @@ from multiprocessing import active_children
 __all__ = ["COUNT", "workers"]
 
 COUNT = min(os.cpu_count() or 1, 4)
+
+
+def _ignored(arguments: object) -> None:
+    """Say nothing of an error in a thread of a pool that is being ended."""
 
 
 @contextmanager
@@ -23,6 +28,7 @@ def workers() -> Iterator[ProcessPoolExecutor]:
         try:
             yield pool
         except BaseException:
+            threading.excepthook = _ignored  # the pool's own thread trips over what was cancelled under it
             for process in active_children():
                 process.terminate()
             pool.shutdown(wait=False, cancel_futures=True)
