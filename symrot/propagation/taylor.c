@@ -65,6 +65,7 @@ enum { SYMROT_BLOCK_COUNT = (int)(sizeof(symrot_scales)/sizeof(symrot_scales[0])
 
 enum { SYMROT_LEAST_CHECKED = SYMROT_ORDER - 8 > SYMROT_ORDER/2 ? SYMROT_ORDER - 8 : SYMROT_ORDER/2 };
 static const double SYMROT_GAP_SLACK = 1e4;      /* earlier terms of smooth motions exceed the geometric series less */
+static const double SYMROT_RISE = 0.4;           /* log2 of a step over the last one whose earlier terms are looked at */
 static const double SYMROT_LEAP = 3.0;           /* log2 of a step over the last one that is checked */
 static const double SYMROT_DEFECT = 1e4;         /* times the tail: how far a first step may fail the equations */
 static const double SYMROT_LEAST_TAIL = 1e-18;   /* below round-off nothing is gained */
@@ -120,24 +121,16 @@ static inline double symrot_reference(symrot_v4 (*x)[SYMROT_ORDER + 1], double u
 
 /*
  * Return the logarithm of the step in units: the shortest at which a last term reaches the accepted tail of its block.
- *
- * The last terms may vanish, as those of a body do that a torque t moves from rest: its attitude has every third
- * coefficient alone. So earlier terms count too, where they are far above a geometric series from 1 to the tail.
  */
 static inline double symrot_step_log(symrot_v4 (*x)[SYMROT_ORDER + 1], double tail, double unit)
 {
     double shortest = 60.0;  /* the series of a motion that is a polynomial in time ends early */
-    const double share = symrot_log2(tail, 1.0)*(1.0/SYMROT_ORDER);
     EACH_BLOCK(b) {
-        const double reference = symrot_reference(x, unit, b), size = tail*reference, whole = SYMROT_GAP_SLACK*reference;
+        const double size = tail*symrot_reference(x, unit, b);
         const double last = symrot_log2(size, symrot_size(x, SYMROT_ORDER, b))*(1.0/SYMROT_ORDER);
         const double before = symrot_log2(size, symrot_size(x, SYMROT_ORDER - 1, b))*(1.0/(SYMROT_ORDER - 1));
         shortest = last < shortest ? last : shortest;
         shortest = before < shortest ? before : shortest;
-        for (int n = SYMROT_ORDER - 2; n >= SYMROT_LEAST_CHECKED; --n) {
-            const double early = symrot_log2(whole, symrot_size(x, n, b))*(1.0/n) + share;
-            shortest = early < shortest ? early : shortest;
-        }
     }
     return shortest > -60.0 ? shortest : -60.0;
 }
@@ -180,6 +173,24 @@ static inline int symrot_finite(symrot_v4 (*x)[SYMROT_ORDER + 1], int order)
     symrot_v4 sum = V_ALL(0.0);
     EACH_ROW(r) sum = V_ADD(sum, V_MUL(V_ADD(x[r][order], x[r][order - 1]), V_ALL(0.0)));
     return V_LANE(sum, 0) + V_LANE(sum, 1) + V_LANE(sum, 2) + V_LANE(sum, 3) == 0.0;
+}
+
+/*
+ * Return the logarithm of a step that is longer than the last one, or less where its last terms happen to vanish, as those
+ * of a body do that a torque t moves from rest: its attitude has every third coefficient alone. So earlier terms count
+ * too, where they are far above a geometric series from 1 to the tail.
+ */
+static SYMROT_APART double symrot_without_gap(symrot_v4 (*x)[SYMROT_ORDER + 1], double tail, double unit, double longest)
+{
+    const double share = symrot_log2(tail, 1.0)*(1.0/SYMROT_ORDER);
+    EACH_BLOCK(b) {
+        const double whole = SYMROT_GAP_SLACK*symrot_reference(x, unit, b);
+        for (int n = SYMROT_ORDER - 2; n >= SYMROT_LEAST_CHECKED; --n) {
+            const double early = symrot_log2(whole, symrot_size(x, n, b))*(1.0/n) + share;
+            longest = early < longest ? early : longest;
+        }
+    }
+    return longest > -60.0 ? longest : -60.0;
 }
 
 /* Return a first unit of time from the size of coefficients 1 and 2, or 0 if they are not finite in any unit. */
@@ -372,6 +383,7 @@ SYMROT_EXPORT int symrot_taylor(symrot_run *run, const double *p, const double *
             continue;
         }
         double logarithm = symrot_step_log(x, allowed, fabs(unit));
+        if (fresh || logarithm > SYMROT_RISE) logarithm = symrot_without_gap(x, allowed, fabs(unit), logarithm);
         double s = symrot_exp2(logarithm), h = s*unit;
         if (fabs(h) > run->max_step) {
             h = side*run->max_step;
