@@ -133,7 +133,9 @@ def test_arc_tangents_at_zeros_and_beyond_numbers():
     given = np.array([(y, x) for y in sides for x in sides if abs(y) == abs(x) or not y * x]).T
     for real, kind in ((ulps.DOUBLE, np.float64), (ulps.FLOAT, np.float32)):
         found = np.array(ulps._called(loaded, f"batch{real.suffix}", given, real))
-        wanted = np.arctan2(*given).astype(kind).astype(float)  # NumPy's own for float32 is off by a bit on some machines
+        wanted = (
+            np.arctan2(*given).astype(kind).astype(float)
+        )  # NumPy's own for float32 is off by a bit on some machines
         assert np.array_equal(found, wanted) and np.array_equal(np.signbit(found), np.signbit(wanted))
         odd = np.array([(np.nan, 1), (1, np.nan), (np.inf, 1), (1, -np.inf), (np.inf, np.inf), (0, np.nan)]).T
         assert np.isnan(ulps._called(loaded, f"batch{real.suffix}", odd, real)).all()
