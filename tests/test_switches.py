@@ -281,3 +281,17 @@ def test_products_of_inertia_slide_too():
     assert motion.stats.switches == 1
     later = motion.t > motion.stats.switching_times[0]
     assert later.any() and abs(motion.omega[later, :2].sum(axis=1)).max() < 1e-10
+
+
+@needs_compiler
+@pytest.mark.parametrize("method", ["taylor", "dop853"])
+def test_the_event_at_which_friction_stops_a_wheel_is_reported(method):
+    """omega_3 falls to zero at 15 s and stays there."""
+    motion = symrot.propagator(scene("-sign(omega_3)", (0, 0, 5), 40.0), method)(events=["omega_3"])
+    assert motion.t_events[0] == pytest.approx([15.0], abs=1e-9) and motion.event_kinds[0] == ["falling"]
+
+
+@needs_compiler
+def test_a_guard_without_a_value_ends_in_a_sentence():
+    with pytest.raises(PropagationError, match=r"mod\(t, 0\) has no value"):
+        symrot.propagator(scene("mod(t, 0)"))([1.0])

@@ -199,6 +199,7 @@ class _Search:
         self.library, self.formulas = _library(str(path)), formulas
         self.p = (ctypes.c_double * len(p))(*p)
         self.state = ctypes.create_string_buffer(self.library.bytes)
+        self.arrived: set[tuple[int, float]] = set()  # events that reach zero at an edge between pieces, and the time
         self.again, self.spent, self.allowed = False, 0.0, MOST_OPERATIONS
 
     def entries(self, piece: Piece) -> list[list[float]]:
@@ -281,6 +282,10 @@ def search(
         if not len(piece.rows):
             continue
         entries = held + task.entries(piece)
+        for entry in entries:  # a zero from the first edge on: the piece before tells the sign before it
+            if previous is not None and not entry[3] and entry[1] == float(piece.edges[0]):
+                entry[3] = _sign_before_end(task, int(entry[0]), previous)
+                task.arrived.add((int(entry[0]), entry[1]))
         last = float(piece.edges[-1])
         whole, held = _merged(entries, last)
         stop = _settled(task, piece, events, whole, t0, left, found)
@@ -338,6 +343,18 @@ def _merged(entries: list[list[float]], last: float) -> tuple[list[list[float]],
     return [entry for entry in whole if entry not in at_end], at_end
 
 
+def _sign_before_end(task: _Search, event: int, piece: Piece) -> int:
+    """Return the last sign that an event has before the end of a piece, beyond rounding."""
+    first, last = float(piece.edges[0]), float(piece.edges[-1])
+    width, side = 4 * NEAR * max(abs(last), abs(last - first)), 1.0 if last >= first else -1.0
+    while width < abs(last - first):
+        sign = task.sign(event, last - side * width, piece)
+        if sign:
+            return sign
+        width *= 2
+    return 0
+
+
 def _settled(
     task: _Search, piece: Piece, events: Sequence[Event], entries: list[list[float]], t0: float, left: list[int],
     found: list[Found],
@@ -362,9 +379,11 @@ def _settled(
         after = after or sign(event, end, last, side)
         if not before and not after:
             continue  # zero all along: no event
-        if not (before and after) and abs(end - start) > LONG * abs(last - t0):
+        rests = abs(end - start) > LONG * abs(last - t0)
+        arrived = bool(before) and (event, start) in task.arrived  # and stays, as a wheel that friction stops
+        if not (before and after) and rests and not arrived:
             continue  # zero all along up to an end of what is known: it passes through nothing
-        t = t0 if at_start else end if start == end else 0.5 * (start + end)
+        t = t0 if at_start else start if rests and arrived else end if start == end else 0.5 * (start + end)
         kind = "rising" if after > before else "falling" if after < before else "touching"
         if events[event].direction and kind != {1: "rising", -1: "falling"}[events[event].direction]:
             continue

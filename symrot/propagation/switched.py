@@ -86,7 +86,10 @@ class SwitchedMotion(Motion):
         values |= {"t": self.start, **{f"omega_{i + 1}": float(value) for i, value in enumerate(start.omega_b)}}
         values |= {f"q{i}": float(value) for i, value in enumerate(start.quaternion)}
         for switch in self.switches:
-            guard = float(evaluate(switch["guard"], values, MATH, float))
+            try:
+                guard = float(evaluate(switch["guard"], values, MATH, float))
+            except (ArithmeticError, ValueError):
+                raise CutOff(self.start, f"{switch['label']} has no value there") from None
             modes[switch["mode"]] = math.floor(guard) if switch["kind"] == "floor" else -1 if guard < 0.0 else 1
             values[switch["mode"]] = float(modes[switch["mode"]])
             if guard == 0.0 and switch["kind"] == "sign" and names(switch["guard"]) & STATES:
