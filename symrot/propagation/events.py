@@ -381,6 +381,9 @@ def _settled(
             continue  # zero all along: no event
         rests = abs(end - start) > LONG * abs(last - t0)
         arrived = bool(before) and (event, start) in task.arrived  # and stays, as a wheel that friction stops
+        near = 4 * NEAR * max(abs(start), abs(last - t0))
+        if arrived and any(each.event == event and abs(each.t - start) <= near for each in found):
+            continue  # it was seen to cross within rounding of the edge
         if not (before and after) and rests and not arrived:
             continue  # zero all along up to an end of what is known: it passes through nothing
         t = t0 if at_start else start if rests and arrived else end if start == end else 0.5 * (start + end)
