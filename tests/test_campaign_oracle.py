@@ -265,3 +265,15 @@ def test_the_report_lists_every_wrong_one():
 
     text = "\n".join(torques.report([made(1, "right"), made(2, "wrong"), made(3, "no end")], 5, 10))
     assert "--seed 5 --case angle:2" in text and "--case angle:3" in text and "--case angle:1" not in text
+
+
+def test_an_interrupted_campaign_goes_on_where_it_stopped(tmp_path):
+    """Its own results count again, those of another seed or cut off in their line do not."""
+    path = tmp_path / "results"
+    result = Result("angle:1", "angle", "taylor", "bump", "wrong", "omega off by 1 rad/s", 1e6, 1.0, 0.1)
+    torques.Record(str(path), 5, ("taylor",)).add(result)
+    torques.Record(str(path), 6, ("taylor",)).add(result._replace(key="angle:2"))
+    with path.open("a") as file:
+        file.write('{"seed": 5, "meth')
+    assert torques.Record(str(path), 5, ("taylor",)).results() == [result]
+    assert torques.Record(str(path), 5, ()).results() == []

@@ -2,15 +2,18 @@
 
 Prints, by family and by method, how many motions were right, how many ended in a sentence and how many were wrong in
 silence, with what makes each wrong one again; exits with 1 if any was wrong. See :mod:`tests.campaigns.verdict` for
-what right means.
+what right means. With ``--save FILE`` each result is written as it comes, and the same command goes on where an
+interrupted one stopped.
 """
 
 import argparse
+import json
 import sys
 import time
 from collections import Counter
 from collections.abc import Callable
 from functools import partial
+from pathlib import Path
 
 import numpy as np
 
@@ -78,6 +81,31 @@ def jobs_of(count: int, families: list[str], seed: int) -> list[tuple[str, int]]
     return [jobs[i] for i in order]
 
 
+class Record:
+    """Results of a campaign in a file, one JSON object a line; without a file, none are kept."""
+
+    def __init__(self, path: str, seed: int, methods: tuple[str, ...]) -> None:
+        self.path, self.run = Path(path) if path else None, {"seed": seed, "methods": list(methods)}
+
+    def results(self) -> list[Result]:
+        """Return the results of this campaign that the file holds; a line cut off by an interruption is none."""
+        results = []
+        if self.path is not None and self.path.exists():
+            for line in self.path.read_text().splitlines():
+                try:
+                    entry = json.loads(line)
+                except json.JSONDecodeError:
+                    continue
+                if {name: entry.pop(name) for name in self.run} == self.run:
+                    results.append(Result(**entry))
+        return results
+
+    def add(self, result: Result) -> None:
+        if self.path is not None:
+            with self.path.open("a") as file:
+                file.write("\n" + json.dumps({**self.run, **result._asdict()}))  # a line cut off before stays alone
+
+
 def table(results: list[Result], by: str) -> list[str]:
     """Return the lines of outcomes by ``family`` or ``method``."""
     rows = sorted({getattr(r, by) for r in results})
@@ -134,6 +162,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--families", default="", help=f"comma-separated, of {', '.join(FAMILIES)}")
     parser.add_argument("--switches", action=argparse.BooleanOptionalAction, default=True)
     parser.add_argument("--list", type=int, default=30, help="how many wrong ones to list")
+    parser.add_argument("--save", default="", help="file of results, which an interrupted campaign goes on from")
     parser.add_argument("--case", default="", help="FAMILY:INDEX: one case alone, with its scene")
     options = parser.parse_args(arguments)
     methods = tuple(filter(None, options.methods.split(",")))
@@ -147,15 +176,21 @@ def main(arguments: list[str] | None = None) -> int:
         families = [name for name in families if name not in JUMPING]
         if skipped:
             print(f"skipped, for formulas do not know {', '.join(SWITCHES)}: {', '.join(skipped)}", file=sys.stderr)
+    record = Record(options.save, options.seed, methods)
     jobs = jobs_of(options.count, families, options.seed)
-    began, results = time.monotonic(), []
+    keys = {f"{family}:{index}" for family, index in jobs}
+    results = [result for result in record.results() if result.key in keys]
+    judged = {result.key for result in results}
+    count, jobs = len(jobs), [(family, index) for family, index in jobs if f"{family}:{index}" not in judged]
+    began = time.monotonic()
     broken = partial(_broken, seed=options.seed, methods=methods, limit=options.limit)
     work = partial(_work, seed=options.seed, methods=methods)
     for result in run_all(work, jobs, options.workers, options.limit, broken):
         results.append(result)
+        record.add(result)
         wrong = sum(r.outcome in WRONG for r in results)
         passed = time.monotonic() - began
-        print(f"\r{len(results)} of {len(jobs)}, {wrong} wrong, {passed:.0f} s", end="", file=sys.stderr, flush=True)
+        print(f"\r{len(results)} of {count}, {wrong} wrong, {passed:.0f} s", end="", file=sys.stderr, flush=True)
     print(file=sys.stderr)
     print("\n".join(report(results, options.seed, options.list)))
     return int(any(r.outcome in WRONG for r in results))
