@@ -66,8 +66,10 @@ def torque_function(
 
     def torque(t: Any, y: Any) -> Any:
         t, y = np.asarray(t, dtype=kind), np.asarray(y, dtype=kind)
-        t = np.broadcast_to(t, y.shape[:-1])
-        variables = {"t": t, **{name: y[..., i] for i, name in enumerate(STATES)}}
-        return np.stack([np.broadcast_to(np.asarray(part(variables), dtype=kind), t.shape) for part in parts], axis=-1)
+        variables = {"t": np.broadcast_to(t, y.shape[:-1]), **{name: y[..., i] for i, name in enumerate(STATES)}}
+        out = np.empty((*y.shape[:-1], 3), dtype=kind)
+        for i, part in enumerate(parts):
+            out[..., i] = part(variables)
+        return out
 
     return torque

@@ -76,6 +76,14 @@ def attitude_apart(p: Any, q: Any) -> Any:
     return 4 * np.arcsin(np.minimum(half, 1))
 
 
+def _cross(u: Any, v: Any) -> Any:
+    """Return the vector products of arrays (..., 3): ``np.cross`` spends most of its time on other shapes."""
+    out = np.empty(u.shape, dtype=EXTENDED)
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        out[..., i] = u[..., j] * v[..., k] - u[..., k] * v[..., j]
+    return out
+
+
 def _rates(problem: Problem, kind: Any = EXTENDED) -> Callable[[Any, Any], Any]:
     torque = torque_function(problem.texts, problem.parameters, kind)
     moments = np.array(problem.principal, dtype=EXTENDED)
@@ -83,10 +91,10 @@ def _rates(problem: Problem, kind: Any = EXTENDED) -> Callable[[Any, Any], Any]:
     def rates(t: Any, y: Any) -> Any:
         w, q = y[..., :3], y[..., 3:]
         out = np.empty(y.shape, dtype=EXTENDED)
-        out[..., :3] = (torque(t, y) + np.cross(moments * w, w)) / moments
+        out[..., :3] = (torque(t, y) + _cross(moments * w, w)) / moments
         q0, v = q[..., :1], q[..., 1:]
-        out[..., 3] = -(v * w).sum(axis=-1) / 2
-        out[..., 4:] = (q0 * w + np.cross(v, w)) / 2
+        out[..., 3] = -(v[..., 0] * w[..., 0] + v[..., 1] * w[..., 1] + v[..., 2] * w[..., 2]) / 2
+        out[..., 4:] = (q0 * w + _cross(v, w)) / 2
         return out
 
     return rates
