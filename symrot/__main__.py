@@ -6,7 +6,7 @@ __all__ = ["main"]
 def main() -> int:
     """Run the command line; Ctrl-C while it is still being imported ends it as quietly as later."""
     try:
-        from symrot import cli
+        from symrot.cli import main as cli
 
         return cli.main()
     except KeyboardInterrupt:

@@ -16,7 +16,7 @@ Euler sequences
 Inertia tensor
     ``I_xy = -integral of x y dm``: products carry the minus sign. About the centre of mass unless said otherwise.
 State
-    ``omega_b`` (3), quaternion (4), then extra states; a plan may keep fewer (see :mod:`symrot.planner`).
+    ``omega_b`` (3), quaternion (4), then extra states; a plan may keep fewer (see :mod:`symrot.planning.plan`).
 Units
     SI; angles in rad unless a label says deg.
 """

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from symrot.certify.disassembly import missing
-from symrot.codegen.library import missing as missing_compiler
+from symrot.build.cache import missing as missing_compiler
+from symrot.certificates.object_code.disassembly import missing
 
 HERE = [name for name in ("gcc", "clang") if shutil.which(name)]
 PROCESSOR = Path("/proc/cpuinfo").read_text() if Path("/proc/cpuinfo").exists() else ""

@@ -12,8 +12,8 @@ from pathlib import Path
 import pytest
 
 from symrot.errors import InputError
-from symrot.scene import Scene, load_scene
-from symrot.scene_file import SHIPPED
+from symrot.scene.file import SHIPPED
+from symrot.scene.scene import Scene, load_scene
 from tests.bad_scenes import GOOD, PARTS, SHAPE, TOP, bad_scenes, base_scene
 
 BAD = bad_scenes()

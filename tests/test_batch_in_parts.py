@@ -2,7 +2,7 @@
 
 import pytest
 
-from symrot.certify.readback import read_batch, read_kernel
+from symrot.certificates.readback.readback import read_batch, read_kernel
 from symrot.errors import CertificateError
 
 TEXT = """

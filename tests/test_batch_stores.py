@@ -4,12 +4,12 @@ import re
 
 import pytest
 
-from symrot.certify.readback import read_batch, read_kernel
-from symrot.codegen.banner import Description
-from symrot.codegen.c_source import WAYS, c_source
+from symrot.certificates.readback.readback import read_batch, read_kernel
 from symrot.codegen.library_kernels import kernel_program
-from symrot.interface import emit
-from symrot.kernel import Argument, Program, Signature
+from symrot.codegen.printing.banner import Description
+from symrot.codegen.printing.c_source import WAYS, c_source
+from symrot.formula.program import Argument, Program, Signature
+from symrot.workshop.emit import emit
 
 LOOP = re.compile(r"\+\+k\) \{\n(.*?)\n\s*\}\n", re.DOTALL)
 COMPUTED = re.compile(r"const \w+ \w+ = .*")

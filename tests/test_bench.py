@@ -14,20 +14,21 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from symrot.bench import command, kernels, skip, suite
-from symrot.bench import reference as reference_module
-from symrot.bench.contestants import CONTESTANTS, chosen
-from symrot.bench.peers import scalar_kernel
-from symrot.bench.problem import Problem, State
-from symrot.bench.race import Measured, race
-from symrot.bench.reference import REFERENCES, longer, reference
-from symrot.bench.work_precision import DECADES, against, decades, digest, study
-from symrot.cli import main
+from symrot.bench import command, kernels, skip
+from symrot.bench.comparison import reference as reference_module
+from symrot.bench.comparison import suite
+from symrot.bench.comparison.contestants import CONTESTANTS, chosen
+from symrot.bench.comparison.peers import scalar_kernel
+from symrot.bench.comparison.problem import Problem, State
+from symrot.bench.comparison.race import Measured, race
+from symrot.bench.comparison.reference import REFERENCES, longer, reference
+from symrot.bench.comparison.work_precision import DECADES, against, decades, digest, study
+from symrot.cli.main import main
 from symrot.codegen.numpy_kernel import load_numpy_kernel
 from symrot.errors import InputError, SymrotError
-from symrot.planner import make_plan
+from symrot.planning.plan import make_plan
 from symrot.report.work_precision import compared, lines, lines_of_comparison, read_study
-from symrot.scene import Scene, load_scene
+from symrot.scene.scene import Scene, load_scene
 
 SHORT = {
     "schema": 1, "title": "short", "body": {"principal": [1, 2, 3]}, "initial": {"omega": ["3/10", 1, "1/2"]},
@@ -186,7 +187,7 @@ def test_a_scene_with_nothing_to_integrate_is_refused():
 
 
 def test_what_cannot_take_part_is_said(monkeypatch):
-    monkeypatch.setattr("symrot.bench.contestants.find_spec", lambda name: None)
+    monkeypatch.setattr("symrot.bench.comparison.contestants.find_spec", lambda name: None)
     result = study(scene(torque=[{"kind": "constant_space", "torque": [0, 0, "1/10"]}]), "exact,heyoka,dop853", True)
     said = {item["method"]: item["why"] for item in result["skipped"]}
     assert "no closed form" in said["exact"]

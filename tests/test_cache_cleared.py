@@ -1,7 +1,7 @@
 """A cache that another process clears between the compiler and the loader is filled again."""
 
-from symrot.closed_form import library as closed_forms
-from symrot.codegen import library
+from symrot.build import cache as library
+from symrot.closed_form import build as closed_forms
 
 
 def test_a_closed_form_is_compiled_again_if_it_was_cleared_before_it_was_loaded(tmp_path, monkeypatch):

@@ -10,12 +10,13 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from tests.campaigns import arcs, torques
-from tests.campaigns.checks import contradiction
-from tests.campaigns.collocation import Feature, follow
-from tests.campaigns.pool import run_all
-from tests.campaigns.references import Problem, Truth, attitude_apart, reference
-from tests.campaigns.verdict import Answer, Result, measure
+from tests.campaigns.torques import arcs
+from tests.campaigns.torques import campaign as torques
+from tests.campaigns.torques.checks import contradiction
+from tests.campaigns.torques.collocation import Feature, follow
+from tests.campaigns.torques.pool import run_all
+from tests.campaigns.torques.references import Problem, Truth, attitude_apart, reference
+from tests.campaigns.torques.verdict import Answer, Result, measure
 
 PULSE = Problem(
     (1.0, 2.0, 3.0), (0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0), 0.0, 0.0, 4.0, ("0", "0", "m*exp(-((t-c)/w)**2)"),
@@ -254,7 +255,7 @@ def work(job, started):
 
 
 def test_a_case_that_hangs_or_dies_is_counted_and_the_others_go_on(monkeypatch):
-    monkeypatch.setattr("tests.campaigns.pool.STARTING", 0.0)
+    monkeypatch.setattr("tests.campaigns.torques.pool.STARTING", 0.0)
     ended = run_all(work, ["a", "hang", "b", "die", "c"], 2, 1.0, lambda job, why: f"{why}: {job}")
     assert sorted(ended) == ["done a", "done b", "done c", "no end: hang", "traceback: die"]
 

@@ -12,12 +12,12 @@ import pytest
 from sympy import Matrix, MatrixBase, Poly, Rational, Symbol
 
 from symrot import catalogue
-from symrot.catalogue._power_series import coefficient, indexed
-from symrot.cli import main
+from symrot.catalogue.tools.power_series import coefficient, indexed
+from symrot.cli.main import main
 from symrot.conventions import SEQUENCES
 from symrot.errors import InputError
 from symrot.exact import is_zero
-from symrot.proof import Derivation, ProofError
+from symrot.proof.derivation import Derivation, ProofError
 
 ROOT = Path(__file__).parents[1]
 
@@ -111,7 +111,7 @@ def test_a_tampered_page_cannot_be_derived(monkeypatch):
     monkeypatch.setattr(Derivation, "step", tampered)
     for name in ("kinetic_energy", "relative_motion", "free_body_attitude", "rodrigues", "tensor_rotation"):
         with pytest.raises(ProofError, match="as it is shown"):
-            import_module(f"symrot.catalogue.{name}").derive()
+            import_module(module_of(name)).derive()
 
 
 def test_every_sequence_has_its_rates(derived):

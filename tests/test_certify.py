@@ -13,21 +13,21 @@ from random import Random
 import pytest
 from mpmath import mp
 
-from symrot.certify import exact_check, recheck
-from symrot.certify.audit import audit
-from symrot.certify.certificate import certificate_text, printed, with_slots
-from symrot.certify.claims import claims_no_more, same_but_for_bounds
-from symrot.certify.header import check_header
-from symrot.certify.laws import prove_law, prove_laws
-from symrot.certify.mutations import Files, corrupted_c, tampered_certificates
-from symrot.cli import main
+from symrot.certificates import exact_check, recheck
+from symrot.certificates.audit import audit
+from symrot.certificates.certificate import certificate_text, printed, with_slots
+from symrot.certificates.laws.laws import prove_law, prove_laws
+from symrot.certificates.readback.header import check_header
+from symrot.cli.main import main
 from symrot.errors import CertificateError
-from symrot.interface import emit, subject
 from symrot.kernels.definition import Law
 from symrot.kernels.library import definition, kernel_names
-from symrot.report import certificates
-from symrot.scene_file import names_with_kernels
+from symrot.scene.file import names_with_kernels
 from symrot.symbols import constant
+from symrot.workshop import certify as certificates
+from symrot.workshop.emit import emit, subject
+from tests.campaigns.certificates.claims import claims_no_more, same_but_for_bounds
+from tests.campaigns.certificates.mutations import Files, corrupted_c, tampered_certificates
 
 SLICE = ("quaternion_dcm", "quaternion_of_dcm", "euler_zyx_body_rates", "euler_zxz_of_quaternion", "mrp_shadow",
          "rotation_vector_body_rates", "rotation_vector_of_quaternion", "torque_gravity", "gravity_gradient_satellite",

@@ -9,10 +9,10 @@ import sys
 import pytest
 from sympy import atan2, expand, sympify
 
-from symrot import cli, symbols
-from symrot.certify import coq_check
-from symrot.certify.coq_check import check_texts, coqc, unproven
-from symrot.certify.coq_library import (
+from symrot import symbols
+from symrot.certificates.coq import check as coq_check
+from symrot.certificates.coq.check import check_texts, coqc, unproven
+from symrot.certificates.coq.library import (
     STANDARD_AXIOMS,
     coq_file,
     coq_file_names,
@@ -20,7 +20,8 @@ from symrot.certify.coq_library import (
     coq_texts,
     rules_text,
 )
-from symrot.certify.coq_text import coq_expression
+from symrot.certificates.coq.text import coq_expression
+from symrot.cli import main as cli
 from symrot.conventions import SEQUENCES
 from symrot.errors import CertificateError, InputError
 from symrot.kernels.euler import prefix
@@ -51,7 +52,7 @@ def test_a_theorem_about_a_kernel_has_the_name_of_the_kernel():
 
 @pytest.mark.parametrize("name", ("euler_zxz", "euler_extrinsic_zyx", "quaternions"))
 def test_the_text_is_the_same_in_every_process(name):
-    code = f"from symrot.certify.coq_library import coq_file; print(coq_file({name!r}).digest)"
+    code = f"from symrot.certificates.coq.library import coq_file; print(coq_file({name!r}).digest)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True,
                           env=os.environ | {"PYTHONHASHSEED": "12345"})  # fmt: skip
     assert done.stdout.strip() == coq_file(name).digest

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from symrot.certify.equality import prove_equal
-from symrot.certify.readback import read_kernel
-from symrot.certify.rounded import meaning, rounds_to
+from symrot.certificates.laws.equality import prove_equal
+from symrot.certificates.readback.intended_constants import meaning, rounds_to
+from symrot.certificates.readback.readback import read_kernel
 from symrot.errors import CertificateError
+from symrot.formula.exact_numbers import PI
 from symrot.kernels.library import definition, kernel_names
-from symrot.number import PI
 
 GENERATED = Path(__file__).parents[1] / "generated" / "c"
 SLICE = ("quaternion_dcm", "quaternion_of_dcm", "euler_zyx_body_rates", "euler_zxz_of_quaternion",

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from symrot.certify.flags import BITS, BOUNDS, NOTHING, flags_section, judge
-from symrot.cli import main
+from symrot.certificates.flags import BITS, BOUNDS, NOTHING, flags_section, judge
+from symrot.cli.main import main
 from symrot.errors import InputError
 
 KERNELS = Path(__file__).parents[1] / "generated" / "c"

@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 
 import symrot
-from symrot import cli
-from symrot.certify import recheck
-from symrot.certify.certificate import printed
+from symrot.certificates import recheck
+from symrot.certificates.certificate import printed
+from symrot.cli import main as cli
 
 KERNELS = Path(symrot.__file__).parents[1] / "generated" / "c"
 PAIRS = [

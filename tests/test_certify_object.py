@@ -6,16 +6,16 @@ from pathlib import Path
 
 import pytest
 
-from symrot.certify import object_code_build
-from symrot.certify.flags import BITS, BOUNDS, NOTHING
-from symrot.certify.object_campaign import corrupted
-from symrot.certify.object_code import CONTRACTED, DIFFERS, IDENTICAL, NOT_UNDERSTOOD, compare_object
-from symrot.certify.object_code_build import FLAGS, STRICT, compile_object, objects_section
-from symrot.certify.object_code_mutants import same_bits
-from symrot.cli import main
+from symrot.certificates.flags import BITS, BOUNDS, NOTHING
+from symrot.certificates.object_code import build as object_code_build
+from symrot.certificates.object_code.build import FLAGS, STRICT, compile_object, objects_section
+from symrot.certificates.object_code.comparison import CONTRACTED, DIFFERS, IDENTICAL, NOT_UNDERSTOOD, compare_object
+from symrot.cli.main import main
 from symrot.errors import CertificateError, CompilerError
-from symrot.report import compiled
-from symrot.report.certificates import refuted
+from symrot.workshop import object_code as compiled
+from symrot.workshop.certify import refuted
+from tests.campaigns.certificates.object_campaign import corrupted
+from tests.campaigns.certificates.object_code_mutants import same_bits
 from tests.needs import HERE, needs_avx2, needs_objdump
 
 KERNELS = Path(__file__).parents[1] / "generated" / "c"
@@ -124,7 +124,7 @@ def test_a_changed_sign_in_the_text_is_seen_in_the_object(tmp_path):
 @needs_objdump
 @pytest.mark.parametrize("compiler", HERE)
 def test_corrupted_object_files_are_refused(compiler):
-    """A slice of `python -m symrot.certify.object_campaign`: what gives the same bits on many inputs is no corruption."""
+    """A slice of `python -m tests.campaigns.certificates.object_campaign`: what gives the same bits on many inputs is no corruption."""
     sources = [KERNELS / f"{name}.c" for name in ("euler_zyx_body_rates", "mrp_shadow")]
     counts, said = corrupted(sources, compiler, ("-O2", *STRICT), 20, 11)
     assert counts.total() == 20 and all(name.endswith(": refused") for name in counts), said

@@ -11,23 +11,22 @@ import mpmath
 import numpy as np
 import pytest
 
-from symrot.certify import rounding_functions as functions
-from symrot.certify import rounding_intervals as intervals
-from symrot.certify.readback import read_kernel
-from symrot.certify.rounding import STORE, bound_outputs, bound_task, check_section, rounding_section, tasks
-from symrot.certify.rounding_adjoint import evaluate
-from symrot.certify.rounding_campaign import compare, loosest
-from symrot.certify.rounding_cone import cone_of
-from symrot.certify.rounding_library import largest_box, operations_of, prepare, problem, resized
-from symrot.certify.rounding_measured import measure
-from symrot.certify.rounding_region import Region
-from symrot.certify.rounding_store import TABLE, method, printed_table, table
-from symrot.certify.rounding_words import in_words, library_section, rounded_up
-from symrot.cli import main
+from symrot.certificates.readback.readback import read_kernel
+from symrot.certificates.rounding import functions, intervals
+from symrot.certificates.rounding.adjoint import evaluate
+from symrot.certificates.rounding.bounds import STORE, bound_outputs, bound_task, check_section, rounding_section, tasks
+from symrot.certificates.rounding.bounds_text import in_words, library_section, rounded_up
+from symrot.certificates.rounding.library import largest_box, operations_of, prepare, problem, resized
+from symrot.certificates.rounding.output_graph import cone_of
+from symrot.certificates.rounding.region import Region
+from symrot.certificates.rounding.store import TABLE, method, printed_table, table
+from symrot.cli.main import main
 from symrot.errors import CertificateError, InputError
+from symrot.formula.exact_numbers import PI
 from symrot.kernels.library import definition, kernel_names
-from symrot.number import PI
-from symrot.report.bound_table import understated
+from symrot.workshop.bound_table import understated
+from tests.campaigns.certificates.rounding_campaign import compare, loosest
+from tests.campaigns.certificates.rounding_measured import measure
 
 GENERATED = Path(__file__).parents[1] / "generated" / "c"
 UNIT = {"binary64": 2.0**-53, "binary32": 2.0**-24}
@@ -326,7 +325,7 @@ def test_processes_find_what_one_finds(monkeypatch, tmp_path):
 
 
 def test_the_table_is_of_this_method_and_holds_the_library():
-    """`python -m symrot.report.bound_table` prints it anew."""
+    """`python -m symrot.workshop.bound_table` prints it anew."""
     assert table()["method"] == method()
     for name in SLICE:
         for operations in operations_of(name, text_of(name)):
@@ -350,7 +349,7 @@ def test_bounds_of_the_table_are_found_again(name):
     "change", [{"pointwise": 0.0, "bound": 0.0}, {"worst": ()}, {"pointwise": 1.0}, {"bound": float("inf")}]
 )
 def test_a_forged_bound_of_the_table_is_found(change, monkeypatch):
-    """By the point that it names: `python -m symrot.report.bound_table --check` looks at all of them."""
+    """By the point that it names: `python -m symrot.workshop.bound_table --check` looks at all of them."""
     double, _ = operations_of("quaternion_dcm", text_of("quaternion_dcm"))
     given = problem(definition("quaternion_dcm"), double)
     wanted = {task.key: task for task in tasks(double, given.box, given.region).values()}

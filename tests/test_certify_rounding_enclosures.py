@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from symrot.certify import rounding_functions as functions
-from symrot.certify.operations import RELATIONS
-from symrot.certify.rounding_choices import decide, narrow
-from symrot.certify.rounding_cone import Cone
-from symrot.certify.rounding_region import Region, narrowed, off_unit
+from symrot.certificates.readback.operations import RELATIONS
+from symrot.certificates.rounding import functions
+from symrot.certificates.rounding.choices import decide, narrow
+from symrot.certificates.rounding.output_graph import Cone
+from symrot.certificates.rounding.region import Region, narrowed, off_unit
 
 
 def test_slopes_of_an_angle_are_enclosed_as_near_as_can_be():

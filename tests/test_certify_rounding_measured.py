@@ -7,14 +7,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from symrot.certify import rounding_campaign
-from symrot.certify.rounding import bound_outputs
-from symrot.certify.rounding_adversary import Field, climb
-from symrot.certify.rounding_campaign import compare
-from symrot.certify.rounding_library import operations_of, problem
-from symrot.certify.rounding_measured import measure
-from symrot.certify.rounding_region import UNIT_NORM, Region
+from symrot.certificates.rounding.bounds import bound_outputs
+from symrot.certificates.rounding.library import operations_of, problem
+from symrot.certificates.rounding.region import UNIT_NORM, Region
 from symrot.kernels.library import definition
+from tests.campaigns.certificates import rounding_campaign
+from tests.campaigns.certificates.rounding_adversary import Field, climb
+from tests.campaigns.certificates.rounding_campaign import compare
+from tests.campaigns.certificates.rounding_measured import measure
 
 GENERATED = Path(__file__).parents[1] / "generated" / "c"
 

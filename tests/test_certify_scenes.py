@@ -7,17 +7,17 @@ from random import Random
 
 import pytest
 
-from symrot.certify import recheck
-from symrot.certify.readback import read_kernel
-from symrot.certify.rounding import check_section
-from symrot.certify.rounding_constants import enclosed
-from symrot.cli import main
+from symrot.certificates import recheck
+from symrot.certificates.readback.readback import read_kernel
+from symrot.certificates.rounding.bounds import check_section
+from symrot.certificates.rounding.constants import enclosed
+from symrot.cli.main import main
 from symrot.errors import InputError
-from symrot.expression import parse
-from symrot.interface import emit, scene_inputs
-from symrot.report.bounds import facts, given, section
-from symrot.report.kernels import kept_bounds
-from symrot.scene_kernel import bind
+from symrot.formula.tree import parse
+from symrot.planning.scene_kernel import bind
+from symrot.workshop.bounds import facts, given, section
+from symrot.workshop.emit import emit, scene_inputs
+from symrot.workshop.kernel_files import kept_bounds
 
 CUBE = ("omega_1=-1:1", "omega_2=-1:1", "omega_3=-1:1")
 PART = ("q0=1/2:1", "q1=0:1/2", "q2=0:1/2", "q3=0:1/2")
@@ -129,7 +129,7 @@ def test_a_forged_bound_is_not_printed_again(tmp_path, capsys, monkeypatch, part
 def test_bounds_of_a_scene_file_and_without_any(tmp_path, capsys, monkeypatch):
     """A scene file of one's own is certified the same; with no range given there are no bounds, and no head says any."""
     monkeypatch.chdir(tmp_path)
-    shipped = Path(__file__).parents[1] / "symrot" / "scenes" / "gyrostat.toml"
+    shipped = Path(__file__).parents[1] / "symrot" / "scene" / "shipped" / "gyrostat.toml"
     Path("mine.toml").write_bytes(shipped.read_bytes())
     ranges = _options(("omega_1=-1:1", "omega_2=-1:1", "omega_3=-1:1", "p0=0:1"))
     assert main(["certify", "mine.toml", *ranges, "-o", "k"]) == 0
@@ -252,7 +252,7 @@ def test_a_bad_box_is_one_sentence(arguments, said, capsys, tmp_path, monkeypatc
 
 
 def test_the_largest_box_of_a_scene_has_the_target():
-    from symrot.report.bounds import target_facts
+    from symrot.workshop.bounds import target_facts
 
     found = target_facts("t_handle", BOXES["t_handle"], "double", 1e-13, ("omega_1",))
     assert found["size"] > 1 and float.fromhex(found["largest_error"]) <= 1e-13

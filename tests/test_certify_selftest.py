@@ -10,11 +10,11 @@ from pathlib import Path
 import pytest
 from mpmath import mp, mpf, workdps
 
-from symrot import cli
-from symrot.certify.rounding_adjoint import LIBM_ULP
-from symrot.certify.selftest import LIBM_ULP as TESTED
-from symrot.certify.selftest import NAMES, run_selftest, selftest_files
-from symrot.codegen import library
+from symrot.build import cache as library
+from symrot.certificates.rounding.adjoint import LIBM_ULP
+from symrot.certificates.selftest import LIBM_ULP as TESTED
+from symrot.certificates.selftest import NAMES, run_selftest, selftest_files
+from symrot.cli import main as cli
 
 GENERATED = Path(__file__).parents[1] / "generated" / "c"
 needs_compiler = pytest.mark.skipif(bool(library.missing()), reason="needs a C compiler")

@@ -9,10 +9,10 @@ from fractions import Fraction
 
 import pytest
 
-from symrot.certify import object_code_machine as machine
-from symrot.certify.disassembly import listing
-from symrot.certify.object_code_state import Array, Context
-from symrot.certify.object_code_terms import RELATION, Terms, value_of
+from symrot.certificates.object_code import machine
+from symrot.certificates.object_code.disassembly import listing
+from symrot.certificates.object_code.state import Array, Context
+from symrot.certificates.object_code.terms import RELATION, Terms, value_of
 from tests.needs import needs_avx2, needs_objdump
 
 SPECIAL = (0.0, -0.0, 1.0, -1.0, 2.0, 0.5, math.inf, -math.inf, 5e-324, -5e-324, 2.2250738585072014e-308, 1.7e308, -1.7e308,

@@ -6,12 +6,16 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from symrot import number
-from symrot.closed_form import choose, free_body, heavy_top
-from symrot.codegen import library
-from symrot.planner import make_plan, structure_key
-from symrot.propagation import kernels, motion, propagator, taylor
-from symrot.scene import Initial, Scene, load_scene
+from symrot.build import cache as library
+from symrot.closed_form import registry as choose
+from symrot.closed_form.free_body import motion as free_body
+from symrot.closed_form.heavy_top import motion as heavy_top
+from symrot.formula import exact_numbers as number
+from symrot.planning.plan import make_plan, structure_key
+from symrot.propagation import compiled_models as kernels
+from symrot.propagation import motion, propagator
+from symrot.propagation.steppers import taylor
+from symrot.scene.scene import Initial, Scene, load_scene
 
 PRISM = load_scene("tumbling_prism")
 TILTED = {"inertia": {"xx": 3, "yy": 4, "zz": 5, "xy": "-1/10", "xz": "1/5", "yz": "1/7"}}

@@ -10,8 +10,8 @@ from mpmath import mp, workdps
 from sympy import Eq, Matrix, cos, sin, symbols
 
 import symrot
-from symrot.checker.reader import read_relation
-from symrot.checker.tree import text
+from symrot.checker.claim.reader import read_relation
+from symrot.checker.claim.tree import text
 from symrot.errors import InputError
 
 TRUE = (

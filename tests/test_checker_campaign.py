@@ -1,4 +1,4 @@
-"""A slice of the campaign: generated claims, no wrong verdict. ``python -m symrot.checker.campaign`` runs more of it."""
+"""A slice of the campaign: generated claims, no wrong verdict. ``python -m tests.campaigns.checker.identities`` runs more of it."""
 
 import re
 from random import Random
@@ -6,12 +6,12 @@ from random import Random
 import pytest
 from mpmath import mp, workdps
 
-from symrot.checker.campaign import RULES, UNDER, Outcome, campaign, claims, main
-from symrot.checker.judge import RationalPoint, Undefined, random_point, truth
-from symrot.checker.judge_wider import HYPOTHESES, INVERSES, truth_under, wider_point
-from symrot.checker.points import Meaningless, Point
-from symrot.checker.reader import read_expression, read_relation
-from symrot.checker.tree import walk
+from symrot.checker.claim.reader import read_expression, read_relation
+from symrot.checker.claim.tree import walk
+from symrot.checker.repair.points import Meaningless, Point
+from tests.campaigns.checker.identities import RULES, UNDER, Outcome, campaign, claims, main
+from tests.campaigns.checker.judge import RationalPoint, Undefined, random_point, truth
+from tests.campaigns.checker.judge_wider import HYPOTHESES, INVERSES, truth_under, wider_point
 
 WIDER = ("exp", *INVERSES)
 
@@ -132,8 +132,8 @@ def test_truth_tells_true_from_false_and_undefined():
 
 def test_a_wrong_engine_is_caught(monkeypatch):
     """Every verdict turned round is reported, and the command fails."""
-    from symrot.checker import campaign as module
     from symrot.checker.verdict import Verdict
+    from tests.campaigns.checker import identities as module
 
     monkeypatch.setattr(module, "check", lambda claim, assume, repair: Verdict("true"))
     found = module.campaign(10, seed=1)

@@ -7,13 +7,13 @@ from random import Random
 import pytest
 
 import symrot
-from symrot.checker import campaign_real as module
-from symrot.checker.campaign import main
-from symrot.checker.campaign_real import REAL_RULES, TRAPS, fault, real_campaign, real_claims
-from symrot.checker.judge_real import Edge, NoValue, Unclear, compare, drawn_point, generic_point, real_value
-from symrot.checker.reader import read_expression
+from symrot.checker.claim.reader import read_expression
 from symrot.checker.verdict import Counterexample, Verdict
 from symrot.errors import InputError
+from tests.campaigns.checker import real_identities as module
+from tests.campaigns.checker.identities import main
+from tests.campaigns.checker.judge_real import Edge, NoValue, Unclear, compare, drawn_point, generic_point, real_value
+from tests.campaigns.checker.real_identities import REAL_RULES, TRAPS, fault, real_campaign, real_claims
 
 HALF = {"x": Fraction(1, 2), "y": Fraction(3), "z": Fraction(-2)}
 
@@ -152,7 +152,7 @@ def test_a_wrong_engine_is_caught(monkeypatch, answer):
 
 
 def test_a_late_answer_fails_the_command(monkeypatch):
-    monkeypatch.setattr("symrot.checker.campaign.LONGEST_SECONDS", 0.0)
+    monkeypatch.setattr("tests.campaigns.checker.identities.LONGEST_SECONDS", 0.0)
     assert main(["--real", "--count", "2"]) == 1
     monkeypatch.undo()
     assert main(["--real", "--count", "2"]) == 0

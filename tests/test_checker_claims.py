@@ -9,7 +9,7 @@ import pytest
 
 import symrot
 from symrot.checker.interface import RefusedClaims
-from symrot.cli import main
+from symrot.cli.main import main
 from symrot.errors import InputError
 
 GOOD = """

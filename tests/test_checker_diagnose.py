@@ -3,9 +3,9 @@
 import pytest
 
 import symrot
-from symrot.checker.edits import TEXTS
-from symrot.checker.points import Meaningless, Point, agree, points
-from symrot.checker.reader import read_expression, read_relation
+from symrot.checker.claim.reader import read_expression, read_relation
+from symrot.checker.repair.edits import TEXTS
+from symrot.checker.repair.points import Meaningless, Point, agree, points
 from symrot.errors import InputError
 
 CASES = (  # claim, verdict, code, a repair that must be among the first three

@@ -9,8 +9,8 @@ import sys
 import pytest
 
 import symrot
-from symrot.checker.size import MOST_PRODUCTS, products_of_determinant
-from symrot.cli import main
+from symrot.checker.claim.size import MOST_PRODUCTS, products_of_determinant
+from symrot.cli.main import main
 from symrot.errors import InputError
 
 

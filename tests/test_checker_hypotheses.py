@@ -15,8 +15,8 @@ from sympy.polys.rings import ring
 import symrot
 from symrot.checker.verdict import Verdict
 from symrot.errors import InputError
-from symrot.exact.buchberger import groebner_basis
-from symrot.exact.ratio import TooLarge
+from symrot.exact.ring.groebner import groebner_basis
+from symrot.exact.ring.ratio import TooLarge
 from tests.test_checker import values_at
 
 UNIT = "q0**2 + q1**2 + q2**2 + q3**2 == 1"

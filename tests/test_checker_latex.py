@@ -5,8 +5,8 @@ import re
 import pytest
 
 import symrot
-from symrot.checker.latex import Names, read_latex, read_latex_formula
-from symrot.checker.latex_tokens import tokens
+from symrot.checker.latex.reader import Names, read_latex, read_latex_formula
+from symrot.checker.latex.tokens import tokens
 from symrot.errors import InputError
 
 READINGS = (

@@ -6,14 +6,14 @@ from random import Random
 import pytest
 
 import symrot
-from symrot.checker import repair_campaign as module
-from symrot.checker.edits import TEXTS
-from symrot.checker.mutations import MUTATIONS, mutated, places
-from symrot.checker.reader import read_expression
-from symrot.checker.repair_campaign import campaign, main, matrix_test, rank_of, table
-from symrot.checker.repair_claims import claims_of_statements
+from symrot.checker.claim.reader import read_expression
+from symrot.checker.repair.canonical_form import settled
+from symrot.checker.repair.edits import TEXTS
 from symrot.checker.verdict import Repair
-from symrot.checker.written import settled
+from tests.campaigns.checker import repairs as module
+from tests.campaigns.checker.mutations import MUTATIONS, mutated, places
+from tests.campaigns.checker.repair_claims import claims_of_statements
+from tests.campaigns.checker.repairs import campaign, main, matrix_test, rank_of, table
 
 TURN = "Matrix([[cos(alpha), {}sin(alpha), 0], [{}sin(alpha), cos(alpha), 0], [0, 0, 1]])"
 R = "Rz(phi(t))*Rx(theta(t))"

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import symrot
-from symrot import cli
-from symrot.report import kernels
+from symrot.cli import main as cli
+from symrot.workshop import kernel_files as kernels
 from tests.bad_scenes import bad_scenes
 
 ROOT = Path(symrot.__file__).parents[1]
@@ -237,7 +237,7 @@ def test_the_cache_is_cleared(capsys, monkeypatch, tmp_path):
 
 def test_a_warm_run_imports_no_sympy_scipy_or_matplotlib():
     process("-m", "symrot", "run", "tumbling_prism")
-    listed = "import sys; from symrot.cli import main; main(['run', 'tumbling_prism']); print(*sys.modules)"
+    listed = "import sys; from symrot.cli.main import main; main(['run', 'tumbling_prism']); print(*sys.modules)"
     done = process("-c", listed)
     loaded = {name.partition(".")[0] for name in done.stdout.splitlines()[-1].split()}
     assert "numpy" in loaded and not loaded & {"sympy", "scipy", "matplotlib", "mpmath"}
@@ -245,7 +245,9 @@ def test_a_warm_run_imports_no_sympy_scipy_or_matplotlib():
 
 @pytest.mark.parametrize("words", [["--help"], ["--version"], ["scenes"], ["run", "nothing"], ["rnu"]], ids=" ".join)
 def test_small_things_import_no_numpy(words):
-    listed = f"import sys; from symrot.cli import main\ntry: main({words!r})\nfinally: sys.exit('numpy' in sys.modules)"
+    listed = (
+        f"import sys; from symrot.cli.main import main\ntry: main({words!r})\nfinally: sys.exit('numpy' in sys.modules)"
+    )
     assert process("-c", listed).returncode == 0
 
 
@@ -277,7 +279,7 @@ def test_an_interrupt_is_quiet(capsys, monkeypatch):
 
 def test_letters_that_the_terminal_lacks_are_no_error(tmp_path):
     scene = tmp_path / "scene.toml"
-    text = (ROOT / "symrot/scenes/tumbling_prism.toml").read_text(encoding="utf-8")
+    text = (ROOT / "symrot/scene/shipped/tumbling_prism.toml").read_text(encoding="utf-8")
     scene.write_text(text.replace('title = "', 'title = "Kreisel \N{GREEK SMALL LETTER OMEGA} '), encoding="utf-8")
     done = process("-m", "symrot", "run", str(scene), env={"PYTHONIOENCODING": "ascii"})
     assert done.returncode == 0 and "Kreisel ?" in done.stdout

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 from mpmath import mp, mpf
 
-from symrot.closed_form import library
-from symrot.codegen.library import NATIVE, build
+from symrot.build.cache import NATIVE, build
+from symrot.closed_form import build as library
 
 U2 = 2.0**-106
 Q0 = (0.1, 0.7, -0.5, 0.5)

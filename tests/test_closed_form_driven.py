@@ -7,8 +7,14 @@ import numpy as np
 import pytest
 from mpmath import matrix, mp, mpf, odefun
 
-from symrot.closed_form import axial, axial_angle, axial_compiled, double_double, free_body, gyrostat, library
-from symrot.codegen.library import build
+from symrot.build.cache import build
+from symrot.closed_form import build as library
+from symrot.closed_form.arithmetic import double_double
+from symrot.closed_form.axial import angle as axial_angle
+from symrot.closed_form.axial import compiled as axial_compiled
+from symrot.closed_form.axial import motion as axial
+from symrot.closed_form.free_body import motion as free_body
+from symrot.closed_form.gyrostat import motion as gyrostat
 from symrot.errors import CompilerError, InputError
 
 Q0 = (0.1, 0.7, -0.5, 0.5)

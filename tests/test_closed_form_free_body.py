@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from mpmath import mp
 
-from symrot.closed_form import free_body
+from symrot.closed_form.free_body import motion as free_body
 from symrot.errors import InputError
 from symrot.kinematics import conversions
 from tests.reference import free_body as reference

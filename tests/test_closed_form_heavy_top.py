@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from mpmath import mp
 
-from symrot.closed_form import heavy_top
+from symrot.closed_form.heavy_top import motion as heavy_top
 from symrot.errors import InputError
 from symrot.kinematics import conversions
 from tests.reference import heavy_top as reference

@@ -5,7 +5,13 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from symrot.closed_form import axial, axial_compiled, free_body, gyrostat, heavy_top, library, motion
+from symrot.closed_form import build as library
+from symrot.closed_form import motion
+from symrot.closed_form.axial import compiled as axial_compiled
+from symrot.closed_form.axial import motion as axial
+from symrot.closed_form.free_body import motion as free_body
+from symrot.closed_form.gyrostat import motion as gyrostat
+from symrot.closed_form.heavy_top import motion as heavy_top
 from symrot.errors import InputError
 from symrot.propagation.propagator import propagator
 

@@ -8,10 +8,13 @@ from mpmath import exp, hyp1f1, mp, mpc, mpf
 from sympy import Rational, Symbol, solve
 
 from symrot.catalogue import derivation
-from symrot.closed_form import library, spin_up, spin_up_compiled, spin_up_series
+from symrot.closed_form import build as library
+from symrot.closed_form.spin_up import compiled as spin_up_compiled
+from symrot.closed_form.spin_up import motion as spin_up
+from symrot.closed_form.spin_up import series as spin_up_series
 from symrot.errors import InputError
 from symrot.propagation.propagator import propagate
-from symrot.scene import load_scene
+from symrot.scene.scene import load_scene
 from tests.test_closed_form_driven import flow
 
 Q0 = (0.1, 0.7, -0.5, 0.5)

@@ -19,21 +19,21 @@ import sympy
 
 import symrot
 from symrot import symbols
-from symrot.certify import exact_check, recheck
-from symrot.codegen.banner import Description
-from symrot.codegen.c_source import c_header, c_source
-from symrot.codegen.formulas import to_node
-from symrot.codegen.lower import lower
+from symrot.certificates import exact_check, recheck
+from symrot.codegen.lowering.formulas import to_node
+from symrot.codegen.lowering.lower import lower
 from symrot.codegen.numpy_kernel import load_numpy_kernel
+from symrot.codegen.printing.banner import Description
+from symrot.codegen.printing.c_source import c_header, c_source
 from symrot.codegen.scene_kernels import derive_scene_kernel, rates_program
 from symrot.dynamics.equations import equations_of_motion
 from symrot.errors import InputError
-from symrot.expression import children, evaluate, names, text
-from symrot.kernel import Argument, Program, Signature
-from symrot.planner import make_plan
-from symrot.scene import Scene, load_scene
-from symrot.scene_file import names_with_kernels
-from symrot.scene_kernel import SceneKernel, bind
+from symrot.formula.program import Argument, Program, Signature
+from symrot.formula.tree import children, evaluate, names, text
+from symrot.planning.plan import make_plan
+from symrot.planning.scene_kernel import SceneKernel, bind
+from symrot.scene.file import names_with_kernels
+from symrot.scene.scene import Scene, load_scene
 
 SCENES = names_with_kernels()
 MP = {name: getattr(mpmath, name) for name in ("sqrt", "sin", "cos", "exp")} | {"abs": abs}
@@ -252,7 +252,7 @@ def test_c_cpp_numpy_and_program_agree_to_the_last_bit(tmp_path, name, language)
 
 def test_no_emitted_line_is_long_and_nothing_of_the_machine_is_in_it():
     for name in SCENES:
-        for target in symrot.interface.TARGETS:
+        for target in symrot.workshop.emit.TARGETS:
             emitted = symrot.emit(name, target)
             for line in (emitted.header + emitted.source).splitlines():
                 assert len(line) <= 120
@@ -301,7 +301,7 @@ def test_a_scene_of_any_name_is_emitted_and_certified(name, tmp_path, monkeypatc
 
 def test_emitted_text_is_the_same_under_any_hash_seed():
     code = (
-        "import symrot, hashlib; from symrot.scene_file import names_with_kernels;"
+        "import symrot, hashlib; from symrot.scene.file import names_with_kernels;"
         "print(hashlib.sha256(''.join(''.join(symrot.emit(n, t)) for n in names_with_kernels() for t in ('c', 'numpy'))"
         ".encode()).hexdigest())"
     )

@@ -5,10 +5,10 @@ from fractions import Fraction
 import pytest
 
 from symrot.bench import taylor as bench
-from symrot.codegen.coefficients import coefficients
-from symrot.codegen.companions import with_companions
-from symrot.codegen.recurrences import recurrences
-from symrot.codegen.taylor_lanes import cost, lay_out
+from symrot.codegen.taylor.auxiliary_states import with_companions
+from symrot.codegen.taylor.coefficients import coefficients
+from symrot.codegen.taylor.lanes import cost, lay_out
+from symrot.codegen.taylor.recurrences import recurrences
 from tests.test_recurrences import program
 
 UNIT = {"q0": Fraction(1, 10), "q1": Fraction(7, 10), "q2": Fraction(-1, 2), "q3": Fraction(1, 2)}

@@ -8,10 +8,10 @@ import pytest
 
 import symrot
 from symrot import catalogue, symbols
-from symrot.checker.claims import read_claims
-from symrot.checker.dimensions import dimensions_of_formulas
-from symrot.checker.units import CUSTOM, UnitSystem, customary, raised, read_unit, shown_unit, times
-from symrot.cli import main
+from symrot.checker.claim.claims import read_claims
+from symrot.checker.units.check import dimensions_of_formulas
+from symrot.checker.units.units import CUSTOM, UnitSystem, customary, raised, read_unit, shown_unit, times
+from symrot.cli.main import main
 from symrot.errors import InputError
 from symrot.textbook import DOCUMENTS, document
 
@@ -185,7 +185,7 @@ GENUINE = {"sahakian-top-energy", "brown-force-sum"}
 
 
 def test_no_true_claim_of_the_documents_has_units_that_do_not_fit():
-    from symrot.checker.dimensions import check_dimensions
+    from symrot.checker.units.check import check_dimensions
 
     found = {
         claim.id: check_dimensions(

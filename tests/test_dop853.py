@@ -15,9 +15,9 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from symrot.codegen import library
+from symrot.build import cache as library
 from symrot.errors import CompilerError, InputError, PropagationError
-from symrot.propagation import dop853
+from symrot.propagation.steppers import dop853
 from tests.reference.tops import MOTIONS, RIGID_BODY, TIMES, error, parameters, state, taylor, wave
 
 

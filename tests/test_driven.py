@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import symrot
-from symrot.codegen import library
+from symrot.build import cache as library
 from symrot.errors import InputError, PropagationError
-from symrot.propagation import driven
-from symrot.scene import Scene
+from symrot.propagation import external_torque as driven
+from symrot.scene.scene import Scene
 
 
 @pytest.fixture(scope="module", autouse=True)

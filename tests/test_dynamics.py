@@ -11,7 +11,7 @@ from symrot.dynamics.torque_kinds import TORQUE_KINDS
 from symrot.dynamics.torques import LAWS, Motion, field_value, formula, torque_law, torque_of_potential
 from symrot.errors import InputError
 from symrot.exact import is_zero, normal_form
-from symrot.expression import parse
+from symrot.formula.tree import parse
 from symrot.kinematics.quaternion import dcm_of, quaternion_rates, unit_relation
 
 OMEGA = Matrix(symbols.omega_b)

@@ -11,19 +11,19 @@ import numpy as np
 import pytest
 
 import symrot
-from symrot.codegen import library
-from symrot.codegen.coefficients import coefficients
-from symrot.codegen.enclosure import BEYOND, enclosure
-from symrot.codegen.enclosure_source import enclosure_source
-from symrot.codegen.recurrences import recurrences
+from symrot.build import cache as library
+from symrot.codegen.enclosure.source import enclosure_source
+from symrot.codegen.enclosure.terms import BEYOND, enclosure
+from symrot.codegen.taylor.coefficients import coefficients
+from symrot.codegen.taylor.recurrences import recurrences
 from symrot.errors import PropagationError
-from symrot.expression import parse
-from symrot.planner import make_plan
-from symrot.propagation import cut_off, dop853, stepping, taylor
-from symrot.propagation.enclosure import FUNCTIONS, Deviations, Disc, longest_followed
-from symrot.propagation.kernels import error_blocks, scene_kernel
-from symrot.scene import Scene
-from symrot.scene_kernel import bind
+from symrot.formula.tree import parse
+from symrot.planning.plan import make_plan
+from symrot.planning.scene_kernel import bind
+from symrot.propagation.compiled_models import error_blocks, scene_kernel
+from symrot.propagation.enclosures.step_limit import FUNCTIONS, Deviations, Disc, longest_followed
+from symrot.propagation.steppers import cut_off, dop853, stepping, taylor
+from symrot.scene.scene import Scene
 from tests.needs import needs_compiler
 
 RANDOM = np.random.default_rng(12)
@@ -230,7 +230,7 @@ def test_smooth_torques_of_time_cost_no_more_steps(torque):
 
 def test_a_function_without_series_is_not_enclosed():
     """Of abs nothing is known: who steps it locates its switches instead."""
-    from symrot.kernel import Argument, Program, Signature
+    from symrot.formula.program import Argument, Program, Signature
 
     one = (("y", "", ""),)
     signature = Signature("f", (Argument("y", "in", one), Argument("dy", "out", (("dy", "", ""),))))

@@ -16,16 +16,16 @@ import pytest
 
 import symrot
 from symrot.bench import taylor as bench
-from symrot.codegen import library
-from symrot.codegen.coefficients import coefficients
-from symrot.codegen.ensemble_source import lane_definitions, multiplications
-from symrot.codegen.recurrences import recurrences
+from symrot.build import cache as library
+from symrot.codegen.taylor.coefficients import coefficients
+from symrot.codegen.taylor.ensemble_source import lane_definitions, multiplications
+from symrot.codegen.taylor.recurrences import recurrences
 from symrot.ensemble import lanes
 from symrot.ensemble.variation import read_variation
 from symrot.errors import InputError
-from symrot.expression import FUNCTIONS
-from symrot.propagation.kernels import error_blocks, scene_kernel
-from symrot.scene import Scene
+from symrot.formula.tree import FUNCTIONS
+from symrot.propagation.compiled_models import error_blocks, scene_kernel
+from symrot.scene.scene import Scene
 from tests.test_recurrences import FUNCTION_SYSTEMS, START, SYSTEMS, program
 
 MATH = {name: getattr(math, name) for name in FUNCTIONS if name != "abs"}

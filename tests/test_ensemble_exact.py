@@ -7,15 +7,15 @@ import numpy as np
 import pytest
 
 import symrot
-from symrot import number
 from symrot.closed_form import batches, many, motion
-from symrot.closed_form.pairs import attitude
+from symrot.closed_form.arithmetic.pairs import attitude
 from symrot.ensemble.exact import forms_of
 from symrot.ensemble.variation import read_variation
 from symrot.errors import InputError
+from symrot.formula import exact_numbers as number
 from symrot.inertia import principal
 from symrot.propagation.propagator import propagator
-from symrot.scene import Initial
+from symrot.scene.scene import Initial
 from tests.test_changed_start import BESIDE, GRAVITY, SCENES, scene
 
 RANDOM = np.random.default_rng(12)
@@ -104,7 +104,7 @@ def test_varied_constants_give_the_bits_of_their_own_scenes(case):
 @pytest.mark.parametrize("name", [*SCENES, *VARIED])
 def test_one_scene_of_a_pattern_speaks_for_all(name):
     """The form of each trajectory is that of its own scene."""
-    from symrot.closed_form.choose import exact_form
+    from symrot.closed_form.registry import exact_form
 
     given, parameters = VARIED.get(name, (name, None))
     given = SCENES[given] if isinstance(given, str) else given

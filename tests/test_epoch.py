@@ -8,18 +8,19 @@ import mpmath
 import numpy as np
 import pytest
 
-from symrot.codegen.epoch import moved
+from symrot.codegen.taylor.time_shift import moved
 from symrot.ensemble.ensemble import propagate_ensemble
 from symrot.errors import PropagationError
-from symrot.expression import evaluate, parse
-from symrot.kernel import Argument, Program, Signature
-from symrot.number import PI, without_turns
-from symrot.propagation import dop853, epoch
-from symrot.propagation.epoch import far
+from symrot.formula.exact_numbers import PI, without_turns
+from symrot.formula.program import Argument, Program, Signature
+from symrot.formula.tree import evaluate, parse
+from symrot.planning.scene_kernel import EXACT_FUNCTIONS, bind
+from symrot.propagation import time_shift as epoch
 from symrot.propagation.propagator import propagator
-from symrot.propagation.stepping import MAX_STEPS
-from symrot.scene import Scene
-from symrot.scene_kernel import EXACT_FUNCTIONS, bind
+from symrot.propagation.steppers import dop853
+from symrot.propagation.steppers.stepping import MAX_STEPS
+from symrot.propagation.time_shift import far
+from symrot.scene.scene import Scene
 
 STARTS = (0, 10**6, 10**9, 10**12, -(10**9))
 TAU = (0.0, 0.5, 1.25, 2.0)
@@ -271,7 +272,7 @@ def test_a_motion_that_was_derived_before_needs_no_sympy_far_away():
     given = (AXIS, CASES["axis"][1], 10**9)
     propagator(scene(*given))()
     code = (
-        "import sys; from symrot.scene import Scene; from symrot.propagation.propagator import propagator;"
+        "import sys; from symrot.scene.scene import Scene; from symrot.propagation.propagator import propagator;"
         f"propagator(Scene.from_dict({listed(*given)!r}, 'far'))(); assert not {{'sympy', 'scipy'}} & set(sys.modules)"
     )
     subprocess.run([sys.executable, "-c", code], check=True)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import symrot
-from symrot import cli
+from symrot.cli import main as cli
 from symrot.conventions import SEQUENCES
 from symrot.errors import InputError, PropagationError
 from symrot.kinematics import conversions

@@ -8,8 +8,8 @@ import pytest
 
 import symrot
 from symrot.errors import InputError, PropagationError
-from symrot.propagation.events import read_events
-from symrot.scene import Scene
+from symrot.propagation.events.events import read_events
+from symrot.scene.scene import Scene
 
 METHODS = ["taylor", "dop853", "exact"]
 ULP = 2.0**-52

@@ -42,7 +42,7 @@ from sympy import (
 from symrot.errors import InputError
 from symrot.exact import Verdict, is_zero, normal_form
 from symrot.exact.decide import decide
-from symrot.exact.ratio import TooLarge
+from symrot.exact.ring.ratio import TooLarge
 from symrot.symbols import (
     A,
     B,

@@ -34,7 +34,8 @@ from sympy import (
 
 import symrot
 from symrot.errors import InputError
-from symrot.exact import cyclotomic, is_zero, normal_form
+from symrot.exact import is_zero, normal_form
+from symrot.exact.angles import cyclotomic
 from symrot.exact.decide import decide
 
 x, y = symbols("x y", real=True)

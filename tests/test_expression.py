@@ -7,7 +7,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from symrot.errors import InputError
-from symrot.expression import evaluate, names, operations, parse, text
+from symrot.formula.tree import evaluate, names, operations, parse, text
 
 LEAVES = st.one_of(
     st.integers(0, 99).map(lambda n: ("number", Fraction(n))), st.sampled_from("abc").map(lambda s: ("symbol", s))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from symrot.errors import InputError, PropagationError
-from symrot.propagation import fallback
+from symrot.propagation.steppers import fallback
 from tests.reference.tops import MOTIONS, TIMES, error, parameters, rigid_body, taylor, wave
 
 

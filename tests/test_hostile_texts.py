@@ -9,13 +9,13 @@ from hashlib import sha256
 
 import pytest
 
-from symrot.certify import exact_check, recheck
-from symrot.certify.audit import audit
-from symrot.certify.certificate import printed
-from symrot.certify.mutations import Files
-from symrot.codegen.math_header import math_header
+from symrot.certificates import exact_check, recheck
+from symrot.certificates.audit import audit
+from symrot.certificates.certificate import printed
+from symrot.codegen.printing.math_header import math_header
 from symrot.errors import CertificateError
-from symrot.interface import emit, subject
+from symrot.workshop.emit import emit, subject
+from tests.campaigns.certificates.mutations import Files
 
 R, S, V = "euler_zyx_body_rates", "rotation_vector_of_quaternion", "rotation_vector_body_rates"
 T, Q, Z = "rigid_body_tensor", "quaternion_of_dcm", "euler_zxz_of_quaternion"

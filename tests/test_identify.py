@@ -6,10 +6,10 @@ import pytest
 from sympy import Matrix, Rational, Symbol, cos, pi, sin, symbols
 
 import symrot
-from symrot.checker import known_formulas
-from symrot.checker.fingerprint import PRIME, Outside, fingerprint, values_at
-from symrot.checker.identification import identify
-from symrot.cli import main
+from symrot.checker.identify import known_formulas
+from symrot.checker.identify.fingerprint import PRIME, Outside, fingerprint, values_at
+from symrot.checker.identify.identification import identify
+from symrot.cli.main import main
 from symrot.conventions import SEQUENCES
 from symrot.errors import InputError
 

@@ -6,8 +6,9 @@ import pytest
 import sympy
 from sympy import Matrix, cancel, cos, diag, expand, sin, zeros
 
-from symrot import number, symbols
+from symrot import symbols
 from symrot.errors import InputError
+from symrot.formula import exact_numbers as number
 from symrot.inertia import tensor
 from symrot.inertia.bodies import compose, place
 from symrot.inertia.composite import Part, mass_properties

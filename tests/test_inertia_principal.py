@@ -7,8 +7,8 @@ import mpmath
 import numpy as np
 import pytest
 
-from symrot import number
 from symrot.errors import InputError
+from symrot.formula import exact_numbers as number
 from symrot.inertia import tensor
 from symrot.inertia.principal import principal_axes, require_admissible, why_not_propagable
 

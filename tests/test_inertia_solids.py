@@ -14,7 +14,7 @@ from sympy import Rational, Symbol, cancel, integrate, limit, zeros
 
 from symrot import symbols
 from symrot.errors import InputError
-from symrot.expression import evaluate, parse
+from symrot.formula.tree import evaluate, parse
 from symrot.inertia.closed_forms import CLOSED_FORMS
 from symrot.inertia.composite import Part, mass_properties
 from symrot.inertia.shapes import SHAPES

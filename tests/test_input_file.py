@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 
 import symrot
-from symrot import cli
+from symrot.cli import main as cli
 from symrot.errors import InputError
-from symrot.input_file import read_input
+from symrot.files.reading import read_input
 from tests.bad_scenes import GOOD
 
 SECONDS = 20  # only a read that blocks takes longer: nothing here computes at length
@@ -128,7 +128,7 @@ def test_a_special_file_beside_a_certificate_is_refused(end, special, tmp_path, 
     out, err = capsys.readouterr()
     assert KERNEL in err and err.count("\n") == 1 and not out
     if end != ".cert.json":
-        from symrot.certify import recheck
+        from symrot.certificates import recheck
 
         with pytest.raises((ValueError, OSError)):
             recheck.check(tmp_path / f"{KERNEL}.cert.json")

@@ -71,7 +71,8 @@ def test_a_command_ends_when_it_is_interrupted(command, to_group, tmp_path):
 
 
 def test_an_import_that_is_interrupted_ends_quietly(monkeypatch, capsys):
-    from symrot import __main__, cli
+    from symrot import __main__
+    from symrot.cli import main as cli
 
     def interrupt():
         raise KeyboardInterrupt

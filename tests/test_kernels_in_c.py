@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 from symrot.bench import ulps
-from symrot.codegen.build_files import FLAGS, build_files
-from symrot.codegen.math_header import FAR, math_header
-from symrot.interface import emit
+from symrot.codegen.printing.build_files import FLAGS, build_files
+from symrot.codegen.printing.math_header import FAR, math_header
+from symrot.workshop.emit import emit
 
 ROOT = Path(__file__).parents[1]
 KERNELS = ROOT / "generated" / "c"
@@ -168,7 +168,7 @@ def test_a_coefficient_that_is_off_in_its_last_digits_is_seen(monkeypatch):
 
 def test_coefficients_are_the_series_to_the_last_bit():
     """The polynomials differ from sine and cosine by less than an eighth of a unit in the last place."""
-    from symrot.codegen import math_header as made
+    from symrot.codegen.printing import math_header as made
 
     with mpmath.workdps(40):
         for precision, digits in (("binary64", 53), ("binary32", 24)):

@@ -12,7 +12,8 @@ from time import monotonic, sleep
 
 import pytest
 
-from symrot.codegen import compiler_run, library
+from symrot.build import cache as library
+from symrot.build import compiler as compiler_run
 from symrot.errors import CompilerError
 
 SOURCE = "double answer(void) { return 42.0; }\n"

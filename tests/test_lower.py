@@ -3,11 +3,11 @@
 import sympy
 
 from symrot.bench.skip import general_plan, rungs
-from symrot.codegen.lower import lower
+from symrot.codegen.lowering.lower import lower
 from symrot.codegen.scene_kernels import rates_program
 from symrot.dynamics.equations import equations_of_motion
-from symrot.kernel import Argument, Signature
-from symrot.planner import make_plan
+from symrot.formula.program import Argument, Signature
+from symrot.planning.plan import make_plan
 
 
 def test_constants_of_nested_sums_meet_in_one():

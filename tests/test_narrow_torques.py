@@ -15,8 +15,8 @@ from scipy.special import ive
 
 import symrot
 from symrot.errors import PropagationError
-from tests.campaigns.collocation import Feature
-from tests.campaigns.references import Problem, attitude_apart, reference
+from tests.campaigns.torques.collocation import Feature
+from tests.campaigns.torques.references import Problem, attitude_apart, reference
 
 ALLOWED = 20  # tolerances, as promised
 STEPPED = ("auto", "taylor", "dop853")

@@ -7,7 +7,7 @@ import mpmath
 import pytest
 
 from symrot.errors import InputError
-from symrot.number import PI, cos, equal, read, read_angle, sin, sqrt
+from symrot.formula.exact_numbers import PI, cos, equal, read, read_angle, sin, sqrt
 
 EXACT = {
     "1/3": Fraction(1, 3),

@@ -3,9 +3,9 @@
 import pytest
 
 from symrot.errors import InputError
-from symrot.planner import RULES, make_plan
-from symrot.scene import Scene, load_scene
-from symrot.scene_file import names_with_kernels
+from symrot.planning.plan import RULES, make_plan
+from symrot.scene.file import names_with_kernels
+from symrot.scene.scene import Scene, load_scene
 
 FREE = {"principal": [1, 2, 3]}
 TOP = {"principal": [2, 2, 1], "about": "fixed_point"}

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import symrot
-from symrot import cli
+from symrot.cli import main as cli
 
 pytest.importorskip("matplotlib")
 

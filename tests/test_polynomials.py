@@ -7,8 +7,8 @@ import pytest
 
 import symrot
 from symrot.errors import PropagationError
-from symrot.propagation.events import stepped
-from symrot.propagation.polynomials import HEAD, fitted, fitted_pieces
+from symrot.propagation.events.events import stepped
+from symrot.propagation.events.polynomials import HEAD, fitted, fitted_pieces
 from tests.test_events import run, scene
 
 

@@ -8,18 +8,18 @@ import numpy as np
 import pytest
 
 from symrot.bench import long
-from symrot.codegen import library
-from symrot.codegen.invariant_source import invariant_definitions, projectable
-from symrot.codegen.tape import tape_of
-from symrot.expression import parse
-from symrot.kernel import Argument, Program, Signature
-from symrot.planner import make_plan
-from symrot.propagation import taylor
+from symrot.build import cache as library
+from symrot.codegen.lowering.tape import tape_of
+from symrot.codegen.taylor.invariant_source import invariant_definitions, projectable
+from symrot.formula.program import Argument, Program, Signature
+from symrot.formula.tree import parse
+from symrot.planning.plan import make_plan
+from symrot.planning.scene_kernel import bind
+from symrot.propagation.compiled_models import error_blocks, scene_kernel
 from symrot.propagation.invariants import invariant_parameters, invariant_source
-from symrot.propagation.kernels import error_blocks, scene_kernel
-from symrot.propagation.stepping import Task
-from symrot.scene import Scene
-from symrot.scene_kernel import bind
+from symrot.propagation.steppers import taylor
+from symrot.propagation.steppers.stepping import Task
+from symrot.scene.scene import Scene
 from tests.test_recurrences import program
 
 TILTED = {"axis": [1, 0, 0], "angle": "1/2"}

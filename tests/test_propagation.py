@@ -10,15 +10,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from symrot.closed_form.choose import exact_form
+from symrot.closed_form.registry import exact_form
 from symrot.errors import InputError
 from symrot.kinematics import conversions
-from symrot.planner import Plan, make_plan
+from symrot.planning.plan import Plan, make_plan
 from symrot.propagation.method import Choice
 from symrot.propagation.motion import Motion
 from symrot.propagation.propagator import propagate, propagator
-from symrot.scene import Scene, load_scene
-from symrot.scene_file import names_with_kernels
+from symrot.scene.file import names_with_kernels
+from symrot.scene.scene import Scene, load_scene
 from tests.reference import taylor
 
 REFERENCE = tomllib.loads((Path(__file__).parent / "reference" / "trajectories.toml").read_text())
@@ -253,7 +253,7 @@ def test_a_cached_scene_propagates_without_sympy_or_scipy():
 
 
 def test_a_second_scene_of_the_same_structure_compiles_nothing(monkeypatch):
-    from symrot.codegen import library
+    from symrot.build import cache as library
 
     for method in ("dop853", "taylor"):
         propagate("tumbling_prism", method=method)

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from symrot.certify.operations import Operations
-from symrot.certify.readback import read_batch, read_kernel
+from symrot.certificates.readback.operations import Operations
+from symrot.certificates.readback.readback import read_batch, read_kernel
 from symrot.errors import CertificateError
 
 GENERATED = Path(__file__).parents[1] / "generated" / "c"

@@ -6,14 +6,14 @@ import subprocess
 import sys
 from pathlib import Path
 
-from symrot.cli import main
+from symrot.cli.main import main
 from symrot.dynamics.torque_kinds import TORQUE_KINDS
 from symrot.inertia.shapes import SHAPES
-from symrot.scene import QUANTITIES
+from symrot.scene.scene import QUANTITIES
 
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
-SCENES = (ROOT / "symrot" / "scenes" / "README.md").read_text(encoding="utf-8")
+SCENES = (ROOT / "symrot" / "scene" / "README.md").read_text(encoding="utf-8")
 
 
 def block(language):

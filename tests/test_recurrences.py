@@ -9,11 +9,11 @@ import pytest
 import sympy
 from sympy import Rational, Symbol
 
-from symrot.codegen.coefficients import coefficients
-from symrot.codegen.recurrences import recurrences, split_sign
+from symrot.codegen.taylor.coefficients import coefficients
+from symrot.codegen.taylor.recurrences import recurrences, split_sign
 from symrot.errors import InputError
-from symrot.expression import FUNCTIONS, evaluate, parse
-from symrot.kernel import Argument, Program, Signature
+from symrot.formula.program import Argument, Program, Signature
+from symrot.formula.tree import FUNCTIONS, evaluate, parse
 
 SYSTEMS = {  # states and their rates; k is a parameter
     "free body": {"w1": "-k*w2*w3", "w2": "w3*w1/3", "w3": "2*w1*w2"},

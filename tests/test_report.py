@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 import symrot
-from symrot import cli
+from symrot.cli import main as cli
 from symrot.errors import InputError
 from symrot.report import layout
-from symrot.report.files import write
+from symrot.files.writing import write
 
 LOCKED = """
 schema = 1
@@ -75,7 +75,7 @@ def test_csv_reads_back_to_the_same_doubles(tmp_path, capsys):
 
 @pytest.mark.parametrize("suffix", ["npz", "csv"])
 def test_every_quantity_has_its_columns_and_files_are_the_same_twice(tmp_path, capsys, suffix):
-    from symrot.scene import QUANTITIES
+    from symrot.scene.scene import QUANTITIES
 
     scene = _scene(tmp_path, list(QUANTITIES), 'sequence = "zyx"\n')
     for name in ("one", "two"):

@@ -16,9 +16,9 @@ from scipy.spatial.transform import Rotation
 from symrot.conventions import SEQUENCES
 from symrot.dynamics.torque_kinds import TORQUE_KINDS
 from symrot.errors import InputError
-from symrot.number import equal
-from symrot.scene import QUANTITIES, Scene, load_scene, shipped_scenes
-from symrot.scene_attitude import read_attitude, to_body, to_space
+from symrot.formula.exact_numbers import equal
+from symrot.scene.attitude import read_attitude, to_body, to_space
+from symrot.scene.scene import QUANTITIES, Scene, load_scene, shipped_scenes
 
 ROUNDING = 4e-16  # two roundings of a component of a unit quaternion or a dcm
 SHIPPED = {
@@ -366,7 +366,7 @@ def test_the_disk_is_flat_and_damped():
 
 
 def test_loading_a_scene_imports_neither_sympy_nor_numpy():
-    program = "import sys\nfrom symrot.scene import load_scene, shipped_scenes\nload_scene('t_handle')\n"
+    program = "import sys\nfrom symrot.scene.scene import load_scene, shipped_scenes\nload_scene('t_handle')\n"
     program += "shipped_scenes()\nprint(sorted({'sympy', 'numpy', 'scipy', 'difflib'} & set(sys.modules)))"
     found = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert found.stdout.strip() == "[]"

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 import symrot
-from symrot.cli import main
+from symrot.cli.main import main
 from symrot.errors import InputError
-from symrot.scene import Scene, load_scene
-from symrot.scene_file import names_with_kernels, shipped_names
-from symrot.scene_table import COLUMNS, LARGEST_FILE
+from symrot.scene.file import names_with_kernels, shipped_names
+from symrot.scene.samples import COLUMNS, LARGEST_FILE
+from symrot.scene.scene import Scene, load_scene
 
 HEAD = ", ".join(COLUMNS)
 ROWS = [[0, 0.1, 0, 0.2], [1, 0.2, 0.1, 0.1], [2, 0.1, 0, 0], [3, 0, -0.1, 0], [4, 0, 0, 0.1]]

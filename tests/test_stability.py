@@ -7,9 +7,10 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from symrot import cli
-from symrot.bench import exact_path, growth, points, stability
-from symrot.bench.exact_path import ExactPath
+from symrot.bench.comparison import exact_path
+from symrot.bench.comparison.exact_path import ExactPath
+from symrot.bench.error_growth import growth, points, stability
+from symrot.cli import main as cli
 from symrot.errors import InputError
 from symrot.propagation.propagator import propagator
 from tests.reference import free_body as reference

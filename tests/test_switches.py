@@ -7,9 +7,9 @@ import pytest
 
 import symrot
 from symrot.errors import InputError, PropagationError
-from symrot.expression import evaluate, parse
-from symrot.scene import Scene
-from symrot.switches import condition_error, has_switches, smooth
+from symrot.formula.switches import condition_error, has_switches, smooth
+from symrot.formula.tree import evaluate, parse
+from symrot.scene.scene import Scene
 from tests.needs import needs_compiler
 
 METHODS = ["taylor", "dop853", "scipy:DOP853"]

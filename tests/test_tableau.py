@@ -11,7 +11,7 @@ from math import prod
 import numpy as np
 import pytest
 
-from symrot.propagation import tableau
+from symrot.propagation.steppers import tableau
 
 getcontext().prec = 50
 PRINTED = Decimal("1e-24")  # dop853.f has 28 to 30 digits, and the weights reach 400

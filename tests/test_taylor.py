@@ -12,21 +12,21 @@ import numpy as np
 import pytest
 
 from symrot.bench import taylor as bench
-from symrot.codegen import library
-from symrot.codegen.coefficients import coefficients
-from symrot.codegen.recurrences import recurrences
-from symrot.codegen.taylor_source import taylor_definitions
+from symrot.build import cache as library
+from symrot.codegen.taylor.coefficients import coefficients
+from symrot.codegen.taylor.recurrences import recurrences
+from symrot.codegen.taylor.source import taylor_definitions
 from symrot.ensemble.ensemble import propagate_ensemble
 from symrot.errors import CompilerError, InputError, PropagationError
-from symrot.expression import FUNCTIONS, parse
-from symrot.kernel import Argument, Program, Signature
-from symrot.planner import make_plan
-from symrot.propagation import dop853, taylor
-from symrot.propagation.kernels import error_blocks, scene_kernel
+from symrot.formula.program import Argument, Program, Signature
+from symrot.formula.tree import FUNCTIONS, parse
+from symrot.planning.plan import make_plan
+from symrot.planning.scene_kernel import bind
+from symrot.propagation.compiled_models import error_blocks, scene_kernel
 from symrot.propagation.propagator import propagator
-from symrot.propagation.stepping import Task
-from symrot.scene import Scene, load_scene
-from symrot.scene_kernel import bind
+from symrot.propagation.steppers import dop853, taylor
+from symrot.propagation.steppers.stepping import Task
+from symrot.scene.scene import Scene, load_scene
 from tests.reference.tops import MOTIONS, TIMES, error, parameters, state
 from tests.reference.tops import taylor as reference
 from tests.test_recurrences import FUNCTION_SYSTEMS, START, SYSTEMS, program

@@ -14,7 +14,11 @@ from typing import Any
 
 import numpy as np
 
-from symrot.closed_form import axial, free_body, gyrostat, heavy_top, spin_up
+from symrot.closed_form.axial import motion as axial
+from symrot.closed_form.free_body import motion as free_body
+from symrot.closed_form.gyrostat import motion as gyrostat
+from symrot.closed_form.heavy_top import motion as heavy_top
+from symrot.closed_form.spin_up import motion as spin_up
 
 __all__ = ["main", "measure"]
 

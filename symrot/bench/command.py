@@ -35,9 +35,9 @@ class Mode(NamedTuple):
 
 
 def _study(options: Namespace, say: Say) -> Outcome:
-    from symrot.bench.work_precision import study
+    from symrot.bench.comparison.work_precision import study
     from symrot.report import work_precision
-    from symrot.scene import load_scene
+    from symrot.scene.scene import load_scene
 
     _targets(options)
     found = study(load_scene(options.scene), options.methods, options.quick, say, options.tolerances, options.rounds)
@@ -50,7 +50,7 @@ def _study(options: Namespace, say: Say) -> Outcome:
 
 def _targets(options: Namespace) -> None:
     """Refuse files that cannot be written before anything is measured."""
-    from symrot.report.files import check_target
+    from symrot.files.writing import check_target
 
     if options.out:
         check_target(options.out, (".json",), "--out")
@@ -71,7 +71,7 @@ def _compare(options: Namespace, say: Say) -> Outcome:
 
 
 def _suite(options: Namespace, say: Say) -> Outcome:
-    from symrot.bench import suite
+    from symrot.bench.comparison import suite
 
     _targets(options)
     where = options.directory or Path("generated/bench")
@@ -91,7 +91,7 @@ def _skip(options: Namespace, say: Say) -> Outcome:
 
 
 def _stability(options: Namespace, say: Say) -> Outcome:
-    from symrot.bench import stability
+    from symrot.bench.error_growth import stability
 
     _targets(options)
     found = stability.report(options.scene, options.long, options.plot, say)
@@ -183,7 +183,7 @@ def run(options: Namespace, say: Say) -> Outcome:
             spoken = SPOKEN.get(name, f"--{name}")
             raise InputError(f"bench: {mode.option or 'a SCENE'} takes no {spoken} (see `symrot bench --help`)")
     if options.methods is not None or options.tolerances is not None:
-        from symrot.bench.contestants import chosen, tolerances_from
+        from symrot.bench.comparison.contestants import chosen, tolerances_from
 
         chosen(options.methods, options.quick)
         options.tolerances = tolerances_from(options.tolerances) if options.tolerances is not None else None
@@ -194,7 +194,7 @@ def run(options: Namespace, say: Say) -> Outcome:
     if options.out:
         import json
 
-        from symrot.report.files import write
+        from symrot.files.writing import write
 
         text = json.dumps(outcome.found, indent=1, ensure_ascii=False) + "\n"
         write(options.out, lambda stream: stream.write(text.encode("utf-8")))

@@ -18,11 +18,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from symrot.bench.peers import heyoka_system
-from symrot.bench.problem import Floats, Problem
-from symrot.bench.race import Measured, race, seconds_of
+from symrot.bench.comparison.peers import heyoka_system
+from symrot.bench.comparison.problem import Floats, Problem
+from symrot.bench.comparison.race import Measured, race, seconds_of
 from symrot.bench.taylor import MOTIONS, reference, scene
-from symrot.closed_form.choose import exact_form
+from symrot.closed_form.registry import exact_form
 from symrot.propagation.propagator import propagator
 
 __all__ = ["Sampled", "main", "measure"]

@@ -23,7 +23,7 @@ import numpy as np
 
 from symrot.bench.taylor import DECADES, MOTIONS, Floats, Run, best_of, raced, reference
 from symrot.bench.taylor import _Problem as Problem
-from symrot.codegen import library
+from symrot.build import cache as library
 from symrot.ensemble import lanes
 
 __all__ = ["main", "measure"]

@@ -24,16 +24,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from symrot.bench.kernel_heyoka import LANES, heyoka_code
-from symrot.bench.kernel_peers import PEERS_IN_C, casadi_function, counted, textbook
-from symrot.codegen import library
-from symrot.codegen.c_source import MATH_HEADER
+from symrot.bench.by_hand.kernel_heyoka import LANES, heyoka_code
+from symrot.bench.by_hand.kernel_peers import PEERS_IN_C, casadi_function, counted, textbook
+from symrot.build import cache as library
 from symrot.codegen.library_kernels import kernel_program
-from symrot.codegen.math_header import math_header
+from symrot.codegen.printing.c_source import MATH_HEADER
+from symrot.codegen.printing.math_header import math_header
 from symrot.errors import InputError
-from symrot.interface import emit
-from symrot.kernel import Argument, Signature
+from symrot.formula.program import Argument, Signature
 from symrot.kernels.library import definition
+from symrot.workshop.emit import emit
 
 __all__ = ["Contestant", "contest", "main"]
 

@@ -18,15 +18,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from symrot.bench.peers import heyoka_integrator
-from symrot.codegen import library
-from symrot.planner import make_plan
-from symrot.propagation import taylor
+from symrot.bench.comparison.peers import heyoka_integrator
+from symrot.build import cache as library
+from symrot.planning.plan import make_plan
+from symrot.planning.scene_kernel import bind
+from symrot.propagation.compiled_models import error_blocks, scene_kernel
 from symrot.propagation.invariants import invariant_parameters, invariant_source
-from symrot.propagation.kernels import error_blocks, scene_kernel
 from symrot.propagation.propagator import propagator
-from symrot.scene import Scene
-from symrot.scene_kernel import bind
+from symrot.propagation.steppers import taylor
+from symrot.scene.scene import Scene
 
 __all__ = ["STATES", "main", "measure"]
 

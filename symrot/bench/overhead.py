@@ -13,10 +13,10 @@ from typing import Any
 
 import numpy as np
 
-from symrot.bench.race import Measured, race, seconds_of
+from symrot.bench.comparison.race import Measured, race, seconds_of
 from symrot.errors import InputError
 from symrot.propagation.propagator import Propagator, propagator
-from symrot.propagation.stepping import DONE, Stretch
+from symrot.propagation.steppers.stepping import DONE, Stretch
 
 __all__ = ["main", "measure"]
 

@@ -16,17 +16,17 @@ from typing import Any
 
 import numpy as np
 
-from symrot.bench.problem import Floats, Problem, State
-from symrot.bench.race import Measured, race, seconds_of
-from symrot.codegen import library
+from symrot.bench.comparison.problem import Floats, Problem, State
+from symrot.bench.comparison.race import Measured, race, seconds_of
+from symrot.build import cache as library
 from symrot.dynamics.torque_kinds import TORQUE_KINDS
 from symrot.errors import InputError
-from symrot.planner import Plan, general_structure, make_plan
+from symrot.planning.plan import Plan, general_structure, make_plan
 from symrot.propagation.method import Choice
 from symrot.propagation.motion import Motion
 from symrot.propagation.propagator import propagator
-from symrot.scene import Scene, Torque, load_scene
-from symrot.scene_file import read_toml
+from symrot.scene.file import read_toml
+from symrot.scene.scene import Scene, Torque, load_scene
 
 __all__ = ["LADDER", "general_plan", "lines", "measure", "rungs"]
 

@@ -17,9 +17,9 @@ from statistics import median
 from tempfile import TemporaryDirectory
 from time import perf_counter
 
-from symrot.codegen import library
-from symrot.interface import plan
-from symrot.propagation.kernels import library_source, scene_kernel
+from symrot.build import cache as library
+from symrot.propagation.compiled_models import library_source, scene_kernel
+from symrot.workshop.emit import plan
 
 __all__ = ["main"]
 

@@ -24,9 +24,9 @@ from numpy.typing import NDArray
 from symrot.closed_form import motion as forms
 from symrot.ensemble.ensemble import propagate_ensemble
 from symrot.errors import InputError
-from symrot.planner import structure_key
+from symrot.planning.plan import structure_key
 from symrot.propagation.propagator import Propagator, propagator, read_start
-from symrot.scene import Scene, load_scene
+from symrot.scene.scene import Scene, load_scene
 
 __all__ = ["main"]
 

@@ -19,8 +19,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from symrot.codegen import library
-from symrot.propagation import dop853
+from symrot.bench.by_hand import text_by_hand
+from symrot.build import cache as library
+from symrot.propagation.steppers import dop853
 
 __all__ = ["Measurement", "main", "measure"]
 
@@ -42,9 +43,8 @@ class Measurement(NamedTuple):
 
 def measure(tolerance: float, stop: float, rounds: int) -> list[Measurement]:
     """Return one measurement per contestant, in the order symrot, by hand -O2, by hand -O3, SciPy."""
-    here = Path(__file__).parent
-    kernel = (here / "free_body.c").read_text(encoding="utf-8")
-    by_hand = kernel + (here / "stepper_by_hand.c").read_text(encoding="utf-8")
+    kernel = text_by_hand("free_body.c")
+    by_hand = kernel + text_by_hand("stepper_by_hand.c")
     a, b, c = MOMENTS
     p = ((b - c) / a, (c - a) / b, (a - b) / c)
     fast = tuple("-O3" if flag == "-O2" else flag for flag in library.FLAGS)

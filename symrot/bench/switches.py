@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from symrot.propagation.propagator import propagator
 from symrot.report.layout import columns, duration
-from symrot.scene import Scene
+from symrot.scene.scene import Scene
 
 __all__ = ["main"]
 

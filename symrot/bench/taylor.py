@@ -27,16 +27,18 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from symrot.bench.peers import heyoka_integrator
-from symrot.codegen import library
-from symrot.codegen.coefficients import coefficients
-from symrot.codegen.recurrences import recurrences
-from symrot.planner import Plan, make_plan
-from symrot.propagation import dop853, taylor
+from symrot.bench.by_hand import text_by_hand
+from symrot.bench.comparison.peers import heyoka_integrator
+from symrot.build import cache as library
+from symrot.build.sources import c_text
+from symrot.codegen.taylor.coefficients import coefficients
+from symrot.codegen.taylor.recurrences import recurrences
+from symrot.planning.plan import Plan, make_plan
+from symrot.planning.scene_kernel import SceneKernel, bind
+from symrot.propagation.compiled_models import error_blocks, library_source, scene_kernel
 from symrot.propagation.invariants import invariant_parameters, invariant_source
-from symrot.propagation.kernels import error_blocks, library_source, scene_kernel
-from symrot.scene import Scene
-from symrot.scene_kernel import SceneKernel, bind
+from symrot.propagation.steppers import dop853, taylor
+from symrot.scene.scene import Scene
 
 __all__ = ["MOTIONS", "Run", "best_of", "main", "measure", "reference", "scene"]
 
@@ -228,13 +230,12 @@ def _by_hand(library_: Any, method: str, problem: _Problem, steps: int) -> Task:
 
 def _loops(problem: _Problem) -> list[tuple[str, float, Task]]:
     """Return loops by hand, with the numbers of steps in the place of tolerances."""
-    here = Path(__file__).parent
     text = "\n".join(
         (
             problem.kernel.source,
             f"#define N {len(problem.y0)}",
-            (here.parent / "propagation" / "dop853_tableau.h").read_text(encoding="utf-8"),
-            (here / "fixed_step.c").read_text(encoding="utf-8"),
+            c_text("propagation/steppers/dop853_tableau.h"),
+            text_by_hand("fixed_step.c"),
         )
     )
     loaded = ctypes.CDLL(str(library.build(text, "by_hand")))

@@ -24,11 +24,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from symrot.codegen import library
-from symrot.codegen.c_source import DOUBLE, FLOAT, MATH_HEADER, Real
-from symrot.codegen.math_header import FAR, math_header
-from symrot.interface import emit
+from symrot.build import cache as library
+from symrot.codegen.printing.c_source import DOUBLE, FLOAT, MATH_HEADER, Real
+from symrot.codegen.printing.math_header import FAR, math_header
 from symrot.kernels.removable import REMOVABLE
+from symrot.workshop.emit import emit
 
 __all__ = ["FUNCTIONS", "Measured", "main", "measured"]
 

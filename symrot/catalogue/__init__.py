@@ -1,4 +1,4 @@
-"""The catalogue of derivations, in reading order: one file each, printed to ``derivations/``.
+"""The catalogue of derivations, in reading order: a folder for each chapter, a file for each derivation.
 
 Importing this package derives nothing and imports no SymPy; :func:`derivation` does both for the one asked for.
 """
@@ -10,12 +10,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from symrot.errors import InputError
-from symrot.input_file import refuse_special
+from symrot.files.reading import refuse_special
 
 if TYPE_CHECKING:
-    from symrot.proof import Derivation
+    from symrot.proof.derivation import Derivation
 
-__all__ = ["READING_ORDER", "check", "derivation", "derive_all", "names", "pages", "write_pages"]
+__all__ = ["READING_ORDER", "check", "derivation", "derive_all", "module_of", "names", "pages", "write_pages"]
 
 READING_ORDER: dict[str, tuple[str, ...]] = {
     "Attitude": (
@@ -80,7 +80,7 @@ READING_ORDER: dict[str, tuple[str, ...]] = {
         "planar_linkages",
     ),
 }
-"""Part -> names of its derivations; a name is that of the module which derives it."""
+"""Chapter -> names of its derivations; a name is that of the module which derives it, in the chapter's folder."""
 
 SUFFIXES = {"latex": ".tex", "html": ".html"}
 """Form of a page, besides Markdown -> how its file ends."""
@@ -89,6 +89,12 @@ SUFFIXES = {"latex": ".tex", "html": ".html"}
 def names() -> tuple[str, ...]:
     """Return the names of all derivations, in reading order."""
     return tuple(name for part in READING_ORDER.values() for name in part)
+
+
+def module_of(name: str) -> str:
+    """Return the module of a derivation: ``symrot.catalogue.free_bodies.poinsot`` for ``poinsot``."""
+    chapter = next(chapter for chapter, members in READING_ORDER.items() if name in members)
+    return f"{__name__}.{chapter.lower().replace(' ', '_')}.{name}"
 
 
 @cache
@@ -102,8 +108,8 @@ def derivation(name: str) -> "Derivation":
     """
     if name not in names():
         raise InputError(f"no derivation is called {name!r}; there are {', '.join(names())}")
-    found: Derivation = import_module(f"{__name__}.{name}").derive()
-    return found
+    page: Derivation = import_module(module_of(name)).derive()
+    return page
 
 
 def pages() -> dict[str, str]:

@@ -6,10 +6,10 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-from symrot.checker.claims import Claim, Refusal, claim_of_text, read_entries, shown_relation
-from symrot.checker.decision import Decision, Problem, decide_problem, shown
-from symrot.checker.dimensions import check_dimensions, dimensions_of_formulas
-from symrot.checker.values import decide_value
+from symrot.checker.claim.claims import Claim, Refusal, claim_of_text, read_entries, shown_relation
+from symrot.checker.claim.values import decide_value
+from symrot.checker.decide.decision import Decision, Problem, decide_problem, shown
+from symrot.checker.units.check import check_dimensions, dimensions_of_formulas
 from symrot.checker.verdict import Diagnosis, Verdict
 from symrot.errors import InputError
 
@@ -172,9 +172,9 @@ def _decide(claim: Claim) -> tuple[Decision, Verdict]:
 
 
 def _diagnosed(claim: Claim, decision: Decision, verdict: Verdict) -> Verdict:
-    from symrot.checker.diagnose import diagnose
-    from symrot.checker.identification import named_parts
-    from symrot.checker.nearby import nearby
+    from symrot.checker.identify.identification import named_parts
+    from symrot.checker.identify.nearest import nearby
+    from symrot.checker.repair.diagnose import diagnose
 
     diagnosis, repairs = diagnose(claim, decision)
     if diagnosis.code == "none" and verdict.dimension.status == "inconsistent":

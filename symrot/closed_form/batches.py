@@ -9,14 +9,14 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from symrot import number
-from symrot.closed_form import double_double as dd
-from symrot.closed_form.free_body import NEGLIGIBLE, Body, Defect
-from symrot.closed_form.gyrostat import Gyrostat
-from symrot.closed_form.heavy_top import Top
-from symrot.closed_form.library import Floats
+from symrot.closed_form.arithmetic import double_double as dd
+from symrot.closed_form.arithmetic.pairs import GRID, LARGEST, SMALLEST, attitude, pair, quotient
+from symrot.closed_form.build import Floats
+from symrot.closed_form.free_body.motion import NEGLIGIBLE, Body, Defect
+from symrot.closed_form.gyrostat.motion import Gyrostat
+from symrot.closed_form.heavy_top.motion import Top
 from symrot.closed_form.many import Batch
-from symrot.closed_form.pairs import GRID, LARGEST, SMALLEST, attitude, pair, quotient
+from symrot.formula import exact_numbers as number
 from symrot.inertia.principal import Principal
 
 __all__ = ["Column", "attitudes", "free_bodies", "free_bodies_of_moments", "gyrostats", "tops", "tops_of", "usual"]
@@ -30,7 +30,7 @@ _TIE = 2.0**-40  # of the last bit
 
 
 def attitudes(quaternions: Floats) -> Floats:
-    """Return unit quaternions as :func:`symrot.closed_form.pairs.attitude` has them, shape (n, 8).
+    """Return unit quaternions as :func:`symrot.closed_form.arithmetic.pairs.attitude` has them, shape (n, 8).
 
     Pairs of doubles settle all but one of some thousand; exact numbers settle that one.
     """

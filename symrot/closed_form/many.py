@@ -10,9 +10,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from symrot.closed_form.library import Floats, load
+from symrot.build.address import address
+from symrot.closed_form.build import Floats, load
 from symrot.closed_form.motion import functions
-from symrot.codegen.address import address
 
 __all__ = ["Batch", "evaluate"]
 

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from symrot.closed_form.library import Floats, load, times_of
-from symrot.codegen import library
-from symrot.codegen.address import address
+from symrot.build import cache as library
+from symrot.build.address import address
+from symrot.closed_form.build import Floats, load, times_of
 from symrot.errors import CompilerError, InputError
 
 __all__ = ["REGIMES", "ExactMotion", "functions", "prepared"]

@@ -3,11 +3,11 @@
 from collections.abc import Mapping
 from functools import cache
 
-from symrot import number
-from symrot.codegen.banner import CONTRACT, Description
-from symrot.codegen.lower import lower
-from symrot.expression import Node, children, evaluate
-from symrot.kernel import Program, Signature
+from symrot.codegen.lowering.lower import lower
+from symrot.codegen.printing.banner import CONTRACT, Description
+from symrot.formula import exact_numbers as number
+from symrot.formula.program import Program, Signature
+from symrot.formula.tree import Node, children, evaluate
 from symrot.kernels.definition import Box, Definition
 from symrot.kernels.library import definition
 

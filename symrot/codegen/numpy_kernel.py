@@ -6,9 +6,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from symrot.codegen.banner import Description
-from symrot.codegen.numpy_source import numpy_source
-from symrot.kernel import Program
+from symrot.codegen.printing.banner import Description
+from symrot.codegen.printing.numpy_source import numpy_source
+from symrot.formula.program import Program
 
 __all__ = ["load_numpy_kernel"]
 

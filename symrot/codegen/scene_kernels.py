@@ -8,15 +8,15 @@ from typing import Any
 from sympy import Expr, Symbol
 
 from symrot import symbols
-from symrot.codegen.banner import CONTRACT, Description
-from symrot.codegen.c_source import c_function
-from symrot.codegen.lower import Lowered, lower
+from symrot.codegen.lowering.lower import Lowered, lower
+from symrot.codegen.printing.banner import CONTRACT, Description
+from symrot.codegen.printing.c_source import c_function
 from symrot.dynamics.equations import PLANAR_ANGLE, Equations, equations_of_motion
 from symrot.dynamics.invariants import find_invariants
-from symrot.expression import text
-from symrot.kernel import Argument, Program, Signature
+from symrot.formula.program import Argument, Program, Signature
+from symrot.formula.tree import text
 from symrot.kinematics.quaternion import dcm_of
-from symrot.scene_kernel import Conserved, Parameters, SceneKernel, bind
+from symrot.planning.scene_kernel import Conserved, Parameters, SceneKernel, bind
 
 __all__ = ["derive_scene_kernel", "rates_program", "rates_source", "scene_description", "with_values"]
 

@@ -16,7 +16,7 @@ from sympy import Expr, Integer, Matrix, S, Symbol, cos, diag, eye, sin, zeros
 from symrot import symbols
 from symrot.dynamics.torques import Motion, TorqueLaw, collected_cross, formula, formula_values, torque_law
 from symrot.errors import InputError
-from symrot.expression import parse
+from symrot.formula.tree import parse
 from symrot.kinematics.euler import dcm, quaternion_of_euler, rate_jacobian
 from symrot.kinematics.quaternion import qmul, quaternion_rates, unit_relation
 from symrot.symbols import constant

@@ -14,7 +14,7 @@ from symrot import symbols
 from symrot.dynamics.equations import Equations
 from symrot.dynamics.torques import field_value
 from symrot.exact import is_zero
-from symrot.exact.ratio import TooLarge
+from symrot.exact.ring.ratio import TooLarge
 from symrot.kinematics.quaternion import dcm_of
 
 __all__ = ["Invariant", "find_invariants", "rate_along"]

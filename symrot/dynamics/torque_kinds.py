@@ -130,4 +130,4 @@ TABLE_KIND = TorqueKind(
     "any",
     "a torque given by samples, which is no formula",
 )  # fmt: skip
-"""The one kind that is no formula, so that nothing is derived from it; read by :mod:`symrot.scene_table`."""
+"""The one kind that is no formula, so that nothing is derived from it; read by :mod:`symrot.scene.samples`."""

@@ -15,7 +15,7 @@ from sympy import Expr, ImmutableMatrix, Integer, Matrix, Rational, Symbol, cos,
 from symrot import symbols
 from symrot.dynamics.torque_kinds import EXPRESSION_NAMES, TORQUE_KINDS
 from symrot.errors import InputError
-from symrot.expression import FUNCTIONS, Node, evaluate, parse
+from symrot.formula.tree import FUNCTIONS, Node, evaluate, parse
 from symrot.kinematics.quaternion import conjugate, dcm_of, qmul, quaternion_rates
 from symrot.symbols import constant
 

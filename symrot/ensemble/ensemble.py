@@ -8,13 +8,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from symrot import number
 from symrot.ensemble.motions import Followed, Problem, follow
 from symrot.ensemble.variation import read_times, read_variation
 from symrot.errors import InputError
+from symrot.formula import exact_numbers as number
 from symrot.propagation.propagator import Propagator
-from symrot.propagation.stepping import Floats
-from symrot.scene import TOLERANCES, Scene, load_scene
+from symrot.propagation.steppers.stepping import Floats
+from symrot.scene.scene import TOLERANCES, Scene, load_scene
 
 __all__ = ["Ensemble", "EnsembleStats", "propagate_ensemble"]
 

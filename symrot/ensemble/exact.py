@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from symrot.closed_form import double_double as dd
-from symrot.closed_form.choose import Exact, Form, exact_form
-from symrot.closed_form.pairs import LARGEST, SMALLEST, attitude, pair
-from symrot.codegen import library
+from symrot.build import cache as library
+from symrot.closed_form.arithmetic import double_double as dd
+from symrot.closed_form.arithmetic.pairs import LARGEST, SMALLEST, attitude, pair
+from symrot.closed_form.registry import Exact, Form, exact_form
 from symrot.ensemble.variation import PRINCIPAL, PRODUCTS, Variation
-from symrot.propagation.stepping import Floats
-from symrot.scene import Initial
+from symrot.propagation.steppers.stepping import Floats
+from symrot.scene.scene import Initial
 
 if TYPE_CHECKING:
     from symrot.closed_form.many import Batch
@@ -213,7 +213,7 @@ def _doubles(value: Any, rows: Rows) -> Any:
 
 def _top(variation: Variation, rows: Rows, omega: Floats, start: Floats) -> tuple["Batch | None", Any]:
     from symrot.closed_form import batches
-    from symrot.closed_form.heavy_top import Top
+    from symrot.closed_form.heavy_top.motion import Top
 
     torque, body = variation.scene.torques[0].values, variation.scene.body
     if not variation.columns:
@@ -246,7 +246,7 @@ def _top(variation: Variation, rows: Rows, omega: Floats, start: Floats) -> tupl
 
 def _gyrostat(variation: Variation, rows: Rows, omega: Floats, start: Floats) -> tuple["Batch | None", Any]:
     from symrot.closed_form import batches
-    from symrot.closed_form.gyrostat import Gyrostat
+    from symrot.closed_form.gyrostat.motion import Gyrostat
 
     if variation.columns:
         return None, None

@@ -1,6 +1,6 @@
 """Taylor series with one trajectory in each SIMD lane: the C of :file:`lanes.c` driven from Python.
 
-The counterpart of :mod:`symrot.propagation.taylor` for many motions: the same series, step rule and compensated states,
+The counterpart of :mod:`symrot.propagation.steppers.taylor` for many motions: the same series, step rule and compensated states,
 four or eight motions to one instruction, each with a step of its own. A lane whose motion ends takes the next. Lanes
 do not touch each other: a motion comes out bit by bit the same whatever its neighbours, its lane and the number of
 threads, and one that breaks off leaves the rest alone.
@@ -10,19 +10,19 @@ import ctypes
 import os
 from collections.abc import Callable, Sequence
 from functools import cache
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from symrot.codegen import library
-from symrot.codegen.address import address
+from symrot.build import cache as library
+from symrot.build.address import address
+from symrot.build.sources import c_text
 from symrot.errors import CompilerError
-from symrot.kernel import Program
-from symrot.propagation.cut_off import CutOff, why_stuck
-from symrot.propagation.stepping import DONE, NOT_FINITE, UNDERFLOW, Floats, PathLike, rising
-from symrot.propagation.taylor import step_tail
+from symrot.formula.program import Program
+from symrot.propagation.steppers.cut_off import CutOff, why_stuck
+from symrot.propagation.steppers.stepping import DONE, NOT_FINITE, UNDERFLOW, Floats, PathLike, rising
+from symrot.propagation.steppers.taylor import step_tail
 
 __all__ = ["FLAGS", "Lanes", "Outcome", "Task", "around", "follow", "lanes", "order_for", "translation_unit"]
 
@@ -60,7 +60,7 @@ def translation_unit(
     Parameters
     ----------
     program, blocks, scales, order
-        As :func:`symrot.propagation.taylor.translation_unit` takes them.
+        As :func:`symrot.propagation.steppers.taylor.translation_unit` takes them.
     width : int, optional
         Number of lanes: 1 (plain C), 2, 4 or 8; default: as many as the processor's registers hold.
 
@@ -69,17 +69,16 @@ def translation_unit(
     InputError
         For a right-hand side that is not smooth (abs).
     """
-    from symrot.codegen.ensemble_source import lane_definitions
+    from symrot.codegen.taylor.ensemble_source import lane_definitions
 
     return around(lane_definitions(program, blocks, scales, order), width)
 
 
 def around(definitions: str, width: int | None = None) -> str:
     """Return the C source of a library from the text of its system; see :func:`translation_unit`."""
-    here = Path(__file__).parent
     head = "" if width is None else "#define SYMROT_PLAIN\n" if width == 1 else f"#define SYMROT_LANES {width}\n"
-    places = (here / "lanes.h", here.parent / "propagation" / "series.h", here / "lanes.c")
-    operations, series, steps = (place.read_text(encoding="utf-8") for place in places)
+    paths = ("ensemble/lanes.h", "propagation/steppers/series.h", "ensemble/lanes.c")
+    operations, series, steps = map(c_text, paths)
     return head + "\n".join((operations, definitions, series, steps))
 
 
@@ -192,7 +191,7 @@ class Task:
     times : array, shape (m,) or (n, m)
         Sample times, s, of all or of each; in any order, on both sides of t0.
     tolerance : float
-        Error of each trajectory to aim for, see :func:`symrot.propagation.taylor.step_tail`.
+        Error of each trajectory to aim for, see :func:`symrot.propagation.steppers.taylor.step_tail`.
     max_steps : int
         Most steps of one motion.
     workers : int

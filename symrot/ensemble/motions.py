@@ -5,17 +5,17 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from symrot.codegen import library
+from symrot.build import cache as library
 from symrot.ensemble import lanes
 from symrot.ensemble.exact import Solved, choose, follow_exact
 from symrot.ensemble.numbers import Numbers
 from symrot.ensemble.variation import Variation
 from symrot.errors import InputError, PropagationError
-from symrot.expression import names
-from symrot.planner import STATES, Plan
-from symrot.propagation import dop853, epoch, taylor
-from symrot.propagation.cut_off import CutOff
-from symrot.propagation.kernels import (
+from symrot.formula.tree import names
+from symrot.planning.plan import STATES, Plan
+from symrot.planning.scene_kernel import SceneKernel
+from symrot.propagation import time_shift as epoch
+from symrot.propagation.compiled_models import (
     compiled,
     error_blocks,
     formula_deviations,
@@ -27,10 +27,11 @@ from symrot.propagation.kernels import (
     taylor_library,
 )
 from symrot.propagation.method import METHODS, choose_method
-from symrot.propagation.smoothness import roughness
-from symrot.propagation.stepping import NOT_FINITE_SENTENCE, Floats
+from symrot.propagation.steppers import dop853, taylor
+from symrot.propagation.steppers.cut_off import CutOff
+from symrot.propagation.steppers.smoothness import roughness
+from symrot.propagation.steppers.stepping import NOT_FINITE_SENTENCE, Floats
 from symrot.propagation.trajectory import ARRAY_FUNCTIONS, Trajectory
-from symrot.scene_kernel import SceneKernel
 
 Integers = lanes.Integers
 
@@ -165,7 +166,7 @@ def lane_library(plan: Plan, kernel: SceneKernel, tolerance: float) -> Any:
     key = f"lanes {order}\n{kernel_key(plan)}"
     system = library.fetch(key)
     if system is None:
-        from symrot.codegen.ensemble_source import lane_definitions
+        from symrot.codegen.taylor.ensemble_source import lane_definitions
 
         system = lane_definitions(kernel.rates, *error_blocks(plan), order)
         library.store(key, system)
@@ -196,7 +197,7 @@ class _Stepped:
         return times - self.epoch if self.epoch else times
 
     def clock(self, k: int) -> dop853.Clock | None:
-        """Return the clock of the rates of one motion, see :mod:`symrot.propagation.dop853`."""
+        """Return the clock of the rates of one motion, see :mod:`symrot.propagation.steppers.dop853`."""
         if not self.kernel.rates.uses("t"):
             return None
 
@@ -284,7 +285,7 @@ def _dop853(stepped: _Stepped, method: str) -> lanes.Outcome:
 
 def _scipy(stepped: _Stepped, method: str) -> lanes.Outcome:
     from symrot.codegen.numpy_kernel import load_numpy_kernel
-    from symrot.propagation import fallback
+    from symrot.propagation.steppers import fallback
 
     problem, function = stepped.problem, load_numpy_kernel(stepped.moved[1].rates)
     blocks, scales = error_blocks(stepped.plan)

@@ -5,13 +5,13 @@ from fractions import Fraction
 
 import numpy as np
 
-from symrot import number
 from symrot.ensemble.variation import PRINCIPAL, Variation
-from symrot.expression import names
-from symrot.planner import Plan
+from symrot.formula import exact_numbers as number
+from symrot.formula.tree import names
+from symrot.planning.plan import Plan
+from symrot.planning.scene_kernel import EPOCH, Parameters
 from symrot.propagation.binding import folded, value_of
-from symrot.propagation.stepping import Floats
-from symrot.scene_kernel import EPOCH, Parameters
+from symrot.propagation.steppers.stepping import Floats
 
 __all__ = ["Numbers"]
 

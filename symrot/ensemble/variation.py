@@ -9,14 +9,14 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from symrot import number
 from symrot.dynamics.torque_kinds import TORQUE_KINDS
 from symrot.errors import InputError
+from symrot.formula import exact_numbers as number
 from symrot.inertia.principal import principal_axes, require_admissible, why_not_propagable
-from symrot.planner import Plan, general_structure, make_plan, switched
+from symrot.planning.plan import Plan, general_structure, make_plan, switched
 from symrot.propagation.real_array import real_array
-from symrot.propagation.stepping import Floats
-from symrot.scene import Initial, Scene
+from symrot.propagation.steppers.stepping import Floats
+from symrot.scene.scene import Initial, Scene
 
 __all__ = ["Variation", "read_times", "read_variation"]
 

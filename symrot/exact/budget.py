@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 
-from symrot.exact.ratio import TooLarge
+from symrot.exact.ring.ratio import TooLarge
 
 __all__ = ["MOST_RINGS", "one_decision", "spend_ring"]
 

@@ -18,12 +18,12 @@ from sympy.core.function import AppliedUndef
 from sympy.polys.rings import PolyElement
 
 from symrot.errors import InputError
-from symrot.exact.angles import base_angle
-from symrot.exact.extent import pieces
+from symrot.exact.angles.angles import base_angle
 from symrot.exact.floats import NoValue, float_at
 from symrot.exact.intervals import enclosure, is_nonnegative_at, surely_nonnegative_number
-from symrot.exact.ratio import Ratio, TooLarge
-from symrot.exact.ring import FormulaRing
+from symrot.exact.ring.ratio import Ratio, TooLarge
+from symrot.exact.ring.ring import FormulaRing
+from symrot.exact.size import pieces
 
 __all__ = ["Counterexample", "closed_form_witness", "rational_witness"]
 

@@ -5,7 +5,7 @@ cosines of Q-linear combinations of angles (rational multiples of pi included), 
 rates, and of unit-norm groups, the normal form is zero if and only if the identity holds at all real points where both
 sides are defined: circles and spheres are rational, irreducible over the complex numbers, and their real points are
 dense. The same holds when an angle or an exponent also occurs outside (Ax-Schanuel). Numbers made of roots and cosines
-of rational angles are zero or not by proof (:mod:`symrot.exact.constants`). With square roots, inverse functions or
+of rational angles are zero or not by proof (:mod:`symrot.exact.angles.constants`). With square roots, inverse functions or
 other hypotheses a zero normal form still proves the identity where all of them are real; a nonzero one proves nothing,
 and "false" is said only with a witness. Nothing is true of sides that are real numbers nowhere.
 """
@@ -17,15 +17,15 @@ from typing import Any
 from sympy import Expr, Ge, I, Integer, Matrix, MatrixBase, MatrixExpr, Ne, sympify, zeros
 
 from symrot.errors import InputError
-from symrot.exact.branches import proof, vanishes
 from symrot.exact.budget import one_decision
-from symrot.exact.congruence import proof_by_congruence
+from symrot.exact.congruence_closure import proof_by_congruence
 from symrot.exact.counterexample import Counterexample, closed_form_witness, rational_witness
-from symrot.exact.domain import divisors, is_dense, radicands, split_radicands
-from symrot.exact.everywhere import fails_everywhere
-from symrot.exact.known_points import known_point
-from symrot.exact.needs import Need, needs_of
-from symrot.exact.ring import FormulaRing, as_zero
+from symrot.exact.domain.domain import divisors, is_dense, radicands, split_radicands
+from symrot.exact.domain.everywhere import fails_everywhere
+from symrot.exact.domain.known_points import known_point
+from symrot.exact.domain.needs import Need, needs_of
+from symrot.exact.inverse_sums import proof, vanishes
+from symrot.exact.ring.ring import FormulaRing, as_zero
 
 __all__ = ["Verdict", "decide", "is_zero", "normal_form"]
 

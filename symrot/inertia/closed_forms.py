@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import Any
 
 from symrot.errors import InputError
-from symrot.expression import Node, evaluate, parse
+from symrot.formula.exact_numbers import PI
+from symrot.formula.tree import Node, evaluate, parse
 from symrot.inertia import tensor
 from symrot.inertia.bodies import MassProperties
 from symrot.inertia.shapes import Shape, scalars
-from symrot.number import PI
 
 __all__ = ["CLOSED_FORMS", "closed_form", "uniform"]
 

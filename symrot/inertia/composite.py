@@ -5,14 +5,14 @@ from fractions import Fraction
 from typing import Any, NamedTuple
 
 from symrot.errors import InputError
-from symrot.expression import Node, parse
+from symrot.formula.exact_numbers import read, show
+from symrot.formula.tree import Node, parse
 from symrot.inertia import tensor
 from symrot.inertia.bodies import MassProperties, compose, place
 from symrot.inertia.closed_forms import uniform
 from symrot.inertia.principal import principal_axes, require_admissible
 from symrot.inertia.shapes import Shape, check_dimensions, find_shape
 from symrot.inertia.tensor import IDENTITY
-from symrot.number import read, show
 
 __all__ = ["MassProperties", "Part", "mass_properties"]
 

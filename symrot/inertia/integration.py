@@ -13,7 +13,8 @@ from itertools import combinations
 from typing import Any, NamedTuple
 
 from symrot.errors import InputError
-from symrot.expression import Node, evaluate, parse
+from symrot.formula.exact_numbers import PI, show
+from symrot.formula.tree import Node, evaluate, parse
 from symrot.inertia.polynomial import (
     Polynomial,
     constant,
@@ -25,7 +26,6 @@ from symrot.inertia.polynomial import (
     square_root,
 )
 from symrot.inertia.shapes import Coordinate, Shape, scalar_names, scalars
-from symrot.number import PI, show
 
 __all__ = [
     "LARGEST_DEGREE", "Domain", "Moments", "density_polynomial", "domain", "exact_moments", "integrate", "moments",

@@ -10,8 +10,8 @@ from itertools import permutations
 from typing import Any, NamedTuple
 
 from symrot.errors import InputError
+from symrot.formula.exact_numbers import equal, read, show
 from symrot.inertia.tensor import IDENTITY, Tensor, cross, determinant, dot, matrix, subtract, transpose
-from symrot.number import equal, read, show
 
 __all__ = ["Principal", "principal_axes", "require_admissible", "why_not_propagable"]
 

@@ -11,7 +11,7 @@ from operator import le, lt
 from typing import Any, NamedTuple
 
 from symrot.errors import InputError
-from symrot.number import read, show
+from symrot.formula.exact_numbers import read, show
 
 __all__ = [
     "DENSITY_UNITS", "SHAPES", "Coordinate", "Dimension", "Shape", "check_dimensions", "check_names", "find_shape",
@@ -258,7 +258,7 @@ def check_dimensions(shape: Shape, dimensions: Mapping[str, object], where: str 
     shape : Shape
         An entry of :data:`SHAPES`.
     dimensions : mapping of str to number, text, or list of them
-        What :func:`symrot.number.read` reads, in m (masses in kg).
+        What :func:`symrot.formula.exact_numbers.read` reads, in m (masses in kg).
     where : str
         Place of the dimensions, put in front of every complaint.
 

@@ -7,7 +7,7 @@ from fractions import Fraction
 from sympy import Expr, Matrix, Symbol
 
 from symrot import symbols
-from symrot.kernel import Argument
+from symrot.formula.program import Argument
 
 __all__ = ["Box", "Definition", "Law", "argument", "boxed", "interval", "result", "scalar"]
 

@@ -7,7 +7,7 @@ from sympy import Expr, Matrix, Symbol, diag
 
 from symrot import symbols
 from symrot.dynamics.equations import angular_acceleration
-from symrot.kernel import Argument
+from symrot.formula.program import Argument
 from symrot.kernels.definition import Box, Definition, Law, argument, boxed, interval, result, scalar
 from symrot.kernels.quaternion import QUATERNION, QUATERNION_BOX, Named, halved, quaternion_rate, turned
 from symrot.kinematics.quaternion import dcm_of, qmul, unit_relation

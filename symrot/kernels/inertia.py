@@ -6,9 +6,9 @@ from functools import partial
 from sympy import Expr, ImmutableMatrix, Matrix, Symbol, eye, trace
 
 from symrot import symbols
+from symrot.formula.program import Argument
 from symrot.inertia.shapes import SHAPES
 from symrot.inertia.solids import solid
-from symrot.kernel import Argument
 from symrot.kernels.definition import Definition, Law, argument, boxed, result, scalar
 from symrot.kernels.dynamics import ENTRIES, TENSOR, TENSOR_BOX, tensor_argument
 from symrot.kernels.quaternion import QUATERNION, QUATERNION_BOX, dcm_by_halves

@@ -6,7 +6,7 @@ from functools import partial
 from sympy import Expr, Integer, Matrix, Symbol
 
 from symrot import symbols
-from symrot.kernel import Argument
+from symrot.formula.program import Argument
 from symrot.kernels.definition import Box, Definition, Law, argument, boxed, result
 from symrot.kernels.quaternion import OMEGA, QUATERNION, QUATERNION_BOX, Named, dcm_by_halves, halved, quaternion_rate
 from symrot.kernels.removable import select_ge

@@ -8,7 +8,7 @@ from sympy import Matrix, eye, sqrt
 from symrot import symbols
 from symrot.dynamics.torque_kinds import TORQUE_KINDS, Field
 from symrot.dynamics.torques import LAWS, Motion, TorqueLaw, field_value, torque_of_potential
-from symrot.kernel import Argument
+from symrot.formula.program import Argument
 from symrot.kernels.definition import Box, Definition, Law, boxed, interval, result, scalar
 from symrot.kernels.dynamics import OMEGA, OMEGA_BOX, TENSOR, TENSOR_BOX, tensor_argument
 from symrot.kernels.quaternion import QUATERNION, QUATERNION_BOX, turned

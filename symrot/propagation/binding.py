@@ -7,11 +7,11 @@ formulas hold a number of the initial state, such as a constant spin, are evalua
 from collections.abc import Callable, Mapping
 from fractions import Fraction
 
-from symrot import number
-from symrot.closed_form.pairs import quotient
-from symrot.expression import Node, evaluate, names
-from symrot.planner import START_CONSTANTS, Plan
-from symrot.scene_kernel import EXACT_FUNCTIONS, Parameters
+from symrot.closed_form.arithmetic.pairs import quotient
+from symrot.formula import exact_numbers as number
+from symrot.formula.tree import Node, evaluate, names
+from symrot.planning.plan import START_CONSTANTS, Plan
+from symrot.planning.scene_kernel import EXACT_FUNCTIONS, Parameters
 
 __all__ = ["Binding", "folded", "one_double", "two_doubles", "value_of"]
 
@@ -32,7 +32,7 @@ class Binding:
     Parameters
     ----------
     parameters : pairs of name and formula
-        As a :class:`symrot.scene_kernel.SceneKernel` holds them.
+        As a :class:`symrot.planning.scene_kernel.SceneKernel` holds them.
     plan : Plan
         Of the structure, with any start.
     rounded : function

@@ -19,21 +19,21 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from symrot.codegen import library
+from symrot.build import cache as library
 from symrot.conventions import parse_sequence
 from symrot.errors import InputError, PropagationError
 from symrot.kinematics import conversions
-from symrot.planner import Plan
-from symrot.propagation import dop853, taylor
-from symrot.propagation.kernels import ATTITUDE_SCALE, RATE_SCALE, has_formulas, kernel_key
+from symrot.planning.plan import Plan
+from symrot.planning.scene_kernel import SceneKernel, bind
+from symrot.propagation.compiled_models import ATTITUDE_SCALE, RATE_SCALE, has_formulas, kernel_key
 from symrot.propagation.method import Choice
 from symrot.propagation.motion import Motion
 from symrot.propagation.propagator import Propagator
-from symrot.propagation.smoothness import roughness
-from symrot.propagation.stepping import Stats, Task, both_sides
+from symrot.propagation.steppers import dop853, taylor
+from symrot.propagation.steppers.smoothness import roughness
+from symrot.propagation.steppers.stepping import Stats, Task, both_sides
 from symrot.propagation.trajectory import Trajectory
-from symrot.scene import Scene
-from symrot.scene_kernel import SceneKernel, bind
+from symrot.scene.scene import Scene
 
 __all__ = ["SWITCH", "EulerMotion", "EulerPropagator", "angles_of", "partner", "regularity"]
 
@@ -138,7 +138,7 @@ class EulerMotion(Motion):
                 sizes = count + 3, len(kernel.rate_parameters)
                 bounds = dop853.NO_ENCLOSURE
                 if has_formulas(self.plan):
-                    from symrot.codegen.enclosure_source import enclosure_source
+                    from symrot.codegen.enclosure.source import enclosure_source
 
                     bounds = enclosure_source(kernel.rates, dop853.DENSE_ORDER, edges)
                 text = dop853.translation_unit(kernel.source, "symrot_rates", *sizes, edges, scales, bounds)

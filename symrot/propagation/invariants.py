@@ -6,17 +6,17 @@ Which quantities are kept is proven when the kernel is derived; the norm of the 
 from collections.abc import Sequence
 from fractions import Fraction
 
-from symrot import number
-from symrot.expression import evaluate
-from symrot.planner import Plan
-from symrot.scene_kernel import EXACT_FUNCTIONS, SceneKernel
+from symrot.formula import exact_numbers as number
+from symrot.formula.tree import evaluate
+from symrot.planning.plan import Plan
+from symrot.planning.scene_kernel import EXACT_FUNCTIONS, SceneKernel
 
 __all__ = ["invariant_parameters", "invariant_source"]
 
 
 def invariant_source(kernel: SceneKernel, states: Sequence[str]) -> str:
-    """Return what :func:`symrot.propagation.taylor.translation_unit` takes as ``invariants``."""
-    from symrot.codegen.invariant_source import invariant_definitions
+    """Return what :func:`symrot.propagation.steppers.taylor.translation_unit` takes as ``invariants``."""
+    from symrot.codegen.taylor.invariant_source import invariant_definitions
 
     kept = [item.output for item in kernel.conserved if item.kept]
     return invariant_definitions(kernel.quantities, kept, states, [name for name, _ in kernel.quantity_parameters])

@@ -3,11 +3,11 @@
 from collections.abc import Callable
 from typing import NamedTuple
 
-from symrot.closed_form.choose import FORMS, exact_form
-from symrot.codegen import library
+from symrot.build import cache as library
+from symrot.closed_form.registry import FORMS, exact_form
 from symrot.errors import CompilerError, InputError
-from symrot.planner import Plan
-from symrot.propagation.smoothness import roughness
+from symrot.planning.plan import Plan
+from symrot.propagation.steppers.smoothness import roughness
 
 __all__ = ["DRIVEN", "METHODS", "Choice", "choose_method"]
 
@@ -80,7 +80,7 @@ def choose_method(plan: Plan, method: str = "auto") -> Choice:
         return Choice(method, form.name)
     name, colon, solver = method.partition(":")
     if name == "scipy" and solver:
-        from symrot.propagation.fallback import method_name
+        from symrot.propagation.steppers.fallback import method_name
 
         method_name(solver)
     elif name not in METHODS or colon or name == "constant":

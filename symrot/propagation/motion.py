@@ -11,18 +11,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from symrot.closed_form.choose import Exact, Form, exact_form
-from symrot.planner import Plan, Row, general_structure
-from symrot.propagation import dop853, epoch, taylor
+from symrot.closed_form.registry import Exact, Form, exact_form
+from symrot.planning.plan import Plan, Row, general_structure
+from symrot.planning.scene_kernel import EPOCH, SceneKernel
+from symrot.propagation import time_shift as epoch
 from symrot.propagation.binding import Binding, two_doubles
-from symrot.propagation.cut_off import CutOff
-from symrot.propagation.dop853 import Stats
-from symrot.propagation.kernels import compiled, error_blocks, formula_deviations, scene_kernel, taylor_library
+from symrot.propagation.compiled_models import compiled, error_blocks, formula_deviations, scene_kernel, taylor_library
 from symrot.propagation.method import Choice
-from symrot.propagation.stepping import NOT_FINITE_SENTENCE, Recording, Task
+from symrot.propagation.steppers import dop853, taylor
+from symrot.propagation.steppers.cut_off import CutOff
+from symrot.propagation.steppers.dop853 import Stats
+from symrot.propagation.steppers.stepping import NOT_FINITE_SENTENCE, Recording, Task
 from symrot.propagation.trajectory import ARRAY_FUNCTIONS, Trajectory
-from symrot.scene import Initial
-from symrot.scene_kernel import EPOCH, SceneKernel
+from symrot.scene.scene import Initial
 
 __all__ = ["Motion", "unreduced"]
 
@@ -84,7 +85,7 @@ class Motion:
     def from_start(self, initial: Initial) -> "Motion":
         """Return the motion from another initial state of the same structure; nothing is looked up or derived again.
 
-        Of the same structure is a start with the same :func:`symrot.planner.structure_key`.
+        Of the same structure is a start with the same :func:`symrot.planning.plan.structure_key`.
         """
         other: Motion = object.__new__(type(self))
         other.__dict__.update(self.__dict__)
@@ -243,7 +244,7 @@ class Motion:
         if self.library is not None:
             recording: Recording = self.stepping.again().record(span)
         else:
-            from symrot.propagation import fallback
+            from symrot.propagation.steppers import fallback
 
             recording = fallback.record(self.rates, *start, span, self.tolerance, **self.scipy_options)
         recording.epoch = self.epoch
@@ -259,7 +260,7 @@ class Motion:
 
 
 class _OnOwnClock(Motion):
-    """A motion on a clock that shows 0 at its start, see :mod:`symrot.propagation.epoch`."""
+    """A motion on a clock that shows 0 at its start, see :mod:`symrot.propagation.time_shift`."""
 
     movable, restarts = False, True
 
@@ -320,7 +321,7 @@ def _exact(motion: Motion, times: Floats, rise: bool = False) -> tuple[Floats, S
 
 
 def _scipy(motion: Motion, times: Floats, rise: bool) -> tuple[Floats, Stats]:
-    from symrot.propagation import fallback
+    from symrot.propagation.steppers import fallback
 
     start = (motion.rate_parameters, motion.plan.initial_state, motion.start)
     return fallback.integrate(motion.rates, *start, times, motion.tolerance, **motion.scipy_options)

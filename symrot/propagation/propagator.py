@@ -9,17 +9,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from symrot import number
 from symrot.errors import InputError, PropagationError
-from symrot.planner import Plan, make_plan, structure_key, switched
-from symrot.propagation.cut_off import Samples
+from symrot.formula import exact_numbers as number
+from symrot.planning.plan import Plan, make_plan, structure_key, switched
+from symrot.planning.scene_kernel import SceneKernel
 from symrot.propagation.method import choose_method
 from symrot.propagation.motion import Motion
 from symrot.propagation.real_array import real_array
-from symrot.propagation.stepping import Stats, rising
+from symrot.propagation.steppers.cut_off import Samples
+from symrot.propagation.steppers.stepping import Stats, rising
 from symrot.propagation.trajectory import Trajectory
-from symrot.scene import Initial, Scene, load_scene
-from symrot.scene_kernel import SceneKernel
+from symrot.scene.scene import Initial, Scene, load_scene
 
 __all__ = ["Propagator", "propagate", "propagator", "read_start"]
 
@@ -111,7 +111,7 @@ class Propagator:
         quaternion : array, shape (4,), optional
             Another initial attitude, scalar first; it is normalised.
         events : sequence, optional
-            Formulas whose zeros are sought: text, :class:`symrot.propagation.events.Event` or mappings with its fields;
+            Formulas whose zeros are sought: text, :class:`symrot.propagation.events.events.Event` or mappings with its fields;
             see ``t_events`` of the trajectory. Samples end with one at a terminal event.
 
         Raises
@@ -129,8 +129,8 @@ class Propagator:
         message = f"{motion.choice.method}: {motion.choice.reason}"
         try:
             if events is not None:
-                from symrot.propagation.eventful import follow
-                from symrot.propagation.events import read_events
+                from symrot.propagation.events.eventful import follow
+                from symrot.propagation.events.events import read_events
 
                 found = follow(motion, times, read_events(events))
                 return Trajectory(motion, found.t, found.states, motion.choice.method, found.stats, message, found)
@@ -278,7 +278,7 @@ def propagator(
                 f"max_step: expected none without a torque that is no formula, got {number.show(max_step)}"
             )
         if switched(scene):
-            from symrot.propagation.switched import SwitchedPropagator
+            from symrot.propagation.switched.motion import SwitchedPropagator
 
             return SwitchedPropagator(scene, method, aim)
         return Propagator(scene, method, aim)
@@ -288,7 +288,7 @@ def propagator(
         raise InputError(
             f"torque: expected none beside formulas that jump or bend (abs, sign, ..), got {number.show(torque)}"
         )
-    from symrot.propagation.driven import DrivenPropagator
+    from symrot.propagation.external_torque import DrivenPropagator
 
     return DrivenPropagator(scene, aim, torque, switching_times, torque_frame, _longest_step(max_step))
 
@@ -301,7 +301,7 @@ def _longest_step(max_step: float) -> float:
 
 
 def _tolerance(tolerance: float) -> float:
-    from symrot.scene import TOLERANCES
+    from symrot.scene.scene import TOLERANCES
 
     low, high = TOLERANCES
     found = float(number.read(tolerance, "tolerance"))

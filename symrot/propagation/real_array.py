@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from symrot import number
 from symrot.errors import InputError
+from symrot.formula import exact_numbers as number
 
 __all__ = ["real_array"]
 

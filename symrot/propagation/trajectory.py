@@ -9,10 +9,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from symrot.errors import InputError
 from symrot.kinematics import conversions
-from symrot.propagation.dop853 import Stats
+from symrot.propagation.steppers.dop853 import Stats
 
 if TYPE_CHECKING:
-    from symrot.propagation.eventful import Eventful
+    from symrot.propagation.events.eventful import Eventful
     from symrot.propagation.motion import Motion
 
 __all__ = ["Invariant", "Trajectory"]

@@ -3,9 +3,9 @@
 from collections import Counter
 from typing import Any
 
-from symrot.planner import Plan
+from symrot.planning.plan import Plan
 from symrot.report.layout import apart, columns, one_line
-from symrot.scene import QUANTITIES
+from symrot.scene.scene import QUANTITIES
 
 __all__ = ["explanation", "facts", "lines"]
 
@@ -31,7 +31,7 @@ def _row(
 
 def _ladder(plan: Plan) -> list[dict[str, Any]]:
     """Return the rows of the rules, from the general structure down, with what each leaves and saves."""
-    from symrot.planner import general_structure
+    from symrot.planning.plan import general_structure
 
     general = _operations(general_structure(plan.scene, bool(plan.switches)))
     rows = [_row("general motion", False, "any tensor, any direction of every torque, full attitude", "", general)]
@@ -46,9 +46,9 @@ def _ladder(plan: Plan) -> list[dict[str, Any]]:
 
 def _others(plan: Plan) -> list[dict[str, Any]]:
     """Return the rows that no rule of the plan decides: states, motion, outputs, derivation."""
-    from symrot.closed_form.choose import exact_form
-    from symrot.codegen import library
-    from symrot.propagation.kernels import kernel_key
+    from symrot.build import cache as library
+    from symrot.closed_form.registry import exact_form
+    from symrot.propagation.compiled_models import kernel_key
     from symrot.propagation.method import choose_method
 
     choice, asked = choose_method(plan), plan.scene.output.quantities

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from symrot.scene import QUANTITIES, Output
+from symrot.scene.scene import QUANTITIES, Output
 
 __all__ = ["LOCK", "Labelled", "labelled"]
 

@@ -8,7 +8,7 @@ from statistics import geometric_mean
 from typing import Any
 
 from symrot.errors import InputError
-from symrot.input_file import read_input
+from symrot.files.reading import read_input
 from symrot.report.layout import apart, columns, duration, fields, one_line
 
 __all__ = ["compared", "lines", "lines_of_comparison", "read_study"]
@@ -73,7 +73,7 @@ def _against(found: Mapping[str, Any]) -> list[str]:
 
 
 def lines(found: Mapping[str, Any]) -> list[str]:
-    """Return the lines for people that say what :func:`symrot.bench.work_precision.study` found; first the title."""
+    """Return the lines for people that say what :func:`symrot.bench.comparison.work_precision.study` found; first the title."""
     scene, reference, machine = found["scene"], found["reference"], found["machine"]
     others = [f"{other['name']} within {max(other['difference'], ROUNDING):.0e}" for other in reference["others"]]
     versions = [f"{name} {machine[name]}" for name in ("python", "numpy", "scipy", "heyoka") if machine[name]]

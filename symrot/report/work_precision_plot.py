@@ -162,7 +162,7 @@ def save(found: Mapping[str, Any], path: Path) -> None:
     Parameters
     ----------
     found : mapping
-        What :func:`symrot.bench.work_precision.study` returned, or a file of it.
+        What :func:`symrot.bench.comparison.work_precision.study` returned, or a file of it.
     path : Path
         Its suffix, ``.png``, ``.pdf`` or ``.svg``, decides the format.
     """

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from symrot.propagation.propagator import propagator
-from symrot.scene import Scene
+from symrot.scene.scene import Scene
 
 Q0 = {"quaternion": ["1/10", "7/10", "-1/2", "1/2"]}
 TILT = {"quaternion": ["63/65", "16/65", 0, 0]}  # half a radian about e1, nearly

@@ -7,7 +7,8 @@ from itertools import permutations, product
 
 import numpy as np
 
-from symrot.closed_form import free_body, heavy_top
+from symrot.closed_form.free_body import motion as free_body
+from symrot.closed_form.heavy_top import motion as heavy_top
 from tests import test_closed_form_free_body as free
 from tests import test_closed_form_heavy_top as top
 from tests.reference import free_body as reference

@@ -13,12 +13,12 @@ from fractions import Fraction
 import numpy as np
 from mpmath import mp
 
-from symrot.codegen import library
-from symrot.codegen.coefficients import coefficients
-from symrot.codegen.recurrences import recurrences
-from symrot.codegen.taylor_source import taylor_definitions
-from symrot.propagation import taylor
-from symrot.propagation.kernels import error_blocks
+from symrot.build import cache as library
+from symrot.codegen.taylor.coefficients import coefficients
+from symrot.codegen.taylor.recurrences import recurrences
+from symrot.codegen.taylor.source import taylor_definitions
+from symrot.propagation.compiled_models import error_blocks
+from symrot.propagation.steppers import taylor
 from tests.reference.figures import Figure
 from tests.reference.stress_stepping import Stepped, asymmetric_top
 

@@ -8,11 +8,11 @@ import numpy as np
 
 from symrot.bench import dense
 from symrot.bench import taylor as race
-from symrot.codegen import library
-from symrot.planner import make_plan
-from symrot.propagation import dop853
-from symrot.propagation.kernels import library_source, scene_kernel
-from symrot.scene_kernel import bind
+from symrot.build import cache as library
+from symrot.planning.plan import make_plan
+from symrot.planning.scene_kernel import bind
+from symrot.propagation.compiled_models import library_source, scene_kernel
+from symrot.propagation.steppers import dop853
 from tests.reference.figures import Figure, largest
 from tests.reference.stress_stepping import Stepped, asymmetric_top
 

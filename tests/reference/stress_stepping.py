@@ -6,14 +6,14 @@ from fractions import Fraction as F
 import numpy as np
 
 from symrot.bench import taylor as race
-from symrot.codegen import library
+from symrot.build import cache as library
 from symrot.errors import CompilerError
-from symrot.planner import make_plan
-from symrot.propagation import taylor
+from symrot.planning.plan import make_plan
+from symrot.planning.scene_kernel import bind
+from symrot.propagation.compiled_models import error_blocks, scene_kernel
 from symrot.propagation.invariants import invariant_parameters, invariant_source
-from symrot.propagation.kernels import error_blocks, scene_kernel
 from symrot.propagation.propagator import propagator
-from symrot.scene_kernel import bind
+from symrot.propagation.steppers import taylor
 from tests.reference.figures import Figure, apart, body, largest, propagated
 from tests.test_closed_form_heavy_top import S18, tilted
 

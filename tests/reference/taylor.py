@@ -115,7 +115,7 @@ def decimal(value: Fraction, digits: int = 50) -> str:
 
 def main() -> None:
     """Print the reference file."""
-    from symrot.scene import load_scene
+    from symrot.scene.scene import load_scene
 
     print(
         "# Reference trajectories of shipped scenes: omega_b (rad/s) and dcm_sb, row by row, 50 digits behind the point."

@@ -3,7 +3,7 @@
 import numpy as np
 from mpmath import mp, mpf
 
-from symrot.closed_form.library import Floats
+from symrot.closed_form.build import Floats
 from symrot.closed_form.portable.phases import DIGITS, Phase, number, power_of_two, vector
 from symrot.closed_form.portable.quaternions import conjugate, mapping, matrix_quaternion, product, unit
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from mpmath import mp, mpc, mpf
 
-from symrot.closed_form.library import Floats
+from symrot.closed_form.build import Floats
 from symrot.closed_form.portable.phases import DIGITS, TERMS, Phase, multiples, number, power_of_two, vector
 from symrot.closed_form.portable.quaternions import Axes, conjugate, mapping, product, unit
 

@@ -5,8 +5,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from mpmath import mp, mpf
 
-from symrot.closed_form.double_double import two_product, two_sum
-from symrot.closed_form.library import Floats
+from symrot.closed_form.arithmetic.double_double import two_product, two_sum
+from symrot.closed_form.build import Floats
 
 __all__ = ["DIGITS", "TERMS", "Phase", "multiples", "number", "power_of_two", "turned_by", "vector"]
 

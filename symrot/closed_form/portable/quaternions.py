@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from mpmath import mp, mpf
 
-from symrot.closed_form.library import Floats
+from symrot.closed_form.build import Floats
 from symrot.closed_form.portable.phases import vector
 
 __all__ = ["UNIT", "Axes", "conjugate", "mapping", "matrix_quaternion", "product", "unit"]

@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from symrot import number
-from symrot.closed_form import double_double as dd
-from symrot.closed_form.library import Floats
-from symrot.closed_form.pairs import pair
-from symrot.closed_form.spin_up_near import PIECES
-from symrot.closed_form.spin_up_series import DEGREE
+from symrot.closed_form.arithmetic import double_double as dd
+from symrot.closed_form.arithmetic.pairs import pair
+from symrot.closed_form.build import Floats
+from symrot.closed_form.spin_up.resonance import PIECES
+from symrot.closed_form.spin_up.series import DEGREE
+from symrot.formula import exact_numbers as number
 
 __all__ = ["SpinUp"]
 

@@ -1,0 +1,12 @@
+"""Kernels and steppers written by hand in C, or made by other tools, for symrot to be measured against."""
+
+from pathlib import Path
+
+__all__ = ["BY_HAND", "text_by_hand"]
+
+BY_HAND = Path(__file__).parent
+
+
+def text_by_hand(name: str) -> str:
+    """Return the text of a C file of this folder."""
+    return (BY_HAND / name).read_text(encoding="utf-8")

@@ -1,0 +1,56 @@
+"""heyoka's compiled functions as addresses, so that its machine code runs in the same loops as that of other tools."""
+
+import ctypes
+import subprocess
+from functools import cache
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from symrot.bench.by_hand.kernel_peers import input_names, textbook_program
+from symrot.build import cache as library
+
+__all__ = ["LANES", "heyoka_code"]
+
+LANES = 4  # doubles that heyoka's batch functions take at once
+_LOADED = Path("/proc/self/maps")
+
+
+@cache
+def _function(name: str) -> Any:
+    """Return heyoka's function of the inputs of a kernel, of the textbook formulas."""
+    import heyoka
+
+    variables = dict(zip(input_names(name), heyoka.make_vars(*input_names(name)), strict=True))
+    functions = {each: getattr(heyoka, each) for each in ("sin", "cos", "tan", "sqrt")}
+    formulas = textbook_program(name).evaluate(variables, functions, float)
+    return heyoka.cfunc(list(formulas.values()), list(variables.values()), fast_math=True, batch_size=LANES)
+
+
+def heyoka_code(name: str) -> tuple[Any, Any, Any]:
+    """Return the addresses of heyoka's code for one sample, for one in a batch and for ``LANES`` of a batch.
+
+    The object code that heyoka makes is linked as it is; its sines come from the library that heyoka has loaded.
+
+    Raises
+    ------
+    ImportError
+        If heyoka is not installed, or this system does not tell where it lies.
+    """
+    states = _function(name).llvm_states
+    if not _LOADED.exists():
+        raise ImportError(f"expected {_LOADED}, to find the library of heyoka")
+    for line in _LOADED.read_text(encoding="utf-8").splitlines():
+        if "/libheyoka" in line:
+            ctypes.CDLL(line.split(maxsplit=5)[5], ctypes.RTLD_GLOBAL)
+            break
+    with TemporaryDirectory() as directory:
+        return tuple(_linked(Path(directory), index, state.object_code) for index, state in enumerate(states))
+
+
+def _linked(directory: Path, index: int, code: bytes) -> Any:
+    """Return the address of the function in an object file."""
+    (directory / f"{index}.o").write_bytes(code)
+    made = directory / f"{index}.so"
+    subprocess.run([*library.compiler().command, "-shared", "-o", made, directory / f"{index}.o", "-lm"], check=True)
+    return ctypes.cast(ctypes.CDLL(str(made)).cfunc, ctypes.c_void_p)

@@ -1,0 +1,181 @@
+"""Kernels as other tools make them of the same textbook formulas: SymPy, SymForce, CasADi, heyoka, and by hand.
+
+Each takes the formulas as they are derived, without the named quantities of symrot's own definitions. What makes C is
+compiled with the flags of symrot's kernels; a tool that is not installed is left out, and named.
+"""
+
+import re
+from collections import Counter
+from collections.abc import Callable, Sequence
+from functools import partial, reduce
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import sympy
+from sympy import Matrix
+
+from symrot import symbols
+from symrot.certificates.readback.readback import read_kernel
+from symrot.codegen.library_kernels import kernel_program
+from symrot.codegen.lowering.formulas import to_node
+from symrot.codegen.printing.c_source import c_function
+from symrot.conventions import INTRINSIC_SEQUENCES
+from symrot.dynamics.equations import angular_acceleration, inverse
+from symrot.errors import InputError
+from symrot.formula.program import Program, Signature
+from symrot.formula.tree import Node, children
+from symrot.kernels.dynamics import TENSOR
+from symrot.kinematics.euler import rate_jacobian
+from symrot.kinematics.quaternion import dcm_of, quaternion_rates
+
+__all__ = [
+    "PEERS_IN_C",
+    "TEXTBOOK",
+    "by_hand",
+    "casadi_function",
+    "counted",
+    "input_names",
+    "textbook",
+    "textbook_program",
+]
+
+BY_HAND = Path(__file__).with_name("kernels_by_hand.c")
+_COUNTED = {"mul": "mul", "add": "add", "sub": "add", "div": "div", "sqrt": "sqrt"}
+
+
+def _euler_rates(sequence: str) -> list[sympy.Expr]:
+    return list(rate_jacobian(sequence).inverse * Matrix(symbols.omega_b))
+
+
+def _quaternion_rates() -> list[sympy.Expr]:
+    return list(quaternion_rates("body") * Matrix(symbols.omega_b))
+
+
+def _rigid_body() -> list[sympy.Expr]:
+    omega = Matrix(symbols.omega_b)
+    moment = Matrix(symbols.torque_b) - omega.cross(TENSOR * omega)
+    return [*(inverse(TENSOR) * moment), *_quaternion_rates()]
+
+
+def _heavy_top() -> list[sympy.Expr]:
+    weight = symbols.W * Matrix(symbols.center_of_mass).cross(-dcm_of().T.col(2))
+    alpha = angular_acceleration(sympy.diag(*symbols.principal), Matrix(symbols.omega_b), weight)
+    return [*alpha, *_quaternion_rates()]
+
+
+TEXTBOOK: dict[str, Callable[[], list[sympy.Expr]]] = {
+    "quaternion_dcm": lambda: list(dcm_of()),
+    **{f"euler_{sequence.lower()}_body_rates": partial(_euler_rates, sequence) for sequence in INTRINSIC_SEQUENCES},
+    "rigid_body_tensor": _rigid_body,
+    "heavy_top": _heavy_top,
+}
+"""The kernels that have a formula to compare with, each with its formula as a textbook has it."""
+
+
+def textbook(name: str) -> list[sympy.Expr]:
+    """Return the formulas of a kernel as a textbook has them, in the order of its outputs.
+
+    Raises
+    ------
+    InputError
+        If the kernel is none of :data:`TEXTBOOK`.
+    """
+    if name not in TEXTBOOK:
+        raise InputError(f"expected a kernel with a textbook formula ({', '.join(TEXTBOOK)}), got {name!r}")
+    return TEXTBOOK[name]()
+
+
+def input_names(name: str) -> list[str]:
+    """Return the names of the inputs of a kernel, component by component."""
+    return [name for a in kernel_program(name).signature.arguments if a.role == "in" for name, *_ in a.components]
+
+
+def textbook_program(name: str) -> Program:
+    """Return the textbook formulas of a kernel as a program, nothing shared."""
+    signature = kernel_program(name).signature
+    return Program(signature, (), tuple(zip(_outputs(signature), map(to_node, textbook(name)), strict=True)))
+
+
+def _outputs(signature: Signature) -> list[str]:
+    return [name for a in signature.arguments if a.role == "out" for name, *_ in a.components]
+
+
+def _program(name: str, common: Sequence[tuple[Any, Any]], results: Sequence[Any]) -> str:
+    """Return C of common terms and results, as they stand."""
+    signature = kernel_program(name).signature
+    temporaries = tuple((str(symbol), _products(to_node(value))) for symbol, value in common)
+    outputs = tuple(zip(_outputs(signature), (_products(to_node(value)) for value in results), strict=True))
+    return c_function(Program(signature, temporaries, outputs), "static inline ")
+
+
+def _products(node: Node) -> Node:
+    """Return a formula with powers as products, as C has no powers."""
+    if not children(node):
+        return node
+    if node[0] == "**":
+        base = _products(node[1])
+        return reduce(lambda left, right: ("*", left, right), [base] * node[2])
+    if node[0] == "call":
+        return ("call", node[1], tuple(map(_products, node[2])))
+    return (node[0], *map(_products, node[1:]))
+
+
+def _sympy(name: str) -> str:
+    return _program(name, *sympy.cse(textbook(name), symbols=sympy.numbered_symbols("common"), optimizations="basic"))
+
+
+def _symforce(name: str) -> str:
+    sf: Any = import_module("symforce.symbolic")
+    common, results = sf.cse(
+        [sf.S(str(entry)) for entry in textbook(name)], symbols=(sf.Symbol(f"common{i}") for i in range(1000))
+    )
+
+    def plain(value: object) -> sympy.Expr:
+        return sympy.sympify(str(value), locals=_REAL)
+
+    return _program(name, [(symbol, plain(value)) for symbol, value in common], [plain(value) for value in results])
+
+
+_REAL = {name: sympy.Symbol(name, real=True) for name in ("W", "S", "C", "I", "E", "N", "O", "Q")}
+
+
+def by_hand(name: str) -> str | None:
+    """Return C by hand, or None where there is none."""
+    text = BY_HAND.read_text(encoding="utf-8")
+    return text if f" {name}(" in text else None
+
+
+PEERS_IN_C: dict[str, Callable[[str], str | None]] = {"by hand": by_hand, "SymPy cse": _sympy, "SymForce": _symforce}
+
+
+def counted(text: str, name: str) -> Counter[str]:
+    """Return the operations of a function in C, as it is read back; equal operations count once."""
+    text = re.sub(r"^#include.*\n", "", text, flags=re.MULTILINE)
+    counts: Counter[str] = Counter()
+    for node in read_kernel(text, name).nodes:
+        if node[0] in _COUNTED:
+            counts[_COUNTED[node[0]]] += 1
+        elif node[0] == "call":
+            counts[node[1]] += 1
+    return counts
+
+
+def casadi_function(name: str) -> tuple[Any, Counter[str]]:
+    """Return CasADi's function of one vector of inputs, its common terms taken together, and its operations."""
+    import casadi
+
+    x = casadi.SX.sym("x", len(input_names(name)))
+    values = {each: x[i] for i, each in enumerate(input_names(name))}
+    functions = {each: getattr(casadi, each) for each in ("sin", "cos", "tan", "sqrt")}
+    found = casadi.cse(casadi.vertcat(*textbook_program(name).evaluate(values, functions, float).values()))
+    function = casadi.Function("peer", [x], [found])
+    kinds = {"OP_ADD": "add", "OP_SUB": "add", "OP_MUL": "mul", "OP_SQ": "mul", "OP_TWICE": "add", "OP_DIV": "div",
+             "OP_INV": "div", "OP_SIN": "sin", "OP_COS": "cos", "OP_SQRT": "sqrt"}  # fmt: skip
+    by_number = {getattr(casadi, kind): said for kind, said in kinds.items()}
+    counts = Counter(
+        by_number[number]
+        for number in (function.instruction_id(k) for k in range(function.n_instructions()))
+        if number in by_number
+    )
+    return function, counts

@@ -1,0 +1,221 @@
+"""Who takes part in a work-precision study: every method of symrot, SciPy's, and heyoka in each of its settings.
+
+A contestant makes, for one tolerance, a function that follows the motion from its start to a given time and returns
+the states there and the number of steps. What a user would do once is done before: deriving, compiling, heyoka's own
+compiling.
+Everything is called from Python as a user calls it. SciPy gets the NumPy kernel that symrot emits for the scene,
+narrowed to single states by the numbers of Python and :mod:`math`: half the time.
+"""
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from importlib.util import find_spec
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from symrot.bench.comparison.peers import heyoka_integrator, scalar_kernel
+from symrot.bench.comparison.problem import Floats, Problem, State
+from symrot.build import cache as library
+from symrot.closed_form.registry import exact_form
+from symrot.errors import InputError
+from symrot.propagation.propagator import propagator
+from symrot.propagation.steppers.smoothness import roughness
+
+__all__ = ["CONTESTANTS", "Contestant", "Run", "chosen", "tolerances_from"]
+
+Outcome = tuple[Any, int]  # last states, or State; steps
+Run = Callable[[float], Outcome]
+
+
+def _half_decades(first: int, last: int) -> tuple[float, ...]:
+    return tuple(float(f"{10.0 ** (-k / 2):.2g}") for k in range(2 * first, 2 * last + 1))
+
+
+OURS, THEIRS = _half_decades(2, 14), _half_decades(2, 16)
+ADAPTIVE = tuple(float(Fraction(1, 10**k)) for k in range(2, 14))  # SciPy takes no rtol below 2.2e-14
+
+
+class Contestant(NamedTuple):
+    """One curve of the study.
+
+    ``group`` is the name that ``--methods`` takes; ``missing`` says why it cannot take part, or nothing;
+    ``prepare`` returns the run for a tolerance.
+    """
+
+    name: str
+    group: str
+    about: str
+    tolerances: tuple[float, ...]
+    missing: Callable[[Problem], str]
+    prepare: Callable[[Problem, float], Run]
+    quick: bool = True  # whether a quick study has it
+
+    def at(self, tolerances: Sequence[float]) -> "Contestant":
+        """Return the contestant with other tolerances, those that it can hold; a closed form has none."""
+        least = self.tolerances[-1]
+        return self._replace(tolerances=tuple(t for t in tolerances if t >= least)) if least else self
+
+
+# ------------------------------------------------------------------------------------------------ symrot
+
+
+def _exact(problem: Problem, tolerance: float) -> Run:
+    """Return the closed form, its constants computed anew each time: from an initial state to the last one."""
+    form, attitude = exact_form(problem.scene), len(problem.names) > 3
+    assert form is not None
+
+    def run(stop: float) -> Outcome:
+        at = np.array([stop - problem.start])
+        omega, quaternion = form.motion(problem.scene).evaluate(at, quaternion=attitude)
+        return State(omega[0], None if quaternion is None else quaternion[0]), 0  # type: ignore[index]
+
+    return run
+
+
+def _no_form(problem: Problem) -> str:
+    return "" if exact_form(problem.scene) else "the motion has no closed form here"
+
+
+def _symrot(method: str) -> Callable[[Problem, float], Run]:
+    """Return what prepares a propagator, which is then called as a user calls it: with the time asked for."""
+
+    def prepare(problem: Problem, tolerance: float) -> Run:
+        found = propagator(problem.scene, method, tolerance)
+
+        def run(stop: float) -> Outcome:
+            trajectory = found(np.array([stop]))
+            return _last(trajectory), trajectory.stats.accepted
+
+        return run
+
+    return prepare
+
+
+def _last(trajectory: Any) -> Any:
+    """Return the last states; of a closed form, which has more of them than are integrated, the state of the body."""
+    if trajectory.method != "exact":
+        return trajectory.y[:, 0]
+    y = trajectory.y[:, 0]
+    return State(y[:3], y[3:] if len(y) > 3 else None)
+
+
+def _no_compiler(problem: Problem) -> str:
+    return library.missing()
+
+
+def _no_series(problem: Problem) -> str:
+    return roughness(problem.plan) or library.missing()
+
+
+# ------------------------------------------------------------------------------------------------ peers
+
+
+def _scipy(method: str) -> Callable[[Problem, float], Run]:
+    def prepare(problem: Problem, tolerance: float) -> Run:
+        import scipy.integrate
+
+        solve: Any = scipy.integrate.solve_ivp
+        kernel, p = scalar_kernel(problem.kernel.rates), problem.p
+
+        def with_parameters(t: float, y: Floats) -> Any:
+            return kernel(t, y.tolist(), p)
+
+        def without(t: float, y: Floats) -> Any:
+            return kernel(t, y.tolist())
+
+        right_hand_side, start = with_parameters if p else without, np.array(problem.y0)
+
+        def run(stop: float) -> Outcome:
+            found = solve(right_hand_side, (problem.start, stop), start, method=method, rtol=tolerance, atol=tolerance)
+            return found.y[:, -1] if found.success else np.full(len(start), np.nan), len(found.t) - 1
+
+        return run
+
+    return prepare
+
+
+def _no_heyoka(problem: Problem) -> str:
+    return roughness(problem.plan) if find_spec("heyoka") else "not installed: pip install 'symrot[bench]'"
+
+
+def _heyoka(**settings: bool) -> Callable[[Problem, float], Run]:
+    def prepare(problem: Problem, tolerance: float) -> Run:
+        run = heyoka_integrator(
+            problem.kernel.rates, problem.parameters, problem.y0, tolerance, settings, problem.start
+        )
+        assert run is not None
+        return run
+
+    return prepare
+
+
+def _nothing(problem: Problem) -> str:
+    return ""
+
+
+CONTESTANTS: tuple[Contestant, ...] = (
+    Contestant(
+        "exact", "exact", "closed form, its constants known", (0.0,), _no_form,
+        lambda problem, tolerance: _symrot("exact")(problem, 1e-12),
+    ),
+    Contestant("exact with set-up", "exact", "closed form, from the scene's numbers on", (0.0,), _no_form, _exact),
+    Contestant("taylor", "taylor", "Taylor series in C", OURS, _no_series, _symrot("taylor")),
+    Contestant("dop853", "dop853", "Dormand-Prince 8(5,3) in C", OURS[:-4], _no_compiler, _symrot("dop853")),
+    Contestant(
+        "symrot scipy", "scipy", "SciPy's DOP853 as symrot's fallback", ADAPTIVE[1:-1:2], _nothing, _symrot("scipy"),
+    ),
+    Contestant("heyoka", "heyoka", "heyoka, default settings", THEIRS, _no_heyoka, _heyoka()),
+    Contestant(
+        "heyoka fast math", "heyoka", "heyoka, fast_math", THEIRS[::2], _no_heyoka, _heyoka(fast_math=True), False
+    ),
+    Contestant(
+        "heyoka high accuracy", "heyoka", "heyoka, high_accuracy", THEIRS[::2], _no_heyoka,
+        _heyoka(high_accuracy=True), False,
+    ),
+    Contestant(
+        "heyoka compact", "heyoka", "heyoka, compact_mode", THEIRS[::2], _no_heyoka, _heyoka(compact_mode=True), False
+    ),
+    *(
+        Contestant(f"SciPy {method}", method, f"solve_ivp, {method}", ADAPTIVE, _nothing, _scipy(method))
+        for method in ("DOP853", "RK45", "LSODA", "Radau")
+    ),
+)  # fmt: skip
+"""All contestants, symrot's own first."""
+
+GROUPS = tuple(dict.fromkeys(contestant.group for contestant in CONTESTANTS))
+
+
+def chosen(methods: str | None, quick: bool) -> Sequence[Contestant]:
+    """Return the contestants of a comma-separated list of groups; of all groups without one.
+
+    Raises
+    ------
+    InputError
+        For a name that is no group.
+    """
+    names = [name.strip() for name in methods.split(",")] if methods is not None else list(GROUPS)
+    for name in names:
+        if name not in GROUPS:
+            raise InputError(f"--methods: expected names among {', '.join(GROUPS)}, with commas between, got {name!r}")
+    return [one for one in CONTESTANTS if one.group in names and (one.quick or not quick)]
+
+
+def tolerances_from(text: str) -> tuple[float, ...]:
+    """Return the tolerances of a comma-separated list.
+
+    Raises
+    ------
+    InputError
+        For anything but numbers between 0 and 1 that fall.
+    """
+    try:
+        found = tuple(float(part) for part in text.split(","))
+    except ValueError:
+        found = ()
+    if not found or not all(0.0 < value < 1.0 for value in found) or list(found) != sorted(set(found), reverse=True):
+        raise InputError(
+            f"--tolerances: expected numbers between 0 and 1 that fall, commas between, such as 1e-3,1e-6,1e-9, "
+            f"got {text!r}"
+        )
+    return found

@@ -1,0 +1,157 @@
+"""A motion to 30 digits at any of its times: Taylor series in mpmath, and for free bodies on through all periods.
+
+The angular velocity of a free body is periodic, and one period turns the body always alike: with period P and
+``R = q(P) q(0)^-1`` the attitude is ``q(t + n P) = R^n q(t)``. Series over one period so give the motion after a
+million of them, and share nothing with the closed form that they judge.
+"""
+
+from fractions import Fraction
+from typing import Any
+
+import mpmath
+import numpy as np
+from numpy.typing import NDArray
+
+from symrot.codegen.taylor.coefficients import coefficients
+from symrot.codegen.taylor.recurrences import recurrences
+from symrot.errors import InputError
+from symrot.formula import exact_numbers as number
+from symrot.formula.tree import evaluate
+from symrot.planning.scene_kernel import EXACT_FUNCTIONS
+from symrot.propagation.motion import Motion
+
+__all__ = ["ExactPath"]
+
+Floats = NDArray[np.float64]
+
+DIGITS, ORDER, TAIL = 40, 32, 1e-28
+FUNCTIONS = ("sqrt", "sin", "cos", "tan", "exp", "log", "sinh", "cosh", "tanh", "asin", "acos", "atan", "atan2")
+MOST_STEPS = 2000
+
+
+def _as_mpf(value: Fraction) -> Any:
+    return mpmath.mpf(value.numerator) / value.denominator
+
+
+class ExactPath:
+    """The states of a motion that is stepped, in 40 digits from the exact numbers of its scene."""
+
+    def __init__(self, motion: Motion) -> None:
+        self.motion, plan, kernel = motion, motion.plan, motion.kernel
+        self.system = recurrences(kernel.rates)
+        self.functions = {name: getattr(mpmath, name) for name in FUNCTIONS}
+        values = {"pi": number.PI, **plan.constants}
+        start = plan.scene.initial
+        given = {f"omega_{i + 1}": value for i, value in enumerate(start.omega_b)} | {"theta": Fraction(0)}
+        given |= {f"q{i}": value for i, value in enumerate(start.quaternion)}
+        with mpmath.workdps(DIGITS):
+            self.parameters = {n: _as_mpf(evaluate(f, values, EXACT_FUNCTIONS)) for n, f in kernel.rate_parameters}
+            self.start = [_as_mpf(given[name]) for name in plan.states]
+            self.t0 = _as_mpf(Fraction(plan.scene.span.start))
+        self.rates = sum(name.startswith("omega") for name in plan.states)
+        self.pieces: list[tuple[Any, Any, list[Any]]] = []  # from, to, coefficients of each state
+        self._end: tuple[Any, list[Any]] = (self.t0, self.start)
+
+    def _advance(self) -> None:
+        """Add one step."""
+        now, state = self._end
+        known = self.parameters | {"t": now} | dict(zip(self.system.states, state, strict=True))
+        series = coefficients(self.system, ORDER, known, self.functions, _as_mpf)
+        size = max([abs(x) for x in state[: self.rates]], default=1) or 1
+        last = max(
+            abs(one[ORDER - k]) / (size if i < self.rates else 1) for i, one in enumerate(series) for k in (0, 1)
+        )
+        step = (TAIL / last) ** (mpmath.mpf(1) / ORDER) if last else mpmath.mpf(1)
+        self.pieces.append((now, now + step, series))
+        self._end = (now + step, self._sum(series, step))
+
+    @staticmethod
+    def _sum(series: list[Any], step: Any) -> list[Any]:
+        return [mpmath.polyval(one[::-1], step) for one in series]
+
+    def _state(self, t: Any) -> list[Any]:
+        """Return the states at one time from the start on."""
+        while self._end[0] < t:
+            self._advance()
+        low, high = 0, len(self.pieces)
+        while high - low > 1:
+            middle = (low + high) // 2
+            low, high = (middle, high) if self.pieces[middle][0] <= t else (low, middle)
+        if not self.pieces:
+            return self.start
+        return self._sum(self.pieces[low][2], t - self.pieces[low][0])
+
+    def states(self, times: Floats) -> Floats:
+        """Return the states at times from the start on, rounded, shape (n, N)."""
+        with mpmath.workdps(DIGITS):
+            return np.array([[float(x) for x in self._state(mpmath.mpf(float(t)))] for t in times])
+
+    def period(self) -> Any:
+        """Return the period of the angular velocity of a free body, to about 35 digits.
+
+        Raises
+        ------
+        InputError
+            If the rates do not come back within :data:`MOST_STEPS` steps.
+        """
+        start, left = np.array([float(x) for x in self.start[: self.rates]]), False
+        size = float(np.linalg.norm(start))
+        with mpmath.workdps(DIGITS):
+            for _ in range(MOST_STEPS):
+                self._advance()
+                first, last, series = self.pieces[-1]
+                rates = np.array([[float(x) for x in one] for one in series[: self.rates]])
+                for k in range(8):  # a look in doubles is enough to begin from
+                    t = first + (last - first) * k / 8
+                    now = np.array([np.polyval(one[::-1], float(t - first)) for one in rates])
+                    apart = float(np.linalg.norm(now - start))
+                    left |= apart > size / 4
+                    if left and apart < size / 8:
+                        found = self._newton(t)
+                        if found is not None and found > self.t0:
+                            return found - self.t0
+        raise InputError("the angular velocity does not come back: expected a free body off its separatrix")
+
+    def _newton(self, t: Any) -> Any:
+        """Return the time near t at which all rates are those of the start, or None."""
+        start = self.start[: self.rates]
+        self._state(self.t0)
+        speeds = [one[1] for one in self.pieces[0][2][: self.rates]]
+        steepest = max(range(self.rates), key=lambda i: abs(speeds[i]))
+        for _ in range(60):
+            value = self._state(t)[steepest]
+            change = (value - start[steepest]) / self._slope(t, steepest)
+            t -= change
+            if abs(change) < mpmath.mpf(10) ** (5 - DIGITS) * abs(t):
+                break
+        apart = max(abs(x - y) for x, y in zip(self._state(t)[: self.rates], start, strict=True))
+        return t if apart < mpmath.mpf(10) ** (12 - DIGITS) else None
+
+    def _slope(self, t: Any, index: int) -> Any:
+        state = self._state(t)
+        known = self.parameters | {"t": t} | dict(zip(self.system.states, state, strict=True))
+        return coefficients(self.system, 1, known, self.functions, _as_mpf)[index][1]
+
+    def states_of_free_body(self, times: Floats) -> Floats:
+        """Return omega and quaternion of a free body at any times from the start on, however late, shape (n, 7)."""
+        period = self.period()
+        with mpmath.workdps(DIGITS):
+            first, last = self.start[self.rates :], self._state(self.t0 + period)[self.rates :]
+            turn = _product(last, [first[0], *(-x for x in first[1:])])
+            length = mpmath.sqrt(sum(x * x for x in turn[1:]))
+            half, axis = mpmath.atan2(length, turn[0]), [x / length for x in turn[1:]]
+            rows = []
+            for time in times:
+                t = mpmath.mpf(float(time)) - self.t0
+                count = mpmath.floor(t / period)
+                state = self._state(self.t0 + (t - count * period))
+                whole = [mpmath.cos(count * half), *(mpmath.sin(count * half) * x for x in axis)]
+                rows.append([*state[: self.rates], *_product(whole, state[self.rates :])])
+            return np.array([[float(x) for x in row] for row in rows])
+
+
+def _product(p: list[Any], q: list[Any]) -> list[Any]:
+    a, b, c, d = p
+    e, f, g, h = q
+    return [a * e - b * f - c * g - d * h, a * f + b * e + c * h - d * g, a * g - b * h + c * e + d * f,
+            a * h + b * g - c * f + d * e]  # fmt: skip

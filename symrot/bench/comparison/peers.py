@@ -1,0 +1,75 @@
+"""heyoka and SciPy around the very right-hand sides that symrot emits, for comparisons."""
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from symrot.codegen.printing.banner import Description
+from symrot.codegen.printing.numpy_source import numpy_source
+from symrot.formula.program import Program
+
+__all__ = ["heyoka_integrator", "heyoka_system", "scalar_kernel"]
+
+UNNAMED = Description("right-hand side for SciPy", "all states", "derivations/euler_equations.md", "symrot bench")
+
+FUNCTIONS = ("sqrt", "sin", "cos", "exp", "log", "tan", "sinh", "cosh", "tanh", "asin", "acos", "atan", "atan2")
+
+
+def heyoka_system(rates: Program, parameters: Mapping[str, float]) -> list[Any]:
+    """Return heyoka's form of a right-hand side, its parameters compiled in as numbers."""
+    import heyoka
+
+    names = [name for name, *_ in rates.signature.argument("y").components]
+    variables = dict(zip(names, heyoka.make_vars(*names), strict=True))
+    functions = {name: getattr(heyoka, name) for name in FUNCTIONS}
+    found = rates.evaluate({**variables, **parameters, "t": heyoka.time}, functions, float)
+    return [(variables[name], found[f"d{name}"]) for name in names]
+
+
+def heyoka_integrator(
+    rates: Program, parameters: Mapping[str, float], start: Sequence[float], tolerance: float,
+    settings: dict[str, bool], began: float = 0.0,
+) -> Callable[[float], tuple[Any, int]] | None:  # fmt: skip
+    """Return a function from the end of a span to the last state and the number of steps; ``began`` is its start, s.
+
+    Without heyoka it returns None.
+    """
+    try:
+        import heyoka
+    except ImportError:
+        return None
+    integrator = heyoka.taylor_adaptive(heyoka_system(rates, parameters), list(start), tol=tolerance, **settings)
+
+    def run(stop: float) -> tuple[Any, int]:
+        integrator.time = began
+        integrator.state[:] = start
+        steps = integrator.propagate_until(stop)[3]
+        return integrator.state.copy(), int(steps)
+
+    return run
+
+
+def scalar_kernel(program: Program) -> Callable[..., Any]:
+    """Return ``f(t, y, p)`` for SciPy: the emitted NumPy kernel as an expert narrows it to one state at a time.
+
+    Python's own numbers and :mod:`math` take the place of arrays of no dimension: half the time of the kernel
+    as it is. The state comes as a list.
+    """
+    text = numpy_source(program, UNNAMED).replace("import numpy as np", "import math\n\nimport numpy as np")
+    text = re.sub(r"np\.empty\(\((\d+), \*np\.shape\(y\)\[1:\]\)\)", r"np.empty(\1)", text)
+    for name in ("sqrt", "sin", "cos", "tan", "exp", "log", "sinh", "cosh", "tanh"):
+        text = text.replace(f"np.{name}(", f"math.{name}(")
+    for name in ("sin", "cos", "tan", "tan2"):
+        text = text.replace(f"np.arc{name}(", f"math.a{name}(")
+    with TemporaryDirectory(prefix="symrot-") as directory:
+        path = Path(directory) / "scalar_rates.py"
+        path.write_text(text, encoding="utf-8")
+        spec = spec_from_file_location("scalar_rates", path)
+        assert spec is not None and spec.loader is not None
+        module = module_from_spec(spec)
+        spec.loader.exec_module(module)
+    function: Callable[..., Any] = getattr(module, program.signature.name)
+    return function

@@ -1,0 +1,354 @@
+"""Where a scene's motion really leads: computations that share neither numbers nor method, and their differences.
+
+===========================  =====================  ============================  ==========================
+reference                    equations              method                        arithmetic
+===========================  =====================  ============================  ==========================
+``taylor``                   the scene's own        Taylor series of order 28     mpmath, 40 digits
+``dop853 in long double``    most general: full     Dormand-Prince, fixed steps,  the C compiler's long
+                             tensor, no shortcut    halved until nothing changes  double, where it is longer
+``closed form``              none                   theta functions               double-double, double
+``extrapolated midpoints``   the scene's own        Gragg's rule, order 16,       long double
+                                                    halved likewise
+===========================  =====================  ============================  ==========================
+
+The first that can be had counts, the others are held against it: references that contradict one another are refused,
+and errors below what they differ by mean nothing. The last is computed where but one of the others can be had, as with
+torques that have no Taylor series. All start from the exact numbers of the scene, not
+from what rounding made of them: what a method loses by rounding its parameters is an error of that method. A result of
+minutes is kept in the cache of kernels.
+"""
+
+import ctypes
+import json
+import math
+import re
+from collections.abc import Callable, Iterable, Sequence
+from fractions import Fraction
+from itertools import pairwise
+from pathlib import Path
+from time import perf_counter, process_time
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from symrot.bench.by_hand import BY_HAND
+from symrot.bench.comparison.problem import Problem, State
+from symrot.build import cache as library
+from symrot.closed_form.registry import exact_form
+from symrot.codegen.enclosure.terms import enclosure
+from symrot.codegen.taylor.coefficients import coefficients
+from symrot.codegen.taylor.recurrences import recurrences
+from symrot.errors import SymrotError
+from symrot.formula import exact_numbers as number
+from symrot.formula.tree import evaluate
+from symrot.planning.plan import Plan, general_structure
+from symrot.planning.scene_kernel import EXACT_FUNCTIONS, Parameters
+from symrot.propagation.compiled_models import error_blocks
+from symrot.propagation.enclosures.step_limit import Deviations, longest_followed
+from symrot.propagation.propagator import propagator
+from symrot.propagation.steppers.smoothness import roughness
+from symrot.propagation.steppers.tableau import HEADER
+
+__all__ = ["DIGITS", "Reference", "reference"]
+
+Say = Callable[[str], object]
+
+DIGITS, ORDER, TAIL = 40, 28, 1e-26
+MOST_SECONDS = 150.0  # for the series; a longer one is not begun
+MOST_LONG_SECONDS = 20.0  # for fixed steps in long double
+MOST_STEPS = 2_000_000  # likewise
+FEWEST_STEPS = 64
+CONTRADICTION = 1e-6  # references this far apart are of two motions: one of them is wrong
+CONVERGED = 4e-19  # times the number of radians turned, at least one: what long double can hold
+ROUNDED = 1e-15  # likewise, from where on changes may be of rounding; larger ones are of corners in the torque
+LONG_DOUBLE_BITS = 63  # of its fraction, at least, for it to be worth the name
+LITERAL = re.compile(r"(?<![\w.])(\d+\.\d*(?:[eE][+-]?\d+)?|\d+[eE][+-]?\d+)(?![\w.])")
+CALLS = re.compile(r"\b(sqrt|sin|cos|tan|exp|log|fabs|sinh|cosh|tanh|asin|acos|atan|atan2|pow)\(")
+
+
+class Reference(NamedTuple):
+    """The states where a motion is judged, how they were found, and what the other computations say of them."""
+
+    states: tuple[State, ...]
+    name: str
+    others: tuple[tuple[str, float], ...]  # name, and its difference as errors are measured
+    seconds: float
+    skipped: tuple[str, ...]  # why a reference could not be had
+
+    @property
+    def doubt(self) -> float:
+        """The least difference from another computation: errors below it mean nothing; nan where there is no other."""
+        return min((difference for _, difference in self.others), default=math.nan)
+
+    def to_json(self) -> dict[str, Any]:
+        return {
+            "name": self.name, "others": [{"name": name, "difference": found} for name, found in self.others],
+            "seconds": self.seconds, "skipped": list(self.skipped),
+            "states": [[*state.omega.tolist(), *([] if state.quaternion is None else state.quaternion.tolist())]
+                       for state in self.states],
+        }  # fmt: skip
+
+
+class _Unavailable(Exception):
+    """A reference that cannot be had here; the text says why."""
+
+
+def reference(problem: Problem, say: Say = lambda text: None, seconds: float = MOST_SECONDS) -> Reference:
+    """Return the states where a scene's motion is judged, and how far the other references are from the first.
+
+    Raises
+    ------
+    SymrotError
+        If none can be had: the motion ends before its span does, or there is neither series nor compiler. If none
+        confirms the first: one of them is wrong.
+    """
+    began = perf_counter()
+    found: list[tuple[str, list[State]]] = []
+    skipped = []
+    for name, compute in REFERENCES:
+        if compute is _extrapolated and len(found) > 1:
+            continue
+        say(f"reference: {name} ..")
+        try:
+            found.append((name, compute(problem, say, seconds)))
+        except _Unavailable as reason:
+            skipped.append(f"{name}: {reason}")
+    if not found:
+        raise SymrotError(f"{problem.scene.name}: expected a motion with a reference solution; {'; '.join(skipped)}")
+    (name, states), *more = found
+    others = tuple((other, problem.worst(theirs, states)) for other, theirs in more)
+    result = Reference(tuple(states), name, others, perf_counter() - began, tuple(skipped))
+    if others and not result.doubt <= CONTRADICTION:
+        apart = "; ".join(f"{other} by {difference:.1e}" for other, difference in others)
+        raise SymrotError(
+            f"{problem.scene.name}: expected references that agree within {CONTRADICTION:g}, got {name} contradicted "
+            f"({apart}): one of them is wrong, or the motion is too unstable to be judged over this span"
+        )
+    return result
+
+
+# ------------------------------------------------------------------------------------------------ Taylor, 40 digits
+
+
+def _as_mpf(value: Fraction) -> Any:
+    import mpmath
+
+    return mpmath.mpf(value.numerator) / value.denominator
+
+
+def _functions() -> dict[str, Callable[..., Any]]:
+    import mpmath
+
+    names = ("sqrt", "sin", "cos", "tan", "exp", "log", "sinh", "cosh", "tanh", "asin", "acos", "atan", "atan2")
+    return {name: getattr(mpmath, name) for name in names} | {"abs": abs}
+
+
+def _exact_parameters(parameters: Parameters, plan: Plan) -> dict[str, Fraction]:
+    values = {"pi": number.PI, **plan.constants}
+    return {name: Fraction(evaluate(node, values, EXACT_FUNCTIONS)) for name, node in parameters}
+
+
+def _exact_start(plan: Plan) -> list[Fraction]:
+    start = plan.scene.initial
+    values = {f"omega_{i + 1}": value for i, value in enumerate(start.omega_b)} | {"theta": Fraction(0)}
+    values |= {f"q{i}": value for i, value in enumerate(start.quaternion)}
+    return [Fraction(values[name]) for name in plan.states]
+
+
+def _taylor(problem: Problem, say: Say, seconds: float) -> list[State]:
+    """Return the states by Taylor series in 40 digits, from the cache if it is there."""
+    import mpmath
+
+    rough = roughness(problem.plan)
+    if rough:
+        raise _Unavailable(rough)
+    kernel, plan = problem.kernel, problem.plan
+    given = _exact_parameters(kernel.rate_parameters, plan), _exact_start(plan)
+    where = f"{problem.start} {problem.ends}"
+    key = f"held reference {DIGITS} {ORDER} {TAIL}\n{json.dumps(kernel.data['rates'])}\n{given}\n{where}"
+    kept = library.fetch(key)
+    with mpmath.workdps(DIGITS):
+        if kept is None:
+            path = _series(problem, given, say, seconds)
+            kept = json.dumps([[mpmath.nstr(value, DIGITS) for value in state] for state in path])
+            library.store(key, kept)
+        read = [[mpmath.mpf(value) for value in state] for state in json.loads(kept)]
+        return [_state(problem, state, end) for state, end in zip(read, problem.ends, strict=True)]
+
+
+def _series(
+    problem: Problem, given: tuple[dict[str, Fraction], list[Fraction]], say: Say, seconds: float
+) -> list[list[Any]]:
+    """Return the integrated states where the motion is judged, step by step."""
+    import mpmath
+
+    system, functions, sizes = recurrences(problem.kernel.rates), _functions(), _sizes(problem)
+    values: dict[str, Any] = {name: _as_mpf(value) for name, value in given[0].items()}
+    hidden = enclosure(system)
+    deviations = hidden and Deviations(hidden, {name: float(value) for name, value in given[0].items()})
+    edges = error_blocks(problem.plan)[0]
+    allowed = [TAIL * max(sizes[low:high]) for low, high in pairwise(edges)]
+    state, path = [_as_mpf(value) for value in given[1]], []
+    now, clock = mpmath.mpf(problem.start), process_time()
+    for end in problem.ends:
+        while now < end:
+            values |= {"t": now, **dict(zip(system.states, state, strict=True))}
+            series = coefficients(system, ORDER, values, functions, _as_mpf)
+            step = end - now
+            for n in (ORDER - 1, ORDER):
+                largest = max(abs(one[n]) / size for one, size in zip(series, sizes, strict=True))
+                if largest:
+                    step = min(step, (TAIL / largest) ** (mpmath.mpf(1) / n))
+            if deviations:  # no step goes past a feature that its coefficients do not show
+                terms = [[float(abs(one[n] * step**n)) for n in range(1, ORDER + 1)] for one in series]
+                start, length = list(map(float, state)), float(step)
+                proven = longest_followed(deviations, float(now), start, terms, length, allowed, edges, ORDER)
+                step = step if proven == length else mpmath.mpf(proven)
+                if step < 1e-15 * max(1, abs(now)):
+                    raise _Unavailable(f"the steps shrink to nothing at t = {float(now)!r}, as before a singularity")
+            state = [mpmath.polyval(one[::-1], step) for one in series]
+            now += step
+            spent = process_time() - clock
+            whole = spent * float((problem.stop - problem.start) / (now - problem.start))
+            if whole > 2.0 * seconds or spent > seconds:
+                raise _Unavailable(f"about {whole:.0f} s of work, more than the {seconds:.0f} s allowed")
+            say(f"reference: Taylor series in {DIGITS} digits, {spent:.0f} of about {whole:.0f} s")
+        path.append(state)
+    return path
+
+
+def _sizes(problem: Problem) -> list[float]:
+    """Return what each state is measured by: the size of omega, and one for an attitude."""
+    spin = float(np.linalg.norm([float(value) for value in problem.scene.initial.omega_b])) or 1.0
+    return [spin if name.startswith("omega") else 1.0 for name in problem.plan.states]
+
+
+def _state(problem: Problem, last: list[Any], end: float) -> State:
+    """Return the state of the body, evaluated in as many digits as it has."""
+    import mpmath
+
+    kernel, plan = problem.kernel, problem.plan
+    values: dict[str, Any] = dict(zip(plan.states, last, strict=True))
+    exact = _exact_parameters(kernel.quantity_parameters, plan)
+    values |= {name: _as_mpf(value) for name, value in exact.items()} | {"t": mpmath.mpf(end)}
+    found = kernel.quantities.evaluate(values, _functions(), _as_mpf, problem.names)
+    ordered = [found[name] for name in problem.names]
+    norm = mpmath.sqrt(sum(q * q for q in ordered[3:])) if len(ordered) > 3 else 1
+    rates, attitude = ([float(value) for value in part] for part in (ordered[:3], [q / norm for q in ordered[3:]]))
+    return State(np.array(rates), np.array(attitude) if attitude else None)
+
+
+# ------------------------------------------------------------------------------------------------ long double
+
+
+def longer(source: str) -> str:
+    """Return C text with every double, literal and function of the long kind."""
+    text = CALLS.sub(r"\1l(", LITERAL.sub(r"\1L", source))
+    return re.sub(r"\bdouble\b", "long double", text)
+
+
+def _long_double(problem: Problem, say: Say, seconds: float) -> list[State]:
+    """Return the states by fixed steps of DOP853 around the most general equations."""
+    general = Problem(problem.scene, Plan(problem.scene, general_structure(problem.scene), ()))
+    return _converged(general, "dop853", (HEADER, BY_HAND / "fixed_step.c"), seconds)
+
+
+def _extrapolated(problem: Problem, say: Say, seconds: float) -> list[State]:
+    """Return the states by fixed steps of extrapolated midpoint rules around the scene's own equations."""
+    return _converged(problem, "extrapolation", (BY_HAND / "extrapolation.c",), seconds)
+
+
+def _converged(general: Problem, name: str, files: Sequence[Path], seconds: float) -> list[State]:
+    """Return the states by fixed steps in long double, until smaller steps make no change."""
+    if library.missing():
+        raise _Unavailable("no C compiler")
+    if np.finfo(np.longdouble).nmant < LONG_DOUBLE_BITS or ctypes.sizeof(ctypes.c_longdouble) == 8:
+        raise _Unavailable("long double is no longer than double here")
+    follow, sizes = _fixed_steps(general, name, files), np.array(_sizes(general))
+    turned = max(1.0, (general.stop - general.start) * max(sizes))
+    steps, before, held = max(FEWEST_STEPS, int(turned)), None, None
+    change, clock = np.inf, process_time()
+    while steps <= MOST_STEPS and process_time() - clock < min(seconds, MOST_LONG_SECONDS) / 3.0:  # the next takes half
+        path = follow(steps)
+        if np.isfinite(path.astype(float)).all():
+            now = change if before is None else float(np.max(np.abs(path - before) / sizes))
+            if before is not None and now >= change and change <= ROUNDED * turned:  # rounding has taken over
+                break
+            if before is not None:
+                held, change = path, min(now, change)
+            if now <= CONVERGED * turned:
+                break
+            before = path
+        steps = int(steps * 1.5)
+    if held is None:
+        raise _Unavailable("its steps would have to be too small")
+    return [_long_state(general, state, end) for state, end in zip(held, general.ends, strict=True)]
+
+
+def _fixed_steps(general: Problem, name: str, files: Sequence[Path]) -> Callable[[int], Any]:
+    """Return a function from the number of steps to the integrated states where the motion is judged."""
+    parts = [
+        general.kernel.source,
+        f"#define N {len(general.y0)}",
+        *(file.read_text(encoding="utf-8") for file in files),
+    ]
+    function = getattr(ctypes.CDLL(str(library.build(longer("\n".join(parts)), "long_double"))), name)
+    real = ctypes.c_longdouble
+    function.argtypes, function.restype = (real, real, ctypes.c_long, ctypes.c_void_p, ctypes.c_void_p), None
+    p = _long(_exact_parameters(general.kernel.rate_parameters, general.plan).values())
+    start = _long(_exact_start(general.plan))
+
+    def follow(steps: int) -> Any:
+        y, began, path = start.copy(), general.start, []
+        for end in general.ends:
+            share = max(1, round(steps * (end - began) / (general.stop - general.start)))
+            function(began, end, share, y.ctypes.data, p.ctypes.data)
+            path.append(y.copy())
+            began = end
+        return np.array(path)
+
+    return follow
+
+
+def _long_state(general: Problem, y: Any, end: float) -> State:
+    """Return the state of the body, evaluated in long double."""
+    exact = _exact_parameters(general.kernel.quantity_parameters, general.plan)
+    values: dict[str, Any] = dict(zip(general.plan.states, y, strict=True)) | {"t": np.longdouble(end)}
+    values |= {name: _long_number(value) for name, value in exact.items()}
+    functions = {"sqrt": np.sqrt, "sin": np.sin, "cos": np.cos}
+    found = general.kernel.quantities.evaluate(values, functions, _long_number, general.names)
+    ordered = np.array([found[name] for name in general.names])
+    rates, attitude = ordered[:3].astype(float), ordered[3:]
+    if not len(attitude):
+        return State(rates, None)
+    return State(rates, (attitude / np.sqrt((attitude * attitude).sum())).astype(float))
+
+
+def _long_number(value: Fraction) -> Any:
+    """Return a number as long double, to its last bit: the nearest double and what that leaves out."""
+    first = float(value)
+    return np.longdouble(first) + np.longdouble(float(value - Fraction(first)))
+
+
+def _long(values: Iterable[Fraction]) -> Any:
+    return np.array([_long_number(value) for value in values] or [np.longdouble(0)], dtype=np.longdouble)
+
+
+# ------------------------------------------------------------------------------------------------ closed form
+
+
+def _closed_form(problem: Problem, say: Say, seconds: float) -> list[State]:
+    if exact_form(problem.scene) is None:
+        raise _Unavailable("the motion has none")
+    found = propagator(problem.scene, method="exact")(problem.ends)
+    attitude = found.quaternion if problem.plan.structure["attitude"] else [None] * len(problem.ends)
+    return list(map(State, found.omega, attitude))
+
+
+REFERENCES: tuple[tuple[str, Callable[[Problem, Say, float], list[State]]], ...] = (
+    (f"Taylor series in {DIGITS} digits", _taylor),
+    ("DOP853 in long double, general equations", _long_double),
+    ("closed form", _closed_form),
+    ("extrapolated midpoints in long double", _extrapolated),
+)
+"""What a motion is judged by, the best first."""

@@ -1,0 +1,221 @@
+"""The fixed suite: the work-precision study of one motion of each kind, its figures and its table.
+
+``symrot bench --suite`` writes into a folder, ``generated/bench`` unless told otherwise: ``suite.png`` with the ratios
+of all motions, ``motions.png`` with the curves of each, ``suite.json`` with every study, and ``suite.md``, which quotes
+them. Seconds are those of one machine: these files are not held against anything by ``--check``.
+
+They are written together, when all motions are done. Until then finished ones wait in ``unfinished.json``, from where
+the same command goes on if it was interrupted.
+"""
+
+import json
+from collections.abc import Callable, Mapping, Sequence
+from importlib.util import find_spec
+from pathlib import Path
+from statistics import median
+from time import perf_counter
+from typing import Any
+
+from symrot import __version__
+from symrot.bench.comparison.problem import Problem
+from symrot.bench.comparison.work_precision import digest, machine, study
+from symrot.errors import InputError
+from symrot.files.reading import read_input
+from symrot.report.layout import columns, one_line
+from symrot.report.work_precision import LARGEST_FILE, ROUNDING
+from symrot.scene.file import read_toml
+from symrot.scene.scene import Scene, load_scene
+from symrot.files.writing import check_target, write
+
+__all__ = ["SUITE", "lines", "motions", "page", "run", "summary"]
+
+SUITE = Path(__file__).with_name("suite.toml")
+PEERS = ("heyoka", "heyoka, best setting", "SciPy DOP853", "SciPy RK45", "SciPy LSODA", "SciPy Radau")
+
+Say = Callable[[str], object]
+
+
+def motions() -> dict[str, tuple[str, Scene]]:
+    """Return the motions of the suite: name -> what it is an example of, scene."""
+    found = {}
+    for name, entry in read_toml(SUITE, SUITE.name).items():
+        given = entry["scene"]
+        scene = load_scene(given) if isinstance(given, str) else Scene.from_dict(given, name)
+        found[name] = (str(entry["about"]), scene)
+    return found
+
+
+class _Kept:
+    """The studies of an interrupted run, in a file that only the same run reads."""
+
+    def __init__(self, directory: Path, **asked: Any) -> None:
+        self.path = directory / "unfinished.json"
+        of = {name: value for name, value in machine().items() if name != "load"}
+        self.asked = {"format": "symrot unfinished suite 1", "symrot": __version__, "machine": of, **asked}
+        self.studies: dict[str, Any] = {}
+        try:
+            found = json.loads(read_input(self.path, LARGEST_FILE))
+            if isinstance(found, dict) and isinstance(studies := found.pop("studies", None), dict):
+                self.studies = studies if found == json.loads(json.dumps(self.asked)) else {}
+        except (OSError, ValueError, RecursionError):
+            self.studies = {}
+
+    def add(self, name: str, one: dict[str, Any]) -> None:
+        self.studies[name] = one
+        text = json.dumps({**self.asked, "studies": self.studies})
+        write(self.path, lambda stream: stream.write(text.encode("utf-8")))
+
+    def done(self) -> None:
+        self.path.unlink(missing_ok=True)
+
+
+def run(
+    directory: Path,
+    methods: str | None,
+    quick: bool,
+    say: Say,
+    tolerances: Sequence[float] = (),
+    rounds: int | None = None,
+) -> tuple[dict[str, Any], list[str]]:
+    """Study every motion, write the files, and return data for JSON and lines for people.
+
+    Raises
+    ------
+    InputError
+        If the folder cannot be made, or nothing can be written there.
+    """
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+    except OSError as reason:
+        raise InputError(f"-o: {str(directory)!r} cannot be made: {reason.strerror or reason}") from None
+    check_target(directory / "suite.json", (".json",), "-o")
+    drawing = find_spec("matplotlib") is not None
+    kept = _Kept(directory, methods=methods, quick=quick, tolerances=list(tolerances), rounds=rounds)
+    earlier = len(kept.studies)
+    studies, chosen = {}, motions()
+    for number, (name, (about, scene)) in enumerate(chosen.items(), start=1):
+
+        def tell(text: str, number: int = number) -> None:
+            say(f"{number} of {len(chosen)}: {text}")
+
+        one = kept.studies.get(name)
+        if one is None or one["scene"]["digest"] != digest(Problem(scene)):
+            began = perf_counter()
+            one = {"about": about, **study(scene, methods, quick, tell, tolerances, rounds)}
+            one["took"] = perf_counter() - began
+            kept.add(name, one)
+        studies[name] = one
+    found = {"format": "symrot suite 1", "studies": studies, "summary": summary(studies)}
+    texts = {"suite.json": _compact(found), "suite.md": page(found)}
+    for file, text in texts.items():
+        write(directory / file, lambda stream, text=text: stream.write(text.encode("utf-8")))  # type: ignore[misc]
+    if drawing:
+        from symrot.report.suite_plot import save
+
+        save(found, directory)
+    kept.done()
+    note = [] if drawing else ["", "No figures: matplotlib is not installed (pip install 'symrot[plot]')."]
+    if earlier:
+        note += ["", f"{earlier} of {len(studies)} motions are of an earlier run, which was interrupted."]
+    return found, [*lines(found), *note, "", f"written to {directory}"]
+
+
+def _compact(found: Mapping[str, Any]) -> str:
+    """Return JSON with a line for each motion, and of each number the digits that mean something."""
+    studies = found["studies"].items()
+    rows = ",\n".join(f"{json.dumps(name)}: {json.dumps(_short(one), ensure_ascii=False)}" for name, one in studies)
+    rest = ",\n".join(f"{json.dumps(key)}: {json.dumps(value)}" for key, value in found.items() if key != "studies")
+    return f'{{{rest},\n"studies": {{\n{rows}\n}}}}\n'
+
+
+def _short(value: Any, name: str = "") -> Any:
+    if isinstance(value, dict):
+        return {key: _short(each, key) for key, each in value.items()}
+    if isinstance(value, list):
+        return [_short(each, name) for each in value]
+    return float(f"{value:.4g}") if isinstance(value, float) and name != "states" else value
+
+
+def summary(studies: Mapping[str, Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """Return, for each peer, over all motions and decades: median and least of how many times longer it takes."""
+    found = []
+    for peer in PEERS:
+        ratios = [
+            ratio
+            for one in studies.values()
+            for item in one["against"]
+            if item["peer"] == peer
+            for ratio in item.get("stepped", {}).get("ratios", {}).values()
+        ]
+        if ratios:
+            found.append({"peer": peer, "median": median(ratios), "least": min(ratios), "decades": len(ratios)})
+    return found
+
+
+def _cell(one: Mapping[str, Any], peer: str, side: str = "stepped") -> str:
+    found = next((item for item in one["against"] if item["peer"] == peer and side in item), None)
+    return _ratio(found[side]["median"], found[side]["least"]) if found else "-"
+
+
+def _ratio(middle: float, least: float) -> str:
+    """Return a median and the least in brackets: two digits at least, no powers of ten."""
+    return " ".join(
+        form.format(f"{value:.{0 if value >= 10 else 1}f}") for form, value in (("{}", middle), ("({})", least))
+    )
+
+
+def _least(one: Mapping[str, Any], method: str) -> str:
+    errors = [run["error"] for run in one["runs"] if run["method"] == method]
+    return f"{max(min(errors), ROUNDING):.0e}" if errors else "-"
+
+
+def _rows(found: Mapping[str, Any]) -> list[list[str]]:
+    studies = found["studies"].values()
+    peers = [peer for peer in PEERS if any(item["peer"] == peer for one in studies for item in one["against"])]
+    head = ["motion", *(peer.removeprefix("SciPy ") for peer in peers), "error: exact", "Taylor", "heyoka", "doubt"]
+    rows = [head]
+    for one in studies:
+        doubt = min((other["difference"] for other in one["reference"]["others"]), default=None)
+        rows.append(
+            [
+                one["about"], *(_cell(one, peer) for peer in peers),
+                *(_least(one, method) for method in ("exact", "taylor", "heyoka")),
+                "-" if doubt is None else f"{max(doubt, ROUNDING):.0e}",
+            ]
+        )  # fmt: skip
+    overall = {item["peer"]: _ratio(item["median"], item["least"]) for item in found["summary"]}
+    rows.append(["all motions and decades", *(overall.get(peer, "-") for peer in peers), "", "", "", ""])
+    return rows
+
+
+LEGEND = (
+    "How many times the time of symrot's steppers (closed forms left out) each takes at equal error: median over the "
+    "decades of the error from 1e-2 down, and the least in brackets. Then the least error that each reaches, and what "
+    "the references differ by. Processor time of calls from Python, medians of turns, on one core."
+)
+
+
+def lines(found: Mapping[str, Any]) -> list[str]:
+    """Return the lines for people; the first is the title."""
+    rows = _rows(found)
+    table = columns(rows, width=220, wrap=0, right=range(1, len(rows[0])))
+    return ["The suite: times of others over symrot's, at equal error", "", *table, "", *columns([[LEGEND]])]
+
+
+def page(found: Mapping[str, Any]) -> str:
+    """Return the table as a Markdown page."""
+    head, *rows = _rows(found)
+    one = next(iter(found["studies"].values()))
+    machine = one["machine"]
+    versions = ", ".join(f"{name} {machine[name]}" for name in ("python", "numpy", "scipy", "heyoka") if machine[name])
+    text = ["# Time against error", "", "", ""]
+    quick, took = " --quick" if one["quick"] else "", sum(each["took"] for each in found["studies"].values())
+    text[2] = f"Printed by `symrot bench --suite{quick}` in {took / 60.0:.0f} minutes; seconds are of one machine."
+    loads = [each["machine"]["load"][0] for each in found["studies"].values() if each["machine"]["load"]]
+    busy = f"; {machine['cores']} cores under a load of {min(loads):.1f} to {max(loads):.1f}" if loads else ""
+    text += [LEGEND, "", f"{one_line(machine['processor'])}{busy}; {versions}.", ""]
+    text += [f"| {' | '.join(head)} |", f"| --- |{' ---: |' * (len(head) - 1)}"]
+    text += [f"| {' | '.join(row)} |" for row in rows]
+    text += ["", "![ratios of all motions](suite.png)", ""]
+    text += ["![time against error of each motion](motions.png)"]
+    return "\n".join(text) + "\n"

@@ -1,0 +1,200 @@
+"""How the error of each method grows along one motion, and what becomes of its invariants.
+
+The truth is :class:`symrot.bench.comparison.exact_path.ExactPath`, 30 digits and more at any time. Every method is asked for its
+best: symrot's at the tightest tolerance, SciPy's at the least rtol it takes, RK4 as a textbook writes it with 200 steps
+to a turn.
+"""
+
+import ctypes
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symrot.bench.by_hand import text_by_hand
+from symrot.bench.comparison.exact_path import ExactPath
+from symrot.build import cache as library
+from symrot.closed_form.registry import exact_form
+from symrot.propagation.motion import Motion
+from symrot.propagation.propagator import propagator
+from symrot.propagation.steppers.smoothness import roughness
+from symrot.propagation.steppers.stepping import Stats
+from symrot.propagation.trajectory import Trajectory
+from symrot.scene.scene import Scene
+
+__all__ = ["FROM", "METHODS", "Curve", "Track", "exponent", "growth"]
+
+Floats = NDArray[np.float64]
+
+TIGHTEST, SCIPY_RTOL, SCIPY_ATOL = 1e-15, 3e-14, 1e-15
+STEPS_PER_TURN = 200  # of RK4
+FROM = 30.0  # revolutions: the power of growth is fitted from there on
+
+
+class Curve(NamedTuple):
+    """One method along one motion: errors at the times of the track, nan beyond where it was followed."""
+
+    method: str
+    attitude: Floats  # rad, shape (n,)
+    rates: Floats  # relative to the largest rate
+    invariants: dict[str, Floats]  # relative drift of each, by name
+
+
+class Track:
+    """A motion with the times at which its methods are compared.
+
+    Parameters
+    ----------
+    scene : Scene
+        Its attitude is computed, whether its output asks for it or not.
+    times : array, shape (n,)
+        Rising, from the start on.
+    periodic : bool
+        Whether the motion is a free body's, whose truth goes on through all periods.
+    """
+
+    def __init__(self, scene: Scene, times: Floats, periodic: bool) -> None:
+        self.scene, self.times = scene, times
+        self.motion = propagator(scene, "dop853" if self.rough(scene) else "taylor", TIGHTEST)._motion
+        self.speed = max(float(np.linalg.norm([float(w) for w in scene.initial.omega_b])), 1e-300)
+        path = ExactPath(self.motion)
+        exact = path.states_of_free_body(times) if periodic else path.states(times)
+        self.truth = self.trajectory(exact)
+
+    @staticmethod
+    def rough(scene: Scene) -> str:
+        """Return why a motion has no Taylor series, or an empty text."""
+        return roughness(propagator(scene, "scipy").plan)
+
+    def trajectory(self, states: Floats, motion: Motion | None = None) -> Trajectory:
+        """Return what a method found, as any propagation returns it."""
+        return Trajectory(motion or self.motion, self.times[: len(states)], states, "", Stats(0, 0, 0, 0.0), "")
+
+    def curve(self, method: str, found: Trajectory) -> Curve:
+        """Return the errors of a method."""
+        count, blank = len(found), np.full(len(self.times), np.nan)
+        q, r = found.quaternion, self.truth.quaternion[:count]
+        chord = np.minimum(*(np.linalg.norm(q - sign * r, axis=1) for sign in (1, -1)))
+        attitude, rates = blank.copy(), blank.copy()
+        attitude[:count] = 4.0 * np.arcsin(np.minimum(chord, math.sqrt(2.0)) / 2.0)
+        size = float(np.linalg.norm(self.truth.omega, axis=1).max())
+        rates[:count] = np.linalg.norm(found.omega - self.truth.omega[:count], axis=1) / size
+        invariants = {}
+        for item in found.invariants:
+            start = found._motion.initial_quantity(item.name)
+            invariants[item.name] = np.abs(item.values - start) / (item.scale or 1.0)
+        return Curve(method, attitude, rates, invariants)
+
+    def turns(self, t: float) -> float:
+        """Return the revolutions in t s at the initial angular speed."""
+        return self.speed * t / (2.0 * math.pi)
+
+
+# ------------------------------------------------------------------------------------------------ methods
+
+
+def _exact(track: Track, times: Floats) -> Trajectory | None:
+    if exact_form(track.scene) is None:
+        return None
+    return propagator(track.scene, "exact")(times)
+
+
+def _taylor(project: bool) -> Callable[[Track, Floats], Trajectory | None]:
+    def run(track: Track, times: Floats) -> Trajectory | None:
+        if track.motion.choice.method != "taylor":
+            return None
+        task = track.motion.stepping.again()
+        if not project:
+            task.fields = {**task.fields, "every": 0}
+        return track.trajectory(task.sample(times)[0])
+
+    return run
+
+
+def _dop853(track: Track, times: Floats) -> Trajectory | None:
+    return propagator(track.scene, "dop853", 1e-14)(times)
+
+
+def _scipy(track: Track, times: Floats) -> Trajectory | None:
+    from scipy.integrate import solve_ivp
+
+    motion = track.motion
+    p, rates = motion.rate_parameters, motion.rates
+    span = (motion.start, float(times[-1]))
+    found = solve_ivp(
+        lambda t, y: rates(t, y, p), span, motion.plan.initial_state, "DOP853", times, rtol=SCIPY_RTOL, atol=SCIPY_ATOL
+    )
+    return track.trajectory(np.ascontiguousarray(found.y.T))
+
+
+def _rk4(normalised: bool) -> Callable[[Track, Floats], Trajectory | None]:
+    def run(track: Track, times: Floats) -> Trajectory | None:
+        motion = track.motion
+        if "q0" not in motion.plan.states:
+            return None
+        text = text_by_hand("by_hand.c")
+        source = f"{motion.kernel.source}\n#define N {len(motion.plan.states)}\n{text}"
+        function = ctypes.CDLL(str(library.build(source, "by_hand"))).rk4
+        real, pointer = ctypes.c_double, ctypes.c_void_p
+        function.argtypes, function.restype = (real, real, ctypes.c_long, ctypes.c_int, pointer, pointer), None
+        y, p = np.array(motion.plan.initial_state), np.array(motion.rate_parameters or [0.0])
+        now, rows = motion.start, []
+        for t in times.tolist():
+            steps = math.ceil(track.turns(t - now) * STEPS_PER_TURN)
+            if steps:
+                function(now, t, steps, int(normalised), y.ctypes.data, p.ctypes.data)
+            now = t
+            rows.append(y.copy())
+        return track.trajectory(np.array(rows))
+
+    return run
+
+
+class Method(NamedTuple):
+    """A method by name, what it is, the most revolutions it is followed through by default and at length, the run."""
+
+    name: str
+    about: str
+    most: float
+    most_long: float
+    run: Callable[[Track, Floats], Trajectory | None]
+
+
+METHODS = (
+    Method("exact", "closed form", math.inf, math.inf, _exact),
+    Method("taylor", "Taylor series, carry projected onto the invariants", math.inf, math.inf, _taylor(True)),
+    Method("taylor, plain", "the same without projection", math.inf, math.inf, _taylor(False)),
+    Method("dop853", "Dormand-Prince 8(5,3) in C", math.inf, math.inf, _dop853),
+    Method("SciPy DOP853", "solve_ivp at its least rtol", 1e3, 1e4, _scipy),
+    Method("RK4, normalised", "200 steps a turn, q renormalised after each", 1e5, 1e6, _rk4(True)),
+    Method("RK4", "200 steps a turn, by hand in C", 1e5, 1e6, _rk4(False)),
+)
+
+
+def growth(track: Track, long: bool = False, say: Callable[[str], object] = lambda text: None) -> list[Curve]:
+    """Return the curves of all methods that this motion has."""
+    found = []
+    for method in METHODS:
+        say(f"{track.scene.name}: {method.name} ..")
+        turns = track.speed * (track.times - track.motion.start) / (2.0 * math.pi)
+        inside = track.times[turns <= (method.most_long if long else method.most) * 1.001]
+        trajectory = method.run(track, inside)
+        if trajectory is not None:
+            found.append(track.curve(method.name, trajectory))
+    return found
+
+
+def exponent(revolutions: Floats, errors: Floats) -> float:
+    """Return k of errors that grow as t^k, fitted from :data:`FROM` revolutions on; nan where they are too few."""
+    chosen = (revolutions >= FROM) & np.isfinite(errors) & (errors > 0.0) & (errors < 0.5)
+    if int(chosen.sum()) < 4:
+        return math.nan
+    return float(np.polyfit(np.log(revolutions[chosen]), np.log(errors[chosen]), 1)[0])
+
+
+def median_curve(curves: list[Any], name: str) -> Floats:
+    """Return the median over motions of one column of curves of one method."""
+    found: Floats = np.exp(np.median(np.log(np.array([getattr(c, name) for c in curves]) + 1e-18), axis=0))
+    return found

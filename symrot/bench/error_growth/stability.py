@@ -1,0 +1,275 @@
+"""Numerical stability, measured: how errors grow, what becomes of invariants, Euler singularities, points of a body.
+
+    symrot bench --stability [SCENE] [--long] [--plot FILE.png] [--json]
+
+Without a scene a free plate (moments 1, 3, 4) is followed for 1e5 revolutions (``--long``: 1e6), medians over three
+starts; with one, the scene over its span. The truth has 30 digits and shares nothing with any method
+(:mod:`symrot.bench.comparison.exact_path`). Then the textbooks' claims: Euler angles as state against the quaternion as state,
+near gimbal lock and through it; the quaternion renormalised or left alone; points carried along tangents or secants.
+"""
+
+import math
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symrot.bench.error_growth.growth import FROM, METHODS, Track, exponent, growth, median_curve
+from symrot.bench.error_growth.points import carried, laws
+from symrot.errors import InputError, PropagationError
+from symrot.propagation.propagator import propagator
+from symrot.report.layout import columns
+from symrot.scene.scene import Scene, load_scene
+
+__all__ = ["lines", "report", "stability"]
+
+Floats = NDArray[np.float64]
+
+STARTS = (("3/8", 1, "1/2"), (1, "1/4", "1/8"), ("5/8", "3/4", "-1/2"))  # rad/s, exact in doubles
+PLATE = (1, 3, 4)  # kg m^2: (B - C)/A and its like are exact in doubles too, so that all methods turn one body
+POWERS = {False: 5, True: 6}  # of ten revolutions
+SAMPLES = 241  # of a scene
+PASSES = ("1/10", "1/1000", "1/100000", "1/10000000", "1/1000000000", 0)  # rad from gimbal lock
+SEQUENCE = "ZXZ"
+STEPS = (0.1, 0.01, 0.001)  # s
+CARRIED_FOR = 10.0  # s
+CYLINDER = {"principal": [0.6375, 0.6375, 0.075]}  # chen, p. 23
+
+
+def _scene(title: str, body: Any, omega: Any, attitude: Any = None) -> Scene:
+    return Scene.from_dict(
+        {
+            "schema": 1, "title": title, "body": body, "span": {"t": [0, 1], "samples": 2},
+            "initial": {"omega": list(omega), "attitude": attitude or {"quaternion": [1, 0, 0, 0]}},
+            "output": {"quantities": ["omega", "quaternion"]},
+        },
+        title,
+    )  # fmt: skip
+
+
+def stability(scene: Scene | None = None, long: bool = False, say: Callable[[str], object] = lambda t: None) -> Any:
+    """Return the report as data for JSON.
+
+    Parameters
+    ----------
+    scene : Scene, optional
+        The motion to follow; default: a free plate for many revolutions.
+    long : bool
+        1e6 revolutions, and SciPy for 1e4.
+    say : callable
+        Hears what is being done.
+    """
+    found: dict[str, Any] = {"format": "symrot stability 1", "long": long}
+    found["growth"] = _of_scene(scene, long, say) if scene else _of_plates(long, say)
+    say("Euler angles as state ..")
+    found["passes"] = passes()
+    say("points of a body ..")
+    found["laws"] = [{"law": name, "holds": holds} for name, holds in laws()]
+    found["points"] = [
+        {"motion": name, **each._asdict()}
+        for name, body, omega, size in (
+            ("steady, points across the axis", {"principal": [1, 2, 3]}, (0, 0, 1), (1.0, 2.0, 0.0)),
+            ("chen, p. 23: cylinder", CYLINDER, (1, 0, 1), (1.0, 1.0, 3.0)),
+        )
+        for each in carried(_scene(name, body, omega), CARRIED_FOR, STEPS, size)
+    ]
+    return _finite(found)
+
+
+def _of_plates(long: bool, say: Callable[[str], object]) -> dict[str, Any]:
+    power = POWERS[long]
+    revolutions = 10.0 ** np.linspace(1, power, 6 * (power - 1) + 1)
+    tracks = []
+    for omega in STARTS:
+        say("truth in 30 digits ..")
+        scene = _scene("free plate", {"principal": list(PLATE)}, omega)
+        size = math.sqrt(sum(float(w) ** 2 for w in scene.initial.omega_b))
+        tracks.append(Track(scene, revolutions * (2.0 * math.pi / size), periodic=True))
+    every = [growth(track, long, say) for track in tracks]
+    curves = []
+    for same in zip(*every, strict=True):
+        kept = {name: _median([c.invariants[name] for c in same], len(revolutions)) for name in same[0].invariants}
+        curves.append(_curve(same[0].method, revolutions, median_curve(list(same), "attitude"),
+                             median_curve(list(same), "rates"), kept))  # fmt: skip
+    title = f"free plate, moments {PLATE}, medians of {len(STARTS)} starts"
+    return {"title": title, "variable": "revolutions", "at": revolutions.tolist(), "curves": curves}
+
+
+def _median(rows: list[Floats], count: int) -> Floats:
+    found = np.full(count, np.nan)
+    found[: len(rows[0])] = np.median(rows, axis=0)
+    return found
+
+
+def _of_scene(scene: Scene, long: bool, say: Callable[[str], object]) -> dict[str, Any]:
+    if not scene.span.stop > scene.span.start:
+        raise InputError(f"{scene.name}: span: expected an end after the start")
+    times = np.linspace(float(scene.span.start), float(scene.span.stop), SAMPLES)
+    say(f"{scene.name}: truth in 30 digits ..")
+    track = Track(scene, times, periodic=False)
+    curves = []
+    for curve in growth(track, long, say):
+        kept = {name: _median([values], len(times)) for name, values in curve.invariants.items()}
+        curves.append(_curve(curve.method, None, curve.attitude, curve.rates, kept))
+    return {
+        "title": scene.title, "variable": "t", "at": times.tolist(), "curves": curves,
+        "omega": track.truth.omega.tolist(), "revolutions": track.turns(float(times[-1] - times[0])),
+    }  # fmt: skip
+
+
+def _curve(method: str, at: Floats | None, attitude: Floats, rates: Floats, kept: dict[str, Floats]) -> dict[str, Any]:
+    drift = np.max(
+        [values for name, values in kept.items() if name != "quaternion norm"] or [np.zeros(len(attitude))], 0
+    )
+    found: dict[str, Any] = {
+        "method": method, "about": next(each.about for each in METHODS if each.name == method),
+        "attitude": attitude.tolist(), "rates": rates.tolist(),
+        "invariants": {name: values.tolist() for name, values in kept.items()},
+    }  # fmt: skip
+    if at is not None:
+        found["exponents"] = {"attitude": exponent(at, attitude), "invariants": exponent(at, drift)}
+    return found
+
+
+def passes() -> list[dict[str, Any]]:
+    """Return what passes by gimbal lock cost and lose: quaternion, angles that are exchanged, angles that are not."""
+    t, found = np.linspace(-3, 8, 45), []
+    for distance in PASSES:
+        attitude = {"sequence": SEQUENCE, "angles": ["1/5", distance, "3/10"]}
+        scene = _scene("pass by gimbal lock", {"principal": [1, "6/5", 2]}, (0, "2/5", 1), attitude)
+        exact = propagator(scene, "exact")(t)
+        row: dict[str, Any] = {"distance": float(scene_distance(distance))}
+        for name, options in (("quaternion", {}), ("switching", {"state": SEQUENCE}),
+                              ("angles", {"state": SEQUENCE, "switching": False})):  # fmt: skip
+            try:
+                trajectory = propagator(scene, "taylor", 1e-13, **options)(t)
+            except PropagationError as error:
+                row[name] = {"failed": str(error)}
+                continue
+            chord = np.minimum(*(np.abs(trajectory.quaternion - s * exact.quaternion).max(axis=1) for s in (1, -1)))
+            row[name] = {
+                "steps": trajectory.stats.accepted, "error": float(chord.max()), "switches": trajectory.stats.switches,
+            }  # fmt: skip
+        found.append(row)
+    return found
+
+
+def scene_distance(text: str | int) -> float:
+    """Return an exact number of this table as a float."""
+    top, _, bottom = str(text).partition("/")
+    return float(top) / float(bottom or 1)
+
+
+# ------------------------------------------------------------------------------------------------ for people
+
+
+def _figure(value: float | None) -> str:
+    return "-" if value is None else f"{value:.1e}"
+
+
+def _power(value: float | None) -> str:
+    return "-" if value is None else f"t^{value:.2f}"
+
+
+def _worst(values: Iterable[float | None]) -> float | None:
+    return max((value for value in values if value is not None), default=None)
+
+
+def lines(found: Any) -> list[str]:
+    """Return the report as a table for people."""
+    return [*_growth_lines(found["growth"]), "", *_pass_lines(found["passes"]), "", *_point_lines(found)]
+
+
+def _growth_lines(data: Any) -> list[str]:
+    at = data["at"]
+    if data["variable"] == "revolutions":
+        shown = [i for i, turns in enumerate(at) if abs(math.log10(turns) % 1) < 1e-9]
+        heads = [f"1e{round(math.log10(at[i]))} rev" for i in shown]
+    else:
+        shown = [round(k * (len(at) - 1) / 6) for k in range(1, 7)]
+        heads = [f"{at[i]:.4g} s" for i in shown]
+    found = [data["title"], "", "error of the attitude, rad, against 30 digits"]
+    rows = [["  method", *heads, *(["grows as"] if "exponents" in data["curves"][0] else [])]]
+    drifts = [["  method", *heads, *rows[0][len(heads) + 1 :], "norm of q"]]
+    for curve in data["curves"]:
+        rows.append([f"  {curve['method']}", *(_figure(curve["attitude"][i]) for i in shown)])
+        kept = {name: values for name, values in curve["invariants"].items() if name != "quaternion norm"}
+        worst = [_worst(values[i] for values in kept.values()) for i in shown]
+        drifts.append([f"  {curve['method']}", *map(_figure, worst)])
+        if "exponents" in curve:
+            rows[-1].append(_power(curve["exponents"]["attitude"]))
+            drifts[-1].append(_power(curve["exponents"]["invariants"]))
+        drifts[-1].append(_figure(_worst(curve["invariants"].get("quaternion norm", []))))
+    right = tuple(range(1, len(drifts[0])))
+    kept_names = [name for name in data["curves"][0]["invariants"] if name != "quaternion norm"]
+    found += columns(rows, right=right[:-1])
+    found += ["", f"largest relative drift of {', '.join(kept_names) or 'nothing: no invariant'}; "
+              "and of the norm of the quaternion, on the way", *columns(drifts, right=right)]  # fmt: skip
+    notes = "; ".join(f"{each.name}: {each.about}" for each in METHODS)
+    if data["variable"] == "revolutions":
+        notes += f". Powers are fitted from {FROM:.0f} revolutions on; rounding alone grows as t^0.5 in an invariant, "
+        notes += "t^1.5 in an angle"
+    return [*found, "", *_wrapped(f"{notes}.")]
+
+
+def _wrapped(text: str) -> list[str]:
+    from textwrap import wrap
+
+    return wrap(text, 110, initial_indent="  ", subsequent_indent="  ")
+
+
+def _pass_lines(rows: Any) -> list[str]:
+    def told(row: Any, name: str) -> list[str]:
+        one = row[name]
+        return ["fails", "-"] if "failed" in one else [str(one["steps"]), _figure(one["error"])]
+
+    table = [["  nearest", "quaternion", "error", f"{SEQUENCE}, switched", "error", f"{SEQUENCE} alone", "error"]]
+    for row in rows:
+        distance = "the lock itself" if row["distance"] == 0 else f"{row['distance']:.0e} rad"
+        table.append([f"  {distance}", *told(row, "quaternion"), *told(row, "switching"), *told(row, "angles")])
+    said = [
+        "a pass by gimbal lock: steps of the Taylor method, and the error, by what the state is",
+        *columns(table, right=tuple(range(1, 7))),
+    ]
+    failed = [row["angles"]["failed"] for row in rows if "failed" in row["angles"]]
+    return said + [line for text in failed[:1] for line in _wrapped(text)]
+
+
+def _point_lines(found: Any) -> list[str]:
+    said = [f"points carried along their velocity for {CARRIED_FOR:g} s", *(
+        f"  {'proven' if law['holds'] else 'NOT PROVEN'}: {law['law']}" for law in found["laws"])]  # fmt: skip
+    rows = [["  motion", "step", "h, s", "growth", "by the law", "strain", "error"]]
+    before = ""
+    for each in found["points"]:
+        name = "" if each["motion"] == before else each["motion"]
+        before = each["motion"]
+        rows.append([f"  {name}", each["scheme"], f"{each['h']:g}", f"{each['growth']:.10f}", f"{each['derived']:.10f}",
+                     _figure(each["strain"]), _figure(each["error"])])  # fmt: skip
+    return [*said, *columns(rows, right=(2, 3, 4, 5, 6))]
+
+
+def report(scene: str | None, long: bool, plot: Path | None, say: Callable[[str], object]) -> Any:
+    """Return the report of a shipped scene or a file, of the plate without one; draw it if asked.
+
+    Raises
+    ------
+    InputError
+        For a scene that cannot be used.
+    """
+    found = stability(load_scene(scene) if scene else None, long, say)
+    if plot:
+        from symrot.bench.error_growth.stability_plot import save
+
+        save(found, plot)
+    return found
+
+
+def _finite(value: Any) -> Any:
+    """Return data for JSON, which knows no nan."""
+    if isinstance(value, dict):
+        return {key: _finite(each) for key, each in value.items()}
+    if isinstance(value, list):
+        return [_finite(each) for each in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -1,0 +1,1 @@
+"""Compile C, keep the result in the user's cache, load it."""

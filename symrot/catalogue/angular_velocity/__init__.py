@@ -1,0 +1,1 @@
+"""Angular velocity: its tensor, and the rates of angles, quaternions, rotation vectors and Rodrigues parameters."""

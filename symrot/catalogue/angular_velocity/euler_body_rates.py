@@ -1,0 +1,90 @@
+"""Euler angle rates, all 24 sequences, both frames (Landau & Lifshitz, Mechanics, 3rd ed., section 35, for ZXZ)."""
+
+from sympy import MatMul, Matrix, eye
+
+from symrot import symbols
+from symrot.catalogue.tools.motion import pairs, rate
+from symrot.conventions import SEQUENCES
+from symrot.kinematics.euler import dcm, rate_jacobian
+from symrot.kinematics.rotations import skew, vee
+from symrot.proof.derivation import Derivation
+
+RATES = Matrix(symbols.angle_rates)
+
+
+def derive() -> Derivation:
+    d = Derivation(
+        "euler_body_rates",
+        title="Angular velocity from Euler angle rates, all 24 sequences",
+        source="Landau & Lifshitz, *Mechanics*, 3rd ed., section 35, for ZXZ; the others follow the same way",
+        about=(
+            "The direction cosine matrix $R$ takes body components to space components. Its rate defines the angular "
+            r"velocity: $\dot R = R\,[\omega_b]_\times = [\omega_s]_\times R$, where $[v]_\times u = v \times u$. "
+            "For each sequence, $R$ is differentiated by the chain rule, and the matrices $B$ of "
+            r"$\omega_b = B_b \dot q$ and $\omega_s = B_s \dot q$ are proven against that definition. Column $i$ of "
+            "$B$ is the axis of turn $i$, carried into the body (or into space) by the turns between."
+        ),
+    )
+    d.given(
+        r"The angles $q = (\phi, \theta, \psi)$ are in order of application. Upper case sequences are intrinsic, about "
+        r"axes of the body; lower case ones are extrinsic, about axes of space."
+    )
+    for sequence in SEQUENCES:
+        _sequence(d, sequence)
+    return d
+
+
+def _sequence(d: Derivation, sequence: str) -> None:
+    dcm_sb = dcm(sequence)
+    dcm_rate = rate(dcm_sb, pairs(symbols.angles, symbols.angle_rates))
+    body, space = rate_jacobian(sequence, "body"), rate_jacobian(sequence, "space")
+    d.section(f"{sequence}, {'intrinsic' if sequence.isupper() else 'extrinsic'}")
+    d.define("The direction cosine matrix, body to space:", "R", dcm_sb)
+    d.step(
+        "The angular velocity in the body.",
+        vee(dcm_sb.T * dcm_rate),
+        body * RATES,
+        because=r"$\dot R = R\,[\omega_b]_\times$, all nine entries",
+        named=r"\omega_b",
+        shown=MatMul(body.as_immutable(), RATES),
+        via=[("The rate of the matrix, all nine entries:", dcm_rate, dcm_sb * skew(body * RATES))],
+    )
+    d.step(
+        "The angular velocity in space.",
+        vee(dcm_rate * dcm_sb.T),
+        space * RATES,
+        because=r"$\dot R = [\omega_s]_\times R$, all nine entries",
+        named=r"\omega_s",
+        shown=MatMul(space.as_immutable(), RATES),
+        via=[("The rate of the matrix, all nine entries:", dcm_rate, skew(space * RATES) * dcm_sb)],
+    )
+    d.step(
+        "The rates from the angular velocity in the body.",
+        body.inverse * body,
+        eye(3),
+        because="the two matrices are inverse to each other",
+        named=r"\dot q",
+        shown=MatMul(body.inverse, Matrix(symbols.omega_b)),
+    )
+    d.step(
+        f"The angles lock {_values(body)}.",
+        body.det(),
+        body.determinant,
+        because="there the three axes lie in one plane, and no rates give the angular velocity across it",
+        named=r"\det B_b",
+    )
+
+
+def _latex(expression: object) -> str:
+    from symrot.proof.pages import formula
+
+    return formula(expression)
+
+
+def _values(jacobian: object) -> str:
+    """Return the singular set within one turn, as LaTeX."""
+    singular = jacobian.singular_set  # type: ignore[attr-defined]
+    points = ", ".join(_latex(point) for point in singular.points())
+    return rf"at ${_latex(singular.variable)} \in \{{{points}\}}$ within one turn".replace(r"\{", r"\lbrace ").replace(
+        r"\}", r"\rbrace"
+    )

@@ -1,0 +1,113 @@
+"""Quaternion rates in both frames, from the rate of the direction cosine matrix."""
+
+from sympy import Matrix, eye
+
+from symrot import symbols
+from symrot.catalogue.tools.motion import OMEGA, attitude_rates, pairs, rate, squared
+from symrot.kinematics.quaternion import dcm_of, norm_squared, qmul, quaternion_rates, unit_relation
+from symrot.kinematics.rotations import skew
+from symrot.proof.derivation import Derivation
+
+Q = Matrix(symbols.quaternion)
+DQ = Matrix(symbols.quaternion_rates)
+OMEGA_S = Matrix(symbols.omega_s)
+
+
+def derive() -> Derivation:
+    d = Derivation(
+        "quaternion_rates",
+        title="Quaternion rates",
+        source="Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., section 4.5, for the Euler parameters",
+        about=(
+            "A unit quaternion $q$ turns a vector by $v_s = q\\,v_b\\,\\bar q$. Its rate is bilinear in $q$ and the "
+            "angular velocity, has no singularity, and needs neither sine nor cosine: it is the attitude equation that "
+            "symrot integrates."
+        ),
+    )
+    unit = [unit_relation()]
+    dcm_sb = dcm_of()
+    d.define(
+        r"The direction cosine matrix is the matrix of $v_b \mapsto q\,v_b\,\bar q$, with $q \bar q = 1$:", "R", dcm_sb
+    )
+    d.step(
+        "It is orthogonal.",
+        dcm_sb * dcm_sb.T,
+        eye(3),
+        because="the Hamilton product keeps lengths",
+        relations=unit,
+        named=r"R R^{\mathsf T}",
+    )
+    d.step(
+        "It is a rotation, not a reflection.",
+        dcm_sb.det(),
+        1,
+        because=r"its determinant is $|q|^6$",
+        relations=unit,
+        named=r"\det R",
+    )
+
+    d.section("Rates from the angular velocity in the body")
+    body = attitude_rates()
+    d.define(r"Let the quaternion change as half the product $q\,(0, \omega_b)$:", DQ, Matrix([*body.values()]))
+    d.step(
+        "The norm is kept, exactly and for every norm.",
+        rate(norm_squared(symbols.quaternion), body),
+        0,
+        because=r"$q$ and $q\,(0, \omega_b)$ are orthogonal",
+        named=r"\frac{d}{dt} |q|^2",
+    )
+    d.step(
+        r"The direction cosine matrix then turns with $\omega_b$, all nine entries.",
+        rate(dcm_sb, body),
+        dcm_sb * skew(OMEGA),
+        because="the chain rule, and unit norm",
+        relations=unit,
+        named=r"\dot R",
+        shown=r"R\,[\omega_b]_\times",
+    )
+    d.step(
+        "Conversely, the angular velocity is the vector part of twice the conjugate times the rate.",
+        4 * quaternion_rates("body").T * Matrix([*body.values()]),
+        OMEGA,
+        because="the columns of the matrix of rates are orthogonal and of length one half",
+        relations=unit,
+        named=r"2\,\mathrm{vec}(\bar q\,\dot q)",
+    )
+
+    d.section("Rates from the angular velocity in space")
+    space = pairs(symbols.quaternion, quaternion_rates("space") * OMEGA_S)
+    d.define(r"With $\omega_s$ the factors change places, $(0, \omega_s)\,q$:", DQ, Matrix([*space.values()]))
+    d.step(
+        r"The direction cosine matrix turns with $\omega_s$.",
+        rate(dcm_sb, space),
+        skew(OMEGA_S) * dcm_sb,
+        because="the chain rule, and unit norm",
+        relations=unit,
+        named=r"\dot R",
+        shown=r"[\omega_s]_\times R",
+    )
+    d.step(
+        "Both are one equation: the rate in space of the turned angular velocity is the rate in the body.",
+        quaternion_rates("space") * dcm_sb * OMEGA,
+        qmul(Q, [0, *OMEGA]) / 2,
+        because=r"$\omega_s = R\,\omega_b$",
+        relations=unit,
+        named=r"\tfrac12 (0, R\,\omega_b)\,q",
+        shown=r"\tfrac12\,q\,(0, \omega_b)",
+    )
+    d.step(
+        r"The opposite quaternion is the same attitude.",
+        dcm_of(tuple(-Q)) - dcm_sb,
+        0,
+        because="the matrix is quadratic",
+        named="R(-q) - R(q)",
+    )
+    d.step(
+        "No attitude is singular.",
+        (quaternion_rates("body").T * quaternion_rates("body")).det() * 64,
+        1,
+        because=r"the matrix $M$ of $\dot q = M \omega_b$ has full rank at every unit quaternion",
+        relations=[squared(Q) - 1],
+        named=r"\det \left( 4 M^{\mathsf T} M \right)",
+    )
+    return d

@@ -1,0 +1,157 @@
+"""Velocity and acceleration of two points (Beer & Johnston, Vector Mechanics: Dynamics, 12th ed., chapter 15)."""
+
+from sympy import Matrix
+
+from symrot import symbols
+from symrot.catalogue.tools.motion import OMEGA, attitude_rates, pairs, rate, squared
+from symrot.kinematics.quaternion import dcm_of, unit_relation
+from symrot.proof.derivation import Derivation
+
+DOMEGA = Matrix(symbols.omega_rates)
+D = Matrix(symbols.offset)
+PLACE, V, A = Matrix(symbols.position), Matrix(symbols.velocity), Matrix(symbols.acceleration)
+U, W = Matrix(symbols.relative_velocity), Matrix(symbols.relative_acceleration)
+UNIT = [unit_relation()]
+
+
+def derive() -> Derivation:
+    d = Derivation(
+        "relative_motion",
+        title="Velocity and acceleration of two points",
+        source="Beer, Johnston & Cornwell, *Vector Mechanics for Engineers: Dynamics*, chapter 15; Goldstein, Poole & "
+        "Safko, *Classical Mechanics*, 3rd ed., sections 4.9 and 4.10",
+        about=(
+            r"A body moves in any way. Its point $P$ is at $x$ and moves with $v$ and $a$; another point is at $x + "
+            r"R\,d$. "
+            "What is that point's velocity and acceleration, if it belongs to the body, and if it moves through the "
+            "body?"
+        ),
+    )
+    dcm_sb = Matrix(dcm_of())
+    body = attitude_rates() | pairs(symbols.omega_b, DOMEGA) | pairs(symbols.position, V) | pairs(symbols.velocity, A)
+    place = PLACE + dcm_sb * D
+    _fixed(d, dcm_sb, place, body)
+    _moving(d, dcm_sb, place, body)
+    _axis(d)
+    return d
+
+
+def _fixed(d: Derivation, dcm_sb: Matrix, place: Matrix, body: dict) -> None:  # type: ignore[type-arg]
+    d.section("Two points of one body")
+    d.notation({"R": dcm_sb, "x": PLACE, "d": D, "v": V, r"\omega_b": OMEGA, r"\dot\omega_b": DOMEGA}, body)
+    velocity = rate(place, body)
+    d.notation({"v_P": V, "v_Q": velocity, "a_P": A, "a_Q": rate(velocity, body)})
+    d.step(
+        "The velocity.",
+        velocity,
+        V + dcm_sb * OMEGA.cross(D),
+        because=r"$d$ is constant, and $\dot R = R\,[\omega_b]_\times$",
+        relations=UNIT,
+        named=r"\frac{d}{dt} (x + R\,d)",
+        shown=r"v + R \left( \omega_b \times d \right)",
+    )
+    d.step(
+        "Along the line between them both points have one velocity: the line is neither stretched nor pressed.",
+        (velocity - V).dot(dcm_sb * D),
+        0,
+        because=r"$\omega \times d$ is at right angles to $d$",
+        relations=UNIT,
+        named=r"(v_Q - v_P) \cdot R\,d",
+    )
+    d.step(
+        "The acceleration, with its components along the axes of the body.",
+        dcm_sb.T * (rate(velocity, body) - A),
+        DOMEGA.cross(D) + OMEGA.cross(OMEGA.cross(D)),
+        because="the velocity is differentiated once more",
+        relations=UNIT,
+        named=r"R^{\mathsf T} (a_Q - a_P)",
+        shown=r"\dot\omega_b \times d + \omega_b \times (\omega_b \times d)",
+    )
+    d.step(
+        "Its second part points to the axis through $P$, and is $|\\omega|^2$ times the distance from it.",
+        OMEGA.cross(OMEGA.cross(D)),
+        OMEGA * OMEGA.dot(D) - squared(OMEGA) * D,
+        because="of the double cross product",
+        named=r"\omega_b \times (\omega_b \times d)",
+        shown=r"\omega_b\,(\omega_b \cdot d) - |\omega_b|^2\,d",
+    )
+    d.notation(
+        {r"\omega": OMEGA, "v_P": V, "v_Q": V + OMEGA.cross(D), "r": Matrix([symbols.r_1, symbols.r_2, symbols.r_3])}
+    )
+    offset = Matrix([symbols.r_1, symbols.r_2, symbols.r_3])
+    d.step(
+        "The angular velocity does not depend on which point is called $P$.",
+        V + OMEGA.cross(D) + OMEGA.cross(offset - D),
+        V + OMEGA.cross(offset),
+        because="the cross product is linear",
+        named=r"v_Q + \omega \times (r - d)",
+        shown=r"v_P + \omega \times r",
+    )
+
+
+def _moving(d: Derivation, dcm_sb: Matrix, place: Matrix, body: dict) -> None:  # type: ignore[type-arg]
+    d.section("A point that moves through the body")
+    moving = body | pairs(symbols.offset, U) | pairs(symbols.relative_velocity, W)
+    velocity = rate(place, moving)
+    d.notation({"u": U, "w": W, "v_P": V, "v_Q": velocity, "a_P": A, "a_Q": rate(velocity, moving)}, moving)
+    d.given(
+        r"Seen from the body, let the point move with $u$ and accelerate with $w$:", (r"\dot d", "u"), (r"\dot u", "w")
+    )
+    d.step(
+        "The velocity.",
+        dcm_sb.T * (velocity - V),
+        OMEGA.cross(D) + U,
+        because="the velocity of the place in the body, and the velocity through the body",
+        relations=UNIT,
+        named=r"R^{\mathsf T} (v_Q - v_P)",
+        shown=r"\omega_b \times d + u",
+    )
+    d.step(
+        "The acceleration: that of the place, Coriolis' part, and the relative one.",
+        dcm_sb.T * (rate(velocity, moving) - A),
+        DOMEGA.cross(D) + OMEGA.cross(OMEGA.cross(D)) + 2 * OMEGA.cross(U) + W,
+        because="$u$ is turned by the body, and it changes the place: each gives $\\omega \\times u$ once",
+        relations=UNIT,
+        named=r"R^{\mathsf T} (a_Q - a_P)",
+        shown=r"\dot\omega_b \times d + \omega_b \times (\omega_b \times d) + 2\,\omega_b \times u + w",
+    )
+    d.step(
+        "Coriolis' part does no work on the relative motion.",
+        (2 * OMEGA.cross(U)).dot(U),
+        0,
+        because="it is at right angles to the relative velocity",
+        named=r"(2\,\omega_b \times u) \cdot u",
+    )
+
+
+def _axis(d: Derivation) -> None:
+    d.section("The axis of the motion")
+    center = OMEGA.cross(V) / squared(OMEGA)
+    d.notation({r"\omega": OMEGA, "v": V, "d_0": center, "d": D})
+    d.given(r"Let now all components be in one frame, and take the point at $d_0$ from $P$:",
+            ("d_0", r"\frac{\omega \times v}{|\omega|^2}"))  # fmt: skip
+    d.step(
+        r"Its velocity is along $\omega$: every motion of a body is, at each moment, a screw (Chasles, Mozzi).",
+        V + OMEGA.cross(center),
+        OMEGA * OMEGA.dot(V) / squared(OMEGA),
+        because=r"$\omega \times (\omega \times v)$ takes away what is across $\omega$",
+        named=r"v + \omega \times d_0",
+        shown=r"\frac{\omega \cdot v}{|\omega|^2}\,\omega",
+    )
+    plane = {symbols.omega_1: 0, symbols.omega_2: 0, symbols.v_z: 0}
+    d.notation({r"\omega": OMEGA.subs(plane), "v": V.subs(plane), "d_0": center.subs(plane)})
+    d.step(
+        "In plane motion that point is at rest: the instantaneous centre.",
+        (V + OMEGA.cross(center)).subs(plane),
+        0,
+        because=r"velocity and angular velocity are at right angles",
+        named=r"\left. v + \omega \times d_0 \right|_{\omega \cdot v = 0}",
+    )
+    d.step(
+        "Around it, velocities are as in a turn about a fixed axis.",
+        (V + OMEGA.cross(D)).subs(plane),
+        OMEGA.cross(D - center).subs(plane),
+        because="its own velocity is zero",
+        named=r"v + \omega \times d",
+        shown=r"\omega \times (d - d_0)",
+    )

@@ -1,0 +1,153 @@
+"""Rodrigues parameters, classical and modified: projections of the quaternion sphere."""
+
+from dataclasses import dataclass
+
+from sympy import Expr, Matrix, Symbol, eye
+
+from symrot import symbols
+from symrot.catalogue.tools.motion import pairs, rate, squared
+from symrot.kinematics.quaternion import dcm_of
+from symrot.kinematics.rodrigues import CLASSICAL, MODIFIED, Projection, shadow
+from symrot.kinematics.rotations import skew
+from symrot.proof.derivation import Derivation
+
+ONE = eye(3)
+
+
+@dataclass(frozen=True)
+class Form:
+    """What is claimed of one set of parameters, as a formula and as a reader writes it."""
+
+    title: str
+    letter: str
+    rates: tuple[Symbol, ...]
+    dcm: tuple[Matrix, str]
+    omega: tuple[Matrix, str]  # B_b; B_s has the skew matrix of the other sign
+    inverse: tuple[Matrix, str]
+
+
+def _classical() -> Form:
+    p = Matrix(symbols.rodrigues)
+    k, below = Matrix(skew(p)), 1 + squared(p)
+    return Form(
+        "Classical: axis times the tangent of half the angle",
+        "g",
+        symbols.rodrigues_rates,
+        (ONE + 2 * (k + k**2) / below, r"\mathbf{1} + 2\,\frac{[g]_\times + [g]_\times^2}{1 + |g|^2}"),
+        (2 * (ONE - k) / below, r"\frac{2}{1 + |g|^2} \left( \mathbf{1} - [g]_\times \right)"),
+        ((ONE + k + p * p.T) / 2, r"\tfrac12 \left( \mathbf{1} + [g]_\times + g\,g^{\mathsf T} \right)"),
+    )
+
+
+def _modified() -> Form:
+    p = Matrix(symbols.mrp)
+    k, square = Matrix(skew(p)), squared(p)
+    below, inner = (1 + square) ** 2, (1 - square) * ONE + 2 * p * p.T
+    return Form(
+        "Modified: axis times the tangent of a quarter of the angle",
+        "s",
+        symbols.mrp_rates,
+        (
+            ONE + (4 * (1 - square) * k + 8 * k**2) / below,
+            r"\mathbf{1} + \frac{4 (1 - |s|^2)\,[s]_\times + 8\,[s]_\times^2}{(1 + |s|^2)^2}",
+        ),
+        (
+            4 * (inner - 2 * k) / below,
+            r"\frac{4}{(1 + |s|^2)^2} \left( (1 - |s|^2)\,\mathbf{1} - 2\,[s]_\times + 2\,s\,s^{\mathsf T} \right)",
+        ),
+        (
+            (inner + 2 * k) / 4,
+            r"\tfrac14 \left( (1 - |s|^2)\,\mathbf{1} + 2\,[s]_\times + 2\,s\,s^{\mathsf T} \right)",
+        ),
+    )
+
+
+def derive() -> Derivation:
+    d = Derivation(
+        "rodrigues",
+        title="Classical and modified Rodrigues parameters",
+        source="Schaub & Junkins, *Analytical Mechanics of Space Systems*, chapter 3",
+        about=(
+            "Three parameters project the sphere of unit quaternions: the classical ones from its centre, "
+            r"$g = (q_1, q_2, q_3)/q_0$, the modified ones from the point opposite to 1, "
+            r"$s = (q_1, q_2, q_3)/(1 + q_0)$. Everything about them is rational. $[v]_\times$ is the matrix of "
+            r"$u \mapsto v \times u$."
+        ),
+    )
+    _projection(d, CLASSICAL, _classical())
+    _projection(d, MODIFIED, _modified())
+    d.step(
+        "The shadow set is the same attitude.",
+        MODIFIED.dcm(shadow()),
+        MODIFIED.dcm(),
+        because="it is the projection of the opposite quaternion",
+        named=r"R\left(-s/|s|^2\right)",
+        shown="R(s)",
+    )
+    return d
+
+
+def _projection(d: Derivation, which: Projection, form: Form) -> None:
+    dcm_sb, rates = which.dcm(), Matrix(form.rates)
+    dcm_rate = rate(dcm_sb, pairs(which.parameters, form.rates))
+    body, space = which.rate_matrix("body"), which.rate_matrix("space")
+    opposite: dict[Expr, Expr] = {p: -p for p in which.parameters}
+    d.notation(
+        {
+            "R": dcm_sb, form.letter: Matrix(which.parameters), "B_b": body.as_immutable(), "B_s": space.as_immutable(),
+        },
+        pairs(which.parameters, form.rates),
+    )  # fmt: skip
+    d.section(form.title)
+    d.step(
+        "The direction cosine matrix is rational.",
+        dcm_of(which.quaternion()),
+        form.dcm[0],
+        because="the norm of the quaternion drops out",
+        named="R",
+        shown=form.dcm[1],
+    )
+    d.step("It is a rotation.", dcm_sb * dcm_sb.T, ONE, because="it is that of a unit quaternion",
+           named=r"R R^{\mathsf T}")  # fmt: skip
+    d.step(
+        "The angular velocity in the body, from the rate of the matrix.",
+        dcm_rate,
+        dcm_sb * skew(body * rates),
+        because=r"all nine entries agree",
+        named=r"\dot R",
+        shown=rf"R\,[B_b\,\dot {form.letter}]_\times",
+    )
+    d.step(
+        "The same matrix, collected.",
+        body.as_immutable(),
+        form.omega[0],
+        because="its entries are quadratic at most",
+        named="B_b",
+        shown=form.omega[1],
+    )
+    d.step(
+        "The angular velocity in space.",
+        dcm_rate,
+        skew(space * rates) * dcm_sb,
+        because="all nine entries agree",
+        named=r"\dot R",
+        shown=rf"[B_s\,\dot {form.letter}]_\times R",
+    )
+    d.step(
+        "Its matrix is that of the body for the opposite parameters.",
+        space.as_immutable(),
+        body.as_immutable().xreplace(opposite),
+        because="the two differ by the sign of the skew part",
+        named=f"B_s({form.letter})",
+        shown=f"B_b(-{form.letter})",
+    )
+    d.step("The rates are polynomials in the parameters.", body.inverse * body, ONE,
+           because="the two matrices are inverse to each other", named=r"B_b^{-1} B_b")  # fmt: skip
+    d.step(
+        "They are the angular velocity times a matrix.",
+        body.inverse,
+        form.inverse[0],
+        because="the inverse is collected",
+        named=rf"\dot {form.letter} = B_b^{{-1}} \omega_b, \quad B_b^{{-1}}",
+        shown=form.inverse[1],
+    )

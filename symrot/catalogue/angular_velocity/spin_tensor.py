@@ -1,0 +1,165 @@
+"""The spin tensor and the angular velocity (Arnold, Mathematical Methods, 2nd ed., section 26)."""
+
+from sympy import Matrix, eye
+
+from symrot import symbols
+from symrot.catalogue.tools.motion import OMEGA, attitude_rates, pairs, rate, squared
+from symrot.kinematics.quaternion import dcm_of, quaternion_rates, unit_relation
+from symrot.kinematics.rotations import skew, vee
+from symrot.proof.derivation import Derivation
+
+MATRIX = Matrix(3, 3, symbols.rotation_entries)
+MATRIX_RATE = Matrix(3, 3, symbols.rotation_entry_rates)
+OMEGA_S, U = Matrix(symbols.omega_s), Matrix(symbols.position)
+P, Q = symbols.second_quaternion, symbols.quaternion
+
+
+def derive() -> Derivation:
+    d = Derivation(
+        "spin_tensor",
+        title="The spin tensor and the angular velocity",
+        source="Arnold, *Mathematical Methods of Classical Mechanics*, 2nd ed., section 26; Goldstein, Poole & Safko, "
+        "*Classical Mechanics*, 3rd ed., section 4.9",
+        about=(
+            r"Because $R R^{\mathsf T} = 1$ at all times, $W = \dot R R^{\mathsf T}$ is skew: in three "
+            "dimensions it is a vector, the "
+            "angular velocity. It gives the velocity of every point of the body at once."
+        ),
+    )
+    _skewness(d)
+    _frames(d)
+    _points(d)
+    return d
+
+
+def _skewness(d: Derivation) -> None:
+    d.section("Why there is a vector")
+    moving = pairs(symbols.rotation_entries, symbols.rotation_entry_rates)
+    d.notation({"R": MATRIX, r"\omega": OMEGA_S, "u": U}, moving)
+    spin = MATRIX_RATE * MATRIX.T
+    d.given(r"Let $R$ be any matrix that changes with time, and", (r"W", r"\dot R\,R^{\mathsf T}"))
+    d.step(
+        r"The symmetric part of $W$ is a rate. Where $R R^{\mathsf T} = 1$ stays so, it is zero: $W$ is skew.",
+        spin + spin.T,
+        rate(MATRIX * MATRIX.T, moving),
+        because="the product rule",
+        named=r"W + W^{\mathsf T}",
+        shown=r"\frac{d}{dt} \left( R R^{\mathsf T} \right)",
+    )
+    d.step(
+        r"In three dimensions a skew matrix is a vector $\omega$, and multiplying by it is the cross product.",
+        skew(OMEGA_S) * U,
+        OMEGA_S.cross(U),
+        because="it has $3 \\cdot 2 / 2 = 3$ entries",
+        named=r"[\omega]_\times u",
+        shown=r"\omega \times u",
+    )
+    d.step(
+        "The vector is read off the matrix.",
+        vee(skew(OMEGA_S)),
+        OMEGA_S,
+        because="of the places of the three entries",
+        named=r"\mathrm{vee}\,[\omega]_\times",
+        shown=r"\omega",
+    )
+    d.step(
+        "Its square is symmetric.",
+        skew(OMEGA_S) ** 2,
+        OMEGA_S * OMEGA_S.T - squared(OMEGA_S) * eye(3),
+        because=r"$\omega \times (\omega \times u) = \omega\,(\omega \cdot u) - |\omega|^2 u$",
+        named=r"[\omega]_\times^2",
+        shown=r"\omega\,\omega^{\mathsf T} - |\omega|^2\,\mathbf{1}",
+    )
+
+
+def _frames(d: Derivation) -> None:
+    d.section("In space and in the body")
+    unit, dcm_sb = [unit_relation()], Matrix(dcm_of())
+    d.notation({"R": dcm_sb, r"\omega_b": OMEGA, "R_1": dcm_sb, "R_2": dcm_of(P)}, attitude_rates())
+    d.step(
+        r"The skew matrix of a turned vector is the turned skew matrix; so with $\omega_s = R\,\omega_b$ the two forms "
+        r"$\dot R = [\omega_s]_\times R = R\,[\omega_b]_\times$ are one.",
+        skew(dcm_sb * OMEGA),
+        dcm_sb * skew(OMEGA) * dcm_sb.T,
+        because="a rotation keeps cross products",
+        relations=unit,
+        named=r"[R\,\omega_b]_\times",
+        shown=r"R\,[\omega_b]_\times R^{\mathsf T}",
+    )
+    motion = attitude_rates()
+    d.step(
+        "A motion given by a unit quaternion has this spin tensor.",
+        rate(dcm_sb, motion) * dcm_sb.T,
+        skew(dcm_sb * OMEGA),
+        because=r"$\dot q = \tfrac12\,q\,(0, \omega_b)$",
+        relations=unit,
+        named=r"\dot R R^{\mathsf T}",
+        shown=r"[R\,\omega_b]_\times",
+    )
+    inner = pairs(P, quaternion_rates("space", P) * Matrix(symbols.vertical))
+    outer = pairs(Q, quaternion_rates("space") * OMEGA_S)
+    product = dcm_sb * dcm_of(P)
+    d.notation({r"\gamma": Matrix(symbols.vertical)}, inner | outer)
+    d.step(
+        r"Angular velocities add: if $R_1$ turns with $\omega$ and $R_2$, seen from there, with $\gamma$, the product "
+        r"$R_1 R_2$ turns with $\omega + R_1 \gamma$.",
+        rate(product, inner | outer),
+        skew(OMEGA_S + dcm_sb * Matrix(symbols.vertical)) * product,
+        because=r"$\frac{d}{dt} (R_1 R_2) = \dot R_1 R_2 + R_1 \dot R_2$",
+        relations=[unit_relation(Q), unit_relation(P)],
+        named=r"\frac{d}{dt} \left( R_1 R_2 \right)",
+        shown=r"\left[ \omega + R_1 \gamma \right]_\times R_1 R_2",
+    )
+
+
+def _points(d: Derivation) -> None:
+    d.section("What it does to points and vectors")
+    unit, dcm_sb = [unit_relation()], Matrix(dcm_of())
+    point, moving = Matrix(symbols.offset), Matrix(symbols.relative_velocity)
+    motion = attitude_rates() | pairs(symbols.omega_b, symbols.omega_rates)
+    d.notation({"d": point, r"\omega_s": dcm_sb * OMEGA}, motion)
+    d.step(
+        "The velocity of a point of the body.",
+        rate(dcm_sb * point, motion),
+        (dcm_sb * OMEGA).cross(dcm_sb * point),
+        because="its components in the body are constant",
+        relations=unit,
+        named=r"\frac{d}{dt}\,(R\,d)",
+        shown=r"\omega_s \times R\,d",
+    )
+    d.notation({}, pairs(symbols.offset, moving))
+    d.step(
+        "The rate of any vector, seen from space and seen from the body.",
+        dcm_sb.T * rate(dcm_sb * point, motion | pairs(symbols.offset, moving)),
+        moving + OMEGA.cross(point),
+        because="the product rule",
+        relations=unit,
+        named=r"R^{\mathsf T} \frac{d}{dt}\,(R\,d)",
+        shown=r"\dot d + \omega_b \times d",
+    )
+    d.step(
+        "Applied to the angular velocity itself: its rate is the same seen from both.",
+        dcm_sb.T * rate(dcm_sb * OMEGA, motion),
+        Matrix(symbols.omega_rates),
+        because=r"$\omega \times \omega = 0$",
+        relations=unit,
+        named=r"R^{\mathsf T} \dot\omega_s",
+        shown=r"\dot\omega_b",
+    )
+    velocity = OMEGA_S.cross(U)
+    gradient = velocity.jacobian(U)
+    d.step(
+        "The velocities of all points are a field without divergence.",
+        gradient.trace(),
+        0,
+        because="the trace of a skew matrix is zero",
+        named=r"\mathrm{div}\,(\omega \times r)",
+    )
+    d.step(
+        "Its curl is twice the angular velocity.",
+        vee(gradient - gradient.T),
+        2 * OMEGA_S,
+        because=r"the gradient is $[\omega]_\times$, and the curl takes it twice",
+        named=r"\mathrm{curl}\,(\omega \times r)",
+        shown=r"2\,\omega",
+    )

@@ -1,0 +1,1 @@
+"""Attitude: rotation matrices, axis and angle, composition, Euler parameters."""

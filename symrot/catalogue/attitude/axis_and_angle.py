@@ -1,0 +1,173 @@
+"""Rodrigues' rotation formula, and the axis and angle back from the matrix (Goldstein, 3rd ed., section 4.7)."""
+
+from sympy import Matrix, cos, eye, pi, sin
+
+from symrot import symbols
+from symrot.catalogue.tools.motion import squared
+from symrot.kinematics.quaternion import dcm_of, unit_relation
+from symrot.kinematics.rotation_vector import dcm_of_axis_angle
+from symrot.kinematics.rotations import skew, vee
+from symrot.proof.derivation import Derivation
+
+N, V = Matrix(symbols.axis), Matrix(symbols.position)
+ALPHA = symbols.alpha
+UNIT = [squared(N) - 1]
+
+
+def derive() -> Derivation:
+    d = Derivation(
+        "axis_and_angle",
+        title="Rodrigues' formula, axis and angle",
+        source="Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., sections 4.6 and 4.7",
+        about=(
+            r"A turn by the angle $\alpha$ about the unit axis $n$ leaves what is along the axis and turns what is "
+            r"across "
+            "it. Conversely every rotation has an axis, and its matrix gives axis and angle back; at half a turn, "
+            "where the usual formula divides by zero, by another way."
+        ),
+    )
+    _forward(d)
+    _back(d)
+    _half_turn(d)
+    return d
+
+
+def _forward(d: Derivation) -> None:
+    d.section("From axis and angle to the matrix")
+    d.notation({"n": N, "v": V, "R": Matrix(dcm_of_axis_angle())})
+    along = N * N.dot(V)
+    across = V - along
+    d.define("The part of a vector along the axis, and", r"v_\parallel", along)
+    d.define("the part across it:", r"v_\perp", across)
+    d.step(
+        "The two parts are at right angles.",
+        across.dot(N),
+        0,
+        because="$n \\cdot n = 1$",
+        relations=UNIT,
+        named=r"v_\perp \cdot n",
+    )
+    d.step(
+        r"The product $n \times v$ is as long as the part across the axis, and at right angles to it: the two span the "
+        "plane of the turn.",
+        Matrix([squared(N.cross(V)), N.cross(V).dot(across)]),
+        Matrix([squared(across), 0]),
+        because=r"$|n \times v|^2 = |v|^2 - (n \cdot v)^2$",
+        relations=UNIT,
+        named=r"\begin{bmatrix} |n \times v|^2 \\ (n \times v) \cdot v_\perp \end{bmatrix}",
+        shown=r"\begin{bmatrix} |v_\perp|^2 \\ 0 \end{bmatrix}",
+    )
+    turned = along + cos(ALPHA) * across + sin(ALPHA) * N.cross(V)
+    d.step(
+        "Rodrigues' formula: in this plane the vector turns as in any plane.",
+        turned,
+        dcm_of_axis_angle() * V,
+        because=r"a turn by $\alpha$ takes $v_\perp$ to $\cos\alpha\;v_\perp + \sin\alpha\;n \times v$",
+        relations=UNIT,
+        named=r"v_\parallel + \cos\alpha\;v_\perp + \sin\alpha\;n \times v",
+        shown=r"\left( 1 + \sin\alpha\,[n]_\times + (1 - \cos\alpha)\,[n]_\times^2 \right) v = R\,v",
+    )
+    d.step(
+        "All nine entries.",
+        dcm_of_axis_angle(),
+        cos(ALPHA) * eye(3) + (1 - cos(ALPHA)) * N * N.T + sin(ALPHA) * skew(N),
+        because=r"$[n]_\times^2 = n n^{\mathsf T} - 1$ for a unit vector",
+        relations=UNIT,
+        named="R",
+        shown=r"\cos\alpha\;\mathbf{1} + (1 - \cos\alpha)\,n n^{\mathsf T} + \sin\alpha\,[n]_\times",
+    )
+    d.step(
+        "It is a rotation.",
+        dcm_of_axis_angle().T * dcm_of_axis_angle(),
+        eye(3),
+        because="lengths are kept along the axis and across it",
+        relations=UNIT,
+        named=r"R^{\mathsf T} R",
+    )
+
+
+def _back(d: Derivation) -> None:
+    d.section("From the matrix to axis and angle")
+    matrix = dcm_of_axis_angle()
+    d.notation({"R": Matrix(dcm_of())})
+    d.step(
+        "Every rotation has an axis (Euler): the matrix, here of a unit quaternion, has the eigenvalue 1.",
+        (Matrix(dcm_of()) - eye(3)).det(),
+        0,
+        because=r"$\det (R - 1) = \det R^{\mathsf T} \det (R - 1) = \det (1 - R) = -\det (R - 1)$, in three dimensions",
+        relations=[unit_relation()],
+        named=r"\det (R - 1)",
+    )
+    d.notation({"R": Matrix(matrix)})
+    d.step(
+        "The trace gives the cosine.",
+        (matrix.trace() - 1) / 2,
+        cos(ALPHA),
+        because=r"$\mathrm{tr}\,[n]_\times = 0$ and $|n| = 1$",
+        relations=UNIT,
+        named=r"\tfrac12 \left( \mathrm{tr}\,R - 1 \right)",
+    )
+    sine = vee(matrix - matrix.T) / 2
+    d.step(
+        "The skew part gives the sine and the axis.",
+        sine,
+        sin(ALPHA) * N,
+        because="only one of the three terms is skew",
+        relations=UNIT,
+        named=r"s = \tfrac12\,\mathrm{vee} \left( R - R^{\mathsf T} \right)",
+        shown=r"\sin\alpha\;n",
+    )
+    d.step(
+        r"Together they are a point of the unit circle, and $\alpha = \mathrm{atan2}\left(|s|, \tfrac12 "
+        r"(\mathrm{tr}\,R - "
+        r"1)\right)$ is exact to rounding at every angle; an arccosine is not.",
+        squared(sine) + (matrix.trace() - 1) ** 2 / 4,
+        1,
+        because=r"$\sin^2\alpha + \cos^2\alpha = 1$",
+        relations=UNIT,
+        named=r"|s|^2 + \tfrac14 \left( \mathrm{tr}\,R - 1 \right)^2",
+    )
+
+
+def _half_turn(d: Derivation) -> None:
+    d.section("At half a turn")
+    half = dcm_of_axis_angle().subs(ALPHA, pi)
+    d.notation({"R": Matrix(half)})
+    d.given(r"At $\alpha = \pi$ the skew part is zero, and $n = s / \sin\alpha$ has no meaning.")
+    d.step(
+        "But then the symmetric part is the axis alone.",
+        (half + eye(3)) / 2,
+        N * N.T,
+        because=r"$\cos\pi = -1$",
+        relations=UNIT,
+        named=r"\tfrac12 \left( R + 1 \right)",
+        shown=r"n\,n^{\mathsf T}",
+    )
+    d.step(
+        "Every column of it is along the axis; the longest is at least $1/\\sqrt 3$ long.",
+        Matrix.hstack(*((half + eye(3)).col(k).cross(N) for k in range(3))),
+        0,
+        because="column $k$ is $2\\,n_k\\,n$, and the three $n_k^2$ have the sum 1",
+        relations=UNIT,
+        named=r"(R + 1)\,e_k \times n,\ k = 1, 2, 3",
+    )
+    d.step(
+        "The sign of $n$ is free: both axes give one rotation.",
+        dcm_of_axis_angle(-N, pi) - half,
+        0,
+        because="half a turn to the left is half a turn to the right",
+        relations=UNIT,
+        named=r"R(-n, \pi) - R(n, \pi)",
+    )
+    matrix = dcm_of_axis_angle()
+    d.notation({"R": Matrix(matrix)})
+    symmetric = matrix + matrix.T + (1 - matrix.trace()) * eye(3)
+    d.step(
+        "The same works at every angle, with no loss of digits near half a turn.",
+        symmetric,
+        4 * sin(ALPHA / 2) ** 2 * N * N.T,
+        because=r"$1 - \cos\alpha = 2 \sin^2 (\alpha/2)$",
+        relations=UNIT,
+        named=r"R + R^{\mathsf T} + (1 - \mathrm{tr}\,R)\,\mathbf{1}",
+        shown=r"4 \sin^2 \tfrac\alpha2\; n\,n^{\mathsf T}",
+    )

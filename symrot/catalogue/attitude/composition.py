@@ -1,0 +1,196 @@
+"""Composition of rotations, and why their order matters (Goldstein, 3rd ed., sections 4.8; Altmann, chapter 9)."""
+
+from sympy import Matrix, cos, eye, pi, sin, sqrt
+
+from symrot import symbols
+from symrot.catalogue.tools.motion import squared
+from symrot.kinematics.quaternion import dcm_of, qmul, unit_relation
+from symrot.kinematics.rotation_vector import dcm_of_axis_angle, quaternion_of_axis_angle
+from symrot.kinematics.rotations import elementary_rotation, skew
+from symrot.proof.derivation import Derivation
+
+N, K = Matrix(symbols.axis), Matrix(symbols.normal)
+ALPHA, BETA = symbols.alpha, symbols.theta
+AXES = [squared(N) - 1, squared(K) - 1]
+P, Q = symbols.second_quaternion, symbols.quaternion
+
+
+def derive() -> Derivation:
+    d = Derivation(
+        "composition",
+        title="One rotation after another",
+        source="Altmann, *Rotations, Quaternions, and Double Groups*, chapter 9; Goldstein, Poole & Safko, "
+        "*Classical Mechanics*, 3rd ed., section 4.8",
+        about=(
+            "Two rotations, one after the other, are a rotation. Its axis depends on which came first, its angle does "
+            "not; and the difference of the two orders is, for small angles, a turn about the cross product of the "
+            "axes."
+        ),
+    )
+    _product(d)
+    _order(d)
+    _small(d)
+    _frames(d)
+    return d
+
+
+def _product(d: Derivation) -> None:
+    d.section("The product")
+    d.notation(
+        {
+            "p": Matrix(P), "q": Matrix(Q), "n": N, "k": K,
+            "R": lambda *of: dcm_of(of[0]) if len(of) == 1 else dcm_of_axis_angle(*of),
+            "R_z": lambda angle: elementary_rotation("Z", angle), "R_x": lambda angle: elementary_rotation("X", angle),
+        }
+    )  # fmt: skip
+    units = [unit_relation(P), unit_relation(Q)]
+    d.step(
+        "The product of two unit quaternions has unit norm.",
+        squared(Matrix(qmul(P, Q))),
+        1,
+        because="$|p q| = |p|\\,|q|$, Euler's identity of four squares",
+        relations=units,
+        named="|p\\,q|^2",
+    )
+    d.step(
+        "Its matrix is the product of the matrices.",
+        dcm_of(qmul(P, Q)),
+        dcm_of(P) * dcm_of(Q),
+        because=r"$p\,(q\,v\,\bar q)\,\bar p = (p q)\,v\,\overline{(p q)}$",
+        relations=units,
+        named="R(p\\,q)",
+        shown="R(p)\\,R(q)",
+    )
+    product = qmul(quaternion_of_axis_angle(N, ALPHA), quaternion_of_axis_angle(K, BETA))
+    cosine = cos(ALPHA / 2) * cos(BETA / 2) - sin(ALPHA / 2) * sin(BETA / 2) * N.dot(K)
+    d.given(
+        r"Let the first turn be by $\theta$ about $k$, the second by $\alpha$ about $n$: $R(n, \alpha)\,R(k, \theta)$."
+    )
+    d.step(
+        "The angle of the product (Rodrigues).",
+        product[0],
+        cosine,
+        because="the scalar part of a product of quaternions is the product of the scalars less the scalar product",
+        named=r"\cos \tfrac{\text{angle}}{2}",
+        shown=r"\cos\tfrac\alpha2 \cos\tfrac\theta2 - \sin\tfrac\alpha2 \sin\tfrac\theta2\; n \cdot k",
+    )
+    vector = (
+        sin(ALPHA / 2) * cos(BETA / 2) * N
+        + cos(ALPHA / 2) * sin(BETA / 2) * K
+        + sin(ALPHA / 2) * sin(BETA / 2) * N.cross(K)
+    )
+    d.step(
+        "Its axis.",
+        Matrix(product[1:]),
+        vector,
+        because="the vector part of the product",
+        named=r"\text{axis}\;\sin \tfrac{\text{angle}}{2}",
+        shown=r"\sin\tfrac\alpha2 \cos\tfrac\theta2\; n + \cos\tfrac\alpha2 \sin\tfrac\theta2\; k"
+        r" + \sin\tfrac\alpha2 \sin\tfrac\theta2\; n \times k",
+    )
+
+
+def _order(d: Derivation) -> None:
+    d.section("The order matters")
+    one = qmul(quaternion_of_axis_angle(N, ALPHA), quaternion_of_axis_angle(K, BETA))
+    other = qmul(quaternion_of_axis_angle(K, BETA), quaternion_of_axis_angle(N, ALPHA))
+    d.step(
+        "The other order has the same angle, and another axis unless the axes are parallel.",
+        one - other,
+        Matrix([0, *(2 * sin(ALPHA / 2) * sin(BETA / 2) * N.cross(K))]),
+        because="only the cross product changes its sign",
+        named=r"q_n q_k - q_k q_n",
+        shown=r"\left( 0,\; 2 \sin\tfrac\alpha2 \sin\tfrac\theta2\; n \times k \right)",
+    )
+    quarter_x, quarter_z = (elementary_rotation(axis, pi / 2) for axis in "XZ")
+    d.step(
+        "A quarter turn about $x$ and then one about $z$, or first about $z$.",
+        Matrix.hstack(quarter_z * quarter_x, quarter_x * quarter_z),
+        Matrix.hstack(*(dcm_of_axis_angle(Matrix([1, s, 1]) / sqrt(3), 2 * pi / 3) for s in (1, -1))),
+        because=r"both are a third of a turn, one about $(1, 1, 1)$, the other about $(1, -1, 1)$",
+        named=r"\begin{bmatrix} R_z R_x & R_x R_z \end{bmatrix}_{\alpha = \pi/2}",
+    )
+    d.step(
+        "Turns about one axis can be exchanged: their angles add.",
+        dcm_of_axis_angle(N, ALPHA) * dcm_of_axis_angle(N, BETA),
+        dcm_of_axis_angle(N, ALPHA + BETA),
+        because=r"$[n]_\times$ commutes with itself",
+        relations=AXES[:1],
+        named=r"R(n, \alpha)\,R(n, \theta)",
+        shown=r"R(n, \alpha + \theta)",
+    )
+    half_n, half_k = dcm_of_axis_angle(N, pi), dcm_of_axis_angle(K, pi)
+    d.step(
+        "So can two half turns about axes at right angles.",
+        half_n * half_k - half_k * half_n,
+        0,
+        because="then the two quaternions differ by their sign alone, and $q$ and $-q$ are one attitude",
+        relations=[*AXES, N.dot(K)],
+        named=r"R(n, \pi)\,R(k, \pi) - R(k, \pi)\,R(n, \pi)",
+    )
+
+
+def _small(d: Derivation) -> None:
+    d.section("Small angles")
+    one = dcm_of_axis_angle(N, ALPHA) * dcm_of_axis_angle(K, BETA)
+    other = dcm_of_axis_angle(K, BETA) * dcm_of_axis_angle(N, ALPHA)
+    still = {ALPHA: 0, BETA: 0}
+    d.step(
+        "To first order the order does not matter: small turns add like vectors.",
+        Matrix.hstack(*((one - other).diff(angle).subs(still) for angle in (ALPHA, BETA))),
+        0,
+        because=r"$(1 + \alpha\,[n]_\times)(1 + \theta\,[k]_\times)$ is symmetric up to the product $\alpha\theta$",
+        named=r"\left. \frac{\partial (R_n R_k - R_k R_n)}{\partial (\alpha, \theta)} \right|_0",
+    )
+    d.step(
+        "To second order they differ by a turn about the cross product of the axes.",
+        (one - other).diff(ALPHA, BETA).subs(still),
+        skew(N.cross(K)),
+        because=r"the commutator of two skew matrices is that of the cross product",
+        named=r"\left. \frac{\partial^2 (R_n R_k - R_k R_n)}{\partial\alpha\,\partial\theta} \right|_0"
+        r" = [n]_\times [k]_\times - [k]_\times [n]_\times",
+        shown=r"[n \times k]_\times",
+    )
+
+
+def _frames(d: Derivation) -> None:
+    d.section("Axes of space, axes of the body")
+    dcm_sb = Matrix(dcm_of())
+    carried = dcm_sb * K
+    d.given(r"Let the body have the attitude $R$, and turn by $\theta$ about an axis that is $k$ in the body, "
+            r"so $R k$ in space.")  # fmt: skip
+    d.step(
+        "A turn about an axis of the body is a factor on the right.",
+        dcm_of_axis_angle(carried, BETA) * dcm_sb,
+        dcm_sb * dcm_of_axis_angle(K, BETA),
+        because=r"$[R k]_\times = R\,[k]_\times R^{\mathsf T}$",
+        relations=[unit_relation(), squared(K) - 1],
+        named=r"R(R k, \theta)\,R",
+        shown=r"R\;R(k, \theta)",
+    )
+    d.step(
+        "Hence the angle of a rotation is the same in all axes, and its axis turns like a vector.",
+        dcm_sb * dcm_of_axis_angle(K, BETA) * dcm_sb.T,
+        dcm_of_axis_angle(carried, BETA),
+        because=r"$R^{\mathsf T} R = 1$",
+        relations=[unit_relation(), squared(K) - 1],
+        named=r"R\;R(k, \theta)\,R^{\mathsf T}",
+        shown=r"R(R k, \theta)",
+    )
+    intrinsic = [elementary_rotation("Z", symbols.phi), elementary_rotation("X", symbols.theta)]
+    second_axis = intrinsic[0] * Matrix([1, 0, 0])
+    d.step(
+        "Turning about $z$ and then about the carried $x$ is turning about the fixed $x$ and then about the fixed $z$.",
+        dcm_of_axis_angle(second_axis, symbols.theta) * intrinsic[0],
+        intrinsic[0] * intrinsic[1],
+        because="of the first of these steps; an intrinsic sequence is the extrinsic one read backwards",
+        named=r"R(R_z(\phi)\,e_x, \theta)\,R_z(\phi)",
+        shown=r"R_z(\phi)\,R_x(\theta)",
+    )
+    d.step(
+        "The inverse undoes the turns in reverse order.",
+        (intrinsic[0] * intrinsic[1]) * (intrinsic[1].T * intrinsic[0].T),
+        eye(3),
+        because="the inner pair cancels first",
+        named=r"R_z R_x \cdot R_x^{\mathsf T} R_z^{\mathsf T}",
+    )

@@ -1,0 +1,123 @@
+"""Euler angles and Euler parameters (Goldstein, 3rd ed., section 4.5; Bernardes & Viollet, PLoS ONE 17, 2022)."""
+
+from sympy import Matrix, cos, pi, sin
+
+from symrot import symbols
+from symrot.catalogue.tools.motion import squared
+from symrot.conventions import INTRINSIC_SEQUENCES
+from symrot.kinematics.euler import dcm, quaternion_of_euler
+from symrot.kinematics.quaternion import dcm_of, unit_relation
+from symrot.proof.derivation import Derivation
+
+PHI, THETA, PSI = symbols.angles
+Q = symbols.quaternion
+
+
+def derive() -> Derivation:
+    d = Derivation(
+        "euler_parameters",
+        title="Euler parameters from Euler angles",
+        source="Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., section 4.5; Bernardes & Viollet, *PLoS "
+        "ONE* 17 "
+        "(2022) e0276302",
+        about=(
+            "The Euler parameters of an attitude, its unit quaternion, are the product of the three half-angle factors "
+            r"$\cos\frac{q}{2} + e \sin\frac{q}{2}$ of the turns. Half the sum and half the difference of the outer "
+            "angles appear, and lead back to the angles."
+        ),
+    )
+    _precession(d)
+    _all(d)
+    return d
+
+
+def _precession(d: Derivation) -> None:
+    d.section("Precession, nutation, spin: ZXZ")
+    q = Matrix(quaternion_of_euler("ZXZ"))
+    total, difference = (PHI + PSI) / 2, (PHI - PSI) / 2
+    d.step(
+        "The product of the three turns.",
+        q,
+        Matrix(
+            [
+                cos(THETA / 2) * cos(total),
+                sin(THETA / 2) * cos(difference),
+                sin(THETA / 2) * sin(difference),
+                cos(THETA / 2) * sin(total),
+            ]
+        ),
+        because="sines and cosines of sums",
+        named=r"\begin{bmatrix} q_0 \\ q_1 \\ q_2 \\ q_3 \end{bmatrix}",
+    )
+    d.step(
+        "It has unit norm.",
+        squared(q),
+        1,
+        because="each factor has",
+        named="|q|^2",
+    )
+    tilt = dict(zip(Q, q, strict=True))
+    d.step(
+        "The nutation alone, from the parameters.",
+        Matrix([Q[0] ** 2 + Q[3] ** 2, Q[1] ** 2 + Q[2] ** 2]).subs(tilt),
+        Matrix([cos(THETA / 2) ** 2, sin(THETA / 2) ** 2]),
+        because=r"$\cos^2 + \sin^2 = 1$ for the outer angles",
+        named=r"\begin{bmatrix} q_0^2 + q_3^2 \\ q_1^2 + q_2^2 \end{bmatrix}",
+    )
+    d.step(
+        r"The outer angles: $\frac{\phi + \psi}{2} = \mathrm{atan2}(q_3, q_0)$ and $\frac{\phi - \psi}{2} = "
+        r"\mathrm{atan2}(q_2, q_1)$.",
+        Matrix([Q[3] * cos(total) - Q[0] * sin(total), Q[2] * cos(difference) - Q[1] * sin(difference)]).subs(tilt),
+        0,
+        because="of the first step, wherever the parameters are not both zero",
+        named=r"\begin{bmatrix} q_3 \cos\frac{\phi+\psi}{2} - q_0 \sin\frac{\phi+\psi}{2} \\"
+        r" q_2 \cos\frac{\phi-\psi}{2} - q_1 \sin\frac{\phi-\psi}{2} \end{bmatrix}",
+    )
+    d.step(
+        r"At $\theta = 0$ only the sum of the outer angles is left, and the parameters stay regular.",
+        q.subs(THETA, 0),
+        Matrix([cos(total), 0, 0, sin(total)]),
+        because=r"$\sin\frac\theta2 = 0$",
+        named=r"q\,|_{\theta = 0}",
+    )
+    d.step(
+        "A whole turn in one angle changes the sign of all four, and no entry of the matrix.",
+        q.subs(PHI, PHI + 2 * pi) + q,
+        0,
+        because=r"half of $2\pi$ is $\pi$",
+        named=r"q(\phi + 2\pi) + q(\phi)",
+    )
+
+
+def _all(d: Derivation) -> None:
+    d.section("All sequences")
+    d.given(
+        "For each sequence the product of the three turns is written out, and proven to be the rotation of the angles."
+    )
+    for sequence in INTRINSIC_SEQUENCES:
+        q = quaternion_of_euler(sequence)
+        d.define(f"{sequence}:", "q", q)
+        d.step(
+            "It is the rotation of the three angles.",
+            dcm_of(q),
+            dcm(sequence),
+            because="the quaternion of a product is the product of the quaternions",
+            named="R(q)",
+            shown=rf"R_{{\mathrm{{{sequence}}}}}(\phi, \theta, \psi)",
+        )
+    d.step(
+        "An extrinsic sequence is the intrinsic one read backwards, and so are its parameters.",
+        quaternion_of_euler("zyx"),
+        Matrix(quaternion_of_euler("XYZ")).subs({PHI: PSI, PSI: PHI}, simultaneous=True),
+        because="a turn about an axis of space is a factor on the left",
+        named=r"q_{\mathrm{zyx}}(\phi, \theta, \psi)",
+        shown=r"q_{\mathrm{XYZ}}(\psi, \theta, \phi)",
+    )
+    d.step(
+        "The matrix in the parameters has no sines: it is quadratic.",
+        dcm_of().trace(),
+        4 * symbols.q0**2 - 1,
+        because="$q_1^2 + q_2^2 + q_3^2 = 1 - q_0^2$",
+        relations=[unit_relation()],
+        named=r"\mathrm{tr}\,R",
+    )

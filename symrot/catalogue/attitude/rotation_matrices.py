@@ -1,0 +1,176 @@
+"""Rotation matrices: what keeps lengths (Goldstein, Poole & Safko, Classical Mechanics, 3rd ed., section 4.2)."""
+
+from itertools import product
+
+from sympy import Expr, Matrix, Symbol, cos, eye, hessian, sin, summation, zeros
+
+from symrot import symbols
+from symrot.catalogue.tools.motion import squared
+from symrot.kinematics.rotations import elementary_rotation, skew
+from symrot.proof.derivation import Derivation
+
+MATRIX = Matrix(3, 3, symbols.rotation_entries)
+U, V = Matrix(symbols.position), Matrix(symbols.offset)
+SIZES = (2, 3, 4, 5)
+
+
+def skew_dimension(size: int) -> int:
+    """Return how many directions S in the space of matrices solve ``S + S^T = 0``: all, less the rank of the map."""
+    images = []
+    for i, j in product(range(size), repeat=2):
+        unit = zeros(size)
+        unit[i, j] = 1
+        images.append(list(unit + unit.T))
+    return size**2 - int(Matrix(images).rank())
+
+
+def derive() -> Derivation:
+    d = Derivation(
+        "rotation_matrices",
+        title="Rotation matrices",
+        source="Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., sections 4.2 and 4.3",
+        about=(
+            "A rigid body keeps the distances of its points. From this alone: the matrix that takes its "
+            "positions from one "
+            "attitude to another is orthogonal, in $D$ dimensions $D (D - 1) / 2$ numbers fix it, and in space three."
+        ),
+    )
+    d.given("Let $R$ be any matrix, with entries $R_{ij}$, and $u$, $v$ any vectors.")
+    excess = MATRIX.T * MATRIX - eye(3)
+    change = squared(MATRIX * U) - squared(U)
+    d.step(
+        "By how much a vector changes its length is a quadratic form.",
+        change,
+        U.dot(excess * U),
+        because="$|R u|^2$ is the product of $R u$ with itself",
+        named="|R u|^2 - |u|^2",
+        shown=r"u^{\mathsf T} \left( R^{\mathsf T} R - 1 \right) u",
+    )
+    d.step(
+        "If it is zero for every vector, so are its second derivatives: the matrix is orthogonal, "
+        r"$R^{\mathsf T} R = 1$.",
+        hessian(change, U) / 2,
+        excess,
+        because="the matrix of a quadratic form, being symmetric, is half its second derivatives",
+        named=r"\tfrac12\, \frac{\partial^2}{\partial u\,\partial u} \left( |R u|^2 - |u|^2 \right)",
+        shown=r"R^{\mathsf T} R - 1",
+    )
+    d.step(
+        "Then angles are kept as well.",
+        (MATRIX * U).dot(MATRIX * V) - U.dot(V),
+        U.dot(excess * V),
+        because="the same matrix stands between two different vectors",
+        named=r"R u \cdot R v - u \cdot v",
+        shown=r"u^{\mathsf T} \left( R^{\mathsf T} R - 1 \right) v",
+    )
+    d.step(
+        r"The determinant is $1$ or $-1$.",
+        (MATRIX.T * MATRIX).det(method="berkowitz"),
+        MATRIX.det() ** 2,
+        because=r"a matrix and its transpose have one determinant, and here the left side is $\det 1$",
+        named=r"\det \left( R^{\mathsf T} R \right)",
+        shown=r"\left( \det R \right)^2",
+    )
+    d.given(
+        "A motion cannot jump from $1$ to $-1$: the attitudes of a body have determinant 1. Those are the rotations."
+    )
+    d.step(
+        r"Where $R^{\mathsf T} R = 1$ and the determinant is 1, every entry is its own cofactor: each "
+        "column is the cross product of "
+        "the next two.",
+        (MATRIX.adjugate() - MATRIX.det() * MATRIX.T) * MATRIX,
+        -MATRIX.det() * excess,
+        because=r"$\mathrm{adj}(R)\,R = \det R$, for every matrix",
+        named=r"\left( \mathrm{adj}(R) - \det R\; R^{\mathsf T} \right) R",
+        shown=r"\det R \left( 1 - R^{\mathsf T} R \right)",
+    )
+    _count(d)
+    _angle(d)
+    return d
+
+
+def _count(d: Derivation) -> None:
+    d.section("How many numbers fix a rotation")
+    place = Symbol("k", integer=True, positive=True)
+    conditions: Expr = summation(place, (place, 1, symbols.D))
+    freedom = symbols.D * (symbols.D - 1) / 2
+    d.step(
+        "In $D$ dimensions: the entries, less the conditions.",
+        symbols.D**2 - conditions,
+        freedom,
+        because=r"$R^{\mathsf T} R$ is symmetric, so that it has $1 + 2 + \cdots + D$ different entries",
+        named=r"D^2 - \sum_{k=1}^{D} k",
+    )
+    d.step(
+        f"No condition follows from others: with $D = {', '.join(map(str, SIZES))}$, so many directions lead from 1 to "
+        r"other solutions. They are the skew matrices, $S + S^{\mathsf T} = 0$.",
+        Matrix([skew_dimension(size) for size in SIZES]),
+        Matrix([freedom.subs(symbols.D, size) for size in SIZES]),
+        because=r"$(1 + \epsilon S)^{\mathsf T} (1 + \epsilon S) = 1 + \epsilon (S + S^{\mathsf T})$ to "
+        "first order, and the rank of this map is counted",
+        named=r"\dim \left\{ S : S + S^{\mathsf T} = 0 \right\}_D",
+    )
+    d.positive(
+        "A rotation of the plane has one angle. In three dimensions there are three, as many as axes; in four, six.",
+        freedom.subs(symbols.D, 3),
+        because="of the formula",
+        named=r"\left. \frac{D (D - 1)}{2} \right|_{D=3}",
+    )
+
+
+def _angle(d: Derivation) -> None:
+    d.section("One angle in the plane, three numbers in space")
+    alpha = symbols.alpha
+    first = Matrix([cos(alpha), sin(alpha)])
+    conditions = Matrix([[first[0], first[1]], [-first[1], first[0]]])
+    d.given(
+        r"In the plane, let the first column be the unit vector $(\cos\alpha, \sin\alpha)$. The second "
+        "$(x, y)$ is at right "
+        "angles to it, and the determinant is 1: two linear equations.",
+        (conditions * U[:2, :], Matrix([0, 1])),
+    )
+    d.step(
+        "They have one solution.",
+        conditions.inv(method="ADJ") * Matrix([0, 1]),
+        elementary_rotation(2, alpha)[:2, 1],
+        because=r"the determinant of the two equations is $\cos^2\alpha + \sin^2\alpha$",
+        named=r"\begin{bmatrix} x \\ y \end{bmatrix}",
+    )
+    for axis, name in enumerate("xyz"):
+        turn = elementary_rotation(axis, alpha)
+        d.define(f"About the axis ${name}$:", f"R_{name}", turn)
+        d.step(
+            "It is a rotation.",
+            turn.T * turn,
+            eye(3),
+            because="one axis stays, the plane across it turns",
+            named=rf"R_{name}^{{\mathsf T}} R_{name}",
+        )
+    cayley = _cayley()
+    d.step(
+        r"Three numbers $g$ make a rotation (Cayley), $R = (1 - [g]_\times)^{-1} (1 + [g]_\times)$.",
+        cayley.T * cayley,
+        eye(3),
+        because=r"$1 + [g]_\times$ and $1 - [g]_\times$ commute, and are transposes of each other",
+        named=r"R^{\mathsf T} R",
+    )
+    d.step(
+        "Its determinant is 1.",
+        cayley.det(),
+        1,
+        because="a matrix and its transpose have one determinant",
+        named=r"\det R",
+    )
+    d.step(
+        r"Near $g = 0$ they are independent: to first order $R$ is $1 + 2\,[g]_\times$.",
+        Matrix([cayley.diff(g).subs(dict.fromkeys(symbols.rodrigues, 0)) / 2 for g in symbols.rodrigues]),
+        Matrix([skew(eye(3).col(axis)) for axis in range(3)]),
+        because=r"$(1 - [g]_\times)^{-1} = 1 + [g]_\times$ to first order",
+        named=r"\tfrac12 \left. \frac{\partial R}{\partial g_k} \right|_{g = 0},\ k = 1, 2, 3",
+    )
+
+
+def _cayley() -> Matrix:
+    g = skew(symbols.rodrigues)
+    forward, backward = eye(3) + g, eye(3) - g
+    return backward.adjugate() * forward / backward.det()

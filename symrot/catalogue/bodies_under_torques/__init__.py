@@ -1,0 +1,1 @@
+"""Bodies under torques: heavy tops, wheels, gyrostats, the gravity gradient."""

@@ -1,0 +1,118 @@
+"""Gravity gradient on a circular orbit (Hughes, Spacecraft Attitude Dynamics, chapters 8 and 9)."""
+
+from sympy import Matrix, Rational, S
+
+from symrot import symbols
+from symrot.catalogue.tools.motion import OMEGA, TENSOR, attitude_rates, pairs, rate, squared
+from symrot.dynamics.equations import angular_acceleration
+from symrot.inertia.tensor import inertia_of_point
+from symrot.kinematics.quaternion import dcm_of, unit_relation
+from symrot.kinematics.rotations import elementary_rotation
+from symrot.proof.derivation import Derivation
+
+R, K, P = Matrix(symbols.radius), Matrix(symbols.normal), Matrix(symbols.position)
+
+
+def derive() -> Derivation:
+    d = Derivation(
+        "gravity_gradient",
+        title="Gravity gradient on a circular orbit",
+        source="Hughes, *Spacecraft Attitude Dynamics*, chapters 8 and 9",
+        about=(
+            "Gravity is stronger on the near side of a satellite. To first order in its size this gives a "
+            "torque that is "
+            "quadratic in the direction $r$ of the orbit's radius, and a motion with one invariant: the energy in axes "
+            "that turn with the orbit."
+        ),
+    )
+    d.nonzero("The tensor of inertia has an inverse,", TENSOR.det(), r"\det I")
+    unit = [squared(R) - 1]
+    n, epsilon, mass = symbols.n, symbols.epsilon, symbols.m
+    d.section("The torque")
+    d.given(
+        r"A point of mass $m$ at $\rho = (x, y, z)$ from the centre of mass, which is $a = 1/\epsilon$ from the "
+        r"centre of "
+        r"attraction in the direction $r$, is attracted by the inverse square of its distance; on a circular orbit "
+        r"$\mu / a^3 = n^2$, with $n$ the mean motion (Kepler):",
+        (r"F", r"-\,m\,n^2 a\, \frac{r + \epsilon \rho}{|r + \epsilon \rho|^3}"),
+    )
+    place = R + epsilon * P
+    pull = -mass * n**2 * place * squared(place) ** Rational(-3, 2)
+    tidal = pull.diff(epsilon).subs(epsilon, S.Zero)
+    d.notation({"r": R, r"\rho": P, "I": TENSOR, "m": mass, "n": n, r"\omega": OMEGA, "k": K})
+    d.step(
+        "To first order in the size of the body, the tidal force stretches along the radius and squeezes across it.",
+        tidal,
+        mass * n**2 * (3 * R.dot(P) * R - P),
+        because="the derivative at the centre of mass, where the radius has length 1",
+        relations=unit,
+        named=r"\frac{1}{a} \left. \frac{\partial F}{\partial \epsilon} \right|_0",
+        shown=r"m\,n^2 \left( 3\,(r \cdot \rho)\,r - \rho \right)",
+    )
+    tensor = Matrix(inertia_of_point(mass, P))
+    d.notation({r"I_\rho": tensor})
+    d.step(
+        "Its moment is that of the tensor of inertia of the point; summed over the body, of the whole tensor.",
+        P.cross(tidal),
+        3 * n**2 * R.cross(tensor * R),
+        because=r"$I_\rho\, r = m\,(|\rho|^2 r - (r \cdot \rho)\,\rho)$, and the first part is along $r$",
+        relations=unit,
+        named=r"\tau = \rho \times \frac{1}{a} \left. \frac{\partial F}{\partial \epsilon} \right|_0",
+        shown=r"3 n^2\, r \times I_\rho\, r",
+    )
+    torque = 3 * n**2 * R.cross(TENSOR * R)
+    d.notation({r"\tau": torque})
+    d.step(
+        "It has no component along the radius.",
+        torque.dot(R),
+        0,
+        because="a vector product is at right angles to its factors",
+        named=r"\tau \cdot r",
+    )
+
+    d.section("The invariant")
+    space_radius = elementary_rotation(2, n * symbols.t) * Matrix([1, 0, 0])
+    dcm_sb = Matrix(dcm_of())
+    seen, normal_s = dcm_sb.T * space_radius, Matrix([0, 0, 1])
+    d.notation({"r": seen, "k": dcm_sb.T * normal_s}, attitude_rates() | {symbols.t: S.One})
+    d.step(
+        r"Seen from the body, the radius turns with the orbit less the body; $k$ is the normal of the orbit.",
+        rate(seen, attitude_rates() | {symbols.t: S.One}),
+        seen.cross(OMEGA - n * dcm_sb.T * normal_s),
+        because=r"in space it turns about the normal at the rate $n$",
+        relations=[unit_relation()],
+        named=r"\dot r",
+        shown=r"r \times (\omega - n\,k)",
+    )
+    motion = (
+        pairs(symbols.omega_b, angular_acceleration(TENSOR, OMEGA, torque))
+        | pairs(symbols.radius, R.cross(OMEGA - n * K))
+        | pairs(symbols.normal, K.cross(OMEGA))
+    )
+    d.notation({"r": R, "k": K}, motion)
+    kinetic, potential = OMEGA.dot(TENSOR * OMEGA) / 2, Rational(3, 2) * n**2 * R.dot(TENSOR * R)
+    d.step(
+        "Energy alone is not kept: the orbit does work.",
+        rate(kinetic + potential, motion),
+        n * torque.dot(K),
+        because="the potential depends on time through the radius",
+        named=r"\frac{d}{dt} \left( \tfrac12\,\omega \cdot I\,\omega + \tfrac32 n^2\, r \cdot I\,r \right)",
+        shown=r"n\, k \cdot \tau",
+    )
+    d.step(
+        "What the orbit gives in energy it gives in angular momentum about its normal.",
+        rate(K.dot(TENSOR * OMEGA), motion),
+        torque.dot(K),
+        because="the rate of a component of angular momentum along a fixed direction is that of the torque",
+        named=r"\frac{d}{dt} \left( k \cdot I\,\omega \right)",
+        shown=r"k \cdot \tau",
+    )
+    d.step(
+        "So the energy in axes that turn with the orbit is kept (the Jacobi integral).",
+        rate(kinetic + potential - n * K.dot(TENSOR * OMEGA), motion),
+        0,
+        because="in those axes the tide is at rest",
+        named=r"\frac{d}{dt} \left( \tfrac12\,\omega \cdot I\,\omega + \tfrac32 n^2\, r \cdot I\,r"
+        r" - n\, k \cdot I\,\omega \right)",
+    )
+    return d

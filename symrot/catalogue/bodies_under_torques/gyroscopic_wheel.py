@@ -1,0 +1,147 @@
+"""Gyroscopic precession of a wheel (Beer & Johnston, Vector Mechanics: Dynamics, chapter 18)."""
+
+from sympy import Matrix, cos, diag, pi, sin
+
+from symrot import symbols
+from symrot.catalogue.tools.motion import pairs, rate
+from symrot.kinematics.euler import dcm, rate_jacobian
+from symrot.proof.derivation import Derivation
+
+PHI, THETA, PSI = symbols.angles
+A, C, W, ARM = symbols.A, symbols.C, symbols.W, symbols.c_3
+PRECESSION, SPIN = symbols.dphi, symbols.dpsi
+
+
+def derive() -> Derivation:
+    d = Derivation(
+        "gyroscopic_wheel",
+        title="Gyroscopic precession of a wheel",
+        source="Beer, Johnston & Cornwell, *Vector Mechanics for Engineers: Dynamics*, chapter 18",
+        about=(
+            "A wheel on an axle that is held at one end does not fall: it goes round. Its angular momentum has to "
+            "change in "
+            "the direction of the torque, and that direction is level."
+        ),
+    )
+    momentum, motion = _momentum()
+    torque = rate(momentum, motion)
+    line = Matrix([cos(PHI), sin(PHI), 0])
+    _torque(d, torque, line, momentum, motion)
+    _level(d, torque, line, momentum)
+    _reactions(d)
+    return d
+
+
+def _momentum() -> tuple[Matrix, dict]:  # type: ignore[type-arg]
+    """Return the angular momentum in space at constant nutation, and the rates of the angles."""
+    omega = rate_jacobian("ZXZ") * Matrix([PRECESSION, 0, SPIN])
+    return Matrix(dcm("ZXZ")) * diag(A, A, C) * omega, pairs((PHI, PSI), (PRECESSION, SPIN))
+
+
+def _torque(d: Derivation, torque: Matrix, line: Matrix, momentum: Matrix, motion: dict) -> None:  # type: ignore[type-arg]
+    d.section("The torque of steady precession")
+    d.given(
+        r"Angles of ZXZ. Nutation, precession $\dot\phi$ and spin $\dot\psi$ are constant, and the line of nodes, "
+        r"about which the "
+        "axle would tilt, is",
+        ("e", line),
+    )
+    d.notation({r"\dot L_s": torque, "L_s": momentum, "e_z": Matrix([0, 0, 1]), "A": A, "C": C})
+    total = (C * (SPIN + PRECESSION * cos(THETA)) - A * PRECESSION * cos(THETA)) * PRECESSION * sin(THETA)
+    d.step(
+        "The rate of angular momentum is along the line of nodes: this torque keeps the precession going.",
+        torque,
+        total * line,
+        because="angular momentum lies in the plane of the vertical and the axle, and turns with it",
+        named=r"\dot L_s",
+        shown=r"\left( C\,\omega_3 - A\,\dot\phi \cos\theta \right) \dot\phi \sin\theta\;e, \quad \omega_3 = \dot\psi "
+        r"+ \dot\phi "
+        r"\cos\theta",
+    )
+    vertical = Matrix([0, 0, 1])
+    d.step(
+        "It is the precession's turning of the angular momentum.",
+        torque,
+        (PRECESSION * vertical).cross(momentum),
+        because=r"$L_s$ is carried round the vertical at the rate $\dot\phi$",
+        named=r"\dot L_s",
+        shown=r"\dot\phi\,e_z \times L_s",
+    )
+    d.step(
+        "It does no work.",
+        torque.dot(Matrix(dcm("ZXZ")) * rate_jacobian("ZXZ") * Matrix([PRECESSION, 0, SPIN])),
+        0,
+        because="the line of nodes is at right angles to the vertical and to the axle, of which angular velocity "
+        "consists",
+        named=r"\dot L_s \cdot \omega_s",
+    )
+
+
+def _level(d: Derivation, torque: Matrix, line: Matrix, momentum: Matrix) -> None:
+    d.section("A level axle")
+    level = {THETA: pi / 2}
+    axle = Matrix(dcm("ZXZ")).subs(level)[:, 2]
+    d.notation({"a": axle, r"\dot L_s": torque.subs(level), "c_3": ARM, "W": W})
+    d.step(
+        "With the axle level the term with $A$ is gone: spin times precession times the moment of the wheel.",
+        torque.subs(level),
+        C * SPIN * PRECESSION * line,
+        because=r"$\cos\frac\pi2 = 0$; exact, for slow and fast precession",
+        named=r"\dot L_s",
+        shown=r"C\,\dot\psi\,\dot\phi\;e",
+    )
+    weight = (ARM * axle).cross(Matrix([0, 0, -W]))
+    d.step(
+        r"The weight $W$ of the wheel, at $c_3$ from the support, has this moment.",
+        weight,
+        W * ARM * line,
+        because="a force downwards at a level arm",
+        named=r"c_3\,a \times (-W e_z)",
+        shown=r"W c_3\;e",
+    )
+    steady = {PRECESSION: W * ARM / (C * SPIN)}
+    d.step(
+        r"Hence the wheel precesses at $\dot\phi = W c_3 / (C \dot\psi)$: the slower the faster it spins.",
+        torque.subs(level).subs(steady),
+        weight,
+        because="torque is the rate of angular momentum",
+        named=r"\left. \dot L_s \right|_{\dot\phi = W c_3 / (C \dot\psi)}",
+        shown=r"W c_3\;e",
+    )
+    d.step(
+        "The axle follows the torque: the angular momentum of the spin moves towards its direction.",
+        axle.diff(PHI),
+        line,
+        because="a level axle, carried round the vertical",
+        named=r"\frac{\partial a}{\partial \phi}",
+        shown="e",
+    )
+    d.step(
+        "Pushed round faster than that, it rises; held back, it sinks: what is missing of the moment turns about the "
+        "line of "
+        "nodes.",
+        (weight - torque.subs(level)).dot(line),
+        W * ARM - C * SPIN * PRECESSION,
+        because="of the two moments",
+        named=r"\left( \tau_s - \dot L_s \right) \cdot e",
+    )
+
+
+def _reactions(d: Derivation) -> None:
+    d.section("A wheel in a frame")
+    rotor = C * SPIN * Matrix([0, 0, 1])
+    turning = Matrix([symbols.omega_1, symbols.omega_2, 0])
+    d.step(
+        r"Turning the frame of a spinning wheel with $\omega$ asks the bearings for a moment across both axes.",
+        turning.cross(rotor),
+        C * SPIN * Matrix([symbols.omega_2, -symbols.omega_1, 0]),
+        because="the angular momentum of the spin is carried round",
+        named=r"\omega \times C\,\dot\psi\,e_3",
+    )
+    d.step(
+        "Two equal wheels that spin oppositely ask for none together.",
+        turning.cross(rotor) + turning.cross(-rotor),
+        0,
+        because="their angular momenta cancel",
+        named=r"\omega \times \left( C\,\dot\psi\,e_3 - C\,\dot\psi\,e_3 \right)",
+    )

@@ -1,0 +1,74 @@
+"""A body with a rotor inside (Hughes, Spacecraft Attitude Dynamics, chapter 6)."""
+
+from sympy import Matrix
+
+from symrot import symbols
+from symrot.catalogue.tools.motion import OMEGA, TENSOR, attitude_rates, pairs, rate, squared
+from symrot.dynamics.equations import angular_acceleration
+from symrot.kinematics.quaternion import dcm_of, unit_relation
+from symrot.proof.derivation import Derivation
+
+ROTOR, TORQUE = Matrix(symbols.rotor), Matrix(symbols.torque_b)
+
+
+def derive() -> Derivation:
+    d = Derivation(
+        "gyrostat_invariants",
+        title="A body with a rotor: the gyrostat",
+        source="Hughes, *Spacecraft Attitude Dynamics*, chapter 6",
+        about=(
+            r"A rotor inside the body adds an angular momentum $h$ that is constant in the body. The tensor "
+            r"$I$ is that of "
+            "the body with the rotor held fast; the motor that keeps the rotor at its speed exchanges energy, but only "
+            "with the rotor."
+        ),
+    )
+    d.nonzero("The tensor of inertia has an inverse,", TENSOR.det(), r"\det I")
+    momentum_b = TENSOR * OMEGA + ROTOR
+    dcm_sb = Matrix(dcm_of())
+    domega = Matrix(symbols.omega_rates)
+    d.given("The total angular momentum:", (r"L_b", r"I\,\omega_b + h"))
+    d.step(
+        "Its rate in space, along the axes of the body.",
+        dcm_sb.T * rate(dcm_sb * momentum_b, attitude_rates() | pairs(symbols.omega_b, domega)),
+        TENSOR * domega + OMEGA.cross(momentum_b),
+        because=r"$h$ turns with the body",
+        relations=[unit_relation()],
+        named=r"R^{\mathsf T} \dot L_s",
+        shown=r"I\,\dot\omega_b + \omega_b \times (I\,\omega_b + h)",
+    )
+    acceleration = angular_acceleration(TENSOR, OMEGA, TORQUE, ROTOR)
+    d.step(
+        "This is the torque if the angular acceleration is as follows.",
+        TENSOR * acceleration + OMEGA.cross(momentum_b),
+        TORQUE,
+        because="the tensor has an inverse",
+        named=r"\dot\omega_b = I^{-1} \left( \tau_b - \omega_b \times (I\,\omega_b + h) \right)"
+        r"\quad\Rightarrow\quad I\,\dot\omega_b + \omega_b \times (I\,\omega_b + h)",
+        shown=r"\tau_b",
+    )
+    d.section("Without torque")
+    free = attitude_rates() | pairs(symbols.omega_b, angular_acceleration(TENSOR, OMEGA, 0 * OMEGA, ROTOR))
+    d.step(
+        "The total angular momentum in space is kept.",
+        rate(dcm_sb * momentum_b, free),
+        0,
+        because="there is no torque",
+        relations=[unit_relation()],
+        named=r"\frac{d}{dt}\,R\,(I\,\omega_b + h)",
+    )
+    d.step(
+        "So is its length.",
+        rate(squared(momentum_b), free),
+        0,
+        because="a rotation keeps lengths",
+        named=r"\frac{d}{dt}\,|I\,\omega_b + h|^2",
+    )
+    d.step(
+        "So is the energy of the body without the rotor's own.",
+        rate(OMEGA.dot(TENSOR * OMEGA) / 2, free),
+        0,
+        because=r"$\omega \times h$ does no work on the body",
+        named=r"\frac{d}{dt}\,\tfrac12\,\omega_b \cdot I\,\omega_b",
+    )
+    return d

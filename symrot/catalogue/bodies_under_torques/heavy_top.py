@@ -1,0 +1,249 @@
+"""The heavy symmetric top (Landau & Lifshitz, section 35, problems 1 and 2; Goldstein, 3rd ed., section 5.7)."""
+
+from sympy import Expr, Matrix, Rational, Symbol, cos, diag, sin, solve, sqrt, tan
+
+from symrot import symbols
+from symrot.catalogue.tools.motion import pairs, rate
+from symrot.kinematics.euler import rate_jacobian
+from symrot.proof.derivation import Derivation
+
+PHI, THETA, PSI = symbols.angles
+DPHI, DTHETA, DPSI = symbols.angle_rates
+A, C, W, ARM = symbols.A, symbols.C, symbols.W, symbols.c_3
+P_PHI, P_THETA, P_PSI = symbols.momenta
+HALF = Rational(1, 2)
+RATE = symbols.n  # of steady precession
+
+
+def derive() -> Derivation:
+    d = Derivation(
+        "heavy_top",
+        title="The heavy symmetric top",
+        source="Landau & Lifshitz, *Mechanics*, 3rd ed., section 35, problems 1 and 2; Goldstein, Poole & Safko, "
+        "*Classical "
+        "Mechanics*, 3rd ed., section 5.7",
+        about=(
+            r"A symmetric body turns about a fixed point of its axis under its weight $W$, the centre of mass on the "
+            r"axis at "
+            r"$c_3$ from the point. Precession and spin are cyclic: what is left is one angle in an effective "
+            r"potential."
+        ),
+    )
+    omega = rate_jacobian("ZXZ") * Matrix(symbols.angle_rates)
+    kinetic = HALF * omega.dot(diag(A, A, C) * omega)
+    lagrangian = kinetic - W * ARM * cos(THETA)
+    _lagrangian(d, kinetic, lagrangian)
+    potential = _potential(d, kinetic, lagrangian)
+    _steady(d, potential)
+    _sleeping(d, potential)
+    return d
+
+
+def _lagrangian(d: Derivation, kinetic: Expr, lagrangian: Expr) -> None:
+    d.section("Lagrangian and cyclic momenta")
+    d.given(r"Angles of ZXZ, axis 3 of space upwards, moments $A, A, C$ about the fixed point. The Lagrangian is",
+            (r"\mathcal L", r"T - W c_3 \cos\theta"))  # fmt: skip
+    d.step(
+        "The kinetic energy.",
+        kinetic,
+        HALF * A * (DTHETA**2 + DPHI**2 * sin(THETA) ** 2) + HALF * C * (DPSI + DPHI * cos(THETA)) ** 2,
+        because=r"$\omega_b = B \dot q$, and two moments are equal",
+        named=r"T = \tfrac12\,\omega \cdot I\,\omega",
+    )
+    d.step(
+        "Neither precession nor spin appears in it, so their momenta are kept.",
+        Matrix([lagrangian.diff(PHI), lagrangian.diff(PSI)]),
+        0,
+        because="the top is symmetric about its axis, and gravity about the vertical",
+        named=r"\begin{bmatrix} \partial \mathcal L / \partial \phi \\ \partial \mathcal L / \partial \psi "
+        r"\end{bmatrix}",
+    )
+    spin = DPSI + DPHI * cos(THETA)
+    d.step(
+        "They are the angular momenta about the vertical and about the axis.",
+        Matrix([lagrangian.diff(DPHI), lagrangian.diff(DPSI)]),
+        Matrix([A * DPHI * sin(THETA) ** 2 + C * spin * cos(THETA), C * spin]),
+        because="the Lagrangian is differentiated",
+        named=r"\begin{bmatrix} p_\phi \\ p_\psi \end{bmatrix}",
+    )
+    dphi = (P_PHI - P_PSI * cos(THETA)) / (A * sin(THETA) ** 2)
+    dpsi = P_PSI / C - cos(THETA) * dphi
+    momenta = Matrix([lagrangian.diff(DPHI), lagrangian.diff(DPSI)]).subs({DPHI: dphi, DPSI: dpsi})
+    d.step(
+        r"Conversely, they give the rates: $\dot\phi = \frac{p_\phi - p_\psi \cos\theta}{A \sin^2\theta}$, "
+        r"$\dot\psi = \frac{p_\psi}{C} - \dot\phi \cos\theta$.",
+        momenta,
+        Matrix([P_PHI, P_PSI]),
+        because="the two linear equations are solved",
+        named=r"\left. \begin{bmatrix} \partial \mathcal L / \partial \dot\phi \\ \partial \mathcal L / \partial "
+        r"\dot\psi "
+        r"\end{bmatrix} \right|_{\dot\phi, \dot\psi}",
+    )
+
+
+def _potential(d: Derivation, kinetic: Expr, lagrangian: Expr) -> Expr:
+    d.section("The effective potential")
+    dphi = (P_PHI - P_PSI * cos(THETA)) / (A * sin(THETA) ** 2)
+    rates = {DPHI: dphi, DPSI: P_PSI / C - cos(THETA) * dphi}
+    potential = (
+        (P_PHI - P_PSI * cos(THETA)) ** 2 / (2 * A * sin(THETA) ** 2) + P_PSI**2 / (2 * C) + W * ARM * cos(THETA)
+    )
+    d.notation(
+        {
+            r"\\dot\\theta": DTHETA,
+            r"\\ddot\\theta": symbols.ddtheta,
+            r"\\theta": THETA,
+            r"p_\\phi": P_PHI,
+            r"p_\\psi": P_PSI,
+            "A": A,
+            "C": C,
+            "W": W,
+            "c_3": ARM,
+            "U": potential,
+            r"U(\\theta)": potential,
+            "T": kinetic.subs(rates),
+        }
+    )
+    d.step(
+        "Energy: one angle is left.",
+        (kinetic + W * ARM * cos(THETA)).subs(rates),
+        HALF * A * DTHETA**2 + potential,
+        because="the rates of the cyclic angles are put in",
+        named="T + V",
+        shown=r"\tfrac12\,A\,\dot\theta^2 + U(\theta), \quad U = \frac{(p_\phi - p_\psi \cos\theta)^2}{2 A "
+        r"\sin^2\theta} + "
+        r"\frac{p_\psi^2}{2 C} + W c_3 \cos\theta",
+    )
+    motion = pairs(symbols.angles, symbols.angle_rates) | pairs(symbols.angle_rates, symbols.angle_accelerations)
+    nutation = rate(lagrangian.diff(DTHETA), motion) - lagrangian.diff(THETA)
+    d.step(
+        "Lagrange's equation for the nutation is that of a point in this potential.",
+        nutation.subs(rates),
+        A * symbols.ddtheta + potential.diff(THETA),
+        because="the rates are put in after differentiating",
+        named=r"\frac{d}{dt} \frac{\partial \mathcal L}{\partial \dot\theta} - \frac{\partial \mathcal L}{\partial "
+        r"\theta}",
+        shown=r"A\,\ddot\theta + \frac{\partial U}{\partial \theta}",
+    )
+    energy, height = symbols.E, Symbol("u", real=True)
+    speed = 2 / A * (energy - potential) * sin(THETA) ** 2
+    cubic = (2 * energy - P_PSI**2 / C - 2 * W * ARM * height) * (1 - height**2) / A - (
+        P_PHI - P_PSI * height
+    ) ** 2 / A**2
+    d.notation({"u": cos(THETA), "E": energy})
+    d.step(
+        r"In $u = \cos\theta$ the square of its rate is a cubic: nutation is an elliptic function of time, between "
+        r"two of the "
+        "cubic's zeros.",
+        speed,
+        cubic.subs(height, cos(THETA)),
+        because=r"$\dot u = -\dot\theta \sin\theta$ and $\tfrac12 A \dot\theta^2 = E - U$",
+        named=r"\dot u^2 = \frac{2}{A} (E - U) \sin^2\theta",
+        shown=r"\frac{1 - u^2}{A} \left( 2 E - \frac{p_\psi^2}{C} - 2 W c_3 u \right) - \frac{(p_\phi - p_\psi "
+        r"u)^2}{A^2}",
+    )
+    d.step(
+        "At the poles the cubic is not positive: the axis reaches the vertical only if both momenta agree.",
+        Matrix([cubic.subs(height, 1), cubic.subs(height, -1)]),
+        -Matrix([(P_PHI - P_PSI) ** 2, (P_PHI + P_PSI) ** 2]) / A**2,
+        because="$1 - u^2$ is zero",
+        named=r"\begin{bmatrix} \dot u^2 |_{u = 1} \\ \dot u^2 |_{u = -1} \end{bmatrix}",
+    )
+    return potential
+
+
+def _steady(d: Derivation, potential: Expr) -> None:
+    d.section("Steady precession")
+    slope = A * RATE**2 * cos(THETA) - P_PSI * RATE + W * ARM
+    steady = {P_PHI: P_PSI * cos(THETA) + A * RATE * sin(THETA) ** 2}
+    d.names.pop("U")
+    d.given(
+        r"Let the axis keep its angle and precess at the rate $n$:",
+        (r"p_\phi", r"p_\psi \cos\theta + A\,n \sin^2\theta"),
+    )
+    d.step(
+        "The condition is quadratic in the rate.",
+        potential.diff(THETA).subs(steady),
+        -sin(THETA) * slope,
+        because="the potential must be stationary",
+        named=r"\frac{\partial U}{\partial \theta}",
+        shown=r"-\sin\theta \left( A\,n^2 \cos\theta - p_\psi\,n + W c_3 \right)",
+    )
+    fast, slow = _rates()
+    d.given(
+        r"This has two roots, a fast and a slow rate, real where $p_\psi^2 \ge 4 A W c_3 \cos\theta$:",
+        (r"n_\pm", r"\frac{p_\psi \pm \sqrt{p_\psi^2 - 4 A W c_3 \cos\theta}}{2 A \cos\theta}"),
+    )
+    d.step(
+        "Both satisfy the condition.",
+        Matrix([slope.subs(RATE, fast), slope.subs(RATE, slow)]),
+        0,
+        because="the roots are put in",
+        named=r"A\,n_\pm^2 \cos\theta - p_\psi\,n_\pm + W c_3",
+    )
+    d.step(
+        r"Their sum and product: for a fast top they are $p_\psi / (A \cos\theta)$, as without weight, and $W c_3 / "
+        r"p_\psi$.",
+        Matrix([fast + slow, fast * slow]),
+        Matrix([P_PSI, W * ARM]) / (A * cos(THETA)),
+        because="of the coefficients (Vieta)",
+        named=r"\begin{bmatrix} n_+ + n_- \\ n_+\,n_- \end{bmatrix}",
+    )
+    d.step(
+        "With a level axis there is one rate.",
+        Matrix(solve(slope.subs(cos(THETA), 0), RATE)),
+        Matrix([W * ARM / P_PSI]),
+        because=r"$\cos\theta = 0$ leaves a linear equation",
+        named="n",
+    )
+    d.step(
+        "A small nutation about steady precession swings with this frequency squared, times $A$.",
+        (potential.diff(THETA, 2).subs(steady) * RATE**2).subs(P_PSI, (A * RATE**2 * cos(THETA) + W * ARM) / RATE),
+        (A**2 * RATE**4 - 2 * A * W * ARM * RATE**2 * cos(THETA) + (W * ARM) ** 2) / A,
+        because=r"$p_\psi$ is taken from the condition; the right side is positive, being "
+        r"$(A n^2 - W c_3 \cos\theta)^2 + (W c_3 \sin\theta)^2$ over $A$",
+        named=r"n^2\,\frac{\partial^2 U}{\partial \theta^2}",
+    )
+    d.step(
+        "So every steady precession is stable.",
+        A**2 * RATE**4 - 2 * A * W * ARM * RATE**2 * cos(THETA) + (W * ARM) ** 2,
+        (A * RATE**2 - W * ARM * cos(THETA)) ** 2 + (W * ARM * sin(THETA)) ** 2,
+        because=r"$\sin^2\theta + \cos^2\theta = 1$",
+        named=r"A\,n^2\,\frac{\partial^2 U}{\partial \theta^2}",
+    )
+
+
+def _rates() -> tuple[Expr, Expr]:
+    """Return the fast and the slow rate of steady precession."""
+    root = sqrt(P_PSI**2 - 4 * A * W * ARM * cos(THETA))
+    return (P_PSI + root) / (2 * A * cos(THETA)), (P_PSI - root) / (2 * A * cos(THETA))
+
+
+def _sleeping(d: Derivation, potential: Expr) -> None:
+    d.section("The sleeping top")
+    upright = potential.subs(P_PHI, P_PSI)
+    d.step(
+        r"Upright, $p_\phi = p_\psi$, and the potential is regular at the vertical.",
+        upright,
+        P_PSI**2 / (2 * A) * tan(THETA / 2) ** 2 + P_PSI**2 / (2 * C) + W * ARM * cos(THETA),
+        because=r"$\frac{1 - \cos\theta}{\sin\theta} = \tan\frac\theta2$",
+        named=r"U|_{p_\phi = p_\psi}",
+    )
+    regular = P_PSI**2 / (2 * A) * tan(THETA / 2) ** 2 + P_PSI**2 / (2 * C) + W * ARM * cos(THETA)
+    d.step(
+        r"It has a minimum there for $p_\psi^2 > 4 A W c_3$: the top sleeps, as long as friction leaves it that much "
+        r"spin.",
+        Matrix([regular.diff(THETA), regular.diff(THETA, 2)]).subs(THETA, 0),
+        Matrix([0, (P_PSI**2 - 4 * A * W * ARM) / (4 * A)]),
+        because=r"$\tan^2\frac\theta2 = \frac{\theta^2}{4}$ and $\cos\theta = 1 - \frac{\theta^2}{2}$ to second order",
+        named=r"\begin{bmatrix} \partial U / \partial \theta \\ \partial^2 U / \partial \theta^2 "
+        r"\end{bmatrix}_{\theta = 0}",
+    )
+    fast, slow = _rates()
+    d.step(
+        "The same bound makes the two rates of steady precession meet at the vertical.",
+        (A * (fast - slow)).subs(THETA, 0) ** 2,
+        P_PSI**2 - 4 * A * W * ARM,
+        because=r"$\cos 0 = 1$",
+        named=r"A^2 \left. (n_+ - n_-)^2 \right|_{\theta = 0}",
+    )

@@ -1,0 +1,100 @@
+"""What a heavy top keeps (Landau & Lifshitz, Mechanics, 3rd ed., section 35, problem 1)."""
+
+from sympy import Matrix, diag
+
+from symrot import symbols
+from symrot.catalogue.tools.motion import OMEGA, TENSOR, attitude_rates, pairs, rate, squared
+from symrot.dynamics.equations import angular_acceleration
+from symrot.kinematics.quaternion import dcm_of, unit_relation
+from symrot.proof.derivation import Derivation
+
+DOWN = Matrix(symbols.vertical)
+ARM = Matrix(symbols.center_of_mass)
+
+
+def derive() -> Derivation:
+    d = Derivation(
+        "heavy_top_invariants",
+        title="What a heavy top keeps",
+        source="Landau & Lifshitz, *Mechanics*, 3rd ed., section 35, problem 1",
+        about=(
+            "A body of any shape turns about a fixed point under its weight. Energy and the vertical component of "
+            "angular momentum are kept for every body; the spin, if the body is symmetric and its centre of "
+            "mass lies on "
+            "the axis. Three invariants make the symmetric top solvable."
+        ),
+    )
+    d.nonzero("The tensor of inertia has an inverse,", TENSOR.det(), r"\det I")
+    d.given(r"Let $\gamma$ be the direction of gravity in the body, and $c$ the centre of mass from the fixed point:",
+            (r"\gamma", r"R^{\mathsf T} \gamma_s"), (r"\tau_b", r"W\, c \times \gamma"))  # fmt: skip
+    fixed = Matrix(symbols.normal)
+    d.step(
+        "The direction of gravity turns backwards in the body (Poisson's equation).",
+        rate(Matrix(dcm_of()).T * fixed, attitude_rates()),
+        (Matrix(dcm_of()).T * fixed).cross(OMEGA),
+        because=r"it is fixed in space, and $\dot R = R\,[\omega_b]_\times$",
+        relations=[unit_relation()],
+        named=r"\dot\gamma",
+        shown=r"\gamma \times \omega",
+    )
+    weight = symbols.W * ARM.cross(DOWN)
+    falling = pairs(symbols.vertical, DOWN.cross(OMEGA))
+    motion = pairs(symbols.omega_b, angular_acceleration(TENSOR, OMEGA, weight)) | falling
+    d.section("Every body")
+    energy = OMEGA.dot(TENSOR * OMEGA) / 2 - symbols.W * ARM.dot(DOWN)
+    d.step(
+        "Energy is kept.",
+        rate(energy, motion),
+        0,
+        because="the power of the weight is the loss of potential energy",
+        named=r"\frac{d}{dt} \left( \tfrac12\,\omega \cdot I\,\omega - W\, c \cdot \gamma \right)",
+    )
+    d.step(
+        "The vertical component of angular momentum is kept.",
+        rate((TENSOR * OMEGA).dot(DOWN), motion),
+        0,
+        because="the weight has no moment about the vertical",
+        named=r"\frac{d}{dt} \left( I\,\omega \cdot \gamma \right)",
+    )
+    d.step(
+        "The direction stays a unit vector.",
+        rate(squared(DOWN), motion),
+        0,
+        because="it only turns",
+        named=r"\frac{d}{dt}\,|\gamma|^2",
+    )
+    d.section("The symmetric top")
+    inertia, arm = diag(symbols.A, symbols.A, symbols.C), Matrix([0, 0, symbols.c_3])
+    acceleration = angular_acceleration(inertia, OMEGA, symbols.W * arm.cross(DOWN))
+    d.step(
+        "The spin is kept when two moments are equal and the centre of mass is on axis 3.",
+        acceleration[2],
+        0,
+        because="neither the gyroscopic term nor the weight has a moment about the axis",
+        named=r"\dot\omega_3",
+    )
+    top = pairs(symbols.omega_b, acceleration) | falling
+    momentum = inertia * OMEGA
+    height = DOWN[2]
+    left = symbols.A * rate(height, top) ** 2
+    kinetic = 2 * symbols.W * symbols.c_3 * height + symbols.A * (symbols.omega_1**2 + symbols.omega_2**2)
+    right = (kinetic - 2 * symbols.W * symbols.c_3 * height) * (1 - height**2) - (
+        momentum.dot(DOWN) - symbols.C * symbols.omega_3 * height
+    ) ** 2 / symbols.A
+    d.step(
+        r"The height of the axis, $u = \gamma_3$, moves in a cubic potential: nutation is an elliptic "
+        r"function of time.",
+        left,
+        right,
+        because="energy and both angular momenta determine the transverse angular velocity",
+        relations=[squared(DOWN) - 1],
+        named=r"A\,\dot u^2",
+        shown=r"\left( 2 E - C \omega_3^2 + 2 W c_3\, u \right) \left( 1 - u^2 \right)"
+        r" - \frac{\left( L_\gamma - C \omega_3\, u \right)^2}{A}",
+    )
+    d.given(
+        "Here $2 E - C \\omega_3^2 + 2 W c_3\\, u = A (\\omega_1^2 + \\omega_2^2)$ by the energy, and "
+        "$L_\\gamma$ is the "
+        "component of angular momentum along $\\gamma$."
+    )
+    return d

@@ -1,0 +1,1 @@
+"""Constraints: rolling, gear trains, planar linkages."""

@@ -1,0 +1,152 @@
+"""Planar linkages as constraints: slider-crank and four bars (Beer & Johnston, Dynamics, chapter 15)."""
+
+from sympy import Expr, Matrix, Symbol, cos, sin, solve
+
+from symrot import symbols
+from symrot.catalogue.tools.motion import rate, squared
+from symrot.proof.derivation import Derivation
+
+PHI, THETA, PSI = symbols.angles
+DPHI, DTHETA, DPSI = symbols.angle_rates
+CRANK, ROD = symbols.r, symbols.L
+MOTION = {PHI: DPHI, THETA: DTHETA, PSI: DPSI}
+
+
+def _bar(length: Symbol, angle: Symbol) -> Matrix:
+    return length * Matrix([cos(angle), sin(angle)])
+
+
+def derive() -> Derivation:
+    d = Derivation(
+        "planar_linkages",
+        title="Slider-crank and four bars",
+        source="Beer, Johnston & Cornwell, *Vector Mechanics for Engineers: Dynamics*, chapter 15; Freudenstein, *ASME "
+        "Transactions* 76 (1954)",
+        about=(
+            "Bars that are joined close a polygon. The condition, differentiated, gives linear equations for the "
+            "rates, and "
+            "differentiated again, for the accelerations."
+        ),
+    )
+    _slider(d)
+    _four_bars(d)
+    return d
+
+
+def _slider(d: Derivation) -> None:
+    d.section("Slider-crank")
+    closure = CRANK * sin(PHI) - ROD * sin(PSI)
+    place = CRANK * cos(PHI) + ROD * cos(PSI)
+    d.given(
+        r"A crank of length $r$ at the angle $\phi$; a rod of length $L$ goes down from its end at the angle $\psi$ "
+        r"to a slider on "
+        "the line through the crank's axis:",
+        (r"r \sin\phi", r"L \sin\psi"),
+        ("x", place),
+    )
+    rod_rate = solve(rate(closure, MOTION), DPSI)[0]
+    d.step(
+        "The rate of the rod.",
+        rod_rate,
+        CRANK * cos(PHI) / (ROD * cos(PSI)) * DPHI,
+        because="the condition is differentiated, and is linear in the rates",
+        named=r"\dot\psi",
+    )
+    velocity = rate(place, MOTION).subs(DPSI, rod_rate)
+    d.step(
+        "The velocity of the slider.",
+        velocity,
+        -CRANK * sin(PHI + PSI) / cos(PSI) * DPHI,
+        because="the rate of the rod is put in",
+        named=r"\dot x",
+    )
+    ends = {PHI: 0, PSI: 0}
+    d.step(
+        "It is at rest at the dead centres, where crank and rod are in line.",
+        velocity.subs(ends),
+        0,
+        because=r"$\sin(\phi + \psi) = 0$ there",
+        named=r"\dot x|_{\phi = \psi = 0}",
+    )
+    steady = {PHI: DPHI, PSI: rod_rate}
+    d.step(
+        "The acceleration at the far dead centre, with the crank turning steadily.",
+        rate(velocity, steady).subs(ends),
+        -CRANK * DPHI**2 * (1 + CRANK / ROD),
+        because="the velocity is differentiated once more",
+        named=r"\ddot x|_{\phi = \psi = 0}",
+    )
+    pin, slider = _bar(CRANK, PHI), Matrix([place, 0])
+    center = Matrix([place, place * sin(PHI) / cos(PHI)])
+    d.define("The rod turns about the point over the slider that is in line with the crank:", "c", center)
+    d.step(
+        "Seen from there both its ends, $A$ at the crank and $B$ at the slider, move across.",
+        Matrix([(pin - center).dot(rate(pin, MOTION)), (slider - center).dot(Matrix([velocity, 0]))]),
+        0,
+        because="the crank's end moves across the crank, the slider along its line",
+        named=r"\begin{bmatrix} (r_A - c) \cdot \dot r_A \\ (r_B - c) \cdot \dot r_B \end{bmatrix}",
+    )
+    force = symbols.F_x
+    torque = solve(symbols.tau_3 * DPHI + force * velocity, symbols.tau_3)[0]
+    d.step(
+        "A force $F_x$ on the slider is balanced by this torque on the crank.",
+        torque,
+        force * CRANK * sin(PHI + PSI) / cos(PSI),
+        because="without friction their powers add to zero",
+        named=r"\tau_3",
+    )
+
+
+def _four_bars(d: Derivation) -> None:
+    d.section("Four bars")
+    a, b, c, ground = symbols.a, symbols.b, symbols.c, symbols.h
+    closure = _bar(a, PHI) + _bar(b, THETA) - _bar(c, PSI) - Matrix([ground, 0])
+    d.given(
+        r"Crank $a$ at $\phi$, coupler $b$ at $\theta$, rocker $c$ at $\psi$, on a ground of length $h$:",
+        (_bar(a, PHI) + _bar(b, THETA), _bar(c, PSI) + Matrix([ground, 0])),
+    )
+    rates = solve(list(rate(closure, MOTION)), (DTHETA, DPSI), dict=True)[0]
+    d.step(
+        "The rates of coupler and rocker.",
+        Matrix([rates[DTHETA], rates[DPSI]]),
+        DPHI * Matrix([a * sin(PHI - PSI) / (b * sin(PSI - THETA)), a * sin(PHI - THETA) / (c * sin(PSI - THETA))]),
+        because="the closed polygon, differentiated, is two linear equations",
+        named=r"\begin{bmatrix} \dot\theta \\ \dot\psi \end{bmatrix}",
+    )
+    d.step(
+        "They fail where coupler and rocker are in line.",
+        closure.jacobian([THETA, PSI]).det(),
+        b * c * sin(THETA - PSI),
+        because="there the determinant of the equations is zero: the linkage may go on in two ways",
+        named=r"\det \frac{\partial\,\text{closure}}{\partial (\theta, \psi)}",
+    )
+    coupler = _bar(c, PSI) + Matrix([ground, 0]) - _bar(a, PHI)
+    freudenstein = _freudenstein(a, b, c, ground)
+    d.step(
+        "Freudenstein's equation: the coupler's angle eliminated.",
+        squared(coupler) - b**2,
+        freudenstein,
+        because="the coupler keeps its length",
+        named=r"|c\,e_\psi + h\,e_x - a\,e_\phi|^2 - b^2",
+    )
+    d.step(
+        "Differentiated, it gives the same rate of the rocker.",
+        rate(freudenstein, {PHI: DPHI, PSI: DPSI}),
+        2 * a * DPHI * (ground * sin(PHI) + c * sin(PHI - PSI))
+        - 2 * c * DPSI * (ground * sin(PSI) + a * sin(PHI - PSI)),
+        because="of the chain rule",
+        named=r"\frac{d}{dt} \left( |c\,e_\psi + h\,e_x - a\,e_\phi|^2 - b^2 \right)",
+    )
+    square = {b: ground, c: a, THETA: 0, PSI: PHI}
+    d.step(
+        "In a parallelogram the coupler does not turn and the rocker turns with the crank.",
+        Matrix([rates[DTHETA], rates[DPSI]]).subs(square, simultaneous=True),
+        Matrix([0, DPHI]),
+        because=r"$b = h$, $c = a$, $\theta = 0$, $\psi = \phi$",
+        named=r"\begin{bmatrix} \dot\theta \\ \dot\psi \end{bmatrix}",
+    )
+
+
+def _freudenstein(a: Expr, b: Expr, c: Expr, ground: Expr) -> Expr:
+    constant = a**2 - b**2 + c**2 + ground**2
+    return constant - 2 * a * ground * cos(PHI) + 2 * c * ground * cos(PSI) - 2 * a * c * cos(PHI - PSI)

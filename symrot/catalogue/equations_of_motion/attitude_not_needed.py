@@ -1,0 +1,57 @@
+"""When the angular velocity can be found without the attitude."""
+
+from sympy import Matrix, diag, sqrt
+
+from symrot import symbols
+from symrot.catalogue.tools.motion import OMEGA, TENSOR, squared
+from symrot.dynamics.equations import angular_acceleration
+from symrot.kinematics.quaternion import dcm_of
+from symrot.proof.derivation import Derivation
+
+Q = symbols.quaternion
+
+
+def derive() -> Derivation:
+    d = Derivation(
+        "attitude_not_needed",
+        title="When the attitude is not needed",
+        source="Landau & Lifshitz, *Mechanics*, 3rd ed., section 36",
+        about=(
+            r"Euler's equations are closed in $\omega_b$ whenever the torque has no attitude in it: then the four "
+            "equations of the quaternion need not be integrated unless somebody asks for the attitude."
+        ),
+    )
+    d.nonzero("The tensor of inertia has an inverse,", TENSOR.det(), r"\det I")
+    rotor, linear = Matrix(symbols.rotor), diag(*symbols.excess, symbols.Omega)
+    laws = {
+        "without torque": (0 * OMEGA, None, "there is none"),
+        "with a torque that is constant in the body": (Matrix(symbols.torque_b), None, "its components are constants"),
+        "with linear damping": (-linear * OMEGA, None, r"it is a function of $\omega_b$"),
+        "with quadratic damping": (-sqrt(squared(OMEGA)) * OMEGA, None, r"it is a function of $\omega_b$"),
+        "with an internal rotor": (0 * OMEGA, rotor, "its angular momentum is constant in the body"),
+    }
+    for what, (torque, momentum, reason) in laws.items():
+        acceleration = angular_acceleration(TENSOR, OMEGA, torque, momentum)
+        d.step(
+            f"Attitude does not enter the angular acceleration {what}.",
+            acceleration.jacobian(Q),
+            0,
+            because=reason,
+            named=r"\frac{\partial \dot\omega_b}{\partial q}",
+        )
+    d.section("When it is needed")
+    force = Matrix(symbols.torque_b)
+    torque = dcm_of().T * force
+    d.given(
+        "A torque that is constant in space, or comes from a direction of space, has the attitude in its components:",
+        (r"\tau_b", r"R(q)^{\mathsf T} \tau_s"),
+    )
+    d.step(
+        "Its rate of change with the attitude is of the size of the torque itself.",
+        squared(torque.jacobian([Q[1]]).subs(dict(zip(Q, (1, 0, 0, 0), strict=True)))),
+        4 * (force[1] ** 2 + force[2] ** 2),
+        because="a small turn about axis 1 turns what lies across it",
+        named=r"\left| \frac{\partial \tau_b}{\partial q_1} \right|^2_{q = 1}",
+        shown=r"4 \left( \tau_{s,2}^2 + \tau_{s,3}^2 \right)",
+    )
+    return d

@@ -1,0 +1,94 @@
+"""Euler's equations for the full tensor (Landau & Lifshitz, Mechanics, 3rd ed., section 36)."""
+
+from sympy import Matrix, diag
+
+from symrot import symbols
+from symrot.catalogue.tools.motion import OMEGA, TENSOR, attitude_rates, pairs, rate
+from symrot.dynamics.equations import angular_acceleration
+from symrot.kinematics.quaternion import dcm_of, unit_relation
+from symrot.proof.derivation import Derivation
+
+DOMEGA = Matrix(symbols.omega_rates)
+TORQUE = Matrix(symbols.torque_b)
+
+
+def derive() -> Derivation:
+    d = Derivation(
+        "euler_equations",
+        title="Euler's equations",
+        source="Landau & Lifshitz, *Mechanics*, 3rd ed., section 36",
+        about=(
+            r"In space, torque is the rate of angular momentum: $\dot L_s = \tau_s$. In axes that turn with the body "
+            "the tensor of inertia is constant, and the rate of the axes appears instead: the gyroscopic term."
+        ),
+    )
+    d.nonzero("The tensor of inertia has an inverse,", TENSOR.det(), r"\det I")
+    unit = [unit_relation()]
+    dcm_sb = Matrix(dcm_of())
+    d.given(
+        "About the centre of mass, or a fixed point of the body, with the tensor about that point:",
+        ("I", TENSOR),
+        (r"L_s", r"R\,I\,\omega_b"),
+    )
+    momentum_b = TENSOR * OMEGA
+    motion = attitude_rates() | pairs(symbols.omega_b, DOMEGA)
+    d.notation({"R": dcm_sb, r"\omega_b": OMEGA, r"\dot\omega_b": DOMEGA, "L_s": dcm_sb * momentum_b}, motion)
+    moving = TENSOR * DOMEGA + OMEGA.cross(momentum_b)
+    d.step(
+        "The rate of angular momentum in space, with its components along the axes of the body.",
+        dcm_sb.T * rate(dcm_sb * momentum_b, motion),
+        moving,
+        because=r"the axes of the body turn with $\dot R = R\,[\omega_b]_\times$",
+        relations=unit,
+        named=r"R^{\mathsf T} \dot L_s",
+        shown=r"I\,\dot\omega_b + \omega_b \times I\,\omega_b",
+    )
+    acceleration = angular_acceleration(TENSOR, OMEGA, TORQUE)
+    d.step(
+        "This is the torque in the body if the angular acceleration is as follows: Euler's equations, full tensor.",
+        moving.subs(pairs(symbols.omega_rates, acceleration)),
+        TORQUE,
+        because=r"$\tau_b = R^{\mathsf T} \tau_s$, and the tensor has an inverse",
+        named=r"\dot\omega_b = I^{-1} \left( \tau_b - \omega_b \times I\,\omega_b \right)"
+        r"\quad\Rightarrow\quad I\,\dot\omega_b + \omega_b \times I\,\omega_b",
+        shown=r"\tau_b",
+    )
+    d.section("Special axes and bodies")
+    principal = angular_acceleration(diag(*symbols.principal), OMEGA, TORQUE)
+    d.notation({r"\dot\omega_b": principal, r"\dot\omega_3": principal[2]})
+    a, b, c = symbols.principal
+    w1, w2, w3 = OMEGA
+    first, second, third = TORQUE
+    d.step(
+        "Along principal axes, with moments $A, B, C$, the products of inertia are gone.",
+        principal,
+        Matrix([((b - c) * w2 * w3 + first) / a, ((c - a) * w3 * w1 + second) / b, ((a - b) * w1 * w2 + third) / c]),
+        because="the tensor is diagonal",
+        named=r"\dot\omega_b",
+    )
+    d.step(
+        "With two equal moments, one gyroscopic term is gone.",
+        principal[2],
+        third / c,
+        because="the factor $A - B$ is zero",
+        relations=[a - b],
+        named=r"\dot\omega_3",
+    )
+    d.step(
+        "With three equal moments, all are.",
+        principal,
+        TORQUE / a,
+        because="the factors are zero",
+        relations=[a - b, b - c],
+        named=r"\dot\omega_b",
+    )
+    d.section("Power")
+    d.notation({"I": TENSOR}, pairs(symbols.omega_b, acceleration))
+    d.step(
+        "The gyroscopic term does no work: the torque alone changes the kinetic energy.",
+        rate(OMEGA.dot(momentum_b) / 2, pairs(symbols.omega_b, acceleration)),
+        OMEGA.dot(TORQUE),
+        because=r"$\omega \cdot (\omega \times I\,\omega) = 0$, and the tensor is symmetric",
+        named=r"\frac{d}{dt}\,\tfrac12\,\omega_b \cdot I\,\omega_b",
+    )
+    return d

@@ -1,0 +1,119 @@
+"""Lagrange's equations in Euler angles are Euler's equations (Whittaker, Analytical Dynamics, 4th ed., section 69)."""
+
+from sympy import Expr, Matrix, eye, sin
+
+from symrot import symbols
+from symrot.catalogue.tools.motion import TENSOR, pairs, rate
+from symrot.conventions import INTRINSIC_SEQUENCES
+from symrot.kinematics.euler import rate_jacobian
+from symrot.proof.derivation import Derivation
+
+ANGLES, RATES = Matrix(symbols.angles), Matrix(symbols.angle_rates)
+MOTION = pairs(symbols.angles, symbols.angle_rates) | pairs(symbols.angle_rates, symbols.angle_accelerations)
+TORQUE, MOMENTUM = Matrix(symbols.torque_b), Matrix(symbols.rotor)
+
+
+def lagrange(energy: Expr) -> Matrix:
+    """Return ``d/dt (dT/d(rate)) - dT/d(angle)`` for the three Euler angles, shape (3, 1)."""
+    return Matrix([rate(energy.diff(dq), MOTION) - energy.diff(q) for q, dq in zip(ANGLES, RATES, strict=True)])
+
+
+def derive() -> Derivation:
+    d = Derivation(
+        "lagrange_and_euler",
+        title="Lagrange's equations are Euler's equations",
+        source="Whittaker, *A Treatise on the Analytical Dynamics of Particles and Rigid Bodies*, 4th ed., section 69; "
+        "Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., section 5.5",
+        about=(
+            r"Written in Euler angles, kinetic energy gives Lagrange's equations. They are Euler's equations, "
+            r"multiplied "
+            r"by $B^{\mathsf T}$ of $\omega_b = B \dot q$: the two are equivalent wherever $B$ has an inverse."
+        ),
+    )
+    _transposition(d)
+    _equations(d)
+    _torques(d)
+    return d
+
+
+def _transposition(d: Derivation) -> None:
+    d.section("The rates of the axes of the turns")
+    d.given(
+        r"Let $\mu$ be any vector of constant components in the body. The product $\mu \cdot \omega = \mu \cdot B "
+        r"\dot q$ is "
+        "put into Lagrange's operator, for every sequence:",
+        (r"E_k[T]", r"\frac{d}{dt} \frac{\partial T}{\partial \dot q_k} - \frac{\partial T}{\partial q_k}"),
+    )
+    for sequence in INTRINSIC_SEQUENCES:
+        body = rate_jacobian(sequence)
+        omega = body * RATES
+        d.notation({"B": body.as_immutable(), r"\omega": omega, r"\mu": MOMENTUM})
+        d.step(
+            f"{sequence}.",
+            lagrange(MOMENTUM.dot(omega)),
+            body.T * omega.cross(MOMENTUM),
+            because="the columns of $B$ are axes that turn with the body's own turns",
+            named=r"E[\mu \cdot \omega]",
+            shown=r"B^{\mathsf T} \left( \omega \times \mu \right)",
+        )
+    d.given(
+        r"In $\tfrac12\,\omega \cdot I\,\omega$ the vector is $\mu = I\,\omega$, which changes: that adds $B^{\mathsf "
+        r"T} I "
+        r"\dot\omega$. This is why gyroscopic terms appear in one form and none in the other."
+    )
+
+
+def _equations(d: Derivation) -> None:
+    d.section("The whole equation, ZXZ")
+    body = rate_jacobian("ZXZ")
+    omega = body * RATES
+    d.notation({"B": body.as_immutable(), r"\omega": omega, "I": TENSOR}, MOTION)
+    d.notation({f"omega_{n + 1}".replace("omega", r"\omega"): omega[n] for n in range(3)})
+    d.step(
+        "Lagrange's operator on the kinetic energy, full tensor.",
+        lagrange(omega.dot(TENSOR * omega) / 2),
+        body.T * (TENSOR * rate(omega, MOTION) + omega.cross(TENSOR * omega)),
+        because="both sides are expanded in angles, rates and accelerations",
+        named=r"E \left[ \tfrac12\,\omega \cdot I\,\omega \right]",
+        shown=r"B^{\mathsf T} \left( I\,\dot\omega + \omega \times I\,\omega \right)",
+    )
+    principal = Matrix.diag(*symbols.principal)
+    d.step(
+        "The third of them, for the spin angle, is Euler's third equation as it stands.",
+        lagrange(omega.dot(principal * omega) / 2)[2],
+        symbols.C * rate(omega, MOTION)[2] - (symbols.A - symbols.B) * omega[0] * omega[1],
+        because=r"the last column of $B$ is $e_3$",
+        named=r"E_\psi",
+        shown=r"C\,\dot\omega_3 - (A - B)\,\omega_1 \omega_2",
+    )
+
+
+def _torques(d: Derivation) -> None:
+    d.section("Torques and generalised forces")
+    body = rate_jacobian("ZXZ")
+    d.notation({r"\tau": TORQUE, r"\dot q": RATES, "Q": body.T * TORQUE, r"\omega": body * RATES})
+    d.step(
+        "The generalised forces are the torques about the axes of the turns.",
+        TORQUE.dot(body * RATES),
+        (body.T * TORQUE).dot(RATES),
+        because="the power of the torque is one number in both descriptions",
+        named=r"\tau \cdot \omega",
+        shown=r"\left( B^{\mathsf T} \tau \right) \cdot \dot q = Q \cdot \dot q",
+    )
+    d.step(
+        r"Hence $E = Q$ gives $I\,\dot\omega + \omega \times I\,\omega = \tau$, where the angles are not locked.",
+        (body.inverse.T * body.T),
+        eye(3),
+        because=r"$B^{\mathsf T}$ has an inverse where $\sin\theta \neq 0$",
+        named=r"B^{-\mathsf T} B^{\mathsf T}",
+    )
+    height = symbols.W * symbols.c_3 * rate_jacobian("ZXZ")[2, 0]
+    d.step(
+        "For a weight on the axis of symmetry, at the height $c_3 \\cos\\theta$ over the fixed point, only the "
+        "nutation "
+        "has a force.",
+        Matrix([-height.diff(angle) for angle in ANGLES]),
+        Matrix([0, symbols.W * symbols.c_3 * sin(symbols.theta), 0]),
+        because=r"the potential is $W c_3 \cos\theta$",
+        named=r"Q = -\frac{\partial V}{\partial q}",
+    )

@@ -1,0 +1,90 @@
+"""Rotation about one principal axis stays rotation about that axis."""
+
+from sympy import Matrix, cos, diag, sin
+
+from symrot import symbols
+from symrot.catalogue.tools.motion import rate
+from symrot.dynamics.equations import angular_acceleration
+from symrot.kinematics.quaternion import dcm_of, qmul, unit_relation
+from symrot.kinematics.rotations import elementary_rotation
+from symrot.proof.derivation import Derivation
+
+AXES = ("first", "second", "third")
+
+
+def derive() -> Derivation:
+    d = Derivation(
+        "planar_motion",
+        title="Rotation about one principal axis",
+        source="Landau & Lifshitz, *Mechanics*, 3rd ed., section 36",
+        about=(
+            "If angular velocity and torque lie along one principal axis, they stay there. The motion is then one "
+            r"angle with $I \ddot\theta = \tau$, and the attitude a turn by that angle from where it started."
+        ),
+    )
+    inertia = diag(*symbols.principal)
+    for number, place in enumerate(AXES):
+        along = [symbols.omega_b[i] if i == number else 0 for i in range(3)]
+        torque = [symbols.torque_b[i] if i == number else 0 for i in range(3)]
+        expected = [t / moment for t, moment in zip(torque, symbols.principal, strict=True)]
+        d.step(
+            f"Along the {place} principal axis nothing pulls the rotation out of it.",
+            angular_acceleration(inertia, Matrix(along), Matrix(torque)),
+            Matrix(expected),
+            because="angular velocity and angular momentum are parallel, so the gyroscopic term is zero",
+            named=r"\dot\omega_b",
+        )
+
+    d.section("The attitude is one angle")
+    theta, dtheta, axis = symbols.theta, symbols.dtheta, Matrix([0, 0, 1])
+    turn = Matrix([cos(theta / 2), *(sin(theta / 2) * axis)])
+    start = Matrix(symbols.quaternion)
+    attitude = Matrix(qmul(start, turn))
+    d.step(
+        r"A turn by $\theta$ about that axis, from the attitude $q$ at the start, satisfies the quaternion equation.",
+        rate(attitude, {theta: dtheta}),
+        Matrix(qmul(attitude, [0, *(dtheta * axis)])) / 2,
+        because=r"$\theta$ changes at the rate $\omega_3$",
+        named=r"\frac{d}{dt} \left( q\, e^{k \theta/2} \right)",
+        shown=r"\tfrac12 \left( q\, e^{k \theta/2} \right) (0, 0, 0, \dot\theta)",
+    )
+    dcm_start, turning = Matrix(dcm_of()), elementary_rotation(2, theta)
+    d.step(
+        "The axis keeps its direction in space.",
+        rate(dcm_start * turning * axis, {theta: dtheta}),
+        0,
+        because="it is the axis of the turn",
+        relations=[unit_relation()],
+        named=r"\frac{d}{dt}\,R\,e_3",
+    )
+
+    d.section("Torques that stay on the axis")
+    vector = Matrix([0, 0, symbols.tau_3])
+    d.step(
+        "A torque that is constant in space and along the axis.",
+        (dcm_start * turning).T * (dcm_start * vector),
+        vector,
+        because="the axis does not move",
+        relations=[unit_relation()],
+        named=r"\tau_b",
+    )
+    level = Matrix([symbols.gamma_1, symbols.gamma_2, 0])
+    beside = Matrix([symbols.c_1, symbols.c_2, 0])
+    gravity = symbols.W * beside.cross(turning.T * level)
+    d.step(
+        "Gravity, when the axis is level and the centre of mass beside it: a pendulum.",
+        gravity[:2, :],
+        0,
+        because="arm and weight lie in the plane of the motion",
+        named=r"(\tau_1, \tau_2)",
+    )
+    spinning = Matrix([0, 0, symbols.omega_3])
+    d.step(
+        "An internal rotor along the axis adds nothing.",
+        angular_acceleration(inertia, spinning, Matrix([0, 0, 0]), Matrix([0, 0, symbols.h_3])),
+        0,
+        because="angular velocity and the angular momentum of the rotor are parallel",
+        named=r"\dot\omega_b",
+    )
+    d.given("Damping is along the angular velocity, component by component, and so stays on the axis too.")
+    return d

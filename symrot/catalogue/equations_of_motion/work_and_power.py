@@ -1,0 +1,142 @@
+"""Work and power (Landau & Lifshitz, Mechanics, 3rd ed., section 34; Goldstein, 3rd ed., section 5.5)."""
+
+from sympy import Matrix, Rational, diag
+
+from symrot import symbols
+from symrot.catalogue.tools.motion import OMEGA, TENSOR, attitude_rates, pairs, rate, squared
+from symrot.dynamics.equations import angular_acceleration
+from symrot.kinematics.quaternion import dcm_of, unit_relation
+from symrot.proof.derivation import Derivation
+
+HALF = Rational(1, 2)
+TORQUE, FORCE, V = Matrix(symbols.torque_b), Matrix(symbols.force), Matrix(symbols.velocity)
+POINT, OTHER = Matrix(symbols.position), Matrix(symbols.offset)
+
+
+def derive() -> Derivation:
+    d = Derivation(
+        "work_and_power",
+        title="Work and power",
+        source="Landau & Lifshitz, *Mechanics*, 3rd ed., section 34; Beer, Johnston & Cornwell, *Vector Mechanics for "
+        "Engineers: Dynamics*, chapter 17",
+        about=(
+            "What forces on a body do in a unit of time is the product of their sum with the velocity of a point, and "
+            "of "
+            "their moment about it with the angular velocity. It is the rate of the kinetic energy."
+        ),
+    )
+    _forces(d)
+    _energy(d)
+    _kinds(d)
+    return d
+
+
+def _forces(d: Derivation) -> None:
+    d.section("The power of forces on a body")
+    d.notation({"F": FORCE, "v": V, r"\omega": OMEGA, "r": POINT, "d": OTHER, "v_r": V + OMEGA.cross(POINT)})
+    d.notation({"v_d": V + OMEGA.cross(OTHER)})
+    second = Matrix(symbols.torque_b)
+    d.step(
+        "A force at $r$ from a point that moves with $v$.",
+        FORCE.dot(V + OMEGA.cross(POINT)),
+        FORCE.dot(V) + POINT.cross(FORCE).dot(OMEGA),
+        because="a triple product may be turned round",
+        named=r"F \cdot (v + \omega \times r)",
+        shown=r"F \cdot v + (r \times F) \cdot \omega",
+    )
+    d.step(
+        "A couple, $F$ at $r$ and $-F$ at $d$: its power does not depend on the point.",
+        FORCE.dot(V + OMEGA.cross(POINT)) - FORCE.dot(V + OMEGA.cross(OTHER)),
+        (POINT - OTHER).cross(FORCE).dot(OMEGA),
+        because="the velocity of the point cancels",
+        named=r"F \cdot v_r - F \cdot v_d",
+        shown=r"\left( (r - d) \times F \right) \cdot \omega",
+    )
+    d.step(
+        "Forces between two points of the body, along their line, do no work.",
+        (symbols.epsilon * (POINT - OTHER)).dot(OMEGA.cross(POINT) - OMEGA.cross(OTHER)),
+        0,
+        because="the distance of the points does not change",
+        named=r"\epsilon\,(r - d) \cdot \left( \omega \times r - \omega \times d \right)",
+    )
+    dcm_sb = Matrix(dcm_of())
+    d.notation(
+        {r"\tau_b": second, r"\omega_b": OMEGA, r"\tau_s": dcm_sb * second, r"\omega_s": dcm_sb * OMEGA}
+    )  # fmt: skip
+    d.step(
+        "Power is the same in body and space components.",
+        (dcm_sb * second).dot(dcm_sb * OMEGA),
+        second.dot(OMEGA),
+        because="a rotation keeps scalar products",
+        relations=[unit_relation()],
+        named=r"\tau_s \cdot \omega_s",
+        shown=r"\tau_b \cdot \omega_b",
+    )
+
+
+def _energy(d: Derivation) -> None:
+    d.section("It is the rate of the kinetic energy")
+    d.nonzero("The tensor of inertia has an inverse,", TENSOR.det(), r"\det I")
+    motion = pairs(symbols.omega_b, angular_acceleration(TENSOR, OMEGA, TORQUE))
+    d.notation({"I": TENSOR, r"\tau": TORQUE}, motion)
+    d.step(
+        "Of turning: the torque's power, for any tensor.",
+        rate(HALF * OMEGA.dot(TENSOR * OMEGA), motion),
+        TORQUE.dot(OMEGA),
+        because=r"the gyroscopic term is at right angles to $\omega$",
+        named=r"\frac{d}{dt}\,\tfrac12\,\omega \cdot I\,\omega",
+        shown=r"\tau \cdot \omega",
+    )
+    falling = pairs(symbols.velocity, FORCE / symbols.m)
+    d.notation({}, falling)
+    d.step(
+        "Of the centre of mass: the force's power.",
+        rate(HALF * symbols.m * squared(V), falling),
+        FORCE.dot(V),
+        because=r"$m\,\dot v = F$",
+        named=r"\frac{d}{dt}\,\tfrac12\,m\,|v|^2",
+        shown=r"F \cdot v",
+    )
+    d.step(
+        "About a fixed axis with a constant torque: work is torque times angle.",
+        rate(
+            HALF * symbols.C * symbols.omega_3**2 - symbols.tau_3 * symbols.psi,
+            {symbols.omega_3: symbols.tau_3 / symbols.C, symbols.psi: symbols.omega_3},
+        ),
+        0,
+        because=r"$C\,\dot\omega_3 = \tau_3$ and $\dot\psi = \omega_3$",
+        named=r"\frac{d}{dt} \left( \tfrac12\,C\,\omega_3^2 - \tau_3\,\psi \right)",
+    )
+
+
+def _kinds(d: Derivation) -> None:
+    d.section("Torques that keep energy, and torques that take it")
+    fixed, arm, dcm_sb = Matrix(symbols.normal), Matrix(symbols.center_of_mass), Matrix(dcm_of())
+    down = dcm_sb.T * fixed
+    d.notation({"c": arm, r"\gamma": down}, attitude_rates())
+    d.step(
+        "A weight: its power is the loss of potential energy, so their sum is kept.",
+        rate(-symbols.W * arm.dot(down), attitude_rates()),
+        -(symbols.W * arm.cross(down)).dot(OMEGA),
+        because=r"the direction of gravity $\gamma$ turns backwards in the body, $\dot\gamma = \gamma \times \omega$",
+        relations=[unit_relation()],
+        named=r"\dot V = -\frac{d}{dt}\,W\,c \cdot \gamma",
+        shown=r"-\left( W\,c \times \gamma \right) \cdot \omega",
+    )
+    d.notation({"h": Matrix(symbols.rotor)})
+    rotor = Matrix(symbols.rotor)
+    d.step(
+        "A rotor that turns at a constant rate relative to the body: no power.",
+        (-OMEGA.cross(rotor)).dot(OMEGA),
+        0,
+        because="its torque on the body is at right angles to the angular velocity",
+        named=r"-(\omega \times h) \cdot \omega",
+    )
+    linear = diag(*symbols.damping)
+    d.step(
+        "Damping with positive coefficients takes energy at every motion.",
+        (-linear * OMEGA).dot(OMEGA),
+        -sum(b * w**2 for b, w in zip(symbols.damping, OMEGA, strict=True)),
+        because="it is a sum of squares with one sign",
+        named=r"\tau \cdot \omega = -b\,\omega \cdot \omega",
+    )

@@ -1,0 +1,1 @@
+"""Exact motions: elliptic functions and the motions in closed form."""

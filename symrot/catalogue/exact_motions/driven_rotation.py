@@ -1,0 +1,321 @@
+"""Constant torque and linear damping about one axis, in closed form."""
+
+from sympy import Expr, Matrix, Rational, S, Symbol, cos, diag, exp, sin
+
+from symrot import symbols
+from symrot.catalogue.tools import swept_body as _swept_body
+from symrot.catalogue.tools.elliptic import I, imaginary
+from symrot.catalogue.tools.motion import pairs, rate
+from symrot.dynamics.equations import angular_acceleration
+from symrot.kinematics.quaternion import qmul, quaternion_rates
+from symrot.proof.derivation import Derivation
+
+A, _, C = symbols.principal
+T, PUSH, DRAG, START = symbols.t, symbols.tau_3, symbols.b_3, symbols.omega_3
+AXIS = Matrix([0, 0, 1])
+HALF = Rational(1, 2)
+STEADY = START + PUSH * T / C
+ANGLE = START * T + PUSH * T**2 / (2 * C)
+
+
+def derive() -> Derivation:
+    d = Derivation(
+        "driven_rotation",
+        title="Constant torque and damping about one axis",
+        source="Leimanis, *The General Problem of the Motion of Coupled Rigid Bodies about a Fixed Point*, section "
+        "15; for the last section Zener, *Proc. R. Soc. A* 137 (1932) 696",
+        about=(
+            "A motor and a brake about a principal axis: the rate and the angle are elementary functions of time. In a "
+            "symmetric body that also turns across the axis, the transverse angular velocity turns by an angle that "
+            "grows with the square of time."
+        ),
+    )
+    _pushed(d)
+    _braked(d)
+    _across(d)
+    _attitude(d)
+    _by_kummer(d)
+    _far(d)
+    _swept_body.far(d)
+    _swept_body.near(d)
+    _swept_body.weak(d)
+    _swept_body.between(d)
+    return d
+
+
+def _pushed(d: Derivation) -> None:
+    d.section("Constant torque")
+    d.given(
+        r"The body turns [about one principal axis](planar_motion.md), of moment $C$, under the torque $\tau_3$ along "
+        r"it, from $\omega_3$ at $t = 0$.",
+        (r"\omega_3(t)", STEADY),
+        (r"\theta(t)", ANGLE),
+    )
+    d.step(
+        "The rate obeys the equation of motion.",
+        C * STEADY.diff(T),
+        PUSH,
+        because="it is linear in time",
+        named=r"C\,\dot\omega_3(t)",
+    )
+    d.step(
+        "It is the rate of the angle.",
+        ANGLE.diff(T),
+        STEADY,
+        because="a quadratic is differentiated",
+        named=r"\dot\theta(t)",
+        shown=r"\omega_3(t)",
+    )
+    q = Matrix(symbols.quaternion)
+    d.notation({"q": q, "e_3": AXIS, r"\theta": ANGLE}, {T: S.One})
+    turn = Matrix([cos(ANGLE / 2), 0, 0, sin(ANGLE / 2)])
+    attitude = Matrix(qmul(q, turn))
+    d.step(
+        "The attitude: a turn by that angle, from the attitude $q$ at the start.",
+        attitude.diff(T),
+        quaternion_rates("body", attitude) * (STEADY * AXIS),
+        because=r"the axis is fixed in the body, and in space",
+        named=r"\frac{d}{dt} \left( q\,(\cos\tfrac\theta2,\ e_3 \sin\tfrac\theta2) \right)",
+        shown=r"\tfrac12\,q\,(\cos\tfrac\theta2,\ e_3 \sin\tfrac\theta2)\,(0,\ \omega_3(t)\,e_3)",
+    )
+
+
+def _decay() -> tuple[Expr, Expr, Expr]:
+    """Return the rate, the angle, and the decaying factor with damping."""
+    decay = exp(-DRAG * T / C)
+    final = PUSH / DRAG
+    return final + (START - final) * decay, final * T + (START - final) * C / DRAG * (1 - decay), decay
+
+
+def _braked(d: Derivation) -> None:
+    d.section("With linear damping")
+    speed, angle, decay = _decay()
+    d.given(
+        r"A brake adds the torque $-b_3\,\omega_3$. The rate tends to $\tau_3 / b_3$:",
+        (r"\omega_3(t)", speed),
+        (r"\theta(t)", angle),
+    )
+    d.step(
+        "The rate obeys the equation of motion.",
+        C * speed.diff(T),
+        PUSH - DRAG * speed,
+        because="an exponential is its own derivative",
+        named=r"C\,\dot\omega_3(t)",
+        shown=r"\tau_3 - b_3\,\omega_3(t)",
+    )
+    d.step(
+        "It is the rate of the angle.",
+        angle.diff(T),
+        speed,
+        because="of the same derivative",
+        named=r"\dot\theta(t)",
+        shown=r"\omega_3(t)",
+    )
+    d.step(
+        "Both start as they must.",
+        Matrix([speed, angle]).subs(T, 0),
+        Matrix([START, 0]),
+        because="$e^0 = 1$",
+        named=r"\begin{bmatrix} \omega_3(0) \\ \theta(0) \end{bmatrix}",
+    )
+    x = symbols.v
+    d.given(
+        r"For weak damping these are differences of large numbers. With $x = -b_3 t / C$ and the functions "
+        r"$f_1 = (e^x - 1)/x$ and $f_2 = (e^x - 1 - x)/x^2$, which are regular at $x = 0$, they are not:"
+    )
+    first, second = (
+        (exp(-DRAG * T / C) - 1) / (-DRAG * T / C),
+        (exp(-DRAG * T / C) - 1 + DRAG * T / C) / (DRAG * T / C) ** 2,
+    )
+    power = -DRAG * T / C
+    d.notation({"x": power, "f_1": (exp(power) - 1) / power, "f_2": (exp(power) - 1 - power) / power**2})
+    d.step(
+        "The same, in a form that holds without damping too.",
+        Matrix([speed, angle]),
+        Matrix([START * decay + PUSH / C * T * first, START * T * first + PUSH / C * T**2 * second]),
+        because="the fractions are multiplied out",
+        named=r"\begin{bmatrix} \omega_3(t) \\ \theta(t) \end{bmatrix}",
+        shown=r"\begin{bmatrix} \omega_3\,e^x + \frac{\tau_3}{C}\,t\,f_1 \\ \omega_3\,t\,f_1 + \frac{\tau_3}{C}\,t^2 "
+        r"f_2 \end{bmatrix}",
+    )
+    d.step(
+        r"The values at $x = 0$, by the rule of de l'Hospital, $f_1 = 1$ and $f_2 = \tfrac12$, give the motion without "
+        "damping.",
+        Matrix([(exp(x) - 1).diff(x) / x.diff(x), (exp(x) - 1 - x).diff(x, 2) / (x**2).diff(x, 2)]).subs(x, 0),
+        Matrix([1, HALF]),
+        because="$e^0 = 1$",
+        named=r"\begin{bmatrix} f_1(0) \\ f_2(0) \end{bmatrix}",
+    )
+
+
+def _across(d: Derivation) -> None:
+    d.section("A symmetric body that turns across the axis as well")
+    first, second = symbols.omega_1, symbols.omega_2
+    turn = (C - A) / A * symbols.theta
+    d.notation({r"\theta": symbols.theta})
+    omega = Matrix([first * cos(turn) - second * sin(turn), first * sin(turn) + second * cos(turn), symbols.Omega])
+    d.given(
+        r"Moments $A, A, C$; $\Omega$ is the rate $\omega_3(t)$ and $\theta$ its angle, of either section above. From "
+        r"$\omega_1, \omega_2$ at the start:",
+        (r"\omega(t)", omega),
+        (r"\omega_1(t)", omega[0]),
+        (r"\omega_2(t)", omega[1]),
+    )
+    d.step(
+        "Across the axis Euler's equations hold, whatever the rate: the torque is along the axis.",
+        Matrix(rate(omega, {symbols.theta: symbols.Omega})[:2]),
+        Matrix(angular_acceleration(diag(A, A, C), omega, PUSH * AXIS)[:2]),
+        because=r"the phase grows at the rate $\frac{C - A}{A}\,\Omega$",
+        named=r"\begin{bmatrix} \dot\omega_1(t) \\ \dot\omega_2(t) \end{bmatrix}",
+        shown=r"\frac{C - A}{A}\,\Omega \begin{bmatrix} -\omega_2(t) \\ \omega_1(t) \end{bmatrix}",
+    )
+    d.notation({r"\theta(t)": ANGLE})
+    d.step(
+        "With a constant torque the phase is quadratic in time: integrals over it are those of Fresnel.",
+        ((C - A) / A * ANGLE).diff(T, 2),
+        (C - A) / (A * C) * PUSH,
+        because="twice the coefficient of $t^2$",
+        named=r"\frac{d^2}{dt^2} \left( \frac{C - A}{A}\,\theta(t) \right)",
+    )
+
+
+def _attitude(d: Derivation) -> None:
+    d.section("Its attitude")
+    across, sweep, growth = symbols.omega_1, symbols.Omega, symbols.domega_3
+    d.given(
+        r"In axes that turn with the transverse angular velocity, of length $\omega_1$, the angular velocity of the "
+        r"body "
+        r"is $(\omega_1, 0, \Omega)$ with $\Omega = \frac{C}{A}\,\omega_3(t)$, which is linear in time. The attitude "
+        r"of "
+        r"these axes as two complex numbers is $\alpha = q_0 + i q_3$ and $\beta = q_1 + i q_2$."
+    )
+    q0, q1, q2, q3 = symbols.quaternion
+    speeds = quaternion_rates("body") * Matrix([across, 0, sweep])
+    motion = pairs(symbols.quaternion, speeds) | {sweep: growth}
+    first, second = q0 + I * q3, q1 + I * q2
+    d.notation({r"\alpha": first, r"\beta": second, "i": I}, motion)
+    d.step(
+        "They obey the equations of a two-level system that is swept through resonance.",
+        rate(Matrix([first, second]), motion),
+        HALF * Matrix([I * sweep * first - across * second, across * first - I * sweep * second]),
+        because="the quaternion equation, in pairs",
+        relations=[imaginary()],
+        named=r"\begin{bmatrix} \dot\alpha \\ \dot\beta \end{bmatrix}",
+        shown=r"\tfrac12 \begin{bmatrix} i \Omega\,\alpha - \omega_1\,\beta \\ \omega_1\,\alpha - i \Omega\,\beta "
+        r"\end{bmatrix}",
+    )
+    d.step(
+        r"One alone obeys Weber's equation, $\dot\Omega$ being constant: parabolic cylinder functions of time.",
+        rate(rate(first, motion), motion),
+        (I * growth / 2 - (sweep**2 + across**2) / 4) * first,
+        because="the second number is eliminated",
+        relations=[imaginary()],
+        named=r"\ddot\alpha",
+        shown=r"\left( \frac{i}{2}\,\dot\Omega - \frac{\Omega^2 + \omega_1^2}{4} \right) \alpha",
+    )
+
+
+def _by_kummer(d: Derivation) -> None:
+    d.section("The attitude in closed form")
+    across, sweep, growth = symbols.omega_1, symbols.Omega, symbols.domega_3
+    value, slope, phase = Symbol("M"), Symbol("N"), Symbol("E")
+    a = -I * across**2 / (8 * growth)
+    z = -I * sweep**2 / (2 * growth)
+    motion = {
+        sweep: growth,
+        phase: I * sweep / 2 * phase,
+        value: -I * sweep * slope,
+        slope: 2 * growth / sweep * (a * value - (HALF - z) * slope),
+    }
+    first, second = phase * value, 2 * I * sweep / across * phase * slope
+    d.given(
+        r"Kummer's function $M = {}_1F_1(a; \tfrac12; z)$ and its derivative $N = dM/dz$ obey $z \frac{dN}{dz} = a M - "
+        r"(\tfrac12 - z) N$. With $a = -\frac{i \omega_1^2}{8 \dot\Omega}$, $z = -\frac{i \Omega^2}{2 \dot\Omega}$, so "
+        r"that $\dot z = -i \Omega$, and $E = e^{i \Omega^2 / 4 \dot\Omega}$, so that $\dot E = \frac{i}{2} \Omega E$:",
+        (r"\alpha", first),
+        (r"\beta", second),
+    )
+    d.notation({r"\alpha": first, r"\beta": second, "M": value, "N": slope, "E": phase, "i": I}, motion)
+    d.step(
+        r"They are the attitude of axes that start along those of space at $\Omega = 0$, where $\alpha = 1$ and "
+        r"$\beta = 0$. From any other start the attitude is a constant quaternion times this one.",
+        rate(Matrix([first, second]), motion),
+        HALF * Matrix([I * sweep * first - across * second, across * first - I * sweep * second]),
+        because="of Kummer's equation",
+        relations=[imaginary()],
+        named=r"\begin{bmatrix} \dot\alpha \\ \dot\beta \end{bmatrix}",
+        shown=r"\tfrac12 \begin{bmatrix} i \Omega\,\alpha - \omega_1\,\beta \\ \omega_1\,\alpha - i \Omega\,\beta "
+        r"\end{bmatrix}",
+    )
+    speed, area = Symbol("S"), Symbol("Z")
+    swept = {sweep: growth, speed: sweep * growth / speed, area: growth / speed}
+    angle = (sweep * speed + across**2 * area) / (2 * growth)
+    d.given(
+        r"Let $S = \sqrt{\Omega^2 + \omega_1^2}$ be the rate of these axes and $Z = \operatorname{arsinh} "
+        r"(\Omega/\omega_1)$, so that $\dot Z = \dot\Omega / S$."
+    )
+    d.notation({"S": speed, "Z": area}, swept)
+    d.step(
+        "The integral of that rate is elementary: the phase of a slow sweep.",
+        rate(angle, swept),
+        speed,
+        because=r"$S^2 = \Omega^2 + \omega_1^2$",
+        relations=[speed**2 - sweep**2 - across**2],
+        named=r"\frac{d}{dt} \frac{\Omega S + \omega_1^2 Z}{2 \dot\Omega}",
+        shown="S",
+    )
+
+
+def _far(d: Derivation) -> None:
+    d.section("Far from resonance")
+    x, r, kappa = Symbol("x"), Symbol("r"), Symbol("kappa")
+    a, b, c = Symbol("a"), Symbol("b"), Symbol("c")
+    v = 1 / r**2
+    moved = -2 * x / r**4
+    motion = {
+        x: S.One,
+        r: x / r,
+        a: moved * -(a + c) / (2 * v),
+        b: moved * kappa**2 * (b + c) / (2 * (1 - kappa**2 * v)),
+        c: moved * ((a - b) / v**2 - 3 * c) / (2 * v),
+    }
+    n = Matrix([kappa / r * a, kappa / r**3 * c, x / r * b])
+    d.given(
+        r"In the unit of time $\dot\Omega^{-1/2}$ the body turns at $(\kappa, 0, x)$, $x$ the time; $r^2 = x^2 + "
+        r"\kappa^2$, $v = 1/r^2$. Let $a, b, c$ be series in $v$ with $c = -(a + 2 v a')$, $b - a = -v^2 (3 c + 2 v "
+        r"c')$ and $2 (1 - \kappa^2 v) b' = \kappa^2 (b + c)$: from $a = b = 1$ at $v = 0$ each coefficient follows "
+        "from those before.",
+        ("n", n),
+    )
+    d.notation({"n": n, r"\kappa": kappa, "r": r, "x": x}, motion)
+    d.step(
+        "This vector is at rest in space. Far from resonance it follows the axis of rotation, and the body turns about "
+        "it by the phase above, but for a small angle.",
+        rate(n, motion),
+        n.cross(Matrix([kappa, 0, x])),
+        because="a vector at rest in space turns backwards in the body",
+        relations=[r**2 - x**2 - kappa**2],
+        named=r"\frac{dn}{dx}",
+        shown=r"n \times (\kappa, 0, x)",
+    )
+    first, second, third = (Symbol(f"m_{k}") for k in (1, 2, 3))
+    tilt = -kappa / r**2
+    turning = {x: S.One, r: x / r, first: r * second - tilt * third, second: -r * first, third: tilt * first}
+    squares = first**2 + second**2 + third**2
+    spin = r * third + tilt * second + (second * turning[first] - first * turning[second]) / (1 + third)
+    d.given(
+        r"In axes turned about the second one until the third lies along $(\kappa, 0, x)$ the body turns at $(0, "
+        r"\dot\phi, r)$, $\dot\phi = -\kappa/r^2$, and $n$ is a vector $m$ near the third axis. The axes "
+        r"turned on by the shortest way until the third lies along $m$ turn about it alone, at the rate $m \cdot "
+        r"\omega + (m_2 \dot m_1 - m_1 \dot m_2)/(1 + m_3)$."
+    )
+    d.notation({"m": Matrix([first, second, third]), "r": r}, turning)
+    d.step(
+        "It exceeds $r$ by the rate of the small angle.",
+        spin,
+        r + tilt * second / (1 + third),
+        because="$m$ has length 1 and is at rest in space",
+        relations=[squares - 1],
+        named=r"m \cdot \omega + \frac{m_2 \dot m_1 - m_1 \dot m_2}{1 + m_3}",
+        shown=r"r + \frac{\dot\phi\,m_2}{1 + m_3}",
+    )

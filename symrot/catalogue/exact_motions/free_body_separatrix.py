@@ -1,0 +1,152 @@
+"""The free body on the separatrix, with its attitude (Landau & Lifshitz, Mechanics, 3rd ed., section 37)."""
+
+from sympy import Expr, Integer, Matrix, Rational, Symbol, atan, cos, diag, sin, tanh
+
+from symrot import symbols
+from symrot.catalogue.exact_motions.free_body_attitude import T, smallest_turn, turning_rate
+from symrot.catalogue.tools.motion import pairs, rate, squared
+from symrot.kinematics.rotations import skew
+from symrot.proof.derivation import Derivation
+
+A, _, C = symbols.principal
+H, SIGN = symbols.H, symbols.sigma
+ONE, _, THREE = symbols.momentum_amplitudes
+P, TIME, PSI = symbols.p, symbols.t, symbols.psi
+MIDDLE = A * C * (ONE**2 + THREE**2) / (C * ONE**2 + A * THREE**2)
+"""The intermediate moment, from H^2 = 2 T B."""
+SPEED = SIGN * THREE * (C - MIDDLE) / (MIDDLE * C) * H / ONE
+GIVEN = [H**2 - ONE**2 - THREE**2, SIGN**2 - 1]
+SHARE = Symbol("h")
+"""tanh(p t/2)"""
+
+
+def derive() -> Derivation:
+    d = Derivation(
+        "free_body_separatrix",
+        title="The free body on the separatrix",
+        source="Landau & Lifshitz, *Mechanics*, 3rd ed., section 37; van Zon & Schofield, *J. Comput. Phys.* 225 "
+        "(2007) 145",
+        about=(
+            r"With $H^2 = 2 T B$ the body leaves one steady rotation about its intermediate axis and settles into the "
+            "opposite one. Angular velocity and attitude are elementary functions of time."
+        ),
+    )
+    h = SHARE
+    d.given(
+        r"As on the page of [the attitude](free_body_attitude.md), with $\ell_1, \ell_3$ the components of angular "
+        r"momentum halfway, $H^2 = \ell_1^2 + \ell_3^2$. The intermediate moment is then no free choice:",
+        ("B", MIDDLE),
+        ("p", r"\sigma\,\frac{C - B}{B C}\,\frac{H\,\ell_3}{\ell_1}"),
+    )
+    d.section("Angular momentum in the body")
+    d.given(
+        "All is rational in one hyperbolic tangent:",
+        ("h", tanh(P * TIME / 2)),
+        (r"\tanh p\,t", r"\frac{2 h}{1 + h^2}"),
+        (r"\mathrm{sech}\,p\,t", r"\frac{1 - h^2}{1 + h^2}"),
+        ("L", r"\begin{bmatrix} \ell_1\,\mathrm{sech}\,p\,t \\ \sigma H \tanh p\,t \\ \ell_3\,\mathrm{sech}\,p\,t "
+              r"\end{bmatrix}"),
+    )  # fmt: skip
+    momentum = _momentum()
+    tensor = diag(A, MIDDLE, C)
+    omega = tensor.inv() * momentum
+    d.notation({"p": P, "h": tanh(P * TIME / 2)}, {TIME: Integer(1)})
+    d.step(
+        r"It changes at this rate.",
+        tanh(P * TIME / 2).diff(TIME),
+        P / 2 * (1 - tanh(P * TIME / 2) ** 2),
+        because=r"$\tanh' = 1 - \tanh^2$",
+        named=r"\dot h",
+        shown=r"\tfrac{p}{2} \left( 1 - h^2 \right)",
+    )
+    rising, falling = 2 * h / (1 + h**2), (1 - h**2) / (1 + h**2)
+    d.notation({"h": h, r"\tanh p\,t": rising, r"\mathrm{sech}\,p\,t": falling}, _share(P))
+    d.step(
+        r"The hyperbolic functions are these fractions: they start and change as $\tanh$ and $\mathrm{sech}$ do.",
+        rate(Matrix([rising, falling]), _share(P)),
+        P * Matrix([falling**2, -rising * falling]),
+        because=r"$\dot h = \tfrac{p}{2} (1 - h^2)$",
+        named=r"\frac{d}{dt} \begin{bmatrix} \tanh p\,t \\ \mathrm{sech}\,p\,t \end{bmatrix}",
+        shown=r"p \begin{bmatrix} \mathrm{sech}^2\,p\,t \\ -\tanh p\,t\;\mathrm{sech}\,p\,t \end{bmatrix}",
+    )
+    d.notation({"p": SPEED, "L": momentum, r"\omega": omega, "B": MIDDLE, "H": H}, _share(SPEED))
+    d.step(
+        "Euler's equations hold.",
+        rate(momentum, _share(SPEED)),
+        momentum.cross(omega),
+        because="$B$ and $p$ are put in",
+        relations=GIVEN,
+        named=r"\dot L",
+        shown=r"L \times \omega",
+    )
+    d.step(
+        "Angular momentum and energy are kept, and $H^2 = 2 T B$.",
+        Matrix([squared(momentum), momentum.dot(omega) * MIDDLE]),
+        Matrix([H**2, H**2]),
+        because=r"$\tanh^2 + \mathrm{sech}^2 = 1$",
+        relations=GIVEN,
+        named=r"\begin{bmatrix} L \cdot L \\ B\,L \cdot \omega \end{bmatrix}",
+    )
+    _attitude(d, momentum, omega)
+    return d
+
+
+def _momentum() -> Matrix:
+    h = SHARE
+    return Matrix([ONE * (1 - h**2), SIGN * H * 2 * h, THREE * (1 - h**2)]) / (1 + h**2)
+
+
+def _attitude(d: Derivation, momentum: Matrix, omega: Matrix) -> None:
+    d.section("The attitude")
+    h = SHARE
+    values = pairs(symbols.momentum_b, momentum)
+    speed = turning_rate().subs(T, momentum.dot(omega) / 2).subs(values)
+    about = Matrix([[cos(PSI), -sin(PSI), 0], [sin(PSI), cos(PSI), 0], [0, 0, 1]])
+    d.notation(
+        {"T": momentum.dot(omega) / 2, "L_1": momentum[0], "L_3": momentum[2], r"\omega_3": omega[2], r"\sigma": SIGN}
+    )
+    d.step(
+        "The turn about the angular momentum: its rate.",
+        speed,
+        H / MIDDLE - SIGN * SPEED * momentum[0] / (H + momentum[2]),
+        because=r"$2 T = H^2 / B$",
+        relations=GIVEN,
+        named=r"\dot\psi = \frac{2 T + H\,\omega_3}{H + L_3}",
+        shown=r"\frac{H}{B} - \sigma\,p\,\frac{L_1}{H + L_3}",
+    )
+    d.notation({"p": P}, {TIME: Integer(1)} | _share(P))
+    turned = H / MIDDLE * TIME - 2 * SIGN * atan(ONE * h / (H + THREE))
+    d.step(
+        "Its angle: even growth, and in all one step from the one steady rotation to the other.",
+        rate(turned, {TIME: Integer(1)} | _share(P)),
+        H / MIDDLE - SIGN * P * momentum[0] / (H + momentum[2]),
+        because=r"$H^2 - \ell_3^2 = \ell_1^2$",
+        relations=GIVEN,
+        named=r"\frac{d}{dt} \left( \frac{H}{B}\,t - 2 \sigma \arctan \frac{\ell_1\,h}{H + \ell_3} \right)",
+        shown=r"\frac{H}{B} - \sigma\,p\,\frac{L_1}{H + L_3}",
+    )
+    rotation = about * smallest_turn().subs(values)
+    d.notation(
+        {"R": rotation, "p": SPEED}, _share(SPEED) | {PSI: H / MIDDLE - SIGN * SPEED * momentum[0] / (H + momentum[2])}
+    )
+    d.step(
+        r"The attitude satisfies its equation, all nine entries: $R = R_3(\psi)\,P$, with both put in.",
+        rate(rotation, _share(SPEED) | {PSI: H / MIDDLE - SIGN * SPEED * momentum[0] / (H + momentum[2])}),
+        rotation * skew(omega),
+        because="of the steps before",
+        relations=GIVEN,
+        named=r"\dot R",
+        shown=r"R\,[\omega]_\times",
+    )
+    d.step(
+        "In the end, as at the beginning, the angular momentum is along the intermediate axis, in opposite directions.",
+        Matrix([momentum.subs(h, 1), momentum.subs(h, -1)]),
+        SIGN * H * Matrix([0, 1, 0, 0, -1, 0]),
+        because=r"$h \to \pm 1$",
+        named=r"\begin{bmatrix} L(\infty) \\ L(-\infty) \end{bmatrix}",
+    )
+
+
+def _share(speed: Expr) -> dict[Symbol, Expr]:
+    """Return the rate of h for the frequency."""
+    return {SHARE: speed * (1 - SHARE**2) * Rational(1, 2)}

@@ -1,0 +1,162 @@
+"""Physical and spherical pendulum (Whittaker, Analytical Dynamics, 4th ed., sections 44 and 55)."""
+
+from sympy import Expr, Integer, Matrix, Rational, Symbol, sech, sqrt, tanh
+
+from symrot import symbols
+from symrot.catalogue.exact_motions.heavy_top_motion import HEIGHT, PARAMETER, SPEED, U1, U2, U3, cubic
+from symrot.catalogue.tools.elliptic import CN, DN, MU, SN, derivatives, squares
+from symrot.catalogue.tools.motion import rate
+from symrot.proof.derivation import Derivation
+
+A, W, ARM, T, P = symbols.A, symbols.W, symbols.c_3, symbols.t, symbols.p
+THETA, P_PHI = symbols.theta, symbols.p_phi
+
+
+def derive() -> Derivation:
+    d = Derivation(
+        "pendulum",
+        title="Physical and spherical pendulum",
+        source="Landau & Lifshitz, *Mechanics*, 3rd ed., section 14; Whittaker, *Analytical Dynamics*, 4th ed., "
+        "sections 44 and 55",
+        about=(
+            r"A [heavy top](heavy_top_motion.md) without spin, $p_\psi = 0$, is a spherical pendulum; without "
+            "precession either, a pendulum in a plane. It swings, turns over, or takes for ever to reach the top."
+        ),
+    )
+    _plane(d)
+    _turning(d)
+    _spherical(d)
+    return d
+
+
+def _plane(d: Derivation) -> None:
+    d.section("In a plane")
+    d.given(
+        r"Let $\theta$ be the angle from the lowest place, $A$ the moment about the axis, $W c_3$ the weight times its "
+        r"arm, and $p^2 = W c_3 / A$. The equation of motion is $\ddot\theta = -p^2 \sin\theta$. Let $s, c$ stand for "
+        r"$\sin\tfrac\theta2, \cos\tfrac\theta2$: they change at the rates $\tfrac12 \dot\theta\,c$ and "
+        r"$-\tfrac12 \dot\theta\,s$, and $\sin\theta = 2 s c$."
+    )
+    root = sqrt(MU)
+    motions = (
+        (
+            r"Swinging, with the greatest angle $2 \arcsin\sqrt\mu$: $s = \sqrt\mu\,\mathrm{sn}(p\,t)$, "
+            r"$c = \mathrm{dn}$, $\dot\theta = 2 p \sqrt\mu\,\mathrm{cn}$.",
+            (root * SN, DN, 2 * P * root * CN),
+            derivatives(P),
+            squares(),
+        ),
+        (
+            r"Turning over: $s = \mathrm{sn}(p\,t / \sqrt\mu)$, $c = \mathrm{cn}$, $\dot\theta = 2 p\,\mathrm{dn} / "
+            r"\sqrt\mu$.",
+            (SN, CN, 2 * P / root * DN),
+            derivatives(P / root),
+            squares(),
+        ),
+    )
+    for claim, motion, along, relations in motions:
+        _holds(d, claim, motion, along, relations)
+    _holds(
+        d,
+        r"Between the two, $\mu = 1$: $s = \tanh p\,t$, $c = \mathrm{sech}\,p\,t$, $\dot\theta = 2 p\,\mathrm{sech}\,"
+        r"p\,t$. The top is reached after an infinite time.",
+        (tanh(P * T), sech(P * T), 2 * P * sech(P * T)),
+        {T: Integer(1)},
+        [tanh(P * T) ** 2 + sech(P * T) ** 2 - 1],
+    )
+    d.step(
+        r"The energy of a swing, from the lowest place: $\mu$ is the share of what it takes to turn over.",
+        A * (2 * P * root * CN) ** 2 / 2 + 2 * A * P**2 * (root * SN) ** 2,
+        2 * A * P**2 * MU,
+        because=r"$1 - \cos\theta = 2 s^2$",
+        relations=squares(),
+        named=r"\tfrac12 A\,\dot\theta^2 + W c_3 (1 - \cos\theta)",
+        shown=r"2 W c_3\,\mu",
+    )
+
+
+def _holds(d: Derivation, claim: str, motion: tuple[Expr, ...], along: dict[Symbol, Expr], given: list[Expr]) -> None:
+    """Add the step that sine and cosine of the half angle, and the rate, are those of a pendulum."""
+    s, c, speed = motion
+    half = Rational(1, 2)
+    d.notation({"s": s, "c": c, r"\dot\theta": speed, r"\ddot\theta": rate(speed, along), "p": P}, along)
+    d.step(
+        claim,
+        rate(Matrix([s, c, speed]), along),
+        Matrix([half * speed * c, -half * speed * s, -2 * P**2 * s * c]),
+        because="each derivative is put in",
+        relations=given,
+        named=r"\begin{bmatrix} \dot s \\ \dot c \\ \ddot\theta \end{bmatrix}",
+        shown=r"\begin{bmatrix} \tfrac12 \dot\theta\,c \\ -\tfrac12 \dot\theta\,s \\ -2 p^2 s\,c \end{bmatrix}",
+    )
+
+
+def _turning(d: Derivation) -> None:
+    d.section("As a heavy top")
+    flat = {U1: -1, U3: 1}
+    d.notation({"u": symbols.gamma_3, r"\dot u": sqrt(cubic(symbols.gamma_3).subs(flat))})
+    d.step(
+        r"The cubic of the [heavy top](heavy_top_motion.md) with both momenta zero has the zeros $-1$, $1$ and the "
+        "height of the highest place.",
+        cubic(symbols.gamma_3).subs(flat),
+        2 * W * ARM / A * (U2 - symbols.gamma_3) * (1 - symbols.gamma_3**2),
+        because="$1 - u^2$ is a factor",
+        named=r"\dot u^2",
+        shown=r"\frac{2 W c_3}{A} (u_2 - u)(1 - u^2)",
+    )
+    d.notation({"u": HEIGHT.subs(flat), r"\mu": PARAMETER.subs(flat), "p": SPEED.subs(flat)})
+    d.step(
+        r"Its solution is that of the swing: with $u = -\cos\theta$ for the angle from the lowest place, "
+        r"$\sin^2\tfrac\theta2$ is this.",
+        (1 + HEIGHT.subs(flat)) / 2,
+        PARAMETER.subs(flat) * SN**2,
+        because=r"$1 - \cos\theta = 2 \sin^2 \tfrac\theta2$",
+        named=r"\tfrac12 (1 + u)",
+        shown=r"\mu\,\mathrm{sn}^2",
+    )
+    d.step(
+        "The frequency is the same.",
+        SPEED.subs(flat) ** 2,
+        W * ARM / A,
+        because="$u_3 - u_1 = 2$",
+        named="p^2",
+    )
+
+
+def _spherical(d: Derivation) -> None:
+    d.section("The spherical pendulum")
+    u = symbols.gamma_3
+    highest = -(1 + U1 * U2) / (U1 + U2)
+    d.given(
+        r"Without spin, $p_\psi = 0$, but with $p_\phi \ne 0$ the axis goes round and nods between the heights $u_1$ "
+        r"and $u_2$ above the support. They give the third zero and the momentum:",
+        ("u_3", highest),
+    )
+    d.nonzero("Not both are level,", U1 + U2, "u_1 + u_2")
+    d.notation({"u": u})
+    square = -2 * A * W * ARM * (1 - U1**2) * (1 - U2**2) / (U1 + U2)
+    energy = 2 * W * ARM * (U1 + U2 + highest)
+    d.notation({"E": energy / 2, r"p_\phi": sqrt(square)})
+    d.step(
+        r"The cubic of energy and momentum, with $p_\phi^2$ as below, has these zeros.",
+        energy * (1 - u**2) / A - 2 * W * ARM * u * (1 - u**2) / A - square / A**2,
+        cubic(u).subs(U3, highest),
+        because=r"$u_1 u_2 + u_2 u_3 + u_3 u_1 = -1$",
+        named=r"\frac{2}{A} (E - W c_3 u)(1 - u^2) - \frac{p_\phi^2}{A^2}",
+        shown=r"\frac{2 W c_3}{A} (u - u_1)(u - u_2)(u - u_3)",
+    )
+    d.step(
+        r"The square of the momentum is not negative only where $u_1 + u_2 \le 0$: halfway, the pendulum is below "
+        "its support.",
+        square * (U1 + U2),
+        -2 * A * W * ARM * (1 - U1**2) * (1 - U2**2),
+        because="$1 - u^2$ is not negative",
+        named=r"p_\phi^2\,(u_1 + u_2)",
+    )
+    d.step(
+        "With both heights equal it goes round a cone, at this rate squared.",
+        square.subs(U2, U1) / (A * (1 - U1**2)) ** 2,
+        -W * ARM / (A * U1),
+        because=r"$\dot\phi = p_\phi / (A \sin^2\theta)$",
+        named=r"\dot\phi^2",
+    )

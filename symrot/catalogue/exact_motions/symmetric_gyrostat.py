@@ -1,0 +1,152 @@
+"""A symmetric body with a rotor along its axis (Hughes, Spacecraft Attitude Dynamics, chapter 6)."""
+
+from sympy import Matrix, S, cos, diag, sin, sqrt
+
+from symrot import symbols
+from symrot.catalogue.tools.motion import OMEGA, attitude_rates, pairs, rate, squared
+from symrot.dynamics.equations import angular_acceleration
+from symrot.kinematics.quaternion import dcm_of, qmul, quaternion_rates, unit_relation
+from symrot.proof.derivation import Derivation
+
+A, _, C = symbols.principal
+SPIN, ROTOR, T, H = symbols.omega_3, symbols.h_3, symbols.t, symbols.H
+START = Matrix(symbols.quaternion)
+AXIS = Matrix([0, 0, 1])
+TENSOR = diag(A, A, C)
+
+
+def derive() -> Derivation:
+    d = Derivation(
+        "symmetric_gyrostat",
+        title="A symmetric body with a rotor along its axis",
+        source="Hughes, *Spacecraft Attitude Dynamics*, section 6.2; Landau & Lifshitz, *Mechanics*, 3rd ed., section "
+        "33, without the rotor",
+        about=(
+            "A rotor at constant relative speed along the axis of a symmetric body changes the rates of regular "
+            "precession and nothing else. The attitude is the product of two steady rotations, one fixed in space and "
+            "one in the body; without the rotor it is that of the [free symmetric body](symmetric_top.md)."
+        ),
+    )
+    momentum = TENSOR * OMEGA + Matrix([0, 0, ROTOR])
+    own = SPIN - momentum[2] / A
+    alpha_b = angular_acceleration(TENSOR, OMEGA, 0 * OMEGA, Matrix([0, 0, ROTOR]))
+    d.given(
+        r"Moments $A, A, C$, the rotor's mass included; its angular momentum relative to the body, $h_3$, along axis "
+        r"3. "
+        "No torque acts. The angular momentum is",
+        ("L", momentum),
+    )
+    d.notation({r"\omega": OMEGA, "e_3": AXIS, "R": Matrix(dcm_of())})
+    d.notation({r"\dot\omega_b": alpha_b})
+    _body(d, alpha_b)
+    d.section("Two steady rotations")
+    d.step(
+        r"The angular velocity is $L/A$ and a rotation about the axis at a constant rate $\nu$.",
+        OMEGA,
+        momentum / A + own * AXIS,
+        because="the tensor is $A$ times 1, but for axis 3",
+        named=r"\omega",
+        shown=r"\frac{L}{A} + \nu\,e_3, \quad \nu = \frac{(A - C)\,\omega_3 - h_3}{A}",
+    )
+    along = attitude_rates() | pairs(symbols.omega_b, alpha_b)
+    d.notation({"L": momentum}, along)
+    d.step(
+        "The angular momentum is fixed in space.",
+        rate(Matrix(dcm_of()) * momentum, along),
+        0,
+        because=r"$\dot L = L \times \omega$ in the body",
+        relations=[unit_relation()],
+        named=r"\frac{d}{dt} (R\,L)",
+    )
+    _attitude(d)
+    _rotor(d, momentum, own)
+    return d
+
+
+def _body(d: Derivation, alpha_b: Matrix) -> None:
+    d.section("In the body")
+    turning = ((C - A) * SPIN + ROTOR) / A
+    d.step(
+        "The spin is constant, and the transverse angular velocity turns at a constant rate.",
+        alpha_b,
+        turning * Matrix([-symbols.omega_2, symbols.omega_1, 0]),
+        because="equal moments cancel on axis 3, and the rotor is along it",
+        named=r"\dot\omega_b",
+    )
+    rates = symbols.Omega, symbols.p
+    angle = rates[1] * T
+    first, second = symbols.omega_1, symbols.omega_2
+    solution = Matrix([first * cos(angle) - second * sin(angle), first * sin(angle) + second * cos(angle), SPIN])
+    acceleration = angular_acceleration(TENSOR, solution, 0 * solution, Matrix([0, 0, A * rates[1] - (C - A) * SPIN]))
+    d.notation({"p": rates[1], r"\dot\omega_b": acceleration}, {T: S.One})
+    d.step(
+        r"So at any time, from $\omega_1, \omega_2$ at the start and with $p = ((C - A)\,\omega_3 + h_3)/A$,",
+        acceleration,
+        solution.diff(T),
+        because="sine and cosine are each other's rates",
+        named=r"\dot\omega_b",
+        shown=r"\frac{d}{dt} \begin{bmatrix} \omega_1 \cos(p\,t) - \omega_2 \sin(p\,t) \\ \omega_1 \sin(p\,t) + "
+        r"\omega_2 "
+        r"\cos(p\,t) \\ \omega_3 \end{bmatrix}",
+    )
+
+
+def _attitude(d: Derivation) -> None:
+    direction, half_h, half_nu = Matrix(symbols.axis), symbols.p * T, symbols.Omega * T
+    about_momentum = Matrix([cos(half_h), *(sin(half_h) * direction)])
+    about_axis = Matrix([cos(half_nu), 0, 0, sin(half_nu)])
+    relations = [unit_relation(), squared(direction) - 1]
+    attitude = Matrix(qmul(about_momentum, START, about_axis))
+    turned = Matrix(dcm_of(Matrix(qmul(START, about_axis)))).T * direction
+    omega = 2 * symbols.p * turned + 2 * symbols.Omega * AXIS
+    d.given(
+        r"Let $n$ be the direction of the angular momentum in space, $H$ its length, $q$ the attitude at the start, "
+        r"and "
+        r"$p = H/(2 A)$, $\Omega = \nu/2$. Then at any time the attitude is",
+        (r"q(t)", r"(\cos(p\,t),\ n \sin(p\,t))\;q\;(\cos(\Omega t),\ e_3 \sin(\Omega t))"),
+    )
+    d.notation(
+        {
+            "q": START, "n": direction, "p": symbols.p, r"\Omega": symbols.Omega, "R(t)": Matrix(dcm_of(attitude)),
+            "R": dcm_of, "n_b": turned, "q(t)": attitude,
+        }
+    )  # fmt: skip
+    d.step(
+        r"It obeys the quaternion equation with the angular velocity $\frac{H}{A}\,n_b + \nu\,e_3$, $n_b$ being the "
+        "direction $n$ as seen from the body.",
+        attitude.diff(T),
+        quaternion_rates("body", attitude) * omega,
+        because=r"a rotation from the left turns about an axis of space, one from the right about an axis of the body",
+        relations=relations,
+        named=r"\dot q(t)",
+        shown=r"\tfrac12\,q(t)\,(0,\ 2 p\,n_b + 2 \Omega\,e_3)",
+    )
+    d.step(
+        r"The turn about $n$ itself does not matter for it.",
+        Matrix(dcm_of(attitude)).T * direction,
+        turned,
+        because="the axis of a rotation stays where it is",
+        relations=relations,
+        named=r"R(t)^{\mathsf T} n",
+        shown=r"R\left( q\,(\cos(\Omega t),\ e_3 \sin(\Omega t)) \right)^{\mathsf T} n",
+    )
+
+
+def _rotor(d: Derivation, momentum: Matrix, own: object) -> None:
+    d.section("What the rotor does")
+    d.notation({r"\nu": own, "H": sqrt(squared(momentum))})
+    d.step(
+        r"With $h_3 = (A - C)\,\omega_3$ the body does not turn about its axis relative to the precession: a "
+        "dual-spin satellite keeps its face.",
+        own.subs(ROTOR, (A - C) * SPIN),  # type: ignore[attr-defined]
+        0,
+        because=r"$\nu$ is put in",
+        named=r"\left. \nu \right|_{h_3 = (A - C)\,\omega_3}",
+    )
+    d.step(
+        "The rate of the precession grows with the rotor.",
+        squared(momentum) / A**2,
+        (A**2 * (symbols.omega_1**2 + symbols.omega_2**2) + (C * SPIN + ROTOR) ** 2) / A**2,
+        because="$|L|/A$ is the rate",
+        named=r"\frac{H^2}{A^2}",
+    )

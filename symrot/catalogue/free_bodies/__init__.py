@@ -1,0 +1,1 @@
+"""Free bodies: invariants, symmetric and asymmetric bodies, Poinsot's construction."""

@@ -1,0 +1,79 @@
+"""What a free body keeps (Landau & Lifshitz, Mechanics, 3rd ed., section 37)."""
+
+from sympy import Matrix, Rational, diag
+
+from symrot import symbols
+from symrot.catalogue.tools.motion import OMEGA, TENSOR, attitude_rates, pairs, rate, squared
+from symrot.dynamics.equations import angular_acceleration
+from symrot.kinematics.quaternion import dcm_of, unit_relation
+from symrot.proof.derivation import Derivation
+
+NONE = 0 * OMEGA
+
+
+def derive() -> Derivation:
+    d = Derivation(
+        "free_body_invariants",
+        title="What a free body keeps",
+        source="Landau & Lifshitz, *Mechanics*, 3rd ed., section 37",
+        about=(
+            "Without torque a body keeps its kinetic energy and its angular momentum in space. In the body the "
+            r"angular velocity therefore runs on the intersection of two ellipsoids, the polhode."
+        ),
+    )
+    d.nonzero("The tensor of inertia has an inverse,", TENSOR.det(), r"\det I")
+    acceleration = angular_acceleration(TENSOR, OMEGA, NONE)
+    motion = attitude_rates() | pairs(symbols.omega_b, acceleration)
+    momentum_b = TENSOR * OMEGA
+    d.given(r"Euler's equations without torque, full tensor:", (r"I\,\dot\omega_b", r"-\,\omega_b \times I\,\omega_b"))
+    d.step(
+        "Kinetic energy is kept.",
+        rate(OMEGA.dot(momentum_b) / 2, motion),
+        0,
+        because=r"the gyroscopic torque is at right angles to $\omega$",
+        named=r"\frac{d}{dt}\,\tfrac12\,\omega_b \cdot I\,\omega_b",
+    )
+    d.step(
+        "All three components of angular momentum in space are kept.",
+        rate(Matrix(dcm_of()) * momentum_b, motion),
+        0,
+        because="there is no torque, and Euler's equations say so in turning axes",
+        relations=[unit_relation()],
+        named=r"\frac{d}{dt}\,R\,I\,\omega_b",
+    )
+    d.step(
+        "So is its length, which needs no attitude.",
+        rate(squared(momentum_b), motion),
+        0,
+        because="a rotation keeps lengths",
+        named=r"\frac{d}{dt}\,|I\,\omega_b|^2",
+    )
+    d.section("The polhode")
+    a, b, c = symbols.principal
+    inertia = diag(a, b, c)
+    along = pairs(symbols.omega_b, angular_acceleration(inertia, OMEGA, NONE))
+    doubled = OMEGA.dot(inertia * OMEGA)
+    d.step(
+        "Along principal axes, a combination in which $\\omega_3$ does not occur: an ellipse or a hyperbola.",
+        squared(inertia * OMEGA) - c * doubled,
+        a * (a - c) * symbols.omega_1**2 + b * (b - c) * symbols.omega_2**2,
+        because="both invariants are quadratic, and the terms along axis 3 cancel",
+        named=r"|L|^2 - 2 C E",
+    )
+    d.step(
+        "It is kept as well.",
+        rate(squared(inertia * OMEGA) - c * doubled, along),
+        0,
+        because="both parts are",
+        named=r"\frac{d}{dt} \left( |L|^2 - 2 C E \right)",
+    )
+    d.section("The herpolhode")
+    d.step(
+        "The component of the angular velocity along the angular momentum is kept: "
+        "its tip moves in the invariable plane.",
+        OMEGA.dot(momentum_b) - 2 * (Rational(1, 2) * OMEGA.dot(TENSOR * OMEGA)),
+        0,
+        because=r"$\omega \cdot L$ is twice the kinetic energy, and $|L|$ is kept",
+        named=r"\omega \cdot L - 2 E",
+    )
+    return d

@@ -1,0 +1,56 @@
+"""A body with three equal moments."""
+
+from sympy import Matrix, diag
+
+from symrot import symbols
+from symrot.catalogue.tools.motion import OMEGA, attitude_rates, pairs, rate
+from symrot.dynamics.equations import angular_acceleration
+from symrot.kinematics.quaternion import dcm_of, unit_relation
+from symrot.proof.derivation import Derivation
+
+
+def derive() -> Derivation:
+    d = Derivation(
+        "spherical_body",
+        title="A spherical body",
+        source="Landau & Lifshitz, *Mechanics*, 3rd ed., section 32",
+        about=(
+            "A cube has the tensor of a ball. With three equal moments angular momentum and angular velocity are "
+            "parallel, whatever the axes, and without torque nothing changes but the angle about a fixed axis."
+        ),
+    )
+    inertia = diag(symbols.A, symbols.A, symbols.A)
+    dcm_sb = Matrix(dcm_of())
+    free = angular_acceleration(inertia, OMEGA, 0 * OMEGA)
+    d.step(
+        "The tensor is the same in all axes.",
+        dcm_sb * inertia * dcm_sb.T,
+        inertia,
+        because="it is a multiple of 1",
+        relations=[unit_relation()],
+        named=r"R\,I\,R^{\mathsf T}",
+    )
+    d.step(
+        "Without torque the angular velocity in the body is constant.",
+        free,
+        0,
+        because="angular velocity and angular momentum are parallel",
+        named=r"\dot\omega_b",
+    )
+    motion = attitude_rates() | pairs(symbols.omega_b, free)
+    d.step(
+        "And so it is in space.",
+        rate(dcm_sb * OMEGA, motion),
+        0,
+        because=r"$\omega \times \omega = 0$",
+        relations=[unit_relation()],
+        named=r"\dot\omega_s",
+    )
+    d.step(
+        "With a torque, the body answers like a point mass in three directions.",
+        angular_acceleration(inertia, OMEGA, Matrix(symbols.torque_b)),
+        Matrix(symbols.torque_b) / symbols.A,
+        because="there is no gyroscopic term",
+        named=r"\dot\omega_b",
+    )
+    return d

@@ -1,0 +1,1 @@
+"""Inertia: angular momentum, kinetic energy, parallel axes, rotation of the tensor, standard solids."""

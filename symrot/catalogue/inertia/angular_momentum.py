@@ -1,0 +1,149 @@
+"""Angular momentum and the inertia tensor from the sum over particles (Goldstein, 3rd ed., sections 5.1 and 5.3)."""
+
+from sympy import Matrix, eye, zeros
+
+from symrot import symbols
+from symrot.catalogue.tools.motion import OMEGA, TENSOR, squared
+from symrot.inertia.tensor import inertia_of_point
+from symrot.proof.derivation import Derivation
+
+MASSES = symbols.particle_masses
+POINTS = [Matrix(symbols.corners[3 * i : 3 * i + 3]) for i in range(3)]
+PLACE, V = Matrix(symbols.position), Matrix(symbols.velocity)
+COUNT = r"\sum_i"
+
+
+def derive() -> Derivation:
+    d = Derivation(
+        "angular_momentum",
+        title="Angular momentum and the inertia tensor",
+        source="Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., sections 5.1 to 5.3; Landau & Lifshitz, "
+        "*Mechanics*, 3rd ed., section 32",
+        about=(
+            "A body is a sum of particles that turn together. Its angular momentum is linear in the angular velocity, "
+            "and the matrix of that map is the inertia tensor."
+        ),
+    )
+    _one_particle(d)
+    _sum(d)
+    _center(d)
+    _properties(d)
+    return d
+
+
+def _one_particle(d: Derivation) -> None:
+    d.section("One particle")
+    mass, point = symbols.m, PLACE
+    d.notation({"r": point, r"\omega": OMEGA})
+    momentum = point.cross(mass * OMEGA.cross(point))
+    d.step(
+        r"The angular momentum of a particle at $r$ that turns with $\omega$.",
+        momentum,
+        mass * (squared(point) * eye(3) - point * point.T) * OMEGA,
+        because=r"$r \times (\omega \times r) = |r|^2 \omega - r\,(r \cdot \omega)$",
+        named=r"r \times m\,(\omega \times r)",
+        shown=r"m \left( |r|^2\,\mathbf{1} - r\,r^{\mathsf T} \right) \omega",
+    )
+    d.step(
+        "The matrix of this map, written out: moments on the diagonal, products with the minus sign beside it.",
+        momentum.jacobian(OMEGA),
+        Matrix(inertia_of_point(mass, point)),
+        because="the coefficients are read off",
+        named=r"I = \frac{\partial L}{\partial \omega}",
+    )
+
+
+def _sum(d: Derivation) -> None:
+    d.section("Many particles")
+    d.given("Three particles stand for any number: every sum below is linear in the particles.")
+    total = sum((p.cross(m * OMEGA.cross(p)) for m, p in zip(MASSES, POINTS, strict=True)), zeros(3, 1))
+    tensor = sum((Matrix(inertia_of_point(m, p)) for m, p in zip(MASSES, POINTS, strict=True)), zeros(3))
+    d.step(
+        "All turn with one angular velocity, so their tensors add.",
+        total,
+        tensor * OMEGA,
+        because="a sum of linear maps is the map of the sum",
+        named=rf"L = {COUNT} r_i \times m_i\,(\omega \times r_i)",
+        shown=rf"\Bigl( {COUNT} m_i \left( |r_i|^2\,\mathbf{{1}} - r_i\,r_i^{{\mathsf T}} \right) \Bigr) \omega = "
+        rf"I\,\omega",
+    )
+    d.notation({"I": tensor})
+    d.step(
+        "The tensor is symmetric.",
+        tensor - tensor.T,
+        0,
+        because=r"$r\,r^{\mathsf T}$ is",
+        named=r"I - I^{\mathsf T}",
+    )
+
+
+def _center(d: Derivation) -> None:
+    d.section("About any point: the part of the centre of mass")
+    balance = sum((m * p for m, p in zip(MASSES, POINTS, strict=True)), zeros(3, 1))
+    d.given(
+        r"Let the centre of mass be at $x$, with the velocity $v$, and the particles at $x + r_i$:",
+        (rf"{COUNT} m_i\,r_i", "0"),
+        ("M", rf"{COUNT} m_i"),
+    )
+    mass = sum(MASSES)
+    moving = zip(MASSES, POINTS, strict=True)
+    momentum = sum(((PLACE + p).cross(m * (V + OMEGA.cross(p))) for m, p in moving), zeros(3, 1))
+    tensor = sum((Matrix(inertia_of_point(m, p)) for m, p in zip(MASSES, POINTS, strict=True)), zeros(3))
+    d.step(
+        "Angular momentum is that of the total mass in the centre, and that of the turning about it.",
+        momentum,
+        PLACE.cross(mass * V) + tensor * OMEGA,
+        because=rf"the mixed terms hold ${COUNT} m_i\,r_i = 0$",
+        relations=list(balance),
+        named=rf"{COUNT} (x + r_i) \times m_i \left( v + \omega \times r_i \right)",
+        shown=r"x \times M v + I\,\omega",
+    )
+
+
+def _properties(d: Derivation) -> None:
+    d.section("What every inertia tensor obeys")
+    d.notation({r"\omega": OMEGA})
+    tensor = sum((Matrix(inertia_of_point(m, p)) for m, p in zip(MASSES, POINTS, strict=True)), zeros(3))
+    d.notation({"I": tensor})
+    d.step(
+        r"The product $\omega \cdot I\,\omega$ is a sum of squares: the principal moments are not negative, and zero "
+        r"only for "
+        r"particles "
+        "on one line.",
+        OMEGA.dot(tensor * OMEGA),
+        sum(m * squared(OMEGA.cross(p)) for m, p in zip(MASSES, POINTS, strict=True)),
+        because=r"$\omega \cdot (r \times (\omega \times r)) = |\omega \times r|^2$",
+        named=r"\omega \cdot I\,\omega",
+        shown=rf"{COUNT} m_i\,|\omega \times r_i|^2",
+    )
+    d.step(
+        "No moment exceeds the sum of the other two.",
+        tensor[0, 0] + tensor[1, 1] - tensor[2, 2],
+        2 * sum(m * p[2] ** 2 for m, p in zip(MASSES, POINTS, strict=True)),
+        because="$x^2$ and $y^2$ are in one of them each and in the third both",
+        named=r"I_{xx} + I_{yy} - I_{zz}",
+    )
+    d.step(
+        "Half the trace is the polar moment, the same in all axes.",
+        tensor.trace() / 2,
+        sum(m * squared(p) for m, p in zip(MASSES, POINTS, strict=True)),
+        because="every square is in two of the three moments",
+        named=r"\tfrac12\,\mathrm{tr}\,I",
+        shown=rf"{COUNT} m_i\,|r_i|^2",
+    )
+    about_third = Matrix([0, 0, symbols.omega_3])
+    d.step(
+        "Angular momentum is not along the angular velocity unless the axis is a principal one: about axis 3 "
+        "the products lead it aside.",
+        (TENSOR * about_third).cross(about_third),
+        symbols.omega_3**2 * Matrix([symbols.I_yz, -symbols.I_xz, 0]),
+        because="the third column of the tensor has three entries",
+        named=r"I\,\omega \times \omega\ \text{for}\ \omega = \omega_3\,e_3",
+    )
+    d.step(
+        "Of bodies, it is a needle along axis 3 that meets the bound: its moment about itself is zero.",
+        Matrix(inertia_of_point(symbols.m, Matrix([0, 0, symbols.z]))) * Matrix([0, 0, 1]),
+        0,
+        because="all its particles are on the axis",
+        named=r"I\,e_3\ \text{for}\ r = z\,e_3",
+    )

@@ -1,0 +1,154 @@
+"""Kinetic energy of a rigid body (Landau & Lifshitz, Mechanics, 3rd ed., sections 32 and 35)."""
+
+from sympy import Matrix, Rational, cos, diag, sin, zeros
+
+from symrot import symbols
+from symrot.catalogue.tools.motion import OMEGA, TENSOR, squared
+from symrot.inertia.tensor import about_point, inertia_of_point
+from symrot.kinematics.euler import rate_jacobian
+from symrot.kinematics.quaternion import dcm_of, unit_relation
+from symrot.proof.derivation import Derivation
+
+MASSES = symbols.particle_masses
+POINTS = [Matrix(symbols.corners[3 * i : 3 * i + 3]) for i in range(3)]
+V, ARM = Matrix(symbols.velocity), Matrix(symbols.center_of_mass)
+HALF = Rational(1, 2)
+COUNT = r"\sum_i"
+
+
+def derive() -> Derivation:
+    d = Derivation(
+        "kinetic_energy",
+        title="Kinetic energy",
+        source="Landau & Lifshitz, *Mechanics*, 3rd ed., sections 32 and 35; Goldstein, Poole & Safko, *Classical "
+        "Mechanics*, 3rd ed., section 5.3",
+        about=(
+            r"The kinetic energy of a body is that of its mass in the centre of mass and $\tfrac12\,\omega \cdot "
+            r"I\,\omega$: "
+            "half the product of angular velocity and angular momentum."
+        ),
+    )
+    _sum(d)
+    _forms(d)
+    _angles(d)
+    return d
+
+
+def _sum(d: Derivation) -> None:
+    d.section("From the sum over particles")
+    point = Matrix(symbols.position)
+    d.notation({"r": point, r"\omega": OMEGA, "c": ARM})
+    d.step(
+        r"A particle at $r$ that turns with $\omega$.",
+        HALF * symbols.m * squared(OMEGA.cross(point)),
+        HALF * OMEGA.dot(Matrix(inertia_of_point(symbols.m, point)) * OMEGA),
+        because=r"$|\omega \times r|^2 = |\omega|^2 |r|^2 - (\omega \cdot r)^2$",
+        named=r"\tfrac12\,m\,|\omega \times r|^2",
+        shown=r"\tfrac12\,\omega \cdot m \left( |r|^2\,\mathbf{1} - r\,r^{\mathsf T} \right) \omega",
+    )
+    d.given(
+        r"Three particles stand for any number. Let the centre of mass move with $v$, and the particles be at $r_i$ "
+        r"from it:",
+        (rf"{COUNT} m_i\,r_i", "0"),
+        ("M", rf"{COUNT} m_i"),
+    )
+    balance = sum((m * p for m, p in zip(MASSES, POINTS, strict=True)), zeros(3, 1))
+    tensor = sum((Matrix(inertia_of_point(m, p)) for m, p in zip(MASSES, POINTS, strict=True)), zeros(3))
+    d.notation({"I": tensor, "v": V, "M": sum(MASSES)})
+    d.step(
+        "König's theorem: the energy of the centre, and the energy of turning about it.",
+        HALF * sum(m * squared(V + OMEGA.cross(p)) for m, p in zip(MASSES, POINTS, strict=True)),
+        HALF * sum(MASSES) * squared(V) + HALF * OMEGA.dot(tensor * OMEGA),
+        because=rf"the mixed term is $v \cdot (\omega \times {COUNT} m_i\,r_i) = 0$",
+        relations=list(balance),
+        named=rf"\tfrac12 {COUNT} m_i\,|v + \omega \times r_i|^2",
+        shown=r"\tfrac12\,M\,|v|^2 + \tfrac12\,\omega \cdot I\,\omega",
+    )
+    d.notation({"I": TENSOR, "I_O": Matrix(about_point(TENSOR, symbols.m, ARM))})
+    d.step(
+        "If a point of the body is fixed, all energy is of turning about it, with the tensor about that point.",
+        HALF * symbols.m * squared(OMEGA.cross(ARM)) + HALF * OMEGA.dot(TENSOR * OMEGA),
+        HALF * OMEGA.dot(Matrix(about_point(TENSOR, symbols.m, ARM)) * OMEGA),
+        because=r"the centre of mass, at $c$ from the fixed point, moves with $\omega \times c$; parallel axes",
+        named=r"\tfrac12\,m\,|\omega \times c|^2 + \tfrac12\,\omega \cdot I\,\omega",
+        shown=r"\tfrac12\,\omega \cdot I_O\,\omega",
+    )
+
+
+def _forms(d: Derivation) -> None:
+    d.section("Its forms")
+    energy = HALF * OMEGA.dot(TENSOR * OMEGA)
+    d.notation({"T": energy, "I": TENSOR, r"\omega": OMEGA, "n": Matrix(symbols.axis), r"\Omega": symbols.Omega})
+    d.step(
+        "Its gradient is the angular momentum.",
+        Matrix([energy.diff(w) for w in OMEGA]),
+        TENSOR * OMEGA,
+        because="the tensor is symmetric",
+        named=r"\frac{\partial T}{\partial \omega}",
+        shown=r"I\,\omega",
+    )
+    axis = Matrix(symbols.axis)
+    d.step(
+        "About an axis $n$ only the moment about that axis counts.",
+        energy.subs(dict(zip(OMEGA, symbols.Omega * axis, strict=True)), simultaneous=True),
+        HALF * axis.dot(TENSOR * axis) * symbols.Omega**2,
+        because=r"$\omega = \Omega\,n$",
+        named=r"\left. T \right|_{\omega = \Omega n}",
+        shown=r"\tfrac12 \left( n \cdot I\,n \right) \Omega^2",
+    )
+    dcm_sb = Matrix(dcm_of())
+    turned = dcm_sb * TENSOR * dcm_sb.T
+    d.notation({r"\omega_s": dcm_sb * OMEGA, r"\omega_b": OMEGA, "I_s": turned, "I_b": TENSOR})
+    d.step(
+        "It is the same in the axes of space, where the tensor changes with time.",
+        HALF * (dcm_sb * OMEGA).dot(turned * dcm_sb * OMEGA),
+        energy,
+        because=r"$R^{\mathsf T} R = 1$, twice",
+        relations=[unit_relation()],
+        named=r"\tfrac12\,\omega_s \cdot I_s\,\omega_s",
+        shown=r"\tfrac12\,\omega_b \cdot I_b\,\omega_b",
+    )
+    principal = diag(*symbols.principal)
+    momentum = principal * OMEGA
+    d.notation({f"L_{n + 1}": momentum[n] for n in range(3)})
+    d.step(
+        "Along principal axes, in angular velocity and in angular momentum.",
+        HALF * OMEGA.dot(momentum),
+        HALF * momentum.dot(principal.inv() * momentum),
+        because=r"$\omega = I^{-1} L$",
+        named=r"\tfrac12 \left( A\,\omega_1^2 + B\,\omega_2^2 + C\,\omega_3^2 \right)",
+        shown=r"\tfrac12 \left( \frac{L_1^2}{A} + \frac{L_2^2}{B} + \frac{L_3^2}{C} \right)",
+    )
+
+
+def _angles(d: Derivation) -> None:
+    d.section("In Euler angles, ZXZ")
+    rates = Matrix(symbols.angle_rates)
+    omega = rate_jacobian("ZXZ") * rates
+    a, b, c = symbols.principal
+    _, theta, psi = symbols.angles
+    dphi, dtheta, dpsi = symbols.angle_rates
+    d.names.pop("T")
+    d.step(
+        "Three different moments.",
+        HALF * omega.dot(diag(a, b, c) * omega),
+        HALF * a * (dphi * sin(theta) * sin(psi) + dtheta * cos(psi)) ** 2
+        + HALF * b * (dphi * sin(theta) * cos(psi) - dtheta * sin(psi)) ** 2
+        + HALF * c * (dphi * cos(theta) + dpsi) ** 2,
+        because=r"$\omega_b = B \dot q$",
+        named="T",
+    )
+    d.step(
+        "Two equal moments: the spin angle is gone.",
+        HALF * omega.dot(diag(a, a, c) * omega),
+        HALF * a * (dtheta**2 + dphi**2 * sin(theta) ** 2) + HALF * c * (dpsi + dphi * cos(theta)) ** 2,
+        because=r"$\sin^2\psi + \cos^2\psi = 1$",
+        named="T",
+    )
+    d.step(
+        "A sphere: it has no axis, and precession and spin enter alike.",
+        HALF * omega.dot(diag(a, a, a) * omega),
+        HALF * a * (dphi**2 + dtheta**2 + dpsi**2 + 2 * dphi * dpsi * cos(theta)),
+        because=r"$T = \tfrac12 A\,|\omega|^2$",
+        named="T",
+    )

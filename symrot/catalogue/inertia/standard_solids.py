@@ -1,0 +1,205 @@
+"""Inertia of the standard solids, by integration over their maps (Beer & Johnston, Vector Mechanics, appendix)."""
+
+from collections import Counter
+from collections.abc import Sequence
+
+from sympy import Add, Expr, Matrix, diag, eye, factor_terms
+
+from symrot import symbols
+from symrot.catalogue.tools.integral import Stage, iterated
+from symrot.inertia.shapes import SHAPES
+from symrot.inertia.solids import Solid, solid
+from symrot.proof.derivation import Derivation
+
+AXES = "xyz"
+MEASURE = {"solid": "V", "surface": "S", "curve": r"\ell"}
+PRODUCTS = ((0, 1), (0, 2), (1, 2))
+LONG = 300  # characters of LaTeX
+SPECIAL = {"tetrahedron": {"vertices": [(0, 0, 0), (symbols.a, 0, 0), (0, symbols.b, 0), (0, 0, symbols.c)]}}
+"""With one corner at the origin and three edges along the axes; the general one is a linear image of it."""
+
+Moments = dict[tuple[int, ...], Expr]
+
+
+def derive() -> Derivation:
+    d = Derivation(
+        "standard_solids",
+        title="Inertia of the standard solids",
+        source="Beer, Johnston & Cornwell, *Vector Mechanics for Engineers: Dynamics*, appendix; Goldstein, Poole & "
+        "Safko, "
+        "*Classical Mechanics*, 3rd ed., section 5.3",
+        about=(
+            r"A uniform body of mass $m$ is swept out by a map of coordinates with constant limits. Its measure, "
+            "centre of mass and second moments are iterated integrals over the map's Jacobian, the innermost first; "
+            "each antiderivative is found and proven by differentiating it. The tensor about the centre of mass "
+            "follows "
+            "from the second moments."
+        ),
+    )
+    d.given(
+        r"With the second moments $S_{xy} = \int x\,y\,dm$ about the origin of the axes shown, and the centre of "
+        "mass at $c$, the tensor about the centre of mass is",
+        ("I", r"\mathrm{tr}\,S\;\mathbf{1} - S - m \left( |c|^2\,\mathbf{1} - c\,c^{\mathsf T} \right)"),
+    )
+    for name, shape in SHAPES.items():
+        if shape.position:
+            _shape(d, solid(name, **SPECIAL.get(name, {})))
+    return d
+
+
+def _shape(d: Derivation, body: Solid) -> None:
+    coordinates = [variable for variable, _, _ in body.limits]
+    letter = MEASURE[body.shape.kind]
+    d.section(body.name.replace("_", " ").capitalize())
+    axes = body.shape.axes
+    d.given(
+        f"{axes[0].upper()}{axes[1:].rstrip('.')}. The map, with {_limits(body)}:",
+        (r"(x, y, z)^{\mathsf T}", body.position),
+    )
+    columns = body.position.jacobian(coordinates)
+    d.step(
+        "The Jacobian.",
+        (columns.T * columns).det(method="berkowitz"),
+        body.jacobian**2,
+        because="the square of the measure of a cell is the determinant of the scalar products of its edges",
+        named=r"J^2 = \det \left( \frac{\partial (x,y,z)}{\partial ("
+        + ",".join(map(_latex, coordinates))
+        + r")}^{\mathsf T} "
+        r"\frac{\partial (x,y,z)}{\partial (" + ",".join(map(_latex, coordinates)) + r")} \right)",
+        shown=None if body.jacobian.is_number else rf"\left( {_latex(body.jacobian)} \right)^2",
+    )
+    d.step(
+        "Its measure.",
+        _integral(body, ()),
+        body.measure,
+        because=_antiderivatives(body, ()),
+        via=_between(body, ()),
+        named=rf"{letter} = {_integral_sign(body, ())}",
+    )
+    _moments(d, body, letter)
+
+
+def _limits(body: Solid) -> str:
+    """Return the limits of all coordinates, as a sentence."""
+    return ", ".join(f"${_latex(u)}$ from ${_latex(low)}$ to ${_latex(high)}$" for u, low, high in body.limits)
+
+
+def _moments(d: Derivation, body: Solid, letter: str) -> None:
+    found: Moments = {}
+    wanted: list[tuple[int, ...]] = [(0,), (1,), (2,), (0, 0), (1, 1), (2, 2), *PRODUCTS]
+    values = {step.quantity: step.value for step in body.steps}
+    for axes in wanted:
+        found[axes] = body.density * _integral(body, axes)
+    zero = [axes for axes in wanted if values[_quantity(axes)] == 0]
+    if zero:
+        d.step(
+            "Of the first and second moments these vanish.",
+            Matrix([found[axes] for axes in zero]),
+            0,
+            because="the integrals are zero term by term",
+            named=r"\frac{m}{" + letter + r"} \int \left( " + r",\ ".join(_product(axes) for axes in zero)
+            + rf" \right) d{letter}",
+        )  # fmt: skip
+    for axes in wanted:
+        if axes not in zero and len(axes) == 1:
+            d.step(
+                f"The centre of mass along ${AXES[axes[0]]}$.",
+                found[axes] / symbols.m,
+                body.center_of_mass[axes[0]],
+                because=_antiderivatives(body, axes),
+                via=_between(body, axes),
+                named=rf"c_{AXES[axes[0]]} = \frac{{1}}{{{letter}}} {_integral_sign(body, axes)}",
+            )
+        elif axes not in zero:
+            d.step(
+                f"The second moment of ${_product(axes)}$.",
+                found[axes],
+                values[_quantity(axes)],
+                because=_antiderivatives(body, axes),
+                via=_between(body, axes),
+                named=rf"S_{{{''.join(AXES[i] for i in axes)}}} = \frac{{m}}{{{letter}}} {_integral_sign(body, axes)}",
+            )
+    _tensor(d, body, found)
+
+
+def _tensor(d: Derivation, body: Solid, found: Moments) -> None:
+    second = diag(*(found[i, i] for i in range(3)))
+    for i, j in PRODUCTS:
+        second[i, j] = second[j, i] = found[i, j]
+    center = Matrix([found[i,] for i in range(3)]) / body.mass
+    about_origin = second.trace() * eye(3) - second
+    d.step(
+        "The tensor of inertia about the centre of mass.",
+        about_origin - body.mass * (center.dot(center) * eye(3) - center * center.T),
+        body.inertia,
+        because="moments are sums of two squares, products carry the minus sign; parallel axes",
+        named="I",
+    )
+
+
+def _stages(body: Solid, axes: Sequence[int]) -> tuple[Expr, tuple[Stage, ...]]:
+    """Return a constant factor, and the integrations of the rest of a product of x, y, z over the map."""
+    coordinates = [variable for variable, _, _ in body.limits]
+    constant, weight = body.jacobian.as_independent(*coordinates, as_Add=False)
+    for axis in axes:
+        weight = weight * body.position[axis]
+    return constant, iterated(weight, body.limits)
+
+
+def _integral(body: Solid, axes: Sequence[int]) -> Expr:
+    """Return the iterated integral of a product of coordinates x, y, z over the map, in closed form."""
+    constant, stages = _stages(body, axes)
+    return constant * stages[-1].value
+
+
+def _antiderivatives(body: Solid, axes: Sequence[int]) -> str:
+    """Return the antiderivatives as a reason, from the innermost outwards; only the last where they are long."""
+    constant, stages = _stages(body, axes)
+    shown = [f"${_latex(factor_terms(stage.antiderivative))}$ in ${_latex(stage.variable)}$" for stage in stages]
+    before = "" if constant == 1 else f", before the factor ${_latex(constant)}$"
+    if sum(map(len, shown)) > LONG:
+        return f"antiderivatives, from the innermost integral outwards{before}, the last one {shown[-1]}"
+    return f"the antiderivatives are {', then '.join(shown)}{before}"
+
+
+def _between(body: Solid, axes: Sequence[int]) -> list[tuple[str, Expr, Expr]]:
+    """Return each antiderivative between its limits, and its value, in words and as an equation."""
+    found = []
+    for stage in _stages(body, axes)[1]:
+        upper, lower = (stage.antiderivative.subs(stage.variable, end) for end in (stage.upper, stage.lower))
+        limits = f"from ${_latex(stage.lower)}$ to ${_latex(stage.upper)}$"
+        words = f"Over ${_latex(stage.variable)}$ {limits}, with the antiderivative ${_latex(stage.antiderivative)}$:"
+        found.append((words, upper if lower == 0 else Add(upper, -lower, evaluate=False), stage.value))
+    return found
+
+
+def _integral_sign(body: Solid, axes: Sequence[int]) -> str:
+    signs = "".join(rf"\int_{{{_latex(low)}}}^{{{_latex(high)}}} " for _, low, high in reversed(body.limits))
+    measure = "".join(rf"\,d{_latex(variable)}" for variable, _, _ in body.limits)
+    factors = Counter(factor for factor in (*(body.position[axis] for axis in axes), body.jacobian) if factor != 1)
+    integrand = r"\,".join(_factor(factor, power) for factor, power in factors.items())
+    return f"{signs}{integrand}{measure}"
+
+
+def _factor(factor: Expr, power: int) -> str:
+    text = _latex(factor)
+    if factor.is_Add or factor.could_extract_minus_sign() or (power > 1 and not factor.is_Symbol):
+        text = rf"\left( {text} \right)"
+    return f"{text}^{power}" if power > 1 else text
+
+
+def _product(axes: Sequence[int]) -> str:
+    if len(axes) == 2 and axes[0] == axes[1]:
+        return f"{AXES[axes[0]]}^2"
+    return r"\,".join(AXES[axis] for axis in axes)
+
+
+def _quantity(axes: Sequence[int]) -> str:
+    kind = {1: "first", 2: "second"}[len(axes)]
+    return f"{kind} moment {''.join(AXES[axis] for axis in axes)}"
+
+
+def _latex(value: object) -> str:
+    from symrot.proof.pages import formula
+
+    return formula(value)

@@ -1,0 +1,73 @@
+"""Iterated integrals by antiderivatives, each of which is proven by differentiating it."""
+
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+from sympy import Expr, I, Integer, Poly, Rational, Symbol, cos, expand, im, re, sin
+
+from symrot.exact import is_zero
+from symrot.proof.derivation import ProofError
+
+__all__ = ["Stage", "antiderivative", "iterated"]
+
+
+@dataclass(frozen=True)
+class Stage:
+    """One integration: variable, antiderivative, limits, and the value between them."""
+
+    variable: Symbol
+    antiderivative: Expr
+    lower: Expr
+    upper: Expr
+    value: Expr
+
+
+@cache
+def _waves(cosines: int, sines: int) -> tuple[tuple[int, Expr, Expr], ...]:
+    """Return (k, a, b) with ``cos(x)^cosines sin(x)^sines = sum of a cos(k x) + b sin(k x)``, k >= 0."""
+    spectrum: dict[int, Expr] = {0: Integer(1)}
+    for up, down, times in ((Rational(1, 2), Rational(1, 2), cosines), (-I / 2, I / 2, sines)):
+        for _ in range(times):
+            shifted: dict[int, Expr] = {}
+            for k, c in spectrum.items():
+                for place, factor in ((k + 1, up), (k - 1, down)):
+                    shifted[place] = shifted.get(place, Integer(0)) + expand(c * factor)
+            spectrum = shifted
+    waves = [(0, spectrum.get(0, Integer(0)), Integer(0))]
+    waves += [(k, 2 * re(c), -2 * im(c)) for k, c in sorted(spectrum.items()) if k > 0]
+    return tuple(waves)
+
+
+@cache
+def antiderivative(integrand: Expr, variable: Symbol) -> Expr:
+    """Return an antiderivative of a polynomial in the variable, or in its cosine and sine.
+
+    Raises
+    ------
+    ProofError
+        If its derivative is not the integrand.
+    """
+    total: Expr = Integer(0)
+    if integrand.has(cos(variable), sin(variable)):
+        for (cosines, sines), coefficient in Poly(integrand, cos(variable), sin(variable)).terms():
+            for k, a, b in _waves(cosines, sines):
+                wave = a * variable if k == 0 else a * sin(k * variable) / k - b * cos(k * variable) / k
+                total += coefficient * wave
+    else:
+        for (power,), coefficient in Poly(integrand, variable).terms():
+            total += coefficient * variable ** (power + 1) / (power + 1)
+    if not is_zero(total.diff(variable) - integrand):
+        raise ProofError(f"{total} is no antiderivative of {integrand} in {variable}")
+    return total
+
+
+@cache
+def iterated(integrand: Any, limits: tuple[tuple[Symbol, Expr, Expr], ...]) -> tuple[Stage, ...]:
+    """Return the integrations over (variable, lower, upper) in turn, the first of the limits innermost."""
+    stages = []
+    for variable, lower, upper in limits:
+        found = antiderivative(expand(integrand), variable)
+        integrand = found.subs(variable, upper) - found.subs(variable, lower)
+        stages.append(Stage(variable, found, lower, upper, integrand))
+    return tuple(stages)

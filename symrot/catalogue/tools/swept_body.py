@@ -1,0 +1,274 @@
+"""How a body that is swept through resonance is computed: series by their recurrences, phases without cancellation."""
+
+from sympy import Expr, Matrix, Rational, S, Symbol, sqrt
+
+from symrot.catalogue.tools.elliptic import I, imaginary
+from symrot.catalogue.tools.motion import rate
+from symrot.catalogue.tools.power_series import coefficient, indexed
+from symrot.proof.derivation import Derivation
+
+__all__ = ["between", "far", "near", "weak"]
+
+K = Symbol("k")
+V, X, R, KAPPA = Symbol("v"), Symbol("x"), Symbol("r"), Symbol("kappa")
+
+
+def far(d: Derivation) -> None:
+    """Append the coefficients of the vector at rest, and of the small angle about it."""
+    d.section("The coefficients far from resonance")
+    _vector(d)
+    _small_angle(d)
+
+
+def _vector(d: Derivation) -> None:
+    a, b, c = (indexed(name, K) for name in "abc")
+    d.given(
+        r"Let $a = \sum a_k v^k$, and so on; coefficients with a negative index are zero. What follows is the "
+        r"coefficient of $v^k$ in each of the three equations, which is zero."
+    )
+    d.step(
+        "The first gives $c$ from $a$.",
+        coefficient({"c": {0: S.One}, "a": {0: S.One, 1: 2 * V}}, V, K),
+        c + (2 * K + 1) * a,
+        because="the series is differentiated term by term",
+        named=r"[v^k] \left( c + a + 2 v a' \right)",
+    )
+    older = indexed("a", K, -2)
+    d.step(
+        "The second gives how far $b$ is from $a$.",
+        coefficient({"b": {0: S.One}, "a": {0: -S.One}, "c": {0: 3 * V**2, 1: 2 * V**3}}, V, K),
+        b - a - (2 * K - 1) * (2 * K - 3) * older,
+        because="of the first, for the last index but one",
+        relations=[indexed("c", K, -2) + (2 * K - 3) * older],
+        named=r"[v^k] \left( b - a + v^2 (3 c + 2 v c') \right)",
+    )
+    d.step(
+        "The third gives the next $b$ from that distance. These are all coefficients, one after another.",
+        coefficient({"b": {1: 2 * (1 - KAPPA**2 * V), 0: -(KAPPA**2)}, "c": {0: -(KAPPA**2)}}, V, K),
+        2 * (K + 1) * indexed("b", K, 1) - KAPPA**2 * (2 * K + 1) * (b - a),
+        because="of the first",
+        relations=[c + (2 * K + 1) * a],
+        named=r"[v^k] \left( 2 (1 - \kappa^2 v) b' - \kappa^2 (b + c) \right)",
+    )
+    first, second, third = Symbol("a"), Symbol("b"), Symbol("c")
+    slope = Symbol("c'")
+    vector = Matrix([KAPPA / R * first, KAPPA / R**3 * third, X / R * second])
+    turn = Matrix([[X / R, 0, -KAPPA / R], [0, 1, 0], [KAPPA / R, 0, X / R]])
+    d.notation({"m": turn * vector})
+    d.step(
+        r"In the axes whose third lies along $(\kappa, 0, x)$ the vector is near that one; its first component is "
+        r"$v^2 g$ times $\kappa x / r^2$, with $g = 3 c + 2 v c'$.",
+        turn * vector,
+        Matrix(
+            [
+                KAPPA * X / R**2 * (3 * third + 2 * slope / R**2) / R**4,
+                KAPPA / R**3 * third,
+                (KAPPA**2 * first + X**2 * second) / R**2,
+            ]
+        ),
+        because="of the second equation",
+        relations=[second - first + (3 * third + 2 * slope / R**2) / R**4],
+        named="m",
+    )
+    d.step(
+        "The coefficients of $g$.",
+        coefficient({"c": {0: S(3), 1: 2 * V}}, V, K),
+        (2 * K + 3) * c,
+        because="the series is differentiated term by term",
+        named=r"g_k = [v^k] \left( 3 c + 2 v c' \right)",
+    )
+
+
+def _small_angle(d: Derivation) -> None:
+    e, h, c, third = Symbol("e"), Symbol("h"), Symbol("c"), Symbol("m_3")
+    moved, square = -2 * X / R**4, KAPPA**2
+    v = 1 / R**2
+    slope = square * (e - v * h) / (2 * (1 - square * v))
+    motion = {X: S.One, R: X / R, e: moved * slope}
+    d.given(
+        r"The rate of the small angle is $\dot\phi\,m_2/(1 + m_3) = \kappa^2 h / r^5$ with $h = -c/(1 + m_3)$. Let "
+        r"$\delta = \frac{x}{r} e(v)$, with $\kappa^2 e - 2 (1 - \kappa^2 v) e' = \kappa^2 v h$."
+    )
+    d.step(
+        "This is the small angle.",
+        rate(X / R * e, motion).subs(h, -c / (1 + third)),
+        -KAPPA / R**2 * (KAPPA / R**3 * c) / (1 + third),
+        because=r"$\frac{d}{dx} \frac{x}{r} = \kappa^2 / r^3$, and $\dot v = -2 x v^2$",
+        relations=[R**2 - X**2 - square],
+        named=r"\frac{d\delta}{dx}",
+    )
+    d.step(
+        r"Its coefficients from those of $h$: upwards from $e_0 = 0$, which counts the angle from infinity, or "
+        "downwards, which counts it from $x = 0$, where it is zero as an odd function.",
+        coefficient({"e": {0: square, 1: -2 * (1 - square * V)}, "h": {0: -square * V}}, V, K),
+        (2 * K + 1) * square * indexed("e", K) - 2 * (K + 1) * indexed("e", K, 1) - square * indexed("h", K, -1),
+        because="the series is differentiated term by term",
+        named=r"[v^k] \left( \kappa^2 e - 2 (1 - \kappa^2 v) e' - \kappa^2 v h \right)",
+    )
+
+
+def near(d: Derivation) -> None:
+    """Append Taylor's series of the attitude about a place, and its symmetry."""
+    d.section("Near resonance")
+    place, step = Symbol("X"), Symbol("u")
+    names = r"\alpha", r"\beta"
+    first = {names[0]: {1: S(2), 0: -I * (place + step)}, names[1]: {0: KAPPA}}
+    second = {names[1]: {1: S(2), 0: I * (place + step)}, names[0]: {0: -KAPPA}}
+    (a1, a, a0), (b1, b, b0) = ([indexed(name, K, shift) for shift in (1, 0, -1)] for name in names)
+    d.given(
+        r"In the same unit of time $2 \alpha' = i x \alpha - \kappa \beta$ and $2 \beta' = \kappa \alpha - i x \beta$. "
+        r"About a place $X$ let $\alpha = \sum \alpha_k u^k$ and $\beta = \sum \beta_k u^k$, $u = x - X$."
+    )
+    d.step(
+        "Each coefficient follows from the two before, since these are zero.",
+        Matrix([coefficient(equation, step, K) for equation in (first, second)]),
+        Matrix(
+            [2 * (K + 1) * a1 - I * (place * a + a0) + KAPPA * b, 2 * (K + 1) * b1 + I * (place * b + b0) - KAPPA * a]
+        ),
+        because="$x = X + u$",
+        named=r"[u^k] \begin{bmatrix} 2 \alpha' - i x \alpha + \kappa \beta \\ 2 \beta' - \kappa \alpha + i x \beta "
+        r"\end{bmatrix}",
+    )
+    there, across = Symbol("alpha"), Symbol("beta")
+    back = {
+        X: S.One,
+        there: -Rational(1, 2) * (-I * X * there - KAPPA * across),
+        across: -Rational(1, 2) * (KAPPA * there + I * X * across),
+    }
+    pair = Matrix([there, -across])
+    d.step(
+        r"Before resonance, $\alpha(-x)$ and $-\beta(-x)$ obey the same equations: from $\alpha = 1$, $\beta = 0$ at "
+        "$x = 0$ the attitude there differs in the sign of $q_1$ and $q_2$.",
+        rate(pair, back),
+        Rational(1, 2) * Matrix([I * X * pair[0] - KAPPA * pair[1], KAPPA * pair[0] - I * X * pair[1]]),
+        because="both the time and the sweep change their signs",
+        relations=[imaginary()],
+        named=r"\frac{d}{dx} \begin{bmatrix} \alpha(-x) \\ -\beta(-x) \end{bmatrix}",
+    )
+
+
+def weak(d: Derivation) -> None:
+    """Append the phase under a weak torque, a power series of the time."""
+    d.section("A weak torque")
+    h, c = Symbol("h"), Symbol("c")
+    f = sqrt(1 + 2 * c * h + h**2)
+    start, speed, across, sweep, time = (Symbol(name) for name in ("Omega_0", "S_0", "W", "s", "t"))
+    d.given(
+        r"For a small sweep $s = \dot\Omega$ the phase from the start on is a small difference of large values of the "
+        r"formula above, and is found otherwise: with $S_0$ and $\Omega_0$ at the start, $W$ across, $c = "
+        r"\Omega_0/S_0$ and $h = s t / S_0$."
+    )
+    d.step(
+        "The rate is $S_0 f$ with $f = \\sqrt{1 + 2 c h + h^2}$.",
+        (speed**2 * f**2).subs({c: start / speed, h: sweep * time / speed}),
+        (start + sweep * time) ** 2 + across**2,
+        because=r"$\Omega = \Omega_0 + s t$, $S_0^2 = \Omega_0^2 + W^2$",
+        relations=[speed**2 - start**2 - across**2],
+        named="S_0^2 f^2",
+    )
+    d.notation({"f": f, "h": h, "c": c})
+    d.step(
+        "It obeys a linear equation of the first order.",
+        (1 + 2 * c * h + h**2) * f.diff(h),
+        (c + h) * f,
+        because="a square root is differentiated",
+        named=r"(1 + 2 c h + h^2)\,\frac{df}{dh}",
+        shown="(c + h)\\,f",
+    )
+    above, now, before = (indexed("a", K, shift) for shift in (1, 0, -1))
+    recurrence = (K + 1) * above - (1 - 2 * K) * c * now - (2 - K) * before
+    d.step(
+        r"With $f = \sum a_k h^k$ the coefficient of $h^k$ in it is zero: from $a_0 = 1$ and $a_{-1} = 0$ each follows "
+        "from the two before.",
+        coefficient({"f": {1: 1 + 2 * c * h + h**2, 0: -(c + h)}}, h, K).subs(
+            {indexed("f", K, shift): indexed("a", K, shift) for shift in (1, 0, -1)}
+        ),
+        recurrence,
+        because="the series is differentiated term by term",
+        named=r"[h^k] \left( (1 + 2 c h + h^2) f' - (c + h) f \right)",
+    )
+    power = Symbol("h^k")
+    d.step(
+        r"The phase from the start on is $S_0\,t \sum a_k h^k / (k + 1)$.",
+        rate(time * power / (K + 1), {time: S.One, power: K * power / time}),
+        power,
+        because="$h$ is proportional to $t$, and the series is integrated term by term",
+        named=r"\frac{d}{dt} \frac{t\,h^k}{k + 1}",
+    )
+    d.given(
+        r"How much is left out after some terms is known: with Legendre's polynomials $P_k$ of $-c$, for "
+        r"which $(k + 1) P_{k+1} = -(2 k + 1) c P_k - k P_{k-1}$, it is $a_k = (P_{k-2} - P_k)/(2 k - 1)$ from $k = 2$ "
+        r"on, so that $|a_k| \le 2/(2 k - 1)$, $|c|$ being at most 1."
+    )
+    found = _by_legendre(c)
+    d.step(
+        "These obey the recurrence.",
+        recurrence.subs(found),
+        0,
+        because="every $P$ follows from two that are neighbours",
+        named=r"(k + 1)\,a_{k+1} - (1 - 2 k)\,c\,a_k - (2 - k)\,a_{k-1}",
+    )
+    legendre, series = {0: S.One, 1: -c}, {-1: S.Zero, 0: S.One}
+    for n in range(3):
+        legendre[n + 1] = legendre.get(n + 1, (-(2 * n + 1) * c * legendre[n] - n * legendre.get(n - 1, 0)) / (n + 1))
+        series[n + 1] = ((1 - 2 * n) * c * series[n] + (2 - n) * series[n - 1]) / (n + 1)
+    d.step(
+        "And they are where it has come to at $k = 3$.",
+        Matrix([(legendre[n - 2] - legendre[n]) / (2 * n - 1) for n in (2, 3)]),
+        Matrix([series[2], series[3]]).expand(),
+        because="the first four $P$ are $1$, $-c$, $(3 c^2 - 1)/2$, $(3 c - 5 c^3)/2$",
+        named=r"\begin{bmatrix} a_{2} \\ a_{3} \end{bmatrix}",
+    )
+
+
+def _by_legendre(c: Expr) -> dict[Symbol, Expr]:
+    """Return a_{k+1}, a_k, a_{k-1} from Legendre's P_k and P_{k-1}."""
+    above, below = Symbol("P_{k}"), Symbol("P_{k-1}")
+    p = {0: above, -1: below, 1: (-(2 * K + 1) * c * above - K * below) / (K + 1)}
+    for i in (-2, -3):  # the recurrence for the one above, solved for the lowest
+        p[i] = (-(2 * (K + i) + 3) * c * p[i + 1] - (K + i + 2) * p[i + 2]) / (K + i + 1)
+    return {indexed("a", K, i): (p[i - 2] - p[i]) / (2 * (K + i) - 1) for i in (1, 0, -1)}
+
+
+def between(d: Derivation) -> None:
+    """Append the phase between two times as a sum of positive terms."""
+    d.section("Between two times")
+    omega, start, speed, there, across = (Symbol(name) for name in ("Omega", "Omega_0", "S", "S_0", "W"))
+    together = there * speed + start * omega
+    half = sqrt((across**2 + together) / 2)
+    z, root = (omega - start) / (2 * half), (speed + there) / (2 * half)
+    squares = [speed**2 - omega**2 - across**2, there**2 - start**2 - across**2]
+    d.given(
+        r"From $\Omega_0$ at the start to $\Omega = \Omega_0 + s t$ the phase is $(\Omega S - \Omega_0 S_0 + W^2 (Z - "
+        r"Z_0))/(2 s)$. Let $E = S_0 S + \Omega_0 \Omega$, $D^2 = (W^2 + E)/2$ and $z = s t/(2 D)$."
+    )
+    names = {"W": across, "S": speed, "S_0": there, r"\Omega": omega, r"\Omega_0": start}
+    d.notation(names | {"E": together, "D": half, "z": z, "w": root})
+    d.step(
+        r"The root $w$ of $1 + z^2$ is $(S + S_0)/(2 D)$, which is positive.",
+        1 + z**2,
+        root**2,
+        because=r"of $S^2 = \Omega^2 + W^2$ and $S_0^2 = \Omega_0^2 + W^2$",
+        relations=squares,
+        named="1 + z^2",
+        shown=r"\left( \frac{S + S_0}{2 D} \right)^2",
+    )
+    d.step(
+        r"So $Z - Z_0$ is twice the $\operatorname{arsinh}$ of $z$: both have one hyperbolic sine, $(\Omega S_0 - "
+        r"\Omega_0 S)/W^2$.",
+        2 * across**2 * z * root,
+        omega * there - start * speed,
+        because=r"of the double argument, and $\Omega / W$ and $S / W$ are hyperbolic sine and cosine of $Z$",
+        relations=squares,
+        named=r"2\,W^2\,z\,w",
+    )
+    d.step(
+        r"The phase is $\frac{t}{2 D} \left( E\,w + W^2 \operatorname{arsinh}(z)/z \right)$, in which "
+        "nothing cancels: both terms are positive.",
+        together * z * root,
+        (omega * speed - start * there) / 2,
+        because="of the same, and $t / (2 D) = z / s$",
+        relations=squares,
+        named=r"E\,z\,w",
+        shown=r"\tfrac12 \left( \Omega S - \Omega_0 S_0 \right)",
+    )

@@ -1,0 +1,1 @@
+"""Theorems of Coq about the formulas of kernels."""

@@ -1,0 +1,142 @@
+"""All files of Coq that symrot prints, by name, and which theorem of which file is about a kernel."""
+
+from collections.abc import Callable
+from functools import cache, partial
+from hashlib import sha256
+from importlib.resources import files
+from typing import Any
+
+from symrot.certificates.coq.dynamics import dynamics_file
+from symrot.certificates.coq.euler import euler_file, euler_files
+from symrot.certificates.coq.file import CoqFile, Theorem
+from symrot.certificates.coq.quaternion import quaternion_file
+from symrot.certificates.coq.rodrigues import rodrigues_file
+from symrot.errors import InputError
+
+__all__ = ["STANDARD_AXIOMS", "assumptions_text", "coq_file", "coq_file_names", "coq_section", "coq_texts", "needed"]
+
+RULES = "rotation"
+"""The file of definitions and rules that all others require: not printed, but part of symrot."""
+
+ASSUMPTIONS = "assumptions"
+"""The file that asks Coq which axioms the theorems rest on."""
+
+STANDARD_AXIOMS = (
+    "Classical_Prop.classic",
+    "ClassicalDedekindReals.sig_forall_dec",
+    "ClassicalDedekindReals.sig_not_dec",
+    "FunctionalExtensionality.functional_extensionality_dep",
+)
+"""What the real numbers of Coq's standard library rest on; no theorem may rest on anything else."""
+
+_FILES: dict[str, tuple[tuple[str, ...], Callable[[], CoqFile]]] = {
+    "quaternions": (("quaternion_",), quaternion_file),
+    **{name: ((f"{name}_",), partial(rodrigues_file, name)) for name in ("rodrigues", "mrp")},
+    "dynamics": (("euler_equations_", "kinetic_", "angular_", "inertia_rotated"), dynamics_file),
+    **{name: ((f"{name}_",), partial(euler_file, sequence)) for name, sequence in euler_files().items()},
+}
+"""File, without ``.v`` -> how the names of the kernels in it begin, and what prints it; after those it requires."""
+
+
+def coq_file_names() -> tuple[str, ...]:
+    """Return the names of the files of theorems, without ``.v``, each after those that it requires."""
+    return tuple(_FILES)
+
+
+@cache
+def coq_file(name: str) -> CoqFile:
+    """Return a file of theorems, printed now.
+
+    Raises
+    ------
+    InputError
+        For a name that is none.
+    """
+    if name not in _FILES:
+        raise InputError(f"expected the name of a file of theorems, such as euler_zxz, got {name!r}")
+    _, make = _FILES[name]
+    return make()
+
+
+@cache
+def rules_text() -> str:
+    """Return the text of ``rotation.v``: definitions, and the rules that the proofs use."""
+    return (files("symrot.certificates.coq") / f"{RULES}.v").read_text(encoding="utf-8")
+
+
+def assumptions_text(names: tuple[str, ...]) -> str:
+    """Return the file that prints the axioms on which the theorems of some files rest, all together."""
+    lines = [f"  let _ := {name}.{theorem.name} in" for name in names for theorem in coq_file(name).theorems]
+    return "\n".join([
+        "(* The axioms on which the theorems rest, all together. Printed by `symrot prove --coq`; do not edit. *)",
+        "", *(f"From symrot Require {name}." for name in names), "",
+        "Definition theorems : True :=", *lines, "  I.", "", "Print Assumptions theorems.",
+    ]) + "\n"  # fmt: skip
+
+
+def needed(names: tuple[str, ...]) -> tuple[str, ...]:
+    """Return the files of theorems that some files need, they themselves among them, in the order of the table."""
+    found = set(names)
+    for name in names:
+        found |= set(coq_file(name).requires) - {RULES}
+    return tuple(name for name in coq_file_names() if name in found)
+
+
+def coq_texts(names: tuple[str, ...] | None = None) -> dict[str, str]:
+    """Return file name -> text of files of theorems (all when left out) with what checking them takes.
+
+    ``_CoqProject`` lists them for ``coq_makefile``.
+    """
+    wanted = needed(coq_file_names() if names is None else names)
+    printed = {name: coq_file(name).text for name in wanted}
+    texts = {RULES: rules_text(), **printed, ASSUMPTIONS: assumptions_text(wanted)}
+    project = "".join(f"{line}\n" for line in ("-R . symrot", *(f"{name}.v" for name in texts)))
+    return {"_CoqProject": project, **{f"{name}.v": text for name, text in texts.items()}}
+
+
+def _home(kernel: str) -> tuple[str, Theorem] | None:
+    """Return the file and theorem of a kernel; only the file that may hold it is printed."""
+    for name, (beginnings, _) in _FILES.items():
+        if kernel.startswith(beginnings):
+            for theorem in coq_file(name).theorems:
+                if theorem.kernel and theorem.name == kernel:
+                    return name, theorem
+    return None
+
+
+def coq_section(kernel: str) -> dict[str, Any] | None:
+    """Return what a certificate says of the theorem about a kernel; None where there is no theorem.
+
+    Deterministic, and found without Coq: it says which statement is to be checked, not that it has been
+    (:func:`symrot.certificates.coq.check.check_kernel` does).
+
+    Parameters
+    ----------
+    kernel : str
+        Name of a kernel of the library.
+
+    Returns
+    -------
+    dict or None
+        ``file``, ``theorem``, ``statement`` (its text), ``statement_sha256``, ``file_sha256``, ``requires`` (file ->
+        sha256) and ``axioms``: the theorem may rest on these and no others.
+    """
+    home = _home(kernel)
+    if home is None:
+        return None
+    name, theorem = home
+    texts = {RULES: rules_text(), **{each: coq_file(each).text for each in coq_file(name).requires if each != RULES}}
+    statement = f"Theorem {theorem.name} :\n{theorem.statement}."
+    return {
+        "file": f"{name}.v",
+        "theorem": theorem.name,
+        "statement": statement,
+        "statement_sha256": _sha256(statement),
+        "file_sha256": coq_file(name).digest,
+        "requires": {f"{each}.v": _sha256(text) for each, text in texts.items()},
+        "axioms": list(STANDARD_AXIOMS),
+    }
+
+
+def _sha256(text: str) -> str:
+    return sha256(text.encode()).hexdigest()

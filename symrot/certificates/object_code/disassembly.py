@@ -1,0 +1,308 @@
+"""An object file as ``objdump`` shows it: its instructions, its constants and where its relocations point.
+
+Only what ``objdump`` prints is read, and every line of it must be understood; the file itself is never opened. Nothing
+here knows what an instruction does (:mod:`symrot.certificates.object_code.machine`).
+"""
+
+import re
+import shutil
+import subprocess
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+from symrot.errors import CertificateError, CompilerError
+
+__all__ = ["Constant", "Instruction", "Listing", "Memory", "Operand", "Register", "Relocation", "listing", "missing"]
+
+FORMAT = "elf64-x86-64"
+SIZES = {"BYTE": 1, "WORD": 2, "DWORD": 4, "QWORD": 8, "XMMWORD": 16, "YMMWORD": 32}
+RELATIVE = (
+    "R_X86_64_PC32",
+    "R_X86_64_PLT32",
+)  # both: symbol + addend - place, in a linked program or through its table
+INDIRECT = ("R_X86_64_GOTPCREL", "R_X86_64_GOTPCRELX", "R_X86_64_REX_GOTPCRELX")
+_PREFIXES = {"rep", "repz", "bnd", "notrack", "data16", "cs", "ds"}
+_PREFIXED = {"nop", "ret", "jmp", "call"}  # where prefixes change nothing
+
+_HEAD = re.compile(r"[0-9a-f]+ <(?P<name>.+)>:")
+_LINE = re.compile(r"\s*(?P<address>[0-9a-f]+):\t(?P<bytes>(?:[0-9a-f]{2} )+)\s*(?:\t(?P<text>.*))?")
+_RELOCATION = re.compile(
+    r"\s*(?P<address>[0-9a-f]+): (?P<kind>R_X86_64_\w+)\s+(?P<symbol>[^\s+-]+)(?P<plus>[+-]0x[0-9a-f]+)?"
+)
+_SYMBOL = re.compile(
+    r"(?P<value>[0-9a-f]{16}) (?P<flags>.{7}) (?P<section>\S+)\t(?P<size>[0-9a-f]+) ?(?:\.hidden )?(?P<name>.*)"
+)
+_SECTION = re.compile(r"\s*\d+ (?P<name>\S+)\s+(?P<size>[0-9a-f]+) .*?(?P<flags>(?:[A-Z_]+(?:, )?)+)\s*$")
+_BYTES = re.compile(r" (?P<address>[0-9a-f]{4,16}) (?P<words>(?:[0-9a-f]{2,8} ){1,4})")
+_MEMORY = re.compile(
+    r"(?:(?P<size>[A-Z]+) PTR )?(?:(?P<segment>[a-z]s):)?(?:\[(?P<inside>[^\]]+)\]|(?P<plain>0x[0-9a-f]+))"
+)
+_PART = re.compile(r"(?P<sign>[+-]?)(?:(?P<register>[a-z]\w*)(?:\*(?P<scale>[1248]))?|(?P<number>0x[0-9a-f]+))")
+
+
+@dataclass(frozen=True)
+class Register:
+    """A register by the name that the instruction uses."""
+
+    name: str
+
+
+@dataclass(frozen=True)
+class Constant:
+    """A number inside an instruction, or the address of a jump."""
+
+    value: int
+
+
+@dataclass(frozen=True)
+class Memory:
+    """``size`` bytes at base + index*scale + offset; ``size`` is 0 where the instruction does not say."""
+
+    size: int
+    segment: str
+    base: str
+    index: str
+    scale: int
+    offset: int
+
+
+Operand = Register | Constant | Memory
+
+
+@dataclass(frozen=True)
+class Relocation:
+    """What the linker will write into an instruction: ``addend`` already counts from the instruction's end."""
+
+    kind: str
+    symbol: str
+    addend: int
+
+
+@dataclass(frozen=True)
+class Instruction:
+    """One instruction of a section, at an address, ``size`` bytes long."""
+
+    section: str
+    address: int
+    size: int
+    mnemonic: str
+    operands: tuple[Operand, ...]
+    text: str
+    relocation: Relocation | None
+
+
+@dataclass(frozen=True)
+class Listing:
+    """All that is read of an object file."""
+
+    where: str
+    code: Mapping[tuple[str, int], Instruction]
+    symbols: Mapping[str, tuple[str, int]]  # name -> section, offset; section "" where another file defines it
+    constants: Mapping[str, bytes]  # sections that are read only and need no relocation
+
+    def function(self, name: str) -> tuple[str, int]:
+        """Return section and address of a function.
+
+        Raises
+        ------
+        CertificateError
+            If the file does not define it.
+        """
+        section, address = self.symbols.get(name, ("", 0))
+        if (section, address) in self.code:
+            return section, address
+        others = [other for other, place in self.symbols.items() if place in self.code and not other.startswith(".")]
+        if not self.code:
+            why = "no code at all (an object of -flto has some with -ffat-lto-objects)"
+        else:
+            why = f"that of {', '.join(sorted(others)[:4])}" if others else "code without names"
+        raise CertificateError(f"{self.where}: expected machine code of {name}, got {why}")
+
+
+def missing() -> str:
+    """Return an empty text, or the sentence that says why no object file can be read."""
+    return (
+        "" if shutil.which("objdump") else "reading object code needs objdump (GNU binutils), which is not on the path"
+    )
+
+
+def listing(path: Path) -> Listing:
+    """Return the code and the constants of a relocatable object file (``cc -c``) for x86-64 ELF.
+
+    Raises
+    ------
+    CompilerError
+        If there is no ``objdump``.
+    CertificateError
+        If the file is none, is for another machine, is linked already, or holds something that is not understood.
+    """
+    if missing():
+        raise CompilerError(missing())
+    where = path.name
+    if not path.is_file():
+        got = "a folder" if path.is_dir() else "another kind of file" if path.exists() else "none"
+        raise CertificateError(f"{path}: expected an object file, got {got}")
+    if not path.stat().st_size:
+        raise CertificateError(f"{path}: expected an object file, got an empty one")
+    shown = _objdump(path, "-f")
+    if "In archive " in shown:
+        raise CertificateError(f"{where}: expected one object file as `cc -c` makes it, got an archive of them")
+    found = re.search(r"file format (\S+)", shown)
+    if found is None or found[1] != FORMAT or "DYNAMIC" in shown or "EXEC_P" in shown:
+        kind = f"{found[1]}{', linked' if found[1] == FORMAT else ''}" if found else "no object code"
+        raise CertificateError(f"{where}: expected an object file as `cc -c` makes it for {FORMAT}, got {kind}")
+    symbols = _symbols(_objdump(path, "-t", "-w"), where)
+    return Listing(
+        where, _code(_objdump(path, "-d", "-r", "-w", "-M", "intel"), where), symbols, _constants(path, where)
+    )
+
+
+def _objdump(path: Path, *options: str) -> str:
+    environment = {"LC_ALL": "C", "PATH": _search_path()}
+    command = ["objdump", *options, "--", str(path)]
+    done = subprocess.run(command, capture_output=True, env=environment, check=False, timeout=60)
+    if done.returncode:
+        complaint = done.stderr.decode(errors="replace").strip().split("\n")[-1].removeprefix("objdump: ")[:200]
+        hint = ": clang -flto writes no machine code" if "not recognized" in complaint else ""
+        raise CertificateError(f"{path.name}: objdump cannot read it ({complaint}){hint}")
+    return done.stdout.decode(errors="replace")
+
+
+def _search_path() -> str:
+    import os
+
+    return os.environ.get("PATH", os.defpath)
+
+
+def _symbols(text: str, where: str) -> dict[str, tuple[str, int]]:
+    found: dict[str, tuple[str, int]] = {}
+    for line in text.splitlines():
+        match = _SYMBOL.fullmatch(line)
+        if match is None or "f" in match["flags"]:  # the name of a source file is no place
+            continue
+        section = {"*UND*": "", "*COM*": "*COM*"}.get(match["section"], match["section"])
+        place = (section, int(match["value"], 16))
+        if found.setdefault(match["name"], place) != place:
+            raise CertificateError(f"{where}: expected one place for the symbol {match['name']!r}, got two")
+    return found
+
+
+def _constants(path: Path, where: str) -> dict[str, bytes]:
+    found: dict[str, bytes] = {}
+    for line in _objdump(path, "-h", "-w").splitlines():
+        match = _SECTION.fullmatch(line)
+        if match is None:
+            continue
+        flags = set(re.findall(r"[A-Z_]+", match["flags"]))
+        if not {"READONLY", "DATA", "CONTENTS"} <= flags or "RELOC" in flags:
+            continue
+        name, size = match["name"], int(match["size"], 16)
+        content = bytearray()
+        for shown in _objdump(path, "-s", "-j", name).splitlines():
+            row = _BYTES.match(shown)
+            if row is not None:
+                if int(row["address"], 16) != len(content):
+                    raise CertificateError(f"{where}: expected the bytes of {name} in order")
+                content += bytes.fromhex(row["words"])
+        if len(content) != size:
+            raise CertificateError(f"{where}: expected {size} bytes in {name}, objdump shows {len(content)}")
+        found[name] = bytes(content)
+    return found
+
+
+def _code(text: str, where: str) -> dict[tuple[str, int], Instruction]:
+    rows: list[tuple[str, int, bytes, str]] = []
+    relocations: dict[tuple[str, int], tuple[str, str, int]] = {}
+    section = ""
+    for line in text.splitlines():
+        if line.startswith("Disassembly of section "):
+            section = line.removeprefix("Disassembly of section ").rstrip(":")
+            continue
+        if not line or not section or _HEAD.fullmatch(line):
+            continue
+        body, *relocated = re.split(r"\t(?=[0-9a-f]+: R_X86_64_)", line)
+        row, alone = _LINE.fullmatch(body.rstrip()), None
+        if row is None and body.strip() and body.strip() != "...":
+            alone = _RELOCATION.fullmatch(body)
+            if alone is None:
+                raise CertificateError(f"{where}: expected a line of objdump, got {body.strip()[:80]!r}")
+        if row is not None:
+            rows.append((section, int(row["address"], 16), bytes.fromhex(row["bytes"]), row["text"] or "(bad)"))
+        for found in [alone, *(_RELOCATION.fullmatch(item) for item in relocated)]:
+            if found is not None:
+                plus = int(found["plus"] or "0", 16)
+                relocations[section, int(found["address"], 16)] = (found["kind"], found["symbol"], plus)
+    code = {(row[0], row[1]): _instruction(*row, relocations, where) for row in rows}
+    if len(code) != len(rows):
+        raise CertificateError(f"{where}: expected one instruction at a place, got two sections of one name")
+    return code
+
+
+def _instruction(
+    section: str, address: int, content: bytes, text: str,
+    relocations: Mapping[tuple[str, int], tuple[str, str, int]], where: str,
+) -> Instruction:  # fmt: skip
+    inside = [
+        (at, relocations[section, at]) for at in range(address, address + len(content)) if (section, at) in relocations
+    ]
+    relocation = None
+    if len(inside) > 1:
+        raise CertificateError(
+            f"{where}: expected at most one relocation in the instruction at {address:#x} of {section}"
+        )
+    for at, (kind, symbol, plus) in inside:
+        relocation = Relocation(kind, symbol, plus + address + len(content) - at)
+    bare = re.split(r"\s+[#<]", text)[0].strip()
+    words = bare.split(None, 1)
+    is_prefixed = bool(words) and words[0] in _PREFIXES
+    while len(words) > 1 and words[0] in _PREFIXES:
+        words = words[1].split(None, 1)
+    mnemonic = words[0] if words and (words[0] in _PREFIXED or not is_prefixed) else "(bad)"
+    operands = _operands(words[1]) if len(words) > 1 else ()
+    if operands is None:
+        mnemonic, operands = "(bad)", ()
+    return Instruction(section, address, len(content), mnemonic, operands, bare, relocation)
+
+
+@cache
+def _operands(text: str) -> tuple[Operand, ...] | None:
+    """Return the operands, or None where one is not understood."""
+    found = [_operand(item.strip()) for item in text.split(",")]
+    return None if None in found else tuple(item for item in found if item is not None)
+
+
+def _operand(text: str) -> Operand | None:
+    if re.fullmatch(r"-?0x[0-9a-f]+|[0-9a-f]+|\d+", text) and not re.fullmatch(r"[a-d][hl]", text):
+        return Constant(int(text, 16))
+    if re.fullmatch(r"[a-z]\w*", text):
+        return Register(text)
+    match = _MEMORY.fullmatch(text)
+    if match is None or (match["size"] or "QWORD") not in SIZES:
+        return None
+    size = SIZES[match["size"]] if match["size"] else 0
+    if match["plain"]:
+        return Memory(size, match["segment"] or "", "", "", 1, int(match["plain"], 16))
+    return _address(match["inside"], size, match["segment"] or "")
+
+
+def _address(inside: str, size: int, segment: str) -> Memory | None:
+    base = index = ""
+    scale, offset, position = 1, 0, 0
+    while position < len(inside):
+        part = _PART.match(inside, position)
+        if part is None:
+            return None
+        position = part.end()
+        if part["number"]:
+            offset += int(part["number"], 16) * (-1 if part["sign"] == "-" else 1)
+        elif part["sign"] == "-":
+            return None
+        elif part["scale"] and not index:
+            index, scale = part["register"], int(part["scale"])
+        elif not part["scale"] and not base:
+            base = part["register"]
+        else:
+            return None
+    return Memory(size, segment, base, index, scale, offset)

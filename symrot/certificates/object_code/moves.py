@@ -1,0 +1,190 @@
+"""What the SSE2 and AVX instructions do with registers and memory: moves, comparisons, and all of the two tables."""
+
+from collections.abc import Callable
+
+from symrot.certificates.object_code.disassembly import Constant, Instruction, Memory, Register
+from symrot.certificates.object_code.integers import operands_of, place_of, read, write
+from symrot.certificates.object_code.numbers import NUMERIC
+from symrot.certificates.object_code.shuffles import SHUFFLES, SOURCE_BYTES
+from symrot.certificates.object_code.state import VECTORS, NotUnderstood, State, Words
+
+__all__ = ["vector"]
+
+ALIGNED = {"movaps", "movapd", "movdqa", "movdqa32", "movdqa64", "movntpd", "movntps"}
+UNALIGNED = {"movups", "movupd", "movdqu", "movdqu32", "movdqu64", "lddqu"}
+
+
+def _source(state: State, instruction: Instruction, operand: object, size: int, bare: str) -> Words:
+    """Return the words of a vector register, or ``size`` bytes of memory."""
+    if isinstance(operand, Register) and operand.name in VECTORS:
+        return list(state.register(operand.name))
+    if not isinstance(operand, Memory) or operand.size not in (size, 0):
+        raise NotUnderstood("its operands")
+    base, offset = place_of(state, instruction, operand)
+    is_vex = instruction.mnemonic.startswith("v")
+    must_be_aligned = size >= 16 and bare not in UNALIGNED and (not is_vex or bare in ALIGNED)
+    if must_be_aligned and (base in state.context.arrays or offset % size):
+        raise NotUnderstood(f"an aligned access to {base}")
+    return state.load(base, offset, size // 4)
+
+
+def vector(state: State, instruction: Instruction) -> None:
+    """Follow an instruction on vector registers; raises NotUnderstood for one that is in no table."""
+    is_vex = instruction.mnemonic.startswith("v")
+    bare = instruction.mnemonic[1:] if is_vex else instruction.mnemonic
+    move = MOVES.get(bare)
+    if move is not None:
+        move(state, instruction, bare, is_vex)
+        return
+    operands = instruction.operands
+    constant = operands[-1].value if operands and isinstance(operands[-1], Constant) else None
+    if constant is not None:
+        operands = operands[:-1]
+    if constant is None and is_vex and bare in ("permilps", "permilpd"):
+        bare = f"{bare} by words"
+    operation = SHUFFLES.get(bare) or NUMERIC.get(bare)
+    if operation is None or not operands:
+        raise NotUnderstood("an instruction that is not known")
+    target = operands[0]
+    if isinstance(target, Memory):  # vextractf128
+        words = operation(state, [_source(state, instruction, item, 32, bare) for item in operands[1:]], constant or 0)
+        write(state, instruction, target, words)
+        return
+    if not isinstance(target, Register) or target.name not in VECTORS:
+        raise NotUnderstood("its operands")
+    count = VECTORS[target.name][1]
+    keeps_target = not is_vex or bare.startswith(("fmadd", "fmsub", "fnmadd", "fnmsub"))
+    taken = [
+        _source(state, instruction, item, _bytes_of(bare, item, 4 * count), bare)
+        for item in (operands if keeps_target else operands[1:])
+    ]
+    state.set_vector(target.name, operation(state, taken, constant or 0)[:count], is_vex)
+
+
+def _bytes_of(bare: str, operand: object, whole: int) -> int:
+    """Return how many bytes a source in memory has: those that the listing names, where they are allowed."""
+    if not isinstance(operand, Memory):
+        return whole
+    if bare in SOURCE_BYTES:
+        return SOURCE_BYTES[bare]
+    if bare.startswith(("broadcast", "pbroadcast", "insertf128", "inserti128", "movddup")):
+        return operand.size
+    if bare.endswith(("sd", "ss")) and not bare.startswith("p"):
+        return 8 if bare.endswith("sd") else 4
+    return whole
+
+
+def _move_whole(state: State, instruction: Instruction, bare: str, is_vex: bool) -> None:
+    target, source = operands_of(instruction, 2)
+    if isinstance(target, Memory):
+        words = _source(state, instruction, source, 0, bare)
+        base, offset = place_of(state, instruction, target)
+        if bare in ALIGNED and (base in state.context.arrays or offset % (4 * len(words))):
+            raise NotUnderstood(f"an aligned access to {base}")
+        write(state, instruction, target, words)
+        return
+    assert isinstance(target, Register)
+    count = VECTORS.get(target.name, ("", 0))[1]
+    state.set_vector(target.name, _source(state, instruction, source, 4 * count, bare), is_vex)
+
+
+def _move_scalar(size: int) -> Callable[[State, Instruction, str, bool], None]:
+    """Return movss, movsd: from memory they clear the rest, from a register they keep it."""
+
+    def move(state: State, instruction: Instruction, bare: str, is_vex: bool) -> None:
+        target, *sources = instruction.operands
+        words = _source(state, instruction, sources[-1], size, bare)[: size // 4]
+        if isinstance(target, Memory):
+            write(state, instruction, target, words)
+            return
+        assert isinstance(target, Register)
+        if isinstance(sources[-1], Memory):
+            rest = state.zeros(4 - len(words))
+        else:
+            kept = sources[0] if len(sources) == 2 else target
+            rest = _source(state, instruction, kept, 16, bare)[size // 4 :]
+        state.set_vector(target.name, words + rest, is_vex)
+
+    return move
+
+
+def _move_bits(size: int) -> Callable[[State, Instruction, str, bool], None]:
+    """Return movd, movq: between vectors, general registers and memory."""
+
+    def move(state: State, instruction: Instruction, bare: str, is_vex: bool) -> None:
+        target, source = operands_of(instruction, 2)
+        if isinstance(source, Register) and source.name in VECTORS:
+            words = state.register(source.name)[: size // 4]
+        else:
+            words = read(state, instruction, source, size)
+        if isinstance(target, Register) and target.name in VECTORS:
+            state.set_vector(target.name, words + state.zeros(4 - len(words)), is_vex)
+        else:
+            write(state, instruction, target, list(words))
+
+    return move
+
+
+def _move_half(start: int) -> Callable[[State, Instruction, str, bool], None]:
+    """Return movlpd, movhpd: 64 bits between memory and one half of 128."""
+
+    def move(state: State, instruction: Instruction, bare: str, is_vex: bool) -> None:
+        target, *sources = instruction.operands
+        if isinstance(target, Memory):
+            write(state, instruction, target, _source(state, instruction, sources[0], 0, bare)[start : start + 2])
+            return
+        assert isinstance(target, Register)
+        kept = _source(state, instruction, sources[0] if len(sources) == 2 else target, 16, bare)
+        words = _source(state, instruction, sources[-1], 8, bare)
+        if not isinstance(sources[-1], Memory):
+            raise NotUnderstood("its operands")
+        state.set_vector(target.name, kept[:start] + words + kept[start + 2 :], is_vex)
+
+    return move
+
+
+def _extract(size: int) -> Callable[[State, Instruction, str, bool], None]:
+    def move(state: State, instruction: Instruction, bare: str, is_vex: bool) -> None:
+        target, source, place = operands_of(instruction, 3)
+        if not isinstance(place, Constant):
+            raise NotUnderstood("its operands")
+        start = place.value * (size // 4) % 4
+        write(state, instruction, target, _source(state, instruction, source, 16, bare)[start : start + size // 4])
+
+    return move
+
+
+def _insert(size: int) -> Callable[[State, Instruction, str, bool], None]:
+    def move(state: State, instruction: Instruction, bare: str, is_vex: bool) -> None:
+        target, *sources, place = instruction.operands
+        if not isinstance(place, Constant) or not isinstance(target, Register):
+            raise NotUnderstood("its operands")
+        kept = _source(state, instruction, sources[0] if len(sources) == 2 else target, 16, bare)
+        start, words = place.value * (size // 4) % 4, read(state, instruction, sources[-1], size)
+        state.set_vector(target.name, kept[:start] + words + kept[start + size // 4 :], is_vex)
+
+    return move
+
+
+def _ucomi(size: int) -> Callable[[State, Instruction, str, bool], None]:
+    def compare(state: State, instruction: Instruction, bare: str, is_vex: bool) -> None:
+        first, second = (
+            _source(state, instruction, item, size, bare)[: size // 4] for item in operands_of(instruction, 2)
+        )
+        state.flags = ("numbers", (state.whole(first), state.whole(second)))
+
+    return compare
+
+
+def _clear_upper(state: State, instruction: Instruction, bare: str, is_vex: bool) -> None:
+    for number in range(16):
+        state.vector[f"ymm{number}"][4:] = state.zeros(4)
+
+
+MOVES: dict[str, Callable[[State, Instruction, str, bool], None]] = {
+    **dict.fromkeys(sorted(ALIGNED | UNALIGNED), _move_whole),
+    "zeroupper": _clear_upper, "ucomisd": _ucomi(8), "comisd": _ucomi(8), "ucomiss": _ucomi(4), "comiss": _ucomi(4),
+    "movss": _move_scalar(4), "movsd": _move_scalar(8), "movd": _move_bits(4), "movq": _move_bits(8),
+    "movlpd": _move_half(0), "movlps": _move_half(0), "movhpd": _move_half(2), "movhps": _move_half(2),
+    "extractps": _extract(4), "pextrd": _extract(4), "pextrq": _extract(8), "pinsrd": _insert(4), "pinsrq": _insert(8),
+}  # fmt: skip

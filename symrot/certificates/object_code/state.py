@@ -1,0 +1,210 @@
+"""Registers, memory and comparisons of a machine whose numbers are terms, words of 32 bits."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+from symrot.certificates.object_code.disassembly import Listing, Memory
+from symrot.certificates.object_code.terms import ANY, Outcomes, Pair, Terms
+
+__all__ = ["GENERAL", "STACK", "VECTORS", "Array", "Context", "NotUnderstood", "Split", "State", "Words"]
+
+Words = list[int]
+STACK = "stack"
+_LOW = {"rax": "al", "rcx": "cl", "rdx": "dl", "rbx": "bl", "rsi": "sil", "rdi": "dil", "rbp": "bpl", "rsp": "spl"}
+_OLD = {full: (f"e{full[1:]}", full[1:]) for full in _LOW}
+_NEW = [f"r{number}" for number in range(8, 16)]
+GENERAL: dict[str, tuple[str, int]] = {  # name -> the whole register, bytes
+    **{name: (name, 8) for name in (*_LOW, *_NEW)},
+    **{short: (full, size) for full, names in _OLD.items() for short, size in zip(names, (4, 2), strict=True)},
+    **{low: (full, 1) for full, low in _LOW.items()},
+    **{f"{name}{mark}": (name, size) for name in _NEW for mark, size in (("d", 4), ("w", 2), ("b", 1))},
+}
+VECTORS: dict[str, tuple[str, int]] = {  # name -> the whole register, words
+    **{f"xmm{number}": (f"ymm{number}", 4) for number in range(32)},
+    **{f"ymm{number}": (f"ymm{number}", 8) for number in range(32)},
+}
+
+
+class NotUnderstood(Exception):
+    """An instruction, or what it does here, is beyond this reader."""
+
+
+class Split(Exception):
+    """The outcome of a comparison must be known to go on: both ways are to be followed."""
+
+    def __init__(self, pair: Pair, first: Outcomes, second: Outcomes) -> None:
+        self.pair, self.ways = pair, (first, second)
+
+
+@dataclass(frozen=True)
+class Array:
+    """An argument that is an array: bytes, and whether it may be written."""
+
+    name: str
+    size: int
+    is_output: bool
+
+
+@dataclass(frozen=True)
+class Context:
+    """What does not change while a function runs."""
+
+    terms: Terms
+    listing: Listing
+    width: int  # of a number: 64 or 32
+    arrays: Mapping[str, Array]
+    top: int  # where the stack begins to be the caller's: the return address
+
+
+@dataclass
+class State:
+    """A machine at one instruction; ``known`` is what comparisons on its way have shown."""
+
+    context: Context
+    at: tuple[str, int]
+    general: dict[str, Words]
+    vector: dict[str, Words]
+    memory: dict[tuple[str, int], int] = field(default_factory=dict)
+    known: dict[Pair, Outcomes] = field(default_factory=dict)
+    flags: tuple[str, tuple[int, ...]] = ("unknown", ())
+
+    def branch(self, pair: Pair, outcomes: Outcomes) -> "State":
+        """Return a copy that knows more of a comparison."""
+        return replace(
+            self,
+            general={name: list(words) for name, words in self.general.items()},
+            vector={name: list(words) for name, words in self.vector.items()},
+            memory=dict(self.memory),
+            known=self.known | {pair: outcomes},
+        )
+
+    # --- numbers ------------------------------------------------------------------------------------------------------
+
+    def decide(self, outcomes: Outcomes, a: int, b: int) -> bool:
+        """Return whether a comparison has one of the outcomes; :class:`Split` where that is not known."""
+        terms = self.context.terms
+        a, b = terms.rebuilt((a, b), self.known)
+        inner = terms.undecided((a, b))
+        mask = terms.mask(terms.width(a), outcomes, a, b) if inner is None else inner
+        decided = terms.constant(mask)
+        if decided is not None:
+            return decided != 0
+        _, _, wanted, *pair = terms.nodes[mask]
+        possible = self.known.get((pair[0], pair[1]), ANY)
+        if inner is None and (possible <= wanted or not possible & wanted):
+            return bool(possible <= wanted)
+        raise Split((pair[0], pair[1]), possible & wanted, possible - wanted)
+
+    def integer(self, words: Words) -> int | None:
+        """Return the number that constant words are."""
+        values = [self.context.terms.constant(word) for word in words]
+        if any(value is None for value in values):
+            return None
+        return sum(value << 32 * place for place, value in enumerate(values) if value is not None)
+
+    def whole(self, words: Words) -> int:
+        """Return one term of one or two words."""
+        return words[0] if len(words) == 1 else self.context.terms.join(*words)
+
+    def halves(self, term: int) -> Words:
+        """Return the words of a term."""
+        terms = self.context.terms
+        return [term] if terms.width(term) == 32 else [terms.word(term, 0), terms.word(term, 1)]
+
+    def zeros(self, count: int) -> Words:
+        """Return words whose bits are all 0."""
+        return [self.context.terms.bits(32, 0)] * count
+
+    # --- registers ----------------------------------------------------------------------------------------------------
+
+    def register(self, name: str) -> Words:
+        """Return the words of a general register of 4 or 8 bytes, or of a vector register."""
+        if name in VECTORS:
+            whole, count = VECTORS[name]
+            return self.vector[whole][:count]
+        whole, size = GENERAL.get(name, ("", 0))
+        if size < 4:
+            raise NotUnderstood(f"register {name}")
+        return self.general[whole][: size // 4]
+
+    def set_register(self, name: str, words: Words) -> None:
+        """Write a general register; its upper half becomes zero where only the lower is written."""
+        whole, size = GENERAL.get(name, ("", 0))
+        if size < 4 or len(words) != size // 4:
+            raise NotUnderstood(f"register {name}")
+        self.general[whole] = words + self.zeros(2 - len(words))
+
+    def set_vector(self, name: str, words: Words, is_vex: bool) -> None:
+        """Write the low words of a vector register; VEX instructions clear the rest."""
+        if name not in VECTORS:
+            raise NotUnderstood(f"register {name}")
+        whole = VECTORS[name][0]
+        self.vector[whole] = words + (self.zeros(8 - len(words)) if is_vex else self.vector[whole][len(words) :])
+
+    # --- memory -------------------------------------------------------------------------------------------------------
+
+    def address(self, operand: Memory) -> tuple[str, int]:
+        """Return base and offset of an operand without relocation."""
+        if operand.segment:
+            raise NotUnderstood(f"segment {operand.segment}")
+        base, offset = "", operand.offset
+        for name, scale in ((operand.base, 1), (operand.index, operand.scale)):
+            if not name:
+                continue
+            if GENERAL.get(name, ("", 0))[1] != 8:
+                raise NotUnderstood(f"address register {name}")
+            words = self.register(name)
+            node = self.context.terms.nodes[self.whole(words)]
+            value = self.integer(words)
+            if node[0] == "address" and scale == 1 and not base:
+                base, offset = node[2], offset + node[3]
+            elif value is not None:
+                offset += scale * (value - (1 << 64) if value >> 63 else value)
+            else:
+                raise NotUnderstood("an address that is not known")
+        if not base:
+            raise NotUnderstood("an address that is not known")
+        return base, offset
+
+    def load(self, base: str, offset: int, count: int) -> Words:
+        """Return words of memory."""
+        if offset % 4:
+            raise NotUnderstood("memory that is not in words")
+        return [self._load(base, offset + 4 * place) for place in range(count)]
+
+    def _load(self, base: str, offset: int) -> int:
+        terms, array = self.context.terms, self.context.arrays.get(base)
+        if (base, offset) in self.memory:
+            return self.memory[base, offset]
+        if base == STACK:
+            return terms.unknown()
+        if array is not None:
+            if not 0 <= offset < array.size:
+                raise NotUnderstood(f"a read outside the array {array.name}")
+            if array.is_output:
+                raise NotUnderstood(f"a read of {array.name}, which is not written yet")
+            size = self.context.width // 8
+            place = terms.input(self.context.width, f"{array.name}[{offset // size}]")
+            return terms.word(place, offset % size // 4) if size == 8 else place
+        content = self.context.listing.constants.get(base.removeprefix("section "), b"")
+        if not base.startswith("section ") or not 0 <= offset <= len(content) - 4:
+            raise NotUnderstood(f"a read outside the constants, from {base.removeprefix('section ')}")
+        return terms.bits(32, int.from_bytes(content[offset : offset + 4], "little"))
+
+    def store(self, base: str, offset: int, words: Words) -> None:
+        """Write words of memory: the stack below the caller's, or an output."""
+        array = self.context.arrays.get(base)
+        if offset % 4:
+            raise NotUnderstood("memory that is not in words")
+        for place, word in enumerate(words):
+            at = offset + 4 * place
+            if array is None and not (base == STACK and at < self.context.top):
+                raise NotUnderstood(f"a write to {base.removeprefix('section ')}")
+            if array is not None and not (array.is_output and 0 <= at < array.size):
+                raise NotUnderstood(f"a write outside the outputs, to {array.name}")
+            self.memory[base, at] = word
+
+    def forget_below(self, offset: int) -> None:
+        """Forget what lies below the stack pointer: a call may write there."""
+        for place in [place for place in self.memory if place[0] == STACK and place[1] < offset]:
+            del self.memory[place]

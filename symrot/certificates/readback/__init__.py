@@ -1,0 +1,1 @@
+"""Read emitted C back as the operations that it computes."""

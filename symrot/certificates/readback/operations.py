@@ -1,0 +1,190 @@
+"""What a compiled kernel computes, rounding for rounding: a graph of operations, each node one rounded operation.
+
+The readers of C text (:mod:`symrot.certificates.readback.readback`) and of object code make such graphs; the certificates compare
+and analyse them. Standard library only, and nothing from the emitter: a checker that shares code checks nothing.
+
+A node is a tuple; operands are indices of earlier nodes::
+
+    ("in", place)   ("const", Fraction)   ("neg", i)  ("abs", i)  ("sqrt", i)
+    ("add", i, j)  ("sub", i, j)  ("mul", i, j)  ("div", i, j)  ("copysign", i, j)
+    ("call", name, (i, ...))          ("select", relation, i, j, x, y): x if node i relation node j, else y
+
+Equal operations on equal operands are one node: rounding is a function, so that sharing them is exact.
+"""
+
+import hashlib
+import json
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+__all__ = ["BINARY", "RELATIONS", "UNARY", "Builder", "Node", "Operations", "operands"]
+
+Node = tuple[Any, ...]
+
+UNARY = ("neg", "abs", "sqrt")
+BINARY = ("add", "sub", "mul", "div", "copysign")
+RELATIONS: dict[str, Callable[[Any, Any], bool]] = {
+    "<": lambda a, b: a < b,
+    "<=": lambda a, b: a <= b,
+    ">": lambda a, b: a > b,
+    ">=": lambda a, b: a >= b,
+    "==": lambda a, b: a == b,
+    "!=": lambda a, b: a != b,
+}
+
+
+def operands(node: Node) -> tuple[int, ...]:
+    """Return the indices of the nodes that a node takes."""
+    kind = node[0]
+    if kind in ("in", "const"):
+        return ()
+    if kind == "call":
+        return tuple(node[2])
+    return tuple(node[2:]) if kind == "select" else tuple(node[1:])
+
+
+@dataclass(frozen=True)
+class Operations:
+    """A kernel as rounded operations.
+
+    ``precision`` is ``"binary64"`` or ``"binary32"``; ``inputs`` are places such as ``"q[1]"`` or ``"t"`` in the order
+    of the arguments; ``outputs`` are (place, node) in the order of the arguments. Only nodes that an output needs are
+    kept, in the order of first use.
+    """
+
+    name: str
+    precision: str
+    inputs: tuple[str, ...]
+    nodes: tuple[Node, ...]
+    outputs: tuple[tuple[str, int], ...]
+
+    def evaluate(
+        self,
+        values: Mapping[str, Any],
+        functions: Mapping[str, Callable[..., Any]],
+        number: Callable[[Fraction], Any],
+    ) -> dict[str, Any]:
+        """Return the outputs by place, over any kind of number.
+
+        ``functions`` holds what is called (``sin``, ...) and, where the kind of number has no operator for it,
+        ``sqrt``, ``abs``, ``copysign`` and ``select`` (taking relation, i, j, x, y); ``number`` makes a constant.
+        """
+        known: list[Any] = []
+        for node in self.nodes:
+            known.append(_computed(node, known, values, functions, number))
+        return {place: known[index] for place, index in self.outputs}
+
+    def to_json(self) -> dict[str, Any]:
+        """Return plain data, numbers as exact text."""
+        return {
+            "name": self.name, "precision": self.precision, "inputs": list(self.inputs),
+            "nodes": [_plain(node) for node in self.nodes], "outputs": [list(item) for item in self.outputs],
+        }  # fmt: skip
+
+    @classmethod
+    def from_json(cls, data: Mapping[str, Any]) -> "Operations":
+        """Return the operations that :meth:`to_json` saved."""
+        return cls(
+            data["name"], data["precision"], tuple(data["inputs"]), tuple(_node(node) for node in data["nodes"]),
+            tuple((place, index) for place, index in data["outputs"]),
+        )  # fmt: skip
+
+    def counts(self) -> dict[str, int]:
+        """Return how many operations there are of each kind, calls by their name."""
+        names = [node[1] if node[0] == "call" else node[0] for node in self.nodes if node[0] not in ("in", "const")]
+        return {name: names.count(name) for name in sorted(set(names))}
+
+    def digest(self) -> str:
+        """Return the SHA-256 of what is computed, whatever the kernel is called and whatever inputs it leaves alone."""
+        data = self.to_json() | {"name": "", "inputs": []}
+        return hashlib.sha256(json.dumps(data, sort_keys=True, separators=(",", ":")).encode()).hexdigest()
+
+
+def _computed(
+    node: Node, known: Sequence[Any], values: Mapping[str, Any],
+    functions: Mapping[str, Callable[..., Any]], number: Callable[[Fraction], Any],
+) -> Any:  # fmt: skip
+    kind = node[0]
+    if kind == "in":
+        return values[node[1]]
+    if kind == "const":
+        return number(node[1])
+    taken = [known[i] for i in operands(node)]
+    if kind == "call":
+        return functions[node[1]](*taken)
+    if kind in functions:
+        return functions[kind](node[1], *taken) if kind == "select" else functions[kind](*taken)
+    if kind == "select":
+        return taken[2] if RELATIONS[node[1]](taken[0], taken[1]) else taken[3]
+    return _ARITHMETIC[kind](*taken)
+
+
+_ARITHMETIC: dict[str, Callable[..., Any]] = {
+    "add": lambda a, b: a + b,
+    "sub": lambda a, b: a - b,
+    "mul": lambda a, b: a * b,
+    "div": lambda a, b: a / b,
+    "neg": lambda a: -a,
+    "abs": abs,
+}
+
+
+def _plain(node: Node) -> list[Any]:
+    if node[0] == "const":
+        return ["const", str(node[1])]
+    return [node[0], node[1], list(node[2])] if node[0] == "call" else list(node)
+
+
+def _node(data: Sequence[Any]) -> Node:
+    if data[0] == "const":
+        return ("const", Fraction(data[1]))
+    return ("call", data[1], tuple(data[2])) if data[0] == "call" else tuple(data)
+
+
+class Builder:
+    """Collects nodes, equal ones once, and makes :class:`Operations` of those that outputs need."""
+
+    def __init__(self) -> None:
+        self.nodes: list[Node] = []
+        self.places: dict[Node, int] = {}
+
+    def add(self, *node: Any) -> int:
+        """Return the index of a node, which is new or known."""
+        if node not in self.places:
+            self.places[node] = len(self.nodes)
+            self.nodes.append(node)
+        return self.places[node]
+
+    def finish(
+        self, name: str, precision: str, inputs: Sequence[str], outputs: Sequence[tuple[str, int]]
+    ) -> Operations:
+        """Return the operations behind some outputs, renumbered in the order in which the outputs need them."""
+        order: dict[int, int] = {}
+        kept: list[Node] = []
+        for _, root in outputs:
+            stack = [(root, False)]
+            while stack:
+                index, ready = stack.pop()
+                if index in order:
+                    continue
+                node = self.nodes[index]
+                if ready:
+                    order[index] = len(kept)
+                    kept.append(_renumbered(node, order))
+                else:
+                    stack.append((index, True))
+                    stack += [(operand, False) for operand in reversed(operands(node))]
+        return Operations(
+            name, precision, tuple(inputs), tuple(kept), tuple((place, order[index]) for place, index in outputs)
+        )
+
+
+def _renumbered(node: Node, order: Mapping[int, int]) -> Node:
+    moved = tuple(order[i] for i in operands(node))
+    if node[0] in ("in", "const"):
+        return node
+    if node[0] == "call":
+        return ("call", node[1], moved)
+    return ("select", node[1], *moved) if node[0] == "select" else (node[0], *moved)

@@ -1,0 +1,403 @@
+"""Read emitted C back as the operations it computes; refuse whatever is not understood.
+
+The subset: functions of ``double`` or ``float``; ``const`` temporaries that are assigned once; ``+ - * /``, unary
+minus, ``a < b ? x : y``; calls of the C library and of ``static inline`` functions of the same file; each element of an
+output array assigned once; in a batch, one loop over samples. Nothing here is shared with the emitter.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+from struct import pack, unpack
+
+from symrot.certificates.readback.c_functions import Cursor, Function, Parameter, Token, functions_of
+from symrot.certificates.readback.operations import RELATIONS, Builder, Operations
+from symrot.errors import CertificateError
+
+__all__ = ["LIBRARY", "read_batch", "read_kernel"]
+
+LIBRARY: dict[str, int] = {  # functions of <math.h> that kernels call, without the f of their float forms
+    "sin": 1, "cos": 1, "tan": 1, "asin": 1, "acos": 1, "atan": 1, "atan2": 2, "exp": 1, "log": 1,
+    "sinh": 1, "cosh": 1, "tanh": 1,
+}  # fmt: skip
+ROUNDED = {"sqrt": ("sqrt", 1), "fabs": ("abs", 1), "copysign": ("copysign", 2)}  # exact, or rounded correctly
+NEAR = {"symrot_sin": "sin", "symrot_cos": "cos"}  # of symrot_math.h, in batches: assumed to its stated error
+ARC = {"symrot_atan2": "atan2"}  # the same, for all numbers
+# of symrot_math.h: choices without a branch
+SELECT = {"symrot_select_lt": "<", "symrot_select_eq": "==", "symrot_choose_ge": ">="}
+SPAN = "SYMROT_SPAN"  # samples that several loops of a batch take in turn
+DEEPEST = 200  # nested levels of an expression
+
+
+@dataclass
+class _Scope:
+    """Names while one function is read: values, arrays, and what has been written."""
+
+    values: dict[str, int] = field(default_factory=dict)
+    arrays: dict[str, Parameter] = field(default_factory=dict)
+    written: dict[tuple[str, int], int] = field(default_factory=dict)
+    loop: str = ""  # name of the index of the sample, in a batch
+    count: str = ""  # name of the number of samples
+
+
+class _Reader:
+    """Reads the body of one function into a graph, the functions it calls in their place."""
+
+    def __init__(self, functions: Mapping[str, Function], where: str, real: str, batch: bool = False) -> None:
+        self.functions, self.where, self.real, self.batch = functions, where, real, batch
+        self.builder = Builder()
+        self.inputs: dict[str, int] = {}  # place -> its node
+        self.calls: list[str] = []
+        self.depth = 0
+        self.turning: set[int] | None = None  # what symrot_sin and symrot_cos are taken of, where they may be called
+
+    def input(self, place: str) -> int:
+        return self.inputs.setdefault(place, self.builder.add("in", place))
+
+    def statements(self, cursor: Cursor, scope: _Scope) -> int | None:
+        """Read statements to the end of a body; return the node of ``return``, if there is one."""
+        while cursor.peek():
+            if cursor.peek() == "(":
+                cursor.expect("(", "void", ")")
+                self._known(cursor, scope, cursor.name())
+                cursor.expect(";")
+            elif cursor.peek() == "return":
+                cursor.next()
+                value = self.expression(cursor, scope)
+                cursor.expect(";")
+                if cursor.peek():
+                    raise cursor.fail("the end of the function after return")
+                return value
+            elif cursor.peek() == "const":
+                cursor.expect("const", self.real)
+                name = cursor.name()
+                if name in scope.values or name in scope.arrays or name in (scope.loop, scope.count):
+                    raise cursor.fail(f"a new name instead of {name}")
+                cursor.expect("=")
+                scope.values[name] = self.expression(cursor, scope)
+                cursor.expect(";")
+            else:
+                self._assignment(cursor, scope)
+        return None
+
+    def _known(self, cursor: Cursor, scope: _Scope, name: str) -> None:
+        if name not in scope.values and name not in scope.arrays:
+            raise cursor.fail(f"the name of a parameter instead of {name}")
+
+    def _assignment(self, cursor: Cursor, scope: _Scope) -> None:
+        name = cursor.name()
+        array = scope.arrays.get(name)
+        if array is None or array.is_const:
+            raise cursor.fail(f"an output array instead of {name}")
+        index = self._index(cursor, scope, array)
+        cursor.expect("=")
+        value = self.expression(cursor, scope)
+        cursor.expect(";")
+        if (name, index) in scope.written:
+            raise cursor.fail(f"one assignment to {name}[{index}], and here is a second; before")
+        scope.written[name, index] = value
+
+    def _index(self, cursor: Cursor, scope: _Scope, array: Parameter) -> int:
+        """Read ``[i]`` of an array with a size, ``[i*n + k]`` of one in a batch."""
+        cursor.expect("[")
+        if array.size > 0:
+            index = cursor.integer()
+            if index >= array.size:
+                raise cursor.fail(f"an index below {array.size} for {array.name}")
+        else:
+            if not scope.loop:
+                raise cursor.fail(f"an array with a size instead of {array.name}")
+            index = cursor.integer()
+            cursor.expect("*", scope.count, "+", scope.loop)
+        cursor.expect("]")
+        return index
+
+    def expression(self, cursor: Cursor, scope: _Scope) -> int:
+        self.depth += 1
+        if self.depth > DEEPEST:
+            raise cursor.fail(f"at most {DEEPEST} nested levels")
+        value = self.sum(cursor, scope)
+        relation = cursor.peek()
+        if relation in RELATIONS:
+            cursor.next()
+            other = self.sum(cursor, scope)
+            cursor.expect("?")
+            first = self.expression(cursor, scope)
+            cursor.expect(":")
+            value = self.builder.add("select", relation, value, other, first, self.expression(cursor, scope))
+        self.depth -= 1
+        return value
+
+    def sum(self, cursor: Cursor, scope: _Scope) -> int:
+        value = self.product(cursor, scope)
+        while cursor.peek() in ("+", "-"):
+            kind = "add" if cursor.next().text == "+" else "sub"
+            value = self.builder.add(kind, value, self.product(cursor, scope))
+        return value
+
+    def product(self, cursor: Cursor, scope: _Scope) -> int:
+        value = self.factor(cursor, scope)
+        while cursor.peek() in ("*", "/"):
+            kind = "mul" if cursor.next().text == "*" else "div"
+            value = self.builder.add(kind, value, self.factor(cursor, scope))
+        return value
+
+    def factor(self, cursor: Cursor, scope: _Scope) -> int:
+        if cursor.peek() == "-":
+            cursor.next()
+            value = self.factor(cursor, scope)
+            node = self.builder.nodes[value]
+            return self.builder.add("const", -node[1]) if node[0] == "const" else self.builder.add("neg", value)
+        if cursor.peek() == "(":
+            cursor.next()
+            value = self.expression(cursor, scope)
+            cursor.expect(")")
+            return value
+        if cursor.index < len(cursor.tokens) and cursor.tokens[cursor.index].kind == "number":
+            return self._literal(cursor)
+        name = cursor.name()
+        if cursor.peek() == "(":
+            return self._call(cursor, scope, name)
+        if cursor.peek() == "[":
+            return self._element(cursor, scope, name)
+        if name not in scope.values:
+            raise cursor.fail(f"a name that has a value instead of {name}, before")
+        return scope.values[name]
+
+    def _literal(self, cursor: Cursor) -> int:
+        text = cursor.peek()
+        is_float = text.endswith("f")  # a hexadecimal literal has a decimal exponent, so that its f is a suffix too
+        if is_float != (self.real == "float") or text.isdigit():
+            raise cursor.fail(f"a literal of type {self.real}")
+        cursor.next()
+        digits = text.removesuffix("f") if is_float else text
+        value = float.fromhex(digits) if digits.lower().startswith("0x") else float(digits)
+        if self.real == "float":
+            value = _nearest_float(digits, value)
+        return self.builder.add("const", Fraction(value))
+
+    def _element(self, cursor: Cursor, scope: _Scope, name: str) -> int:
+        array = scope.arrays.get(name)
+        if array is None or not array.is_const:
+            raise cursor.fail(f"an input array instead of {name}, before")
+        if scope.loop and cursor.peek(1) == scope.loop:  # a scalar of one sample, t[k]
+            cursor.expect("[", scope.loop, "]")
+            return self.input(name)
+        return self.input(f"{name}[{self._index(cursor, scope, array)}]")
+
+    def _call(self, cursor: Cursor, scope: _Scope, name: str) -> int:
+        cursor.expect("(")
+        taken = [self.expression(cursor, scope)]
+        while cursor.peek() == ",":
+            cursor.next()
+            taken.append(self.expression(cursor, scope))
+        cursor.expect(")")
+        if name in self.functions:
+            return self._inlined(cursor, self.functions[name], taken)
+        bare = name.removesuffix("f") if self.real == "float" else name
+        if self.real == "float" and bare == name:
+            raise cursor.fail(f"the float form of {name}, before")
+        if bare in ROUNDED and ROUNDED[bare][1] == len(taken):
+            return self.builder.add(ROUNDED[bare][0], *taken)
+        if self.turning is not None and bare in NEAR and len(taken) == 1:
+            self.turning.add(taken[0])
+            return self.builder.add("call", NEAR[bare], tuple(taken))
+        if self.batch and bare in ARC and len(taken) == 2:
+            return self.builder.add("call", ARC[bare], tuple(taken))
+        if self.batch and bare in SELECT and len(taken) == 4:
+            return self.builder.add("select", SELECT[bare], *taken)
+        if LIBRARY.get(bare) != len(taken):
+            raise cursor.fail(f"a function of <math.h> that kernels use instead of {name}, before")
+        return self.builder.add("call", bare, tuple(taken))
+
+    def _inlined(self, cursor: Cursor, function: Function, taken: list[int]) -> int:
+        wanted = function.parameters
+        if function.returns != self.real or any(p.size or p.type != self.real for p in wanted):
+            raise cursor.fail(f"a function of {self.real} instead of {function.name}, before")
+        if len(wanted) != len(taken):
+            raise cursor.fail(f"{len(wanted)} arguments for {function.name} instead of {len(taken)}, before")
+        if function.name in self.calls:
+            raise cursor.fail(f"no recursion, as in {function.name}, before")
+        self.calls.append(function.name)
+        scope = _Scope(values={p.name: value for p, value in zip(wanted, taken, strict=True)})
+        value = self.statements(Cursor(function.body, self.where), scope)
+        self.calls.pop()
+        if value is None:
+            raise cursor.fail(f"a return in {function.name}, before")
+        return value
+
+
+def _nearest_float(digits: str, value: float) -> float:
+    """Return the float nearest to decimal text, without the double rounding through a double."""
+    if digits.lower().startswith("0x"):
+        return float(unpack("f", pack("f", value))[0])
+    exact, rounded = Fraction(digits), float(unpack("f", pack("f", value))[0])
+    bits = unpack("I", pack("f", rounded))[0]
+    near = [float(unpack("f", pack("I", bits + step))[0]) for step in (-1, 0, 1) if 0 <= bits + step < 0x7F800000]
+    closest = min(abs(Fraction(item) - exact) for item in near)
+    ties = [item for item in near if abs(Fraction(item) - exact) == closest]
+    return min(ties, key=lambda item: unpack("I", pack("f", item))[0] & 1)
+
+
+def _defined(functions: Mapping[str, Function], name: str, where: str) -> Function:
+    if name not in functions:
+        raise CertificateError(f"{where}: expected a definition of {name}, got {', '.join(functions) or 'no function'}")
+    return functions[name]
+
+
+def _real_of(function: Function, where: str) -> str:
+    types = {p.type for p in function.parameters} - {"size_t"}
+    if function.returns != "void" or len(types) != 1:
+        raise CertificateError(f"{where}, line {function.line}: expected a kernel of one type, double or float")
+    return types.pop()
+
+
+PRECISION = {"double": "binary64", "float": "binary32"}
+
+
+def read_kernel(text: str, name: str, where: str = "kernel") -> Operations:
+    """Return the operations of the one-sample function of that name.
+
+    Parameters
+    ----------
+    text : str
+        A C file as symrot emits it.
+    name : str
+        The function.
+    where : str
+        The file's name, for errors.
+
+    Raises
+    ------
+    CertificateError
+        For anything that is not of the emitted subset: an unknown call, a name without value, an output that is not
+        assigned or twice, an index beyond its array.
+    """
+    functions = functions_of(text, where)
+    function = _defined(functions, name, where)
+    real = _real_of(function, where)
+    reader, scope = _Reader(functions, where, real), _Scope()
+    for parameter in function.parameters:
+        if parameter.size == 0:
+            scope.values[parameter.name] = reader.input(parameter.name)
+        else:
+            scope.arrays[parameter.name] = parameter
+            if parameter.is_const:
+                for index in range(parameter.size):
+                    reader.input(f"{parameter.name}[{index}]")
+    reader.statements(Cursor(function.body, where), scope)
+    places = [(p.name, i) for p in function.parameters if p.size > 0 and not p.is_const for i in range(p.size)]
+    return _finished(reader, scope, function, places, where)
+
+
+def read_batch(text: str, name: str, where: str = "kernel") -> Operations:
+    """Return the operations of one sample of the batch function ``name``; places are those of the one-sample function.
+
+    Raises
+    ------
+    CertificateError
+        As :func:`read_kernel`, and for a loop that is not the one over all samples.
+
+    Notes
+    -----
+    ``symrot_sin``, ``symrot_cos`` and ``symrot_atan2`` are read as sine, cosine and arc tangent: that
+    ``symrot_math.h`` computes them to its stated error is an assumption. The first two are accepted where each angle is
+    asked whether it is in their range, and the block is computed again by the same operations with the C library where
+    one is not.
+    """
+    functions = functions_of(text, where)
+    function = _defined(functions, name, where)
+    real = _real_of(function, where)
+    counts = [p.name for p in function.parameters if p.type == "size_t"]
+    if len(counts) != 1:
+        raise CertificateError(f"{where}, line {function.line}: expected one number of samples for {name}")
+    reader, scope = _Reader(functions, where, real, batch=True), _Scope(count=counts[0])
+    scope.arrays = {p.name: p for p in function.parameters if p.type != "size_t"}
+    cursor = Cursor(function.body, where)
+    while cursor.peek() == "(":
+        cursor.expect("(", "void", ")")
+        reader._known(cursor, scope, cursor.name())
+        cursor.expect(";")
+    if cursor.peek(3) == "start" and cursor.peek(14) == SPAN:
+        _parts(cursor, reader, scope)
+    elif cursor.peek(3) == "start":
+        _blocks(cursor, reader, scope)
+    else:
+        reader.statements(Cursor(_samples(cursor, scope, "0", scope.count), where), scope)
+    if cursor.peek():
+        raise cursor.fail("the end of the function after the loop over samples")
+    order = [parameter.name for parameter in function.parameters]
+    places = sorted(scope.written, key=lambda place: (order.index(place[0]), place[1]))
+    return _finished(reader, scope, function, places, where)
+
+
+def _samples(cursor: Cursor, scope: _Scope, start: str, end: str) -> tuple[Token, ...]:
+    """Return the body of the loop over samples from start to end."""
+    if cursor.peek() == "SYMROT_INDEPENDENT":
+        cursor.next()
+    cursor.expect("for", "(", "size_t")
+    scope.loop = cursor.name()
+    cursor.expect("=", start, ";", scope.loop, "<", end, ";", "++", scope.loop, ")")
+    return cursor.block()
+
+
+def _parts(cursor: Cursor, reader: _Reader, scope: _Scope) -> None:
+    """Read loops over the same samples, one block after the other: each assigns outputs of its own."""
+    _heads(cursor, scope, SPAN)
+    while cursor.peek() != "}":
+        part = _Scope(arrays=scope.arrays, count=scope.count)
+        reader.statements(Cursor(_samples(cursor, part, "start", "end"), cursor.where), part)
+        twice = [f"{name}[{index}]" for name, index in part.written if (name, index) in scope.written]
+        if twice:
+            raise cursor.fail(f"one assignment to {twice[0]}, and the loop before has a second; before")
+        scope.written |= part.written
+    cursor.expect("}")
+
+
+def _heads(cursor: Cursor, scope: _Scope, size: str) -> None:
+    """Read the head of a loop over blocks of samples, and the end of the block at hand."""
+    cursor.expect(*f"for ( size_t start = 0 ; start < {scope.count} ; start + = {size} ) {{".split())
+    cursor.expect(*f"const size_t end = {scope.count} - start < {size} ? {scope.count} : start + {size} ;".split())
+
+
+def _blocks(cursor: Cursor, reader: _Reader, scope: _Scope) -> None:
+    """Read the loop over blocks: samples by ``symrot_math.h``, and again by the C library if an angle is far.
+
+    Both compute the same, and each angle that ``symrot_sin`` or ``symrot_cos`` is taken of is asked how far it is.
+    """
+    _heads(cursor, scope, "SYMROT_BLOCK")
+    cursor.expect("uint32_t" if reader.real == "float" else "uint64_t", "beyond", "=", "0", ";")
+    far = "symrot_farf" if reader.real == "float" else "symrot_far"
+    body = _samples(cursor, scope, "start", "end")
+    split = next((i for i, token in enumerate(body) if token.text == "beyond"), len(body))
+    plain = _Scope(arrays=scope.arrays, loop=scope.loop, count=scope.count)
+    reader.turning = set()
+    reader.statements(Cursor(body[:split], cursor.where), scope)
+    asked, mark = set(), "="
+    question = Cursor(body[split:], cursor.where)
+    question.expect("beyond", "+")
+    while question.peek() == mark:
+        question.expect(mark, far, "(")
+        asked.add(reader.expression(question, scope))
+        question.expect(")")
+        mark = "+"
+    question.expect(";")
+    if question.peek() or not reader.turning <= asked:
+        raise question.fail(f"the end of the loop after {far} of each angle")
+    reader.turning = None
+    cursor.expect(*["const", "size_t", "again", "=", "beyond", "==", "0", "?", "start", ":", "end", ";"])
+    reader.statements(Cursor(_samples(cursor, plain, "start", "again"), cursor.where), plain)
+    cursor.expect("}")
+    if plain.written != scope.written:
+        raise cursor.fail("both loops over samples to compute the same")
+
+
+def _finished(
+    reader: _Reader, scope: _Scope, function: Function, places: list[tuple[str, int]], where: str
+) -> Operations:
+    missing = [f"{name}[{index}]" for name, index in places if (name, index) not in scope.written]
+    if missing or not places:
+        raise CertificateError(f"{where}: expected {function.name} to assign {', '.join(missing) or 'an output'}")
+    outputs = [(f"{name}[{index}]", scope.written[name, index]) for name, index in places]
+    precision = PRECISION[reader.real]
+    return reader.builder.finish(function.name, precision, tuple(reader.inputs), outputs)

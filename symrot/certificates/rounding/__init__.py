@@ -1,0 +1,1 @@
+"""Bounds of the rounding errors of a kernel's outputs on a box of inputs."""

@@ -1,0 +1,223 @@
+"""Enclosures of sines, arc tangents and their relatives on intervals, from ``+ - * / sqrt`` alone.
+
+The sine of the machine's own library differs between machines; bounds may not. Arguments are reduced by pi/2 in two
+parts and summed as Taylor series, to an absolute error below 1e-15 that every result is widened by.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from math import factorial, pi
+
+import numpy as np
+
+from symrot.certificates.rounding.intervals import (
+    Array,
+    add,
+    contains_zero,
+    divide,
+    multiply_loosely,
+    negative,
+    square,
+    widened,
+)
+
+__all__ = ["arc_ratio_terms", "arc_slope", "arc_tangent", "cosine", "sinc", "sinc_slope", "sine",
+           "sine_gap", "sine_gap_slope", "tangent_gap", "tangent_gap_slope"]  # fmt: skip
+
+SLACK = 2e-15  # absolute, many times what the series and the reduction lose
+FARTHEST = 2.0**20  # |x| beyond which nothing is reduced
+NEAR_CRITICAL = 1e-9  # in turns: an extremum this near counts as inside
+
+_HALF_PI = (float.fromhex("0x1.921fb544p+0"), float.fromhex("0x1.0b4611a626331p-34"))  # 33 bits, and the rest
+
+
+def _series(terms: list[Fraction]) -> tuple[float, ...]:
+    return tuple(float(term) for term in reversed(terms))
+
+
+TERMS = 13  # of x^2, enough for |x| <= 2
+_SINC = _series([Fraction((-1) ** n, factorial(2 * n + 1)) for n in range(TERMS)])
+_COSINE = _series([Fraction((-1) ** n, factorial(2 * n)) for n in range(TERMS)])
+_SINE_GAP = _series([Fraction((-1) ** n, factorial(2 * n + 3)) for n in range(TERMS)])
+_SINE_GAP_SLOPE = _series([Fraction((-1) ** n * 2 * (n + 1), factorial(2 * n + 5)) for n in range(TERMS)])
+_TANGENT_GAP = _series([Fraction((-1) ** n * 2 * (n + 1), factorial(2 * n + 3)) for n in range(TERMS)])
+_TANGENT_GAP_SLOPE = _series([Fraction((-1) ** n * 4 * (n + 1) * (n + 2), factorial(2 * n + 5)) for n in range(TERMS)])
+_ARC = _series([Fraction((-1) ** n, 2 * n + 1) for n in range(9)])
+
+
+def _polynomial(coefficients: tuple[float, ...], t: Array) -> Array:
+    value = np.full_like(t, coefficients[0])
+    for coefficient in coefficients[1:]:
+        value = value * t + coefficient
+    return value
+
+
+def _sine_of(x: Array, quarter_turns: int) -> Array:
+    """Return sin(x + quarter_turns*pi/2) for |x| <= FARTHEST, to an absolute error below 1e-15."""
+    count = np.rint(x * (2 / pi))
+    rest = (x - count * _HALF_PI[0]) - count * _HALF_PI[1]
+    t = rest * rest
+    quadrant = (count.astype(np.int64) + quarter_turns) % 4
+    value = np.where(quadrant % 2 == 0, rest * _polynomial(_SINC, t), _polynomial(_COSINE, t))
+    return np.where(quadrant >= 2, -value, value)
+
+
+def _circular(x: Array, quarter_turns: int) -> Array:
+    far = np.maximum(np.abs(x[0]), np.abs(x[1])) > FARTHEST
+    ends = np.sort(_sine_of(np.where(far, 0.0, x), quarter_turns), axis=0)
+    found = np.clip(widened(ends, SLACK), -1.0, 1.0)
+    turns = x / (2 * pi) + 0.25 * quarter_turns
+    for row, peak in ((1, 0.25), (0, 0.75)):
+        inside = np.floor(turns[1] - peak + NEAR_CRITICAL) != np.floor(turns[0] - peak - NEAR_CRITICAL)
+        found[row] = np.where(inside | far, 1.0 if row else -1.0, found[row])
+    return found
+
+
+def sine(x: Array) -> Array:
+    """Return an enclosure of sin on intervals."""
+    return _circular(x, 0)
+
+
+def cosine(x: Array) -> Array:
+    """Return an enclosure of cos on intervals."""
+    return _circular(x, 1)
+
+
+def _size(x: Array) -> Array:
+    """Return the intervals of |x|."""
+    size = np.abs(x)
+    return np.stack([np.where(contains_zero(x), 0.0, size.min(axis=0)), size.max(axis=0)])
+
+
+@dataclass(frozen=True)
+class _Even:
+    """An even function of x: its series in x^2, its formula at numbers and on intervals, both for |x| >= 2.
+
+    It falls for 0 <= x <= ``end`` and is at most ``crude`` in size everywhere.
+    """
+
+    series: tuple[float, ...]
+    formula: Callable[[Array, Array, Array], Array]  # of x, sin(x)/x and cos(x)
+    on_intervals: Callable[[Array, Array, Array], Array]
+    end: float
+    crude: float
+
+    def __call__(self, x: Array) -> Array:
+        """Return an enclosure on intervals."""
+        size = _size(x)
+        low = np.minimum(size, self.end)
+        far = np.maximum(low, 2.0)
+        value = np.where(
+            low < 2.0, _polynomial(self.series, low * low), self.formula(far, _sine_of(far, 0) / far, _sine_of(far, 1))
+        )
+        found = widened(value[::-1], 2 * SLACK)
+        beyond = size[1] > self.end
+        if not beyond.any():
+            return found
+        z = np.where(size[0] >= 2.0, size, 2.0)
+        general = self.on_intervals(z, divide(sine(z), z), cosine(z))
+        crude = np.array([[-self.crude], [self.crude]])
+        return np.where(beyond, np.where(size[0] >= 2.0, general, crude), found)
+
+
+def _over(numerator: Array, z: Array, power: int) -> Array:
+    for _ in range(power):
+        numerator = divide(numerator, z)
+    return numerator
+
+
+_times = multiply_loosely
+sinc = _Even(_SINC, lambda z, s, c: s, lambda z, s, c: s, 4.4, 1.0)
+sine_gap = _Even(
+    _SINE_GAP,
+    lambda z, s, c: (1 - s) / (z * z),
+    lambda z, s, c: _over(add(np.ones_like(s), negative(s)), z, 2),
+    6.0,
+    1 / 6,
+)
+tangent_gap = _Even(
+    _TANGENT_GAP, lambda z, s, c: (s - c) / (z * z), lambda z, s, c: _over(add(s, negative(c)), z, 2), 5.7, 1 / 3
+)
+_sine_gap_factor = _Even(
+    _SINE_GAP_SLOPE, lambda z, s, c: (2 + c - 3 * s) / (z * z * z * z),
+    lambda z, s, c: _over(add(np.full_like(c, 2.0), add(c, _times(np.full_like(s, -3.0), s))), z, 4), 4.4, 1 / 60,
+)  # fmt: skip
+_tangent_gap_factor = _Even(
+    _TANGENT_GAP_SLOPE, lambda z, s, c: ((3 - z * z) * s - 3 * c) / (z * z * z * z),
+    lambda z, s, c: _over(
+        add(_times(add(np.full_like(z, 3.0), negative(_times(z, z))), s), _times(np.full_like(c, -3.0), c)), z, 4
+    ), 4.4, 1 / 15,
+)  # fmt: skip
+
+
+def tangent_gap_slope(x: Array) -> Array:
+    """Return an enclosure of the derivative, ``-x j2(x)/x^2``; the second factor falls from 1/15 at 0 to x = 5.7."""
+    return negative(multiply_loosely(x, _tangent_gap_factor(x)))
+
+
+def sine_gap_slope(x: Array) -> Array:
+    """Return an enclosure of the derivative, -x times an integral of (1-s)^2 s sin(xs)/(2x), which falls to x = 4.4."""
+    return negative(multiply_loosely(x, _sine_gap_factor(x)))
+
+
+def sinc_slope(x: Array) -> Array:
+    """Return an enclosure of the derivative of sin(x)/x, which is ``-x (sin x - x cos x)/x^3``."""
+    return negative(multiply_loosely(x, tangent_gap(x)))
+
+
+def _arc(z: Array) -> Array:
+    """Return arctan of finite numbers, to an absolute error below 1e-15."""
+    size = np.abs(z)
+    inverted = size > 1
+    small = np.where(inverted, 1 / np.where(inverted, size, 1.0), size)
+    for _ in range(3):
+        small = small / (1 + np.sqrt(1 + small * small))
+    value = 8 * small * _polynomial(_ARC, small * small)
+    return np.copysign(np.where(inverted, pi / 2 - value, value), z)
+
+
+def arc_tangent(y: Array, x: Array) -> Array:
+    """Return an enclosure of atan2(y, x); the whole turn where y changes its sign and x may be negative."""
+    with np.errstate(all="ignore"):
+        right, up = divide(y, x), divide(x, y)
+        sloped = [_arc(np.where(np.isfinite(q), q, 0.0)) for q in (right, up[::-1])]
+    quarter = np.where(y[0] > 0, pi / 2, -pi / 2)
+    found = np.where(x[0] > 0, sloped[0], np.where(contains_zero(y), np.array([[-pi], [pi]]), quarter - sloped[1]))
+    return np.clip(widened(found, 2 * SLACK), -pi - SLACK, pi + SLACK)
+
+
+def arc_slope(a: Array, b: Array) -> Array:
+    """Return the least enclosure of a/(a^2 + b^2), by which atan2 grows; not finite where both hold zero."""
+    return np.stack([-_steepest(negative(a), b), _steepest(a, b)])
+
+
+def _steepest(a: Array, b: Array) -> Array:
+    """Return a bound of a/(a^2 + b^2) from above.
+
+    It is largest at the least |b| where a may be positive, at the largest where not; as a function of a it rises to
+    a = |b| and falls from there on.
+    """
+    size = _size(b)
+    near, far = size
+    positive = np.clip(near, np.maximum(a[0], 0.0), np.maximum(a[1], 0.0))
+    ends = [_slope_at(at, far) for at in a]
+    return np.where(a[1] > 0, _slope_at(positive, near), np.maximum(*ends))
+
+
+def _slope_at(a: Array, b: Array) -> Array:
+    a, b = np.stack([a, a]), np.stack([b, b])
+    return np.asarray(divide(a, add(square(a), square(b)))[1])
+
+
+def arc_ratio_terms(s: Array, c: Array, radius: Array) -> tuple[Array, Array, Array]:
+    """Return enclosures of atan2(s, c)/s and of its derivatives by s and by c, for s, c >= 0, not both 0.
+
+    With ``s = r sin(a)``, ``c = r cos(a)`` they are ``1/(r sinc a)``, ``-4 a sine_gap(2a)/(r sinc a)^2`` and
+    ``-1/r^2``, which are finite at ``a = 0``.
+    """
+    angle = np.clip(arc_tangent(s, c), 0.0, pi / 2 + SLACK)
+    one = np.ones_like(s)
+    value = divide(one, multiply_loosely(radius, sinc(angle)))
+    slope = multiply_loosely(multiply_loosely(4 * angle, sine_gap(2 * angle)), multiply_loosely(value, value))
+    return value, negative(slope), negative(divide(one, multiply_loosely(radius, radius)))

@@ -1,0 +1,302 @@
+"""The functions of a claim: each from its arguments' trees to SymPy, one table of names.
+
+Every divisor and radicand is noted before SymPy can cancel it.
+"""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import sympy
+from sympy import Expr, ImmutableMatrix
+from sympy.core.function import AppliedUndef
+
+from symrot import symbols
+from symrot.checker.claim.integration import definite_integral
+from symrot.checker.claim.scope import Divisor, Scope, is_matrix
+from symrot.checker.claim.size import (
+    LARGE_MATRIX,
+    LARGEST_INVERSE,
+    MOST_ANGLE_TERMS,
+    MOST_DIFFERENTIATED,
+    MOST_PRODUCTS,
+    products_of_determinant,
+    terms_of_angle,
+)
+from symrot.checker.claim.tree import Node
+from symrot.errors import InputError
+from symrot.exact.intervals import enclosure
+from symrot.exact.size import pieces
+from symrot.kinematics.quaternion import dcm_of, qmul
+from symrot.kinematics.rotations import elementary_rotation, skew, vee
+
+__all__ = ["BUILT_IN", "inverted"]
+
+LARGEST_MATRIX = 12
+
+
+def _of_scalar(function: Callable[[Expr], Expr], below: Callable[[Expr], Expr] | None = None) -> Any:
+    """Return a function of one scalar, which divides by ``below`` of its argument."""
+
+    def call(scope: Scope, node: Node) -> Expr:
+        value = scope.scalar(node.args[0], f"as the argument of {node.value}")
+        if terms_of_angle(value) > MOST_ANGLE_TERMS:
+            raise scope.fail(node.args[0], f"an angle whose sine has at most {MOST_ANGLE_TERMS} terms")
+        if below is not None:
+            scope.divide_by(below(value), node)
+        made = function(value)
+        if value.is_number and not made.is_Rational and enclosure(made) is None:
+            raise scope.fail(node, "a number whose digits can be computed instead of a tower of functions")
+        return made
+
+    return call
+
+
+def _sqrt(scope: Scope, node: Node) -> Expr:
+    value = scope.scalar(node.args[0], "under the root")
+    scope.take_root(value, node.args[0])
+    return sympy.sqrt(value)
+
+
+def _atan2(scope: Scope, node: Node) -> Expr:
+    y, x = (scope.scalar(argument, "as an argument of atan2") for argument in node.args)
+    scope.divide_by(x**2 + y**2, node)
+    return sympy.atan2(y, x)
+
+
+def _arc(function: Callable[[Expr], Expr]) -> Any:
+    """Return asin or acos, of what lies between -1 and 1."""
+
+    def call(scope: Scope, node: Node) -> Expr:
+        value = scope.scalar(node.args[0], f"as the argument of {node.value}")
+        if (1 - value**2).is_negative:
+            raise scope.fail(node.args[0], f"a number from -1 to 1 in {node.value}")
+        scope.take_root(1 - value**2, node.args[0])
+        return function(value)
+
+    return call
+
+
+def _log(scope: Scope, node: Node) -> Expr:
+    value = scope.scalar(node.args[0], "as the argument of log")
+    if value.is_nonpositive:
+        raise scope.fail(node.args[0], "a positive number in log")
+    scope.divide_by(value, node.args[0])
+    scope.take_root(value, node.args[0])
+    return sympy.log(value)
+
+
+def _rotation(axis: str) -> Any:
+    return lambda scope, node: elementary_rotation(axis, scope.scalar(node.args[0], "as an angle"))
+
+
+def _components(scope: Scope, node: Node, size: int) -> list[Expr]:
+    if len(node.args) == size:
+        return [scope.scalar(argument, f"as a component in {node.value}") for argument in node.args]
+    if len(node.args) != 1:
+        raise scope.fail(node, f"{size} components, or one column of them, as arguments of {node.value}")
+    return list(scope.matrix(node.args[0], f"as the argument of {node.value}", (size, 1)))
+
+
+def _skew(scope: Scope, node: Node) -> ImmutableMatrix:
+    return skew(_components(scope, node, 3))
+
+
+def _vee(scope: Scope, node: Node) -> ImmutableMatrix:
+    matrix = scope.matrix(node.args[0], "as the argument of vee", (3, 3))
+    if not (matrix + matrix.T).applyfunc(sympy.expand).is_zero_matrix:
+        from symrot.exact import is_zero
+
+        if not is_zero(matrix + matrix.T):
+            raise scope.fail(node.args[0], "a skew-symmetric matrix as the argument of vee")
+    return vee(matrix)
+
+
+def _cross(scope: Scope, node: Node) -> ImmutableMatrix:
+    left, right = (scope.matrix(argument, "as an argument of cross", (3, 1)) for argument in node.args)
+    return ImmutableMatrix(left.cross(right))
+
+
+def _dot(scope: Scope, node: Node) -> Expr:
+    left = scope.matrix(node.args[0], "as an argument of dot", (None, 1))
+    right = scope.matrix(node.args[1], "as an argument of dot", (left.rows, 1))
+    return left.dot(right)
+
+
+def _square(scope: Scope, node: Node) -> ImmutableMatrix:
+    matrix = scope.matrix(node.args[0], f"as the argument of {node.value}")
+    if matrix.rows != matrix.cols or matrix.rows > LARGEST_MATRIX:
+        raise scope.fail(node.args[0], f"a square matrix, at most {LARGEST_MATRIX} x {LARGEST_MATRIX},")
+    return matrix
+
+
+def _det(scope: Scope, node: Node) -> Expr:
+    return _determinant(scope, _square(scope, node), node.args[0], MOST_PRODUCTS)
+
+
+def _determinant(scope: Scope, matrix: ImmutableMatrix, node: Node, most_products: int) -> Expr:
+    products = products_of_determinant(matrix)
+    if products > most_products:
+        raise scope.fail(node, f"a matrix whose determinant has at most {most_products} products instead of {products}")
+    return _by_cofactors(matrix) if pieces(matrix) > LARGE_MATRIX else matrix.det(method="berkowitz")
+
+
+def _by_cofactors(matrix: ImmutableMatrix) -> Expr:
+    """Return a determinant as products of entries, nothing multiplied out."""
+    if matrix.rows == 1:
+        return matrix[0, 0]
+    rest = matrix[1:, :]
+    minors = [ImmutableMatrix.hstack(rest[:, :column], rest[:, column + 1 :]) for column in range(matrix.cols)]
+    places = [column for column in range(matrix.cols) if matrix[0, column] != 0]
+    return sympy.Add(*((-1) ** place * matrix[0, place] * _by_cofactors(minors[place]) for place in places))
+
+
+def _inverse_of(scope: Scope, node: Node) -> ImmutableMatrix:
+    return inverted(scope, _square(scope, node), node.args[0])
+
+
+def inverted(scope: Scope, matrix: ImmutableMatrix, node: Node) -> ImmutableMatrix:
+    determinant = _determinant(scope, matrix, node, LARGEST_INVERSE)
+    from symrot.exact import normal_form
+
+    shortest = normal_form(determinant)
+    if shortest == 0:
+        raise scope.fail(node, "a matrix whose determinant is not zero")
+    scope.divide_by(shortest, node)
+    return matrix.adjugate(method="berkowitz") / shortest
+
+
+def _trace(scope: Scope, node: Node) -> Expr:
+    return _square(scope, node).trace()
+
+
+def _transpose_of(scope: Scope, node: Node) -> ImmutableMatrix:
+    return scope.matrix(node.args[0], "as the argument of transpose").T
+
+
+def _eye(scope: Scope, node: Node) -> ImmutableMatrix:
+    size = scope.scalar(node.args[0], "as a size")
+    if not (size.is_Integer and 1 <= size <= LARGEST_MATRIX):
+        raise scope.fail(node.args[0], f"a size from 1 to {LARGEST_MATRIX}")
+    return ImmutableMatrix(sympy.eye(int(size)))
+
+
+def _diag(scope: Scope, node: Node) -> ImmutableMatrix:
+    return ImmutableMatrix(sympy.diag(*(scope.scalar(a, "on the diagonal") for a in node.args)))
+
+
+def _matrix(scope: Scope, node: Node) -> ImmutableMatrix:
+    rows = scope.evaluate(node.args[0])
+    if is_matrix(rows):
+        return rows
+    rows = rows if isinstance(rows, tuple) else ()
+    rows = tuple(row if isinstance(row, tuple) else (row,) for row in rows)
+    lengths = {len(row) for row in rows}
+    cells = [cell for row in rows for cell in row]
+    if len(lengths) != 1 or any(is_matrix(cell) or isinstance(cell, tuple) for cell in cells):
+        raise scope.fail(node, "rows of scalars of equal length, Matrix([[a, b], [c, d]]),")
+    if max(len(rows), *lengths) > LARGEST_MATRIX:
+        raise scope.fail(node, f"a matrix of at most {LARGEST_MATRIX} x {LARGEST_MATRIX}")
+    return ImmutableMatrix(rows)
+
+
+def _hstack(scope: Scope, node: Node) -> ImmutableMatrix:
+    first = scope.matrix(node.args[0], "in hstack")
+    rest = [scope.matrix(argument, "in hstack", (first.rows, None)) for argument in node.args[1:]]
+    return ImmutableMatrix.hstack(first, *rest)
+
+
+def _qmul(scope: Scope, node: Node) -> ImmutableMatrix:
+    return qmul(*(scope.matrix(argument, "as a quaternion in qmul", (4, 1)) for argument in node.args))
+
+
+def _dcm_of(scope: Scope, node: Node) -> ImmutableMatrix:
+    components = dict(zip(symbols.quaternion, _components(scope, node, 4), strict=True))
+    return dcm_of(form="homogeneous").xreplace(components)  # nothing is multiplied out: components may be long
+
+
+def _diff(scope: Scope, node: Node) -> Any:
+    formula = scope.evaluate(node.args[0])
+    scope.shape(formula, node.args[0])
+    last = None
+    for argument in node.args[1:]:
+        variable = scope.scalar(argument, "to differentiate by")
+        times = 1
+        if variable.is_Integer and last is not None and 1 <= variable <= 9:
+            variable, times = last, int(variable) - 1
+        elif not (variable.is_Symbol or isinstance(variable, AppliedUndef) or _is_rate(variable)):
+            raise scope.fail(argument, "a symbol, a function of t or its derivative to differentiate by")
+        for _ in range(times):
+            formula = scope.bounded(formula, node, MOST_DIFFERENTIATED).diff(variable)
+        last = variable
+    return formula
+
+
+def _is_rate(value: Expr) -> bool:
+    return bool(value.is_Derivative) and isinstance(value.expr, AppliedUndef)
+
+
+def _integrate(scope: Scope, node: Node) -> Expr:
+    integrand, *ranges = node.args
+    limits = []
+    for place in ranges:
+        if place.kind != "list" or len(place.args) != 3:
+            raise scope.fail(place, "a range (x, from, to) after the integrand")
+        variable = scope.scalar(place.args[0], "to integrate over")
+        lower, upper = (scope.scalar(limit, "as a limit of an integral") for limit in place.args[1:])
+        if not variable.is_Symbol or lower.has(variable) or upper.has(variable):
+            raise scope.fail(place, "a symbol to integrate over, with limits free of it,")
+        limits.append((variable, lower, upper))
+    divided, rooted = len(scope.divisors), len(scope.radicands)
+    total = scope.scalar(integrand, "to integrate")
+    needs = [d.value for d in scope.divisors[divided:] if not d.value.is_nonzero]
+    needs += [radicand for radicand in scope.radicands[rooted:] if not radicand.is_nonnegative]
+    if any(need.has(variable) for need in needs for variable, _, _ in limits):
+        raise scope.fail(integrand, "an integrand without divisors and roots that hold the variable")
+    for (variable, lower, upper), place in zip(limits, ranges, strict=True):
+        try:
+            total, divisors = definite_integral(total, variable, lower, upper)
+        except InputError as reason:
+            raise scope.fail(place, f"an integral that can be found here ({reason})") from None
+        scope.divisors.extend(Divisor(value, place) for value in divisors)
+    return total
+
+
+BUILT_IN: Mapping[str, tuple[int, int, Callable[[Scope, Node], Any]]] = {
+    "sqrt": (1, 1, _sqrt),
+    "sin": (1, 1, _of_scalar(sympy.sin)),
+    "cos": (1, 1, _of_scalar(sympy.cos)),
+    "tan": (1, 1, _of_scalar(sympy.tan, sympy.cos)),
+    "cot": (1, 1, _of_scalar(sympy.cot, sympy.sin)),
+    "sec": (1, 1, _of_scalar(sympy.sec, sympy.cos)),
+    "csc": (1, 1, _of_scalar(sympy.csc, sympy.sin)),
+    "asin": (1, 1, _arc(sympy.asin)),
+    "acos": (1, 1, _arc(sympy.acos)),
+    "atan": (1, 1, _of_scalar(sympy.atan)),
+    "atan2": (2, 2, _atan2),
+    "exp": (1, 1, _of_scalar(sympy.exp)),
+    "log": (1, 1, _log),
+    "sinh": (1, 1, _of_scalar(sympy.sinh)),
+    "cosh": (1, 1, _of_scalar(sympy.cosh)),
+    "tanh": (1, 1, _of_scalar(sympy.tanh)),
+    "abs": (1, 1, _of_scalar(sympy.Abs)),
+    "diff": (2, 9, _diff),
+    "integrate": (2, 9, _integrate),
+    "Matrix": (1, 1, _matrix),
+    "eye": (1, 1, _eye),
+    "diag": (1, LARGEST_MATRIX, _diag),
+    "hstack": (1, LARGEST_MATRIX, _hstack),
+    "transpose": (1, 1, _transpose_of),
+    "inverse": (1, 1, _inverse_of),
+    "det": (1, 1, _det),
+    "trace": (1, 1, _trace),
+    "Rx": (1, 1, _rotation("X")),
+    "Ry": (1, 1, _rotation("Y")),
+    "Rz": (1, 1, _rotation("Z")),
+    "skew": (1, 3, _skew),
+    "vee": (1, 1, _vee),
+    "cross": (2, 2, _cross),
+    "dot": (2, 2, _dot),
+    "qmul": (2, 9, _qmul),
+    "dcm_of": (1, 4, _dcm_of),
+}
+"""Name -> (fewest arguments, most arguments, meaning)."""

@@ -1,0 +1,207 @@
+"""From the tree of a claim to SymPy, one table of kinds of node.
+
+Scalars are SymPy expressions, matrices are immutable; a vector is a column. A piece that has no meaning (shapes that do
+not fit, an undefined name, a division by zero) is refused with its place in the text.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from difflib import get_close_matches
+from typing import Any
+
+import sympy
+from sympy import Expr, Function, ImmutableMatrix, Integer, Rational, Symbol
+
+from symrot.checker.claim.functions import BUILT_IN, inverted
+from symrot.checker.claim.scope import Scope, described, is_matrix
+from symrot.checker.claim.tree import Node
+
+__all__ = ["CONSTANTS", "Meaning", "time"]
+
+LARGEST_EXPONENT = 64
+LARGEST_ROOT = 12
+MOST_BITS = 20_000
+
+time = Symbol("t", real=True)
+
+CONSTANTS: dict[str, Expr] = {"pi": sympy.pi}
+UNKNOWN_HERE = (
+    "ln", "arcsin", "arccos", "arctan", "acot", "E", "I", "Rational", "nan", "NaN", "NAN", "inf", "Inf", "INF", "oo",
+    "zoo", "infinity", "Infinity",
+)  # fmt: skip
+"""Names that become no symbol or function of the user's own by mere use: a reader takes them for something else."""
+
+
+@dataclass
+class Meaning(Scope):
+    """The names of one claim, and the evaluation of its trees."""
+
+    def read(self, node: Node, source: str = "", where: str = "") -> Any:
+        """Return the value of a tree: Expr or ImmutableMatrix.
+
+        Raises
+        ------
+        InputError
+            For a piece without meaning, with its position in ``source``.
+        """
+        self.source, self.where = source or self.source, where or self.where
+        value = self.evaluate(node)
+        if isinstance(value, tuple):
+            raise self.fail(node, "a formula instead of a list")
+        return value
+
+    def evaluate(self, node: Node) -> Any:
+        return _EVALUATE[node.kind](self, node)
+
+
+# -- the kinds of node ------------------------------------------------------------------------------------------------
+
+
+def _number(meaning: Meaning, node: Node) -> Expr:
+    return Rational(node.value.numerator, node.value.denominator)
+
+
+def _name(meaning: Meaning, node: Node) -> Any:
+    name = node.value
+    if name in meaning.values:
+        return meaning.values[name]
+    if name in CONSTANTS:
+        return CONSTANTS[name]
+    if name in meaning.functions:
+        raise meaning.fail(node, f"{name}(t), since {name} is a function of t,")
+    if name in BUILT_IN:
+        raise meaning.fail(node, f"brackets after the function {name}")
+    if not meaning.implied:
+        raise meaning.fail(node, f"a name that is declared ({_nearest(name, meaning)}) instead of {name!r}")
+    if name in UNKNOWN_HERE:
+        raise meaning.fail(node, f"a symbol of another name, since {name!r} means something else to most readers,")
+    made = meaning.values[name] = time if name == "t" else Symbol(name, real=True)
+    return made
+
+
+def _nearest(name: str, meaning: Meaning) -> str:
+    known = [*meaning.values, *meaning.functions, *CONSTANTS, *BUILT_IN]
+    close = get_close_matches(name, known, 1, 0.6)
+    declared = ", ".join([*meaning.values, *meaning.functions]) or "none is"
+    return f"did you mean {close[0]!r}?" if close else f"declared: {declared[:80]}"
+
+
+def _sum(meaning: Meaning, node: Node) -> Any:
+    values = [meaning.evaluate(term) for term in node.args]
+    shapes = {meaning.shape(value, term) for value, term in zip(values, node.args, strict=True)}
+    if len(shapes) == 1:
+        if None in shapes:
+            return sympy.Add(*values)
+        total = values[0]
+        for value in values[1:]:
+            total = total + value
+        return total
+    first = described(values[0])
+    other, found = next((n, described(value)) for n, value in enumerate(values) if described(value) != first)
+    raise meaning.fail(node.args[other], f"{first}, as the first term of the sum is, instead of {found}")
+
+
+def _product(meaning: Meaning, node: Node) -> Any:
+    total: Any = None
+    for factor in node.args:
+        value = meaning.evaluate(factor)
+        meaning.shape(value, factor)
+        if total is None:
+            total = value
+        elif is_matrix(total) and is_matrix(value) and total.cols != value.rows:
+            raise meaning.fail(factor, f"a matrix with {total.cols} rows instead of {described(value)}")
+        else:
+            large = is_matrix(total) and is_matrix(value)
+            total = meaning.bounded(total * value, factor) if large else total * value
+    return total
+
+
+def _negative(meaning: Meaning, node: Node) -> Any:
+    value = meaning.evaluate(node.args[0])
+    meaning.shape(value, node.args[0])
+    return -value
+
+
+def _inverse(meaning: Meaning, node: Node) -> Any:
+    value = meaning.scalar(node.args[0], "to divide by")
+    meaning.divide_by(value, node.args[0])
+    return 1 / value
+
+
+def _power(meaning: Meaning, node: Node) -> Any:
+    base, exponent = meaning.evaluate(node.args[0]), meaning.scalar(node.args[1], "as an exponent")
+    if not exponent.is_Rational:
+        raise meaning.fail(node.args[1], "a number as an exponent")
+    if abs(exponent.p) > LARGEST_EXPONENT or exponent.q > LARGEST_ROOT:
+        raise meaning.fail(node.args[1], f"an exponent up to {LARGEST_EXPONENT} (roots up to the {LARGEST_ROOT}th)")
+    if is_matrix(base):
+        if base.rows != base.cols or exponent.q != 1:
+            raise meaning.fail(node, "a square matrix to a whole power")
+        if exponent < 0:
+            base = inverted(meaning, base, node.args[0])
+        total = ImmutableMatrix(sympy.eye(base.rows))
+        for _ in range(abs(int(exponent))):
+            total = meaning.bounded(total * base, node)
+        return total
+    meaning.shape(base, node.args[0])
+    if exponent < 0:
+        meaning.divide_by(base, node.args[0])
+    if base.is_Rational and abs(exponent.p) * max(int(base.p).bit_length(), int(base.q).bit_length()) > MOST_BITS:
+        raise meaning.fail(node, f"a number of at most {MOST_BITS} bits")
+    if exponent.q > 1:  # of odd index too: the principal value is real for what is not negative only
+        meaning.take_root(base, node.args[0])
+    return base**exponent
+
+
+def _transpose(meaning: Meaning, node: Node) -> ImmutableMatrix:
+    return meaning.matrix(node.args[0], "before .T").T
+
+
+def _index(meaning: Meaning, node: Node) -> Expr:
+    matrix = meaning.matrix(node.args[0], "before an index")
+    places = [meaning.scalar(index, "as an index") for index in node.args[1:]]
+    if len(places) == 1 and 1 in matrix.shape:
+        places = [places[0], Integer(0)] if matrix.cols == 1 else [Integer(0), places[0]]
+    if len(places) != 2 or not all(
+        place.is_Integer and 0 <= place < size for place, size in zip(places, matrix.shape, strict=True)
+    ):
+        raise meaning.fail(node, f"indices from 0 into {described(matrix)}")
+    return matrix[int(places[0]), int(places[1])]
+
+
+def _list(meaning: Meaning, node: Node) -> tuple[Any, ...]:
+    return tuple(meaning.evaluate(member) for member in node.args)
+
+
+def _call(meaning: Meaning, node: Node) -> Any:
+    name, arguments = node.value, node.args
+    if name in meaning.functions:
+        return _function_of_time(meaning, node)
+    if name in BUILT_IN:
+        least, most, function = BUILT_IN[name]
+        if not least <= len(arguments) <= most:
+            wanted = str(least) if least == most else f"{least} to {most}" if most < 99 else f"at least {least}"
+            raise meaning.fail(node, f"{wanted} argument(s) of {name} instead of {len(arguments)}")
+        return function(meaning, node)
+    if name in meaning.values:
+        raise meaning.fail(node, f"an operator between {name} and '(', since {name} is no function,")
+    close = get_close_matches(name, list(BUILT_IN), 1, 0.74)
+    if not meaning.implied or close or name in UNKNOWN_HERE or [a.value for a in arguments] != ["t"]:
+        known = f"did you mean {close[0]}?" if close else f"built in: {', '.join(BUILT_IN)}"
+        raise meaning.fail(node, f"a function that is built in or declared as one of t instead of {name!r} ({known})")
+    meaning.functions.add(name)
+    return _function_of_time(meaning, node)
+
+
+def _function_of_time(meaning: Meaning, node: Node) -> Expr:
+    if [(argument.kind, argument.value) for argument in node.args] != [("name", "t")]:
+        raise meaning.fail(node, f"{node.value}(t)")
+    if meaning.evaluate(node.args[0]) != time:
+        raise meaning.fail(node.args[0], "the symbol t")
+    return Function(node.value, real=True)(time)
+
+
+_EVALUATE: dict[str, Callable[[Meaning, Node], Any]] = {
+    "number": _number, "name": _name, "sum": _sum, "product": _product, "neg": _negative, "inv": _inverse,
+    "power": _power, "transpose": _transpose, "index": _index, "list": _list, "call": _call,
+}  # fmt: skip

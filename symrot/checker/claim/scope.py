@@ -1,0 +1,127 @@
+"""What is known while a claim is read: its names and divisors, and how a piece without meaning is refused."""
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, field
+from typing import Any
+
+import sympy
+from sympy import Expr, ImmutableMatrix, Mul
+
+from symrot.checker.claim.reader import complaint
+from symrot.checker.claim.size import MOST_PIECES
+from symrot.checker.claim.tree import Node
+from symrot.errors import InputError
+from symrot.exact.intervals import enclosure
+from symrot.exact.size import pieces
+
+__all__ = ["Divisor", "Scope", "described", "is_matrix"]
+
+MOST_BITS_FACTORED = 64
+
+
+@dataclass(frozen=True)
+class Divisor:
+    """What somebody divided by, as SymPy sees it."""
+
+    value: Expr
+    node: Node
+
+
+def is_matrix(value: Any) -> bool:
+    """Return whether a value is a matrix (a column is one)."""
+    return isinstance(value, sympy.MatrixBase)
+
+
+def described(value: Any) -> str:
+    return f"a {value.rows} x {value.cols} matrix" if is_matrix(value) else "a scalar"
+
+
+@dataclass
+class Scope(ABC):
+    """The names of one claim, what its text divides by, and the refusals of pieces without meaning.
+
+    Attributes
+    ----------
+    source, where : str
+        The text being read and its place, for complaints.
+    values : dict
+        Symbols and definitions by name.
+    functions : set of str
+        Functions of time.
+    implied : bool
+        Whether names that nobody declared become real symbols and functions of time.
+    divisors : list of Divisor
+        What the text divides by; filled while evaluating.
+    radicands : list of Expr
+        What it takes even roots of; likewise.
+    """
+
+    values: dict[str, Any] = field(default_factory=dict)
+    functions: set[str] = field(default_factory=set)
+    implied: bool = False
+    source: str = ""
+    where: str = ""
+    divisors: list[Divisor] = field(default_factory=list)
+    radicands: list[Expr] = field(default_factory=list)
+
+    def fail(self, node: Node, expected: str) -> InputError:
+        return complaint(self.source, self.where, node.span[0], expected)
+
+    @abstractmethod
+    def evaluate(self, node: Node) -> Any:
+        """Return the value of a tree: Expr, ImmutableMatrix or a tuple of those."""
+
+    def scalar(self, node: Node, of: str) -> Expr:
+        value = self.evaluate(node)
+        if is_matrix(value) or isinstance(value, tuple):
+            shown = "a list" if isinstance(value, tuple) else described(value)
+            raise self.fail(node, f"a scalar {of} instead of {shown}")
+        return value
+
+    def matrix(self, node: Node, of: str, shape: tuple[int | None, int | None] = (None, None)) -> ImmutableMatrix:
+        value = self.evaluate(node)
+        rows, columns = shape
+        if isinstance(value, tuple) and all(not isinstance(part, tuple) and not is_matrix(part) for part in value):
+            value = ImmutableMatrix(value)  # a bare list of components is a column
+        fits = is_matrix(value) and rows in (None, value.rows) and columns in (None, value.cols)
+        if not fits:
+            wanted = "matrix" if shape == (None, None) else f"{rows or 'n'} x {columns or 'n'} matrix"
+            shown = "a list" if isinstance(value, tuple) else described(value)
+            raise self.fail(node, f"a {wanted} {of} instead of {shown}")
+        return value
+
+    def shape(self, value: Any, node: Node) -> tuple[int, int] | None:
+        """Return the shape of a matrix, None for a scalar; refuse a list."""
+        if isinstance(value, tuple):
+            raise self.fail(node, "a formula instead of a list (write Matrix([..]))")
+        return (value.rows, value.cols) if is_matrix(value) else None
+
+    def bounded(self, value: Any, node: Node, most: int = MOST_PIECES) -> Any:
+        """Return a value that is not too large to be worked with; refuse it otherwise."""
+        if pieces(value if is_matrix(value) else [value]) > most:
+            raise self.fail(node, f"a formula of at most {most} symbols, numbers and operations, written out,")
+        return value
+
+    def divide_by(self, value: Expr, node: Node) -> None:
+        """Note a divisor; one that SymPy sees to be zero is refused here, others by the exact engine."""
+        if value.is_zero:
+            raise self.fail(node, "a divisor that is not zero")
+        for factor in Mul.make_args(value):
+            base = factor.as_base_exp()[0]
+            held = enclosure(base) if base.is_number else None
+            if held is None or 0 in held:
+                self.divisors.append(Divisor(base, node))
+
+    def factorable(self, value: Expr, node: Node) -> None:
+        """Refuse the root of a number that is too long to be factored."""
+        if value.is_Rational and max(int(value.p).bit_length(), int(value.q).bit_length()) > MOST_BITS_FACTORED:
+            raise self.fail(node, f"a number of at most {MOST_BITS_FACTORED} bits under a root, since it is factored,")
+
+    def take_root(self, value: Expr, node: Node) -> None:
+        """Note a radicand; one that is negative is refused."""
+        held = enclosure(value) if value.is_number else None
+        if (held is None and value.is_negative) or (held is not None and held.b < 0):
+            raise self.fail(node, "a number that is not negative under a root")
+        self.factorable(value, node)
+        if held is None or not held.a >= 0:
+            self.radicands.append(value)

@@ -1,0 +1,1 @@
+"""The decision on a claim: hypotheses, constraints, conditions, real points."""

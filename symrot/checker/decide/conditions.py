@@ -1,0 +1,206 @@
+"""What a claim that is not true everywhere requires: a unit norm, equal moments, no product of inertia, a root's sign.
+
+A condition is read off the residuals: a factor that they all share is zero exactly where the condition holds, so the
+claim is true there, by proof. Only factors that people state as conditions count; any false claim is "true" where its
+residual happens to vanish.
+"""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import reduce
+
+import sympy
+from sympy import Abs, Add, Expr, Mul, Pow
+from sympy.core.function import AppliedUndef
+from sympy.polys.rings import PolyElement
+
+from symrot.checker.claim.printed import shown
+from symrot.exact.decide import normal_form
+from symrot.exact.ring.ring import FormulaRing
+
+__all__ = ["Requirement", "branch_requirements", "requirements", "surely_nonnegative"]
+
+MOMENT = re.compile(r"[ABC]|[IJ]_?([xyz1-3]|([xyz1-3])\2|p|perp|par|parallel|t|s|a)?", re.ASCII)
+PRODUCT_OF_INERTIA = re.compile(r"[IJP]_?(xy|yx|xz|zx|yz|zy|12|21|13|31|23|32)", re.ASCII)
+"""Names of moments of inertia, and of products of inertia."""
+
+
+MOST_TERMS, LARGEST_DEGREE = 400, 24
+"""Terms, and the degree, of a residual that is still factored."""
+
+MOST_TERMS_OF_SQUARE = 40
+"""Of a sum that is still factored to see whether it is a square."""
+
+
+@dataclass(frozen=True)
+class Requirement:
+    """A condition as text, its code, and the expressions that are zero, or not negative, under it."""
+
+    code: str
+    text: str
+    zeros: tuple[Expr, ...] = ()
+    signs: tuple[Expr, ...] = ()
+
+
+def requirements(
+    ring: FormulaRing, numerators: Sequence[PolyElement], sides: Sequence[tuple[Expr, Expr]], entries: int
+) -> list[Requirement]:
+    """Return the equations, any one of which makes all residuals vanish and which are conditions people state.
+
+    Parameters
+    ----------
+    ring : FormulaRing
+    numerators : sequence of PolyElement
+        The residuals that are not zero, reduced.
+    sides : sequence of (Expr, Expr)
+        The entries they come from.
+    entries : int
+        How many entries the claim has.
+    """
+    found = []
+    for factor in _shared_factors(ring, numerators):
+        requirement = _classified(ring, factor)
+        if requirement is None:
+            continue
+        itself = entries == 1 and _associated(factor, numerators[0])
+        if itself and (requirement.code != "requires_unit_norm" or any(side.is_number for side in sides[0])):
+            continue
+        if requirement.code == "requires_unit_norm" or _left_out(requirement, sides, ring.hypotheses):
+            found.append(requirement)
+    return found or _no_products(ring, numerators, sides)
+
+
+def _shared_factors(ring: FormulaRing, numerators: Sequence[PolyElement]) -> list[PolyElement]:
+    """Return the irreducible factors common to all residuals; none where looking for them is costly."""
+    smallest = min(numerators, key=len)
+    if not ring.generators or len(smallest) > MOST_TERMS or max(map(sum, smallest)) > LARGEST_DEGREE:
+        return []
+    shared = reduce(lambda a, b: a if a.is_ground else a.gcd(b), sorted(numerators, key=len))
+    return [] if shared.is_ground else [factor for factor, _ in shared.factor_list()[1]]
+
+
+def _left_out(requirement: Requirement, sides: Sequence[tuple[Expr, Expr]], hypotheses: Sequence[Expr]) -> bool:
+    """Return whether some side of each wrong entry knows nothing of one of the symbols.
+
+    Whoever takes ``A = B`` for granted leaves one of them out. A text that has both, ``(A - B) w`` against
+    ``(B - A) w``, is wrong in another way. A side knows of what hypotheses say about its symbols.
+    """
+    (formula,) = requirement.zeros
+
+    def knows(side: Expr, symbol: Expr) -> bool:
+        own = side.free_symbols
+        return symbol in own or any(symbol in h.free_symbols and own & h.free_symbols for h in hypotheses)
+
+    return all(any(not knows(side, symbol) for side in pair for symbol in formula.free_symbols) for pair in sides)
+
+
+def _associated(first: PolyElement, second: PolyElement) -> bool:
+    return len(first) == len(second) and bool(first.primitive()[1] in (second.primitive()[1], -second.primitive()[1]))
+
+
+def _classified(ring: FormulaRing, factor: PolyElement) -> Requirement | None:
+    """Return the condition ``factor = 0`` when it is one that people state."""
+    places = [n for n, degree in enumerate(factor.degrees()) if degree > 0]
+    leaves = {number: leaf for leaf, number in ring.symbols.items()}
+    if not all(n in leaves and (leaves[n].is_Symbol or isinstance(leaves[n], AppliedUndef)) for n in places):
+        return None
+    names = [leaves[n] for n in places]
+    formula = factor.as_expr(*ring.generators)
+    if _is_unit_norm(factor, len(places)):
+        squares = " + ".join(f"{name}**2" for name in names)
+        return Requirement("requires_unit_norm", f"{squares} == 1", (formula,))
+    linear = all(sum(mono) == 1 and abs(coefficient) == 1 for mono, coefficient in factor.items())
+    if linear and len(names) in (2, 3) and all(_matches(MOMENT, name) for name in names):
+        return _of_moments(factor, names, ring, formula)
+    if len(names) == 1 and _matches(PRODUCT_OF_INERTIA, names[0]) and len(factor) == 1:
+        return Requirement("requires_condition", f"{names[0]} == 0", (formula,))
+    return None
+
+
+def _of_moments(factor: PolyElement, names: list[Expr], ring: FormulaRing, formula: Expr) -> Requirement | None:
+    """Return ``I1 == I2`` or ``I1 + I2 == I3``; sums of moments do not vanish."""
+    coefficients = [int(factor[ring.ring.gens[ring.symbols[name]].leading_expv()]) for name in names]
+    sides = [[str(n) for n, c in zip(names, coefficients, strict=True) if c * sign > 0] for sign in (1, -1)]
+    if not all(sides):
+        return None
+    left, right = sorted(sides, key=lambda side: (-len(side), side))
+    code = "requires_symmetric_top" if len(names) == 2 else "requires_condition"
+    return Requirement(code, f"{' + '.join(left)} == {' + '.join(right)}", (formula,))
+
+
+def _is_unit_norm(factor: PolyElement, variables: int) -> bool:
+    constant = factor.coeff(1)
+    squares = [mono for mono in factor if any(mono)]
+    return (
+        variables > 1
+        and len(squares) == variables
+        and constant != 0
+        and all(sum(mono) == max(mono) == 2 and factor[mono] == -constant for mono in squares)
+    )
+
+
+def _no_products(
+    ring: FormulaRing, numerators: Sequence[PolyElement], sides: Sequence[tuple[Expr, Expr]]
+) -> list[Requirement]:
+    """Return the condition that all products of inertia vanish, when it suffices."""
+    products = [(leaf, n) for leaf, n in ring.symbols.items() if _matches(PRODUCT_OF_INERTIA, leaf)]
+    if not products or not all(any(mono[n] for _, n in products) for poly in numerators for mono in poly):
+        return []
+    used = [leaf for leaf, n in products if any(mono[n] for poly in numerators for mono in poly)]
+    if not all(any(not side.has(*used) for side in pair) for pair in sides):
+        return []
+    return [Requirement("requires_condition", " and ".join(f"{leaf} == 0" for leaf in used), tuple(used))]
+
+
+def _matches(pattern: re.Pattern[str], leaf: Expr) -> bool:
+    return bool(leaf.is_Symbol and pattern.fullmatch(leaf.name))
+
+
+# -- roots ------------------------------------------------------------------------------------------------------------
+
+
+def branch_requirements(ring: FormulaRing, numerators: Sequence[PolyElement]) -> list[Requirement] | None:
+    """Return the sign conditions under which residuals with a square root vanish; None if no sign makes them vanish.
+
+    With ``r = a + b g`` and ``g^2 = P``: when ``a^2 - b^2 P`` is zero, ``g = a/b`` or ``g = -a/b`` everywhere, and the
+    claim, which says the latter, holds exactly where ``-a/b >= 0``. An empty list: that is so wherever it is defined.
+    """
+    for root, place in ring.roots.items():
+        if root.index != 2 or root.expression.is_number:
+            continue
+        generator = ring.ring.gens[place]
+        square = ring._polynomial(root)
+        signs: dict[str, Expr] = {}
+        for poly in numerators:
+            without, rest = _split(poly, place, generator)
+            if not rest or ring.reduce(without**2 - rest**2 * square):
+                break
+            value = normal_form(-without.as_expr(*ring.generators) / rest.as_expr(*ring.generators), ring.hypotheses)
+            if not surely_nonnegative(value):
+                signs[f"{shown(value)} >= 0"] = value
+        else:
+            stated = tuple(signs[text] for text in sorted(signs))
+            return [Requirement("sign_branch", " and ".join(sorted(signs)), signs=stated)] if signs else []
+    return None
+
+
+def _split(poly: PolyElement, place: int, generator: PolyElement) -> tuple[PolyElement, PolyElement]:
+    """Return (a, b) with poly = a + b*generator."""
+    without = poly.new({mono: c for mono, c in poly.items() if not mono[place]})
+    return without, (poly - without).exquo(generator) if poly != without else poly.ring.zero
+
+
+def surely_nonnegative(value: Expr) -> bool:
+    """Return whether a real value cannot be negative by its form alone; roots are real where the claim is defined."""
+    if value.is_nonnegative or isinstance(value, Abs | sympy.exp):
+        return True
+    if isinstance(value, Pow) and value.exp.is_Rational:
+        even = value.exp.q == 1 and value.exp.p % 2 == 0
+        return bool(even or value.exp.q % 2 == 0 or surely_nonnegative(value.base))
+    if isinstance(value, Add | Mul) and all(map(surely_nonnegative, value.args)):
+        return True
+    if not isinstance(value, Add) or len(value.args) > MOST_TERMS_OF_SQUARE:
+        return False
+    factored = sympy.factor(value)
+    return not isinstance(factored, Add) and surely_nonnegative(factored)

@@ -1,0 +1,139 @@
+"""What a claim takes for granted, as polynomials in the generators of its ring: the set over which it is decided.
+
+Hypotheses, the circles of sines and cosines and the relations of roots vanish; what is divided by does not; symbols,
+and roots by their nature, have signs. Generators whose values follow from others in ways that polynomials do not say
+(a function of a symbol, an angle that is tied to one) are not ``free``: nothing is asked of them here.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+from sympy import Expr, I, Symbol
+from sympy.core.function import AppliedUndef
+from sympy.polys.domains import QQ
+from sympy.polys.orderings import grevlex
+from sympy.polys.rings import PolyElement, PolyRing
+
+from symrot.exact.ring.ring import FormulaRing
+
+__all__ = ["Constraints", "constraints_of", "distinct_factors", "occurring"]
+
+MOST_TERMS, MOST_UNKNOWNS, LARGEST_DEGREE = 40, 4, 12
+"""Of a polynomial that is still factored; from a larger one only unknowns are taken out that divide every term."""
+
+
+@dataclass(frozen=True)
+class Constraints:
+    """A set of real points: where ``zeros`` vanish, ``nonzero`` do not, and signs are as they are assumed.
+
+    Attributes
+    ----------
+    ring : PolyRing
+        Over the rationals; its generators are those of the claim's ring.
+    zeros, nonzero : tuple of PolyElement
+    positive, nonnegative, negative, whole : frozenset of int
+        Generators > 0, >= 0, < 0, and integer.
+    products : tuple of PolyElement
+        Further polynomials that are >= 0: a root over its denominator, what the text takes roots of.
+    free : frozenset of int
+        Generators that can have any values which all this allows.
+    complete : bool
+        Whether ``zeros`` say all that is known: False where a hypothesis speaks of something that is not free.
+    real : bool
+        Whether all of this is about real numbers.
+    """
+
+    ring: PolyRing
+    zeros: tuple[PolyElement, ...]
+    nonzero: tuple[PolyElement, ...]
+    positive: frozenset[int] = frozenset()
+    nonnegative: frozenset[int] = frozenset()
+    negative: frozenset[int] = frozenset()
+    whole: frozenset[int] = frozenset()
+    products: tuple[PolyElement, ...] = ()
+    free: frozenset[int] = frozenset()
+    complete: bool = True
+    real: bool = True
+
+    @cached_property
+    def involved(self) -> tuple[int, ...]:
+        """The free generators that some constraint speaks of, in order."""
+        return tuple(sorted(self.free & occurring([*self.zeros, *self.nonzero, *self.products])))
+
+
+def occurring(polynomials: Sequence[PolyElement]) -> set[int]:
+    """Return the numbers of the generators that occur in polynomials."""
+    return {place for poly in polynomials for mono in poly for place, power in enumerate(mono) if power}
+
+
+def distinct_factors(poly: PolyElement) -> list[PolyElement]:
+    """Return the factors of a polynomial that is not constant, each once and monic; of a large one the plain ones."""
+    if len(poly) <= MOST_TERMS and len(occurring([poly])) <= MOST_UNKNOWNS and max(map(sum, poly)) <= LARGEST_DEGREE:
+        return [factor.monic() for factor, _ in poly.factor_list()[1]]
+    shared = [min(column) for column in zip(*poly, strict=True)]
+    found = [poly.ring.gens[place] for place, power in enumerate(shared) if power]
+    if found:
+        poly = poly.new({tuple(m - s for m, s in zip(mono, shared, strict=True)): c for mono, c in poly.items()})
+    return found if poly.is_ground else [*found, poly.monic()]
+
+
+def constraints_of(ring: FormulaRing) -> Constraints:
+    """Return what a ring takes for granted, everything that was divided by in it so far included."""
+    target = PolyRing(ring.ring.symbols, QQ, grevlex)
+    symbols = {leaf: n for leaf, n in ring.symbols.items() if ring.leaves[leaf]}
+    free = {*symbols.values(), *_free_angles(ring)}
+    zeros, products = [], []
+    for atom, sine in ring.sines.items():
+        if sine in free:
+            zeros.append(target.gens[sine] ** 2 + target.gens[ring.cosines[atom]] ** 2 - 1)
+    signs = {root: radical.below for radical in ring.radicals.values() for root in radical.roots}
+    even = set()
+    loose = {root for radical in ring.radicals.values() if radical.loose for root in radical.roots}
+    for root, place in sorted(ring.roots.items(), key=lambda item: -item[1]):  # inner roots first
+        square = ring.ratio(root.power_expression)  # as it is written: reduced by hypotheses it would say less
+        relation = ring.ring.gens[place] ** root.index * ring.ratios.denominator(square) - square.numerator
+        relation = relation.set_ring(target)
+        if occurring([relation]) <= free | {place} and root.expression is not I and root not in loose:
+            free.add(place)
+            zeros.append(relation)
+            below = signs.get(root)
+            if below is None or below.is_number:
+                even.add(place)
+            else:
+                products.append(target.gens[place] * ring.ratio(below).numerator.set_ring(target))
+    hypotheses = [poly.set_ring(target) for poly in ring.hypothesis_numerators if poly]
+    kept = [poly for poly in hypotheses if occurring([poly]) <= free]
+    for formula in ring.domain:
+        value = ring.ratio(formula)
+        signed = (value.numerator * ring.ratios.denominator(value)).set_ring(target)
+        if signed and not signed.is_ground and occurring([signed]) <= set(symbols.values()):
+            products.append(signed)
+    factors = [poly.set_ring(target) for poly in ring.ratios.factors]
+
+    def having(assumption: str) -> frozenset[int]:
+        return frozenset(n for leaf, n in symbols.items() if getattr(leaf, assumption))
+
+    return Constraints(
+        target, (*zeros, *kept), tuple(poly for poly in factors if occurring([poly]) <= free),
+        positive=having("is_positive"), nonnegative=having("is_nonnegative") | frozenset(even),
+        negative=having("is_negative"), whole=having("is_integer"), products=tuple(products),
+        free=frozenset(free), complete=len(kept) == len(hypotheses),
+        real=not any(root.expression is I for root in ring.roots),
+    )  # fmt: skip
+
+
+def _free_angles(ring: FormulaRing) -> Iterator[int]:
+    """Yield the sines and cosines of angles that can have any value whatever the symbols are.
+
+    Such an angle is proportional to a symbol or a function of time of its own. Derivatives in time at one instant can
+    have any values whatever the function's own value is.
+    """
+    holders: list[Expr] = [*ring.bases, *(leaf for leaf in ring.symbols if not leaf.is_Derivative)]
+    for atom in ring.bases:
+        factors = atom.args if atom.is_Mul else (atom,)
+        others = [holder for holder in holders if holder is not atom]
+        plain = all(isinstance(factor, Symbol | AppliedUndef) for factor in factors)
+        own = any(not any(other.has(factor) for other in others) for factor in factors)
+        if plain and own and atom not in ring.symbols:
+            yield from (ring.sines[atom], ring.cosines[atom])

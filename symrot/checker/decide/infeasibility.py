@@ -1,0 +1,276 @@
+"""Proofs that constraints hold at no real point, and that a formula vanishes wherever they hold.
+
+Polynomials that vanish are taken apart: into factors (a case for each), into the squares whose sum they are, into a
+Groebner basis. A case is impossible when 1 = 0 follows, when a polynomial keeps its sign because of its form, of the
+range of its unknowns or of its lack of real roots. Formulas vanish where ``z f = 1`` makes all cases impossible
+(Rabinowitsch), which covers what follows only for real numbers, only for positive symbols, or only up to a power.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from math import inf, prod
+from typing import Any
+
+from sympy import Poly, Symbol
+from sympy.polys.domains import QQ
+from sympy.polys.rings import PolyElement, PolyRing
+
+from symrot.checker.decide.constraints import Constraints, distinct_factors, occurring
+from symrot.exact.ring.groebner import groebner_basis
+from symrot.exact.ring.ratio import TooLarge
+
+__all__ = ["Emptiness", "vanishes_on", "why_empty"]
+
+MOST_CASES = 40
+MOST_ROUNDS = 6
+"""Cases looked at, and rounds of taking apart in one case."""
+
+MOST_PRODUCTS = 150_000
+"""Products of terms in all Groebner bases of one proof."""
+
+
+class _Undecided(Exception):
+    """A case that could not be shown to be impossible."""
+
+
+@dataclass(frozen=True)
+class Emptiness:
+    """Why there is no point: the polynomial that cannot vanish, or None where 1 = 0 follows."""
+
+    reason: str
+    polynomial: PolyElement | None = None
+
+
+def why_empty(constraints: Constraints) -> Emptiness | None:
+    """Return why no real point obeys the constraints, proven; None if no proof was found."""
+    if not constraints.real:
+        return None
+    zeros = list(constraints.zeros)
+    for poly in constraints.nonzero:
+        if not poly:
+            return Emptiness("what is divided by is zero wherever they hold")
+    ring = constraints.ring
+    nonzero = [poly for poly in constraints.nonzero if not poly.is_ground]
+    if nonzero:
+        ring, constraints = _with_one_more(constraints)
+        last = ring.gens[-1]
+        zeros = [_lifted(poly, ring) for poly in zeros]
+        zeros.append(last * prod((_lifted(p, ring) for p in nonzero), start=ring.one) - 1)
+    try:
+        return _Prover(ring, constraints).impossible(zeros)
+    except (_Undecided, TooLarge):
+        return None
+
+
+def vanishes_on(constraints: Constraints, formula: PolyElement) -> bool:
+    """Return whether a polynomial of the same ring is proven to vanish at all real points of the constraints."""
+    return why_empty(replace(constraints, nonzero=(*constraints.nonzero, formula))) is not None
+
+
+def _with_one_more(constraints: Constraints) -> tuple[PolyRing, Constraints]:
+    old = constraints.ring
+    ring = PolyRing([*old.symbols, Symbol("inverse")], QQ, old.order)
+    return ring, replace(constraints, ring=ring, nonzero=tuple(_lifted(p, ring) for p in constraints.nonzero))
+
+
+def _lifted(poly: PolyElement, ring: PolyRing) -> PolyElement:
+    return ring.from_dict({(*mono, 0): coefficient for mono, coefficient in poly.items()})
+
+
+class _Prover:
+    def __init__(self, ring: PolyRing, constraints: Constraints) -> None:
+        self.ring, self.constraints, self.cases, self.spent = ring, constraints, 0, [0]
+        self.nonnegative = constraints.positive | constraints.nonnegative
+        self.signed = constraints.positive | constraints.negative
+        self.forbidden = {poly.monic() for poly in constraints.nonzero if poly and not poly.is_ground}
+
+    def impossible(self, zeros: Sequence[PolyElement], rounds: int = MOST_ROUNDS) -> Emptiness:
+        """Return why polynomials cannot vanish together; raises when no reason is found."""
+        self.cases += 1
+        if self.cases > MOST_CASES or rounds == 0:
+            raise _Undecided
+        simple: list[PolyElement] = []
+        for number, poly in enumerate(zeros):
+            factors = self.factors(poly)
+            if not factors and poly:
+                return Emptiness(*self.why(poly))
+            if len(factors) > 1:
+                rest = [*simple, *zeros[number + 1 :]]
+                found = [self.impossible([factor, *rest], rounds) for factor in factors]
+                return found[0] if len({item.reason for item in found}) == 1 else Emptiness("every case is impossible")
+            simple.extend(self.parts(factors[0]) if factors else ())
+        for poly in simple:
+            if self.keeps_its_sign(poly, simple):
+                return Emptiness(*self.why(poly))
+        basis = groebner_basis(simple, self.ring, MOST_PRODUCTS, self.spent)
+        if any(poly.is_ground for poly in basis):
+            return Emptiness("they contradict each other")
+        for poly in basis:
+            if self.keeps_its_sign(poly, simple):
+                return Emptiness(*self.why(poly))
+        if {poly.monic() for poly in simple} == set(basis) and all(self.parts(p) == [p] for p in basis):
+            raise _Undecided
+        return self.impossible(basis, rounds - 1)
+
+    def why(self, poly: PolyElement) -> tuple[str, PolyElement]:
+        return "a polynomial that would have to vanish keeps its sign", poly
+
+    def factors(self, poly: PolyElement) -> list[PolyElement]:
+        """Return the factors that may vanish, each once; none if the polynomial cannot (or is zero)."""
+        if not poly or poly.is_ground:
+            return []
+        found = distinct_factors(poly)
+        return [f for f in found if f not in self.forbidden and not self.one_signed(f) and not self.rootless(f)]
+
+    def parts(self, poly: PolyElement) -> list[PolyElement]:
+        """Return what must vanish when a sum of terms of one sign does: each of them; else the polynomial itself."""
+        signs = {self.sign_of_term(mono, coefficient) for mono, coefficient in poly.items()}
+        if len(poly) > 1 and (signs <= {1} or signs <= {-1}):
+            radicals = [tuple(min(power, 1) for power in mono) for mono in poly]
+            return [self.ring.from_dict({mono: self.ring.domain.one}) for mono in radicals]
+        squares = self.squares(poly)
+        return [form for _, form in squares if not form.is_ground] if squares else [poly]
+
+    # -- signs --------------------------------------------------------------------------------------------------------
+
+    def sign_of_term(self, mono: tuple[int, ...], coefficient: Any) -> int:
+        """Return +1 or -1 for a term that is never of the other sign, else 0."""
+        sign = 1 if coefficient > 0 else -1
+        for place, power in enumerate(mono):
+            if power % 2 and place in self.constraints.negative:
+                sign = -sign
+            elif power % 2 and place not in self.nonnegative:
+                return 0
+        return sign
+
+    def one_signed(self, poly: PolyElement) -> bool:
+        """Return whether the terms have one sign and one of them never vanishes, or squares with a positive number."""
+        signs = {self.sign_of_term(mono, coefficient) for mono, coefficient in poly.items()}
+        strict = any(all(place in self.signed for place, power in enumerate(mono) if power) for mono in poly)
+        if strict and (signs == {1} or signs == {-1}):
+            return True
+        squares = self.squares(poly)
+        return bool(squares) and any(form.is_ground for _, form in squares)
+
+    def keeps_its_sign(self, poly: PolyElement, zeros: Sequence[PolyElement]) -> bool:
+        return self.one_signed(poly) or self.rootless(poly) or self.out_of_range(poly, zeros)
+
+    def rootless(self, poly: PolyElement) -> bool:
+        """Return whether a polynomial of one unknown has no real root that its sign allows (Sturm's theorem)."""
+        places = occurring([poly])
+        if len(places) != 1:
+            return False
+        (place,) = places
+        degree = poly.degrees()[place]
+        x = self.ring.gens[place]
+        numbers = [QQ.to_sympy(poly.coeff(x**n if n else 1)) for n in range(degree, -1, -1)]
+        low = 0 if place in self.nonnegative else None
+        high = 0 if place in self.constraints.negative else None
+        roots = int(Poly(numbers, Symbol("x")).count_roots(low, high))
+        at_zero = numbers[-1] == 0 and place in self.signed
+        return roots == int(at_zero)
+
+    def squares(self, poly: PolyElement) -> list[tuple[Any, PolyElement]]:
+        """Return [(d, l)] with the polynomial = +-sum of d*l^2, d > 0, l of degree <= 1; empty if there is none."""
+        if max(map(sum, poly)) != 2:
+            return []
+        for sign in (1, -1):
+            found = self._completed(poly * sign)
+            if found:
+                return found
+        return []
+
+    def _completed(self, rest: PolyElement) -> list[tuple[Any, PolyElement]]:
+        """Complete squares, one unknown after the other."""
+        found = []
+        for place in sorted(occurring([rest])):
+            x = self.ring.gens[place]
+            leading = rest.coeff(x**2)
+            if leading < 0:
+                return []
+            if leading == 0:
+                if place in occurring([rest]):
+                    return []
+                continue
+            form = rest.diff(place).quo_ground(2 * leading)
+            found.append((leading, form))
+            rest = rest - form**2 * leading
+        if rest and not (rest.is_ground and rest.coeff(1) > 0):
+            return []
+        return [*found, (rest.coeff(1), self.ring.one)] if rest else found
+
+    # -- ranges -------------------------------------------------------------------------------------------------------
+
+    def out_of_range(self, poly: PolyElement, zeros: Sequence[PolyElement]) -> bool:
+        """Return whether a polynomial is nonzero for all values of its unknowns between their bounds."""
+        bounds = self.bounds(zeros)
+        low, high = Fraction(0), Fraction(0)
+        for mono, coefficient in poly.items():
+            below, above = _term_range(mono, coefficient, bounds)
+            low, high = _plus(low, below), _plus(high, above)
+        return low > 0 or high < 0
+
+    def bounds(self, zeros: Sequence[PolyElement]) -> dict[int, tuple[Any, Any]]:
+        """Return the least and largest values of unknowns, from their signs and from ``sum of d*x^2 = constant``."""
+        found: dict[int, tuple[Any, Any]] = {}
+        for poly in (*self.constraints.zeros, *zeros):
+            constant = poly.coeff(1)
+            squares = [mono for mono in poly if any(mono)]
+            if constant < 0 and all(poly[m] > 0 and not any(power % 2 for power in m) for m in squares):
+                for mono in squares:
+                    if max(mono) == sum(mono):
+                        place = mono.index(max(mono))
+                        size = _root_above(_fraction(-constant) / _fraction(poly[mono]), max(mono))
+                        found[place] = (-size, size)
+        for place in self.nonnegative:
+            found[place] = (Fraction(0), found.get(place, (0, inf))[1])
+        for place in self.constraints.negative:
+            found[place] = (found.get(place, (-inf, 0))[0], Fraction(0))
+        return found
+
+
+def _fraction(value: Any) -> Fraction:
+    return Fraction(int(value.numerator), int(value.denominator))
+
+
+def _root_above(value: Fraction, power: int) -> Fraction:
+    """Return a rational not smaller than a root of a positive number, equal to it where it is a whole number."""
+    size = Fraction(1)
+    while size**power < value:
+        size *= 2
+    low, high = Fraction(0), size
+    for _ in range(20):
+        middle = (low + high) / 2
+        low, high = (low, middle) if middle**power >= value else (middle, high)
+    return high
+
+
+def _term_range(mono: tuple[int, ...], coefficient: Any, bounds: dict[int, tuple[Any, Any]]) -> tuple[Any, Any]:
+    number = _fraction(coefficient)
+    low, high = number, number
+    for place, power in enumerate(mono):
+        if power:
+            a, b = bounds.get(place, (-inf, inf))
+            ends = [_times(x, y) for x in (low, high) for y in _powers(a, b, power)]
+            low, high = min(ends), max(ends)
+    return low, high
+
+
+def _powers(low: Any, high: Any, power: int) -> tuple[Any, Any]:
+    ends = low**power, high**power
+    if power % 2:
+        return ends
+    return (Fraction(0) if low <= 0 <= high else min(ends)), max(ends)
+
+
+def _plus(a: Any, b: Any) -> Any:
+    return b if b in (inf, -inf) else a if a in (inf, -inf) else a + b
+
+
+def _times(a: Any, b: Any) -> Any:
+    if not a or not b:
+        return Fraction(0)
+    if isinstance(a, Fraction) and isinstance(b, Fraction):
+        return a * b
+    return inf if (a > 0) == (b > 0) else -inf

@@ -1,0 +1,333 @@
+"""Exact real points of a set of constraints: rational ones where they are found, else algebraic ones.
+
+A point is drawn equation by equation: what is linear is solved for, a quadric is met along lines through one of its
+rational points, a polynomial in one unknown has roots, a product vanishes with one of its factors, and when nothing of
+this applies an unknown gets a simple value. Every point is checked exactly before it is given away.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from random import Random
+from typing import Any
+
+from sympy import Expr, Poly, Symbol
+from sympy.polys.domains import QQ
+from sympy.polys.rings import PolyElement
+
+from symrot.checker.decide.constraints import Constraints, distinct_factors, occurring
+from symrot.checker.decide.quadrics import SIMPLE, point_of_quadric
+
+__all__ = ["ATTEMPTS", "RealPoint", "real_points", "value_at"]
+
+ATTEMPTS = 120
+RATIONAL = 60
+"""Points drawn at most; after the first so many, roots that are not rational are taken too."""
+
+MOST_STEPS = 60
+MOST_TERMS = 300
+"""Of one drawing: steps, and terms of an equation."""
+
+MOST_BARREN = 3
+"""Times that a quadric may fail to give a point before it is left alone."""
+
+LARGEST_EXTENSION = 8
+"""Degree of the largest field of algebraic numbers that is worked in."""
+
+
+class _DeadEnd(Exception):
+    """The choices made so far lead to no point."""
+
+
+@dataclass(frozen=True)
+class RealPoint:
+    """Values of generators, all in one field: the rationals, or an extension by real algebraic numbers."""
+
+    values: dict[int, Any]
+    field: Any = QQ
+
+    @property
+    def rational(self) -> bool:
+        """Whether all values are rational."""
+        return bool(self.field == QQ)
+
+    def number(self, value: Any) -> Expr:
+        """Return an element of the field as an exact number of SymPy."""
+        found: Expr = self.field.to_sympy(value)
+        return found if self.rational else found.expand()
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """How much there is to read."""
+        return (not self.rational, sum(len(str(value)) for value in self.values.values() if value))
+
+
+def value_at(poly: PolyElement, point: RealPoint) -> Any:
+    """Return the value of a polynomial over the rationals, in the field of the point."""
+    field = point.field
+    total = field.zero
+    for mono, coefficient in poly.items():
+        term = field.convert(coefficient, poly.ring.domain)
+        for place, power in enumerate(mono):
+            if power:
+                term = term * point.values[place] ** power
+        total = total + term
+    return total
+
+
+def sign_at(poly: PolyElement, point: RealPoint) -> int:
+    """Return the sign of a polynomial at a point."""
+    return _sign(value_at(poly, point), point.field)
+
+
+def _sign(value: Any, field: Any) -> int:
+    if not value:
+        return 0
+    if field == QQ:
+        return 1 if value > 0 else -1
+    return 1 if field.to_sympy(value).evalf(15, strict=True) > 0 else -1
+
+
+def real_points(constraints: Constraints, attempts: int = ATTEMPTS) -> Iterator[RealPoint | None]:
+    """Yield for each attempt a point that obeys all constraints, exactly, or None; the same on every machine."""
+    source = Random(1)
+    known: dict[Any, Any] = {}
+    for attempt in range(attempts if constraints.real else 0):
+        try:
+            point = _Drawing(constraints, source, attempt >= RATIONAL, known).point()
+        except _DeadEnd:
+            yield None
+        else:
+            yield point if obeys(constraints, point) else None
+
+
+def obeys(constraints: Constraints, point: RealPoint) -> bool:
+    """Return whether a point that has a value for everything involved obeys all constraints."""
+    return (
+        not any(value_at(poly, point) for poly in constraints.zeros)
+        and all(value_at(poly, point) for poly in constraints.nonzero)
+        and all(sign_at(poly, point) >= 0 for poly in constraints.products)
+        and all(_allowed(constraints, place, value, point.field) for place, value in point.values.items())
+    )
+
+
+def _allowed(constraints: Constraints, place: int, value: Any, field: Any) -> bool:
+    sign = _sign(value, field)
+    if place in constraints.whole and not (field == QQ and value.denominator == 1):
+        return False
+    return not (
+        (place in constraints.positive and sign <= 0)
+        or (place in constraints.negative and sign >= 0)
+        or (place in constraints.nonnegative and sign < 0)
+    )
+
+
+class _Drawing:
+    """One attempt: equations left, values found, and unknowns that are fractions of others."""
+
+    def __init__(self, constraints: Constraints, source: Random, algebraic: bool, known: dict[Any, Any]) -> None:
+        self.constraints, self.source, self.algebraic, self.known = constraints, source, algebraic, known
+        self.field: Any = QQ
+        self.roots: list[Expr] = []
+        self.ring = constraints.ring
+        self.zeros = list(constraints.zeros)
+        self.values: dict[int, Any] = {}
+        self.solved: list[tuple[int, PolyElement, PolyElement]] = []
+
+    def point(self) -> RealPoint:
+        steps = _ORDERS[self.source.randrange(len(_ORDERS))]
+        for _ in range(MOST_STEPS):
+            self.zeros = [poly for poly in self.zeros if poly]
+            if any(poly.is_ground or len(poly) > MOST_TERMS for poly in self.zeros):
+                raise _DeadEnd
+            if not self.zeros:
+                return self.completed()
+            if not any(step(self) for step in steps):
+                break
+        raise _DeadEnd
+
+    def completed(self) -> RealPoint:
+        """Give values to what nothing speaks of any more, then to the unknowns that were solved for."""
+        later = {place for place, _, _ in self.solved}
+        for place in sorted(self.constraints.free - later - self.values.keys()):
+            self.values[place] = self.field.convert(self.drawn(place), QQ)
+        for place, above, below in reversed(self.solved):
+            point = RealPoint(self.values, self.field)
+            divisor = value_at(below, point)
+            if not divisor:
+                raise _DeadEnd
+            self.values[place] = value_at(above, point) / divisor
+        return RealPoint(self.values, self.field)
+
+    def drawn(self, place: int) -> Any:
+        """Return a rational that a generator may be."""
+        source = self.source
+        for _ in range(20):
+            value = (
+                source.choice(SIMPLE[:8])
+                if source.random() < 0.5
+                else QQ(source.randint(-9, 9), source.choice((1, 1, 2, 3)))
+            )
+            if place in self.constraints.positive | self.constraints.nonnegative:
+                value = abs(value)
+            if _allowed(self.constraints, place, value, QQ):
+                return value
+        raise _DeadEnd
+
+    def put(self, values: dict[int, Any]) -> None:
+        self.values.update(values)
+        pairs = list(values.items())
+        self.zeros = [poly.subs(pairs) for poly in self.zeros]
+
+    # -- steps: each returns whether there was something to do --------------------------------------------------------
+
+    def factor(self) -> bool:
+        """Let a product vanish with one of its factors."""
+        for number, poly in enumerate(self.zeros):
+            if self.field != QQ:
+                return False
+            if poly not in self.known:
+                self.known[poly] = distinct_factors(poly)
+            factors = self.known[poly]
+            if len(factors) > 1 or factors[0] != poly.monic():
+                self.zeros[number] = self.source.choice(factors)
+                return True
+        return False
+
+    def substitution(self) -> bool:
+        """Solve an equation for an unknown whose coefficient is a number."""
+        return self._solve(lambda slope: slope.is_ground)
+
+    def fraction(self) -> bool:
+        """Solve an equation for an unknown that enters linearly."""
+        return self._solve(lambda slope: True)
+
+    def _solve(self, fits: Callable[[PolyElement], bool]) -> bool:
+        found = []
+        for poly in self.zeros:
+            for place in sorted(occurring([poly])):
+                if poly.degrees()[place] == 1 and place not in self.constraints.whole:
+                    slope = poly.diff(place)
+                    if fits(slope):
+                        found.append((len(poly), place, poly, slope))
+        if not found:
+            return False
+        smallest = min(item[0] for item in found)
+        _, place, poly, slope = self.source.choice([item for item in found if item[0] == smallest])
+        above = -(poly - slope * self.ring.gens[place])
+        self.solved.append((place, above, slope))
+        self.zeros = [_eliminated(p, place, above, slope) for p in self.zeros if p is not poly]
+        return True
+
+    def univariate(self) -> bool:
+        """Give the root of an equation to its only unknown."""
+        for poly in self.zeros:
+            places = occurring([poly])
+            if len(places) == 1:
+                (place,) = places
+                self.put({place: self.root(poly, place)})
+                return True
+        return False
+
+    def quadric(self) -> bool:
+        """Give a rational point of a quadric to its unknowns."""
+        if self.field != QQ:
+            return False
+        fitting = [p for p in self.zeros if max(map(sum, p)) == 2 and self.known.get(("barren", p), 0) < MOST_BARREN]
+        if not fitting:
+            return False
+        poly = self.source.choice(fitting)
+        places = sorted(occurring([poly]))
+        if len(places) < 2:
+            return False
+        for _ in range(4):
+            point = point_of_quadric(poly, places, self.source)
+            if point and all(_allowed(self.constraints, place, value, QQ) for place, value in point.items()):
+                self.put(point)
+                return True
+        self.known["barren", poly] = self.known.get(("barren", poly), 0) + 1
+        return False
+
+    def guess(self) -> bool:
+        """Give a simple value to an unknown of some equation."""
+        poly = self.source.choice(self.zeros)
+        place = self.source.choice(sorted(occurring([poly])))
+        self.put({place: self.field.convert(self.drawn(place), QQ)})
+        return True
+
+    # -- roots --------------------------------------------------------------------------------------------------------
+
+    def root(self, poly: PolyElement, place: int) -> Any:
+        """Return a root in the field, or in a larger one."""
+        generator = self.ring.gens[place]
+        key = (poly, self.field)
+        if key not in self.known:
+            self.known[key] = [factor for factor, _ in poly.factor_list()[1]]
+        factors = self.known[key]
+        roots = [-f.coeff(1) / f.coeff(generator) for f in factors if f.degrees()[place] == 1]
+        roots = [value for value in roots if _allowed(self.constraints, place, value, self.field)]
+        if roots:
+            return self.source.choice(roots)
+        if not self.algebraic or place in self.constraints.whole:
+            raise _DeadEnd
+        return self.adjoined(self.source.choice(factors), place)
+
+    def adjoined(self, factor: PolyElement, place: int) -> Any:
+        """Return an irrational root, after everything was carried into the field that has it."""
+        degree = factor.degrees()[place]
+        numbers = [
+            _as_rational(factor.coeff(self.ring.gens[place] ** n if n else 1), self.field) for n in range(degree + 1)
+        ]
+        if None in numbers or degree * (self.field.mod.degree() if self.roots else 1) > LARGEST_EXTENSION:
+            raise _DeadEnd
+        key = tuple(numbers)
+        if key not in self.known:
+            self.known[key] = Poly([QQ.to_sympy(c) for c in reversed(numbers)], Symbol("x")).real_roots()
+        signs = (place in self.constraints.positive | self.constraints.nonnegative, place in self.constraints.negative)
+        wanted = [r for r in self.known[key] if not (signs[0] and r < 0) and not (signs[1] and r > 0)]
+        if not wanted:
+            raise _DeadEnd
+        root = self.source.choice(wanted)
+        old, self.roots = self.field, [*self.roots, root]
+        field = self.known.setdefault(("field", *self.roots), None) or QQ.algebraic_field(*self.roots)
+        self.known["field", *self.roots] = field
+        self.field, self.ring = field, self.ring.clone(domain=field)
+        raised = {n: self.field.convert(value, old) for n, value in self.values.items()}
+        self.values = raised
+        self.zeros = [poly.set_ring(self.ring) for poly in self.zeros]
+        self.solved = [(n, above.set_ring(self.ring), below.set_ring(self.ring)) for n, above, below in self.solved]
+        return field.unit if len(self.roots) == 1 else field.from_sympy(root)
+
+
+def _as_rational(value: Any, field: Any) -> Any:
+    """Return an element of a field as a rational, or None."""
+    if field == QQ:
+        return value
+    coefficients = value.to_list() if value else [QQ(0)]
+    return coefficients[0] if len(coefficients) == 1 else None
+
+
+def _eliminated(poly: PolyElement, place: int, above: PolyElement, below: PolyElement) -> PolyElement:
+    """Return a polynomial with ``above/below`` put in for a generator, times a power of ``below``."""
+    degree = poly.degrees()[place]
+    if not degree:
+        return poly
+    if len(above) ** degree * len(poly) > 20 * MOST_TERMS:
+        raise _DeadEnd
+    parts: dict[int, dict[tuple[int, ...], Any]] = {}
+    for mono, coefficient in poly.items():
+        parts.setdefault(mono[place], {})[(*mono[:place], 0, *mono[place + 1 :])] = coefficient
+    total = poly.ring.zero
+    for power, terms in sorted(parts.items()):
+        total = total + poly.new(terms) * above**power * below ** (degree - power)
+    return total
+
+
+_Step = Callable[[_Drawing], bool]
+_FIRST: Sequence[_Step] = (_Drawing.factor, _Drawing.univariate, _Drawing.substitution)
+_ORDERS: tuple[Sequence[_Step], ...] = (
+    (*_FIRST, _Drawing.quadric, _Drawing.fraction, _Drawing.guess),
+    (*_FIRST, _Drawing.fraction, _Drawing.quadric, _Drawing.guess),
+    (_Drawing.factor, _Drawing.univariate, _Drawing.quadric, _Drawing.substitution, _Drawing.guess),
+    (_Drawing.factor, _Drawing.univariate, _Drawing.guess),
+)
+"""What is tried first: with one order or another most systems fall apart."""

@@ -1,0 +1,1 @@
+"""Recognise a formula among those that symrot derives."""

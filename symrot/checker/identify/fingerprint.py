@@ -1,0 +1,197 @@
+"""Values of formulas at points of the field of 2^61 - 1 elements, and what of them does not depend on names.
+
+Exact arithmetic with remainders: equal functions have equal values, unequal ones differ but by chance of 1e-18. An
+angle is a rational point of the circle. Raising one symbol above all others gives each symbol a signature: the sorted
+signatures are the fingerprint of a formula up to the names of its symbols, equal signatures pair the symbols of two.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from hashlib import sha256
+
+import sympy
+from sympy import Expr, Rational, S
+
+from symrot.checker.claim.atoms import atoms_of
+
+__all__ = ["PRIME", "Outside", "Print", "fingerprint", "values_at"]
+
+PRIME = 2**61 - 1
+"""Three modulo four: a circle without points at infinity, and roots by one power."""
+DRAWS = tuple((pow(3, 101 + 2 * n, PRIME), pow(3, 102 + 2 * n, PRIME)) for n in range(48))
+"""(value of the raised symbol, value of the others), tried in turn until all is defined."""
+PARTS = 4
+"""Angles are counted in quarters: halves and quarters of an angle are multiples."""
+LARGEST_MULTIPLE = 400
+
+Values = tuple[int, ...]
+
+
+class Outside(Exception):
+    """A formula, or a point, at which there is no value."""
+
+
+def values_at(entries: Sequence[Expr], point: Mapping[Expr, int]) -> Values:
+    """Return the entries at a point, modulo the prime.
+
+    Raises
+    ------
+    Outside
+        For division by zero, roots of what is no square, and functions that have no values here.
+    """
+    known: dict[Expr, int] = dict(point)
+    return tuple(_value(entry, known) for entry in entries)
+
+
+def _value(node: Expr, known: dict[Expr, int]) -> int:
+    if node not in known:
+        known[node] = _computed(node, known) % PRIME
+    return known[node]
+
+
+def _computed(node: Expr, known: dict[Expr, int]) -> int:
+    if node.is_Rational:
+        return int(node.p) * _inverse(int(node.q))
+    if node.is_Add:
+        return sum(_value(term, known) for term in node.args)
+    if node.is_Mul:
+        total = 1
+        for factor in node.args:
+            total = total * _value(factor, known) % PRIME
+        return total
+    if node.is_Pow and node.exp.is_Rational:
+        return _power(_value(node.base, known), node.exp)
+    if isinstance(node, sympy.Abs):
+        return _root(_value(node.args[0], known) ** 2)
+    if node is S.Pi:
+        return _mixed(227)
+    if type(node) in _CIRCULAR:
+        above, below = _CIRCULAR[type(node)]
+        point = _turned(node.args[0], known)
+        return (point[above] if above is not None else 1) * (_inverse(point[below]) if below is not None else 1)
+    raise Outside
+
+
+_CIRCULAR = {
+    sympy.cos: (0, None), sympy.sin: (1, None), sympy.tan: (1, 0), sympy.cot: (0, 1), sympy.sec: (None, 0),
+    sympy.csc: (None, 1),
+}  # fmt: skip
+
+
+def _inverse(value: int) -> int:
+    if not value % PRIME:
+        raise Outside
+    return pow(value, -1, PRIME)
+
+
+def _root(value: int) -> int:
+    """Return the smaller root of a square, so that equal radicands have equal roots."""
+    root = pow(value % PRIME, (PRIME + 1) // 4, PRIME)
+    if (root * root - value) % PRIME:
+        raise Outside
+    return min(root, PRIME - root)
+
+
+def _power(base: int, exponent: Rational) -> int:
+    if exponent.q not in (1, 2) or abs(exponent.p) > LARGEST_MULTIPLE:
+        raise Outside
+    base = _root(base) if exponent.q == 2 else base
+    power = int(exponent.p)
+    return pow(base, power, PRIME) if power >= 0 else pow(_inverse(base), -power, PRIME)
+
+
+def _mixed(value: int) -> int:
+    """Return the parameter of a circle point for an angle, unlike any polynomial that a formula may hold."""
+    return pow(value + 1_000_003, 65_537, PRIME)
+
+
+def _turned(argument: Expr, known: dict[Expr, int]) -> tuple[int, int]:
+    """Return (cosine, sine) of a sum of multiples of angles."""
+    total = (1, 0)
+    for term in sympy.Add.make_args(sympy.expand(argument)):
+        coefficient, angle = term.as_coeff_Mul()
+        if not coefficient.is_Rational or angle is S.One:
+            raise Outside
+        parts = coefficient * (2 if angle is S.Pi else PARTS)
+        if not parts.is_Integer or abs(parts) > LARGEST_MULTIPLE:
+            raise Outside
+        if angle is S.Pi:
+            point = (0, 1)
+        else:
+            u = _mixed(_value(angle, known))
+            below = _inverse(1 + u * u)
+            point = ((1 - u * u) * below % PRIME, 2 * u * below % PRIME)
+        if parts < 0:
+            point = (point[0], -point[1])
+        for _ in range(abs(int(parts))):
+            total = _added(total, point)
+    return total
+
+
+def _added(first: tuple[int, int], second: tuple[int, int]) -> tuple[int, int]:
+    (a, b), (c, d) = first, second
+    return (a * c - b * d) % PRIME, (a * d + b * c) % PRIME
+
+
+@dataclass(frozen=True)
+class Print:
+    """The atoms of a formula and their signatures: the values of its entries with that atom raised above the rest."""
+
+    atoms: tuple[Expr, ...]
+    signatures: tuple[Values, ...]
+    idle: tuple[Expr, ...] = ()  # atoms that the formula holds and does not depend on
+
+    def rows(self, order: Sequence[int]) -> list[Values]:
+        """Return the signatures of the entries in another order, free of a constant factor of all entries."""
+        total = [sum(column) % PRIME for column in zip(*self.signatures, strict=True)]
+        below = _inverse(next((total[n] for n in order if total[n]), 1))
+        return [tuple(values[n] * below % PRIME for n in order) for values in self.signatures]
+
+    def key(self, shape: tuple[int, int] | None, order: Sequence[int]) -> str:
+        """Return the fingerprint of the entries in another order, up to names and a constant factor."""
+        return sha256(repr((shape, sorted(self.rows(order)))).encode()).hexdigest()[:16]
+
+
+def fingerprint(entries: Sequence[Expr]) -> Print:
+    """Return the signatures of a formula at the first draw where it is defined.
+
+    Raises
+    ------
+    Outside
+        For a formula without values here, or without symbols.
+    """
+    held = sorted(atoms_of(entries), key=str)
+    atoms = _active(entries, held)
+    if not atoms:
+        raise Outside
+    for raised, others in DRAWS:
+        try:
+            rows = [values_at(entries, {a: raised if a == atom else others for a in held}) for atom in atoms]
+        except Outside:
+            continue
+        return Print(tuple(atoms), tuple(rows), tuple(atom for atom in held if atom not in atoms))
+    raise Outside
+
+
+def _active(entries: Sequence[Expr], atoms: Sequence[Expr]) -> list[Expr]:
+    """Return the atoms that a formula depends on, by its values beside a point."""
+    for first, _ in DRAWS:
+        point = {atom: pow(first, n + 2, PRIME) for n, atom in enumerate(atoms)}
+        here = _defined(entries, point)
+        if here is not None:
+            break
+    else:
+        raise Outside
+    return [atom for atom in atoms if _moves(entries, point, atom, here)]
+
+
+def _moves(entries: Sequence[Expr], point: Mapping[Expr, int], atom: Expr, here: Values) -> bool:
+    beside = (_defined(entries, {**point, atom: second}) for _, second in DRAWS)
+    return next((values != here for values in beside if values is not None), True)
+
+
+def _defined(entries: Sequence[Expr], point: Mapping[Expr, int]) -> Values | None:
+    try:
+        return values_at(entries, point)
+    except Outside:
+        return None

@@ -1,0 +1,289 @@
+"""What a formula is: looked up by its fingerprint among what symrot derives, then proven, then named.
+
+Names of symbols do not count, nor do a transposition (active or passive), a sign, and the order in which a
+quaternion's components are stored. Whatever is named has been proven equal by the exact engine.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass
+from functools import cache
+from itertools import islice, permutations, product
+from typing import Any
+
+from sympy import Expr, Function, ImmutableMatrix, Rational, Symbol
+from sympy.matrices import MatrixBase
+
+from symrot.checker.claim.claims import Claim, claim_of_text, named_formula
+from symrot.checker.claim.interpreter import Meaning, time
+from symrot.checker.claim.reader import complaint, read_expression
+from symrot.checker.claim.tree import walk
+from symrot.checker.decide.decision import shown
+from symrot.checker.identify.fingerprint import PRIME, Outside, Print, Values, fingerprint, values_at
+from symrot.checker.identify.known_formulas import Known, by_fingerprint
+from symrot.checker.latex.reader import read_latex_formula
+from symrot.errors import InputError
+from symrot.exact.decide import decide, flatten
+from symrot.exact.ring.ratio import TooLarge
+
+__all__ = ["Identification", "identified", "identify", "named_parts"]
+
+MOST = 8
+MOST_TRIES = 720
+"""Ways of pairing symbols of equal signatures that are tried."""
+MOST_DRAWS = 24
+FACTORS = tuple(Rational(*pair) for pair in ((1, 1), (-1, 1)))
+SCALES = (*FACTORS, *(Rational(*pair) for pair in ((2, 1), (-2, 1), (1, 2), (-1, 2), (4, 1), (1, 4))))
+LAST_FIRST = (3, 0, 1, 2)
+"""The order of the rows of a scalar-last quaternion when the scalar is to stand first."""
+
+
+@dataclass(frozen=True)
+class Identification:
+    """What a formula is.
+
+    Attributes
+    ----------
+    name : str
+    how : str
+        What was done to the formula to make it that: ``""`` for nothing, ``"transposed"``, ``"with the other sign"``.
+    mapping : dict
+        Symbol of the known formula -> what stands for it in the formula; only those of another name.
+    source : str
+        Where symrot has it: a call, or a page with its step.
+    proven : bool
+        Always true: what is not proven is not returned.
+    """
+
+    name: str
+    how: str
+    mapping: dict[str, str]
+    source: str
+    proven: bool = True
+
+    @property
+    def renamed(self) -> str:
+        """``"with a for dphi"``: what stands for which symbol of the known formula; empty where no name differs."""
+        pairs = ", ".join(f"{other} for {own}" for own, other in self.mapping.items())
+        return f"with {pairs}" if pairs else ""
+
+    def __str__(self) -> str:
+        return "; ".join(part for part in (self.name, self.how, self.renamed) if part)
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the identification as JSON data."""
+        return asdict(self)
+
+
+@dataclass(frozen=True)
+class View:
+    """A formula with its entries in another order: what was done, the shape, the places of its entries."""
+
+    how: str
+    shape: tuple[int, int] | None
+    order: tuple[int, ...]
+
+
+def identify(formula: Any, *, most: int = MOST) -> list[Identification]:
+    """Return what a formula is, nearest names first; an empty list for one that is not known.
+
+    Parameters
+    ----------
+    formula : str, Expr or Matrix
+        Text in the language of claims, LaTeX (text with a backslash), or a SymPy value.
+    most : int
+        How many names to return at most.
+
+    Raises
+    ------
+    InputError
+        For text that is not understood, with the position.
+
+    Examples
+    --------
+    >>> identify("Matrix([[sin(b)*sin(c), cos(c), 0], [sin(b)*cos(c), -sin(c), 0], [cos(b), 0, 1]])")[0].name
+    'ZXZ body-frame rate Jacobian, omega = B dq/dt'
+    """
+    return list(islice(identified(_value(formula)), most))
+
+
+def _value(formula: Any) -> Any:
+    if isinstance(formula, MatrixBase):
+        return ImmutableMatrix(formula)
+    if isinstance(formula, Expr):
+        return formula
+    if not isinstance(formula, str):
+        raise InputError(f"expected a formula as text or a SymPy value to identify, got {type(formula).__name__}")
+    latex = "\\" in formula or "$" in formula
+    if "=" in formula and (named := named_formula(claim_of_text(formula))) is not None:
+        return Meaning(implied=True).read(named[1], formula)
+    if not latex and "=" in formula:
+        raise complaint(formula, "", formula.index("="), "one formula without '=' to identify")
+    text = read_latex_formula(formula) if latex else formula
+    return Meaning(implied=True).read(read_expression(text), text)
+
+
+def named_parts(claim: Claim) -> tuple[str, ...]:
+    """Return sentences that say what the matrices of a claim are: its sides, and what it defines and uses."""
+    return tuple(
+        f"{place} is the {identification}"
+        for place, value in _parts(claim)
+        if isinstance(value, MatrixBase) and len(value) > 2 and len(value.atoms(Function, Symbol) - {time}) > 1
+        for identification in islice(identified(ImmutableMatrix(value), steps=False), 1)
+    )
+
+
+def _parts(claim: Claim) -> Iterator[tuple[str, Any]]:
+    meaning = claim.meaning()
+    assert claim.relation is not None
+    sides = claim.relation[1:]
+    for place, side in zip(("the left side", "the right side"), sides, strict=True):
+        if side.kind != "name":
+            yield place, meaning.read(side, claim.sources.get("claim", ""), claim.label("claim"))
+    used = {node.value for side in sides for _, node in walk(side) if node.kind == "name"}
+    for name, _ in claim.define:
+        if name in used:
+            yield name, meaning.values[name]
+
+
+def identified(value: Any, steps: bool = True) -> Iterator[Identification]:
+    """Yield what a SymPy value is, nearest names first; steps of derivations only where asked for."""
+    entries, shape = flatten(value)
+    try:
+        own = fingerprint(entries)
+    except Outside:
+        return
+    for views in (_views(shape, len(entries)), _turned(entries, shape)):
+        found = [
+            match
+            for view in views
+            for known in by_fingerprint().get(own.key(view.shape, view.order), ())
+            if (steps or not known.is_step) and (match := _matched(known, own, entries, view)) is not None
+        ]
+        if found:
+            break
+    found.sort(key=lambda match: (len(match.how.split(" and ")) if match.how else 0, len(match.mapping)))
+    named = set()
+    for identification in found:
+        if identification.name not in named:
+            named.add(identification.name)
+            yield identification
+
+
+def _views(shape: tuple[int, int] | None, count: int) -> Iterator[View]:
+    """Yield the formula as it is, transposed, and with the rows or columns of a quaternion in the other order."""
+    plain = tuple(range(count))
+    yield View("", shape, plain)
+    if shape is None or shape == (1, 1):
+        return
+    rows, columns = shape
+    turned = tuple(i * columns + j for j in range(columns) for i in range(rows))
+    how = "transposed" if min(shape) > 1 else "as a row" if columns == 1 else "as a column"
+    yield View(how, (columns, rows), turned)
+    if 4 not in shape:
+        return
+    row = LAST_FIRST if rows == 4 else range(rows)
+    column = LAST_FIRST if columns == 4 else range(columns)
+    stored = tuple(i * columns + j for i in row for j in column)
+    yield View("with the scalar part of the quaternion stored last", shape, stored)
+    again = tuple(i * columns + j for j in column for i in row)
+    yield View("transposed and with the scalar part of the quaternion stored last", (columns, rows), again)
+
+
+def _turned(entries: Sequence[Expr], shape: tuple[int, int] | None) -> Iterator[View]:
+    """Yield a symmetric tensor with its axes in another order."""
+    if shape != (3, 3) or any(entries[3 * i + j] != entries[3 * j + i] for i in range(3) for j in range(i)):
+        return
+    for axes in permutations(range(3)):
+        if axes != (0, 1, 2):
+            order = tuple(3 * i + j for i in axes for j in axes)
+            yield View(f"with the axes in the order {', '.join('xyz'[axis] for axis in axes)}", shape, order)
+
+
+@cache
+def _known_value(text: str) -> tuple[tuple[Expr, ...], Print]:
+    tree = read_expression(text)
+    names = {str(node.value) for _, node in walk(tree) if node.kind == "name" and node.value != "pi"}
+    meaning = Meaning(values={name: Symbol(name, real=True) for name in names}, implied=True)
+    entries, _ = flatten(meaning.read(tree, text))
+    return tuple(entries), fingerprint(entries)
+
+
+def _matched(known: Known, own: Print, entries: Sequence[Expr], view: View) -> Identification | None:
+    """Return the identification if the formula is proven to be the known one."""
+    theirs, print_of = _known_value(known.text)
+    ordered = [entries[n] for n in view.order]
+    for pairing in islice(_pairings(print_of, own, view.order), MOST_TRIES):
+        factor = _factor(theirs, ordered, pairing, own.idle, SCALES if known.scaled else FACTORS)
+        if factor is None:
+            continue
+        left = [factor * entry.xreplace(pairing) for entry in theirs]
+        try:
+            if decide(ImmutableMatrix(left), ImmutableMatrix(ordered)).verdict != "true":
+                continue
+        except (InputError, TooLarge):
+            continue
+        renamed = {
+            shown(mine): shown(other) for mine, other in pairing.items() if not _alike(shown(mine), shown(other))
+        }
+        said = [part for part in (view.how, _said(factor)) if part]
+        return Identification(known.name, " and ".join(said), dict(sorted(renamed.items())), known.source)
+    return None
+
+
+def _alike(mine: str, other: str) -> bool:
+    """Return whether two texts name one thing: ``phi`` and ``phi(t)``, ``dphi`` and ``diff(phi(t), t)``."""
+    return other in (mine, f"{mine}(t)") or (mine.startswith("d") and other == f"diff({mine[1:]}(t), t)")
+
+
+def _said(factor: Rational) -> str:
+    return {1: "", -1: "with the other sign"}.get(factor, f"{factor} times")
+
+
+def _pairings(theirs: Print, own: Print, order: Sequence[int]) -> Iterator[dict[Expr, Expr]]:
+    """Yield the ways of pairing symbols whose signatures agree, equal names first."""
+    mine: dict[Values, list[Expr]] = {}
+    for atom, row in zip(own.atoms, own.rows(order), strict=True):
+        mine.setdefault(row, []).append(atom)
+    groups: dict[Values, list[Expr]] = {}
+    for atom, row in zip(theirs.atoms, theirs.rows(range(len(theirs.signatures[0]))), strict=True):
+        groups.setdefault(row, []).append(atom)
+    if {row: len(atoms) for row, atoms in mine.items()} != {row: len(atoms) for row, atoms in groups.items()}:
+        return
+    choices = []
+    for row, atoms in groups.items():
+        names = {shown(atom) for atom in atoms}
+        ordered = sorted(mine[row], key=lambda atom: (shown(atom) not in names, shown(atom)))
+        choices.append([(atoms, chosen) for chosen in _nearest(atoms, ordered)])
+    for chosen in product(*choices):
+        yield {a: b for atoms, others in chosen for a, b in zip(atoms, others, strict=True)}
+
+
+def _nearest(atoms: Sequence[Expr], others: Sequence[Expr]) -> list[tuple[Expr, ...]]:
+    """Return the orders of some symbols, those with the most equal names first."""
+    orders = list(islice(permutations(others), MOST_TRIES))
+    orders.sort(key=lambda order: sum(shown(a) != shown(b) for a, b in zip(atoms, order, strict=True)))
+    return orders
+
+
+def _factor(
+    theirs: Sequence[Expr],
+    own: Sequence[Expr],
+    pairing: dict[Expr, Expr],
+    idle: Sequence[Expr],
+    factors: Sequence[Rational],
+) -> Rational | None:
+    """Return the constant by which two formulas differ at points of their own for each symbol; None if they do more."""
+    for draw in range(MOST_DRAWS):
+        point = {mine: pow(7 + 2 * draw, 40 + 3 * n, PRIME) for n, mine in enumerate(pairing)}
+        try:
+            left = values_at(theirs, point)
+            placed = {pairing[mine]: value for mine, value in point.items()}
+            right = values_at(own, placed | dict.fromkeys(idle, draw + 11))
+        except Outside:
+            continue
+        for factor in factors:
+            scale = int(factor.p) * pow(int(factor.q), -1, PRIME)
+            if all((scale * a - b) % PRIME == 0 for a, b in zip(left, right, strict=True)):
+                return factor
+        return None
+    return None

@@ -1,0 +1,357 @@
+"""The value of a tree at a point in double precision, in milliseconds: a sieve for repairs, which are proven elsewhere.
+
+Derivatives are taken by dual numbers. A function of time is given by its value and its first derivatives, all
+independent.
+"""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+from random import Random
+from typing import Any
+
+import numpy as np
+
+from symrot.checker.claim.tree import Node
+from symrot.checker.repair.dual import (
+    Dual,
+    Meaningless,
+    absolute,
+    arctangent,
+    cosine,
+    exponential,
+    inverse,
+    logarithm,
+    minus,
+    plain,
+    power,
+    sine,
+    square_root,
+)
+from symrot.checker.repair.rows import (
+    Rows,
+    agree,
+    column,
+    determinant,
+    dot,
+    entries_of,
+    hamilton,
+    inverted,
+    is_matrix,
+    mapped,
+    needed,
+    plus,
+    rotation,
+    skew,
+    times,
+    transposed,
+    turning,
+)
+
+__all__ = ["Meaningless", "Point", "agree", "entries_of", "points"]
+
+DERIVATIVES = 6
+"""Derivatives of each function of time that a point holds, the value included."""
+
+HEAVIEST = 3**5
+"""Products of numbers in one product of values that is still lifted: derivatives up to the sixth."""
+
+GAUSS = {1: 20, 2: 18, 3: 16}
+"""Nodes of Gauss and Legendre's rule in each direction, by the number of nested integrals."""
+
+
+# -- trees ------------------------------------------------------------------------------------------------------------
+
+
+@dataclass
+class Point:
+    """Values of symbols (``t`` too), of functions of time with their derivatives, and the trees of definitions.
+
+    Values of the trees in ``kept`` (by identity: they live as long as the point) are remembered.
+    """
+
+    symbols: dict[str, Any]
+    functions: dict[str, tuple[Any, ...]]
+    definitions: Mapping[str, Node]
+    kept: frozenset[int] = frozenset()
+    spent: list[int] = field(default_factory=lambda: [0])  # products of numbers, shared by all points made of this one
+    weight: int = 1  # products in one product of values: three for each lift to dual numbers
+    known: dict[Any, Any] = field(default_factory=dict)
+    lifted: dict[Any, "Point"] = field(default_factory=dict)
+
+    def value(self, node: Node) -> Any:
+        """Return a number or the rows of a matrix.
+
+        Raises
+        ------
+        Meaningless
+            Where there is no value.
+        """
+        try:
+            return self._value(node)
+        except (ZeroDivisionError, OverflowError, TypeError, ValueError, IndexError, KeyError) as reason:
+            raise Meaningless(str(reason)) from None
+
+    def _value(self, node: Node) -> Any:
+        key = id(node)
+        if key in self.known:
+            return self.known[key]
+        self.spent[0] += self.weight * (1 + len(node.args) // 4)  # long sums and products cost more
+        value = _VALUE[node.kind](self, node)
+        if key in self.kept:
+            self.known[key] = value
+        return value
+
+    def redefined(self, name: str, node: Node) -> "Point":
+        """Return the point with one definition replaced."""
+        return Point(self.symbols, self.functions, {**self.definitions, name: node}, spent=self.spent)
+
+    def raised(self, variable: Node) -> "Point":
+        """Return the point lifted to dual numbers along a variable: a symbol, ``f(t)``, or ``diff(f(t), t)``."""
+        order = 0
+        inner = variable
+        while inner.kind == "call" and inner.value == "diff":
+            order += len(inner.args) - 1
+            inner = inner.args[0]
+        name = inner.value
+        key = (name, order)
+        if self.weight > HEAVIEST:
+            raise Meaningless("derivatives of too high an order")
+        if key not in self.lifted:
+            in_time = name == "t" and not order
+            if not in_time and name not in self.symbols and name not in self.functions:
+                raise Meaningless("a variable to differentiate by")
+            self.lifted[key] = Point(
+                {s: Dual(v, float(s == name)) for s, v in self.symbols.items()},
+                {
+                    f: tuple(Dual(v, w) for v, w in pairwise(jet)) if in_time
+                    else tuple(Dual(v, float(f == name and k == order)) for k, v in enumerate(jet))
+                    for f, jet in self.functions.items()
+                },
+                self.definitions,
+                self.kept,
+                self.spent,
+                3 * self.weight,
+            )  # fmt: skip
+        return self.lifted[key]
+
+
+def _name(point: Point, node: Node) -> Any:
+    name = node.value
+    if name in point.symbols:
+        return point.symbols[name]
+    if name in point.definitions:
+        if name not in point.known:
+            point.known[name] = point._value(point.definitions[name])
+        return point.known[name]
+    if name == "pi":
+        return math.pi
+    raise Meaningless(name)
+
+
+def _sum(point: Point, node: Node) -> Any:
+    total = point._value(node.args[0])
+    for term in node.args[1:]:
+        total = plus(total, point._value(term))
+    return total
+
+
+def _product(point: Point, node: Node) -> Any:
+    total = point._value(node.args[0])
+    for factor in node.args[1:]:
+        total = times(total, point._value(factor))
+    return total
+
+
+def _raised(point: Point, node: Node) -> Any:
+    base, exponent = (point._value(part) for part in node.args)
+    if not is_matrix(base):
+        return power(base, plain(exponent))
+    result = base = inverted(base) if exponent < 0 else base
+    for _ in range(int(abs(exponent)) - 1):
+        result = times(result, base)
+    return result
+
+
+def _index(point: Point, node: Node) -> Any:
+    rows = needed(point._value(node.args[0]))
+    places = [int(plain(point._value(index))) for index in node.args[1:]]
+    if len(places) == 1:
+        places = [places[0], 0] if len(rows[0]) == 1 else [0, places[0]]
+    return rows[places[0]][places[1]]
+
+
+def _list(point: Point, node: Node) -> Any:
+    rows = [point._value(member) for member in node.args]
+    if all(isinstance(row, list) for row in rows):
+        if len({len(row) for row in rows}) > 1:
+            raise Meaningless("rows of unequal length")
+        return tuple(map(tuple, rows))
+    if node.value == ("(", ")"):
+        return column(rows)
+    return rows
+
+
+def _call(point: Point, node: Node) -> Any:
+    name = node.value
+    if name in point.functions:
+        return point.functions[name][0]
+    if name == "diff":
+        formula, *variables = node.args
+        return _differentiated(point, formula, variables)
+    if name == "integrate":
+        return _integrated(point, node.args[0], node.args[1:][::-1])
+    arguments = [point._value(argument) for argument in node.args]
+    if name in _SPREAD:
+        if len(arguments) == 1 and is_matrix(arguments[0]):
+            arguments = [entry for row in arguments[0] for entry in row]
+        return _SPREAD[name](*arguments)
+    return _FUNCTIONS[name](*arguments)
+
+
+def _differentiated(point: Point, formula: Node, variables: Sequence[Node]) -> Any:
+    if not variables:
+        return point._value(formula)
+    *rest, last = variables
+    if last.kind == "number":
+        rest = [*rest, *[rest[-1]] * (int(last.value) - 1)]
+        return _differentiated(point, formula, rest)
+    lifted = _differentiated(point.raised(last), formula, rest)
+    return mapped(lambda entry: entry.slope if isinstance(entry, Dual) else 0.0, lifted)
+
+
+def _integrated(point: Point, integrand: Node, ranges: Sequence[Node]) -> Any:
+    """Return an integral over a box by Gauss and Legendre's rule, on the whole grid of points at once, outer first."""
+    nodes, weights = np.polynomial.legendre.leggauss(GAUSS[min(len(ranges), 3)])
+    inner, total = point, np.ones((1,) * len(ranges))
+    for axis, part in enumerate(ranges):
+        shape = [len(nodes) if place == axis else 1 for place in range(len(ranges))]
+        variable, lower, upper = part.args
+        low, high = inner.value(lower), inner.value(upper)
+        half, middle = (high + -low) * 0.5, (high + low) * 0.5
+        symbols = {**inner.symbols, variable.value: middle + half * nodes.reshape(shape)}
+        total = total * weights.reshape(shape) * half
+        inner = Point(symbols, point.functions, point.definitions, spent=point.spent)
+    return _summed(inner.value(integrand) * total)
+
+
+def _summed(values: Any) -> Any:
+    return Dual(_summed(values.value), _summed(values.slope)) if isinstance(values, Dual) else float(np.sum(values))
+
+
+def _matrix(rows: Any) -> Rows:
+    return column(rows) if isinstance(rows, list) else needed(rows)
+
+
+def _cross(left: Any, right: Any) -> Rows:
+    (a,), (b,), (c,) = needed(left, (3, 1))
+    found: Rows = times(skew(a, b, c), needed(right, (3, 1)))
+    return found
+
+
+def _hstack(*parts: Any) -> Rows:
+    return tuple(tuple(entry for part in row for entry in part) for row in zip(*map(needed, parts), strict=True))
+
+
+def _product_of_quaternions(*factors: Any) -> Rows:
+    total = [1.0, 0.0, 0.0, 0.0]
+    for factor in factors:
+        total = hamilton(total, [row[0] for row in needed(factor, (4, 1))])
+    return column(total)
+
+
+def _other_leg(x: Any) -> Any:
+    return square_root(1.0 + -(x * x))
+
+
+def _hyperbolic(x: Any) -> tuple[Any, Any]:
+    """Return (sinh x, cosh x)."""
+    grown, shrunk = exponential(x), exponential(-x)
+    return (grown + -shrunk) * 0.5, (grown + shrunk) * 0.5
+
+
+_SPREAD: dict[str, Callable[..., Any]] = {"skew": skew, "dcm_of": turning}
+_FUNCTIONS: dict[str, Callable[..., Any]] = {
+    "sin": sine, "cos": cosine, "sqrt": square_root, "abs": absolute, "atan2": arctangent, "Matrix": _matrix,
+    "cross": _cross,
+    "exp": exponential, "log": logarithm, "atan": lambda x: arctangent(x, 1.0),
+    "asin": lambda x: arctangent(x, _other_leg(x)), "acos": lambda x: arctangent(_other_leg(x), x),
+    "sinh": lambda x: _hyperbolic(x)[0], "cosh": lambda x: _hyperbolic(x)[1],
+    "tanh": lambda x: _hyperbolic(x)[0] * inverse(_hyperbolic(x)[1]),
+    "tan": lambda x: sine(x) * inverse(cosine(x)), "cot": lambda x: cosine(x) * inverse(sine(x)),
+    "sec": lambda x: inverse(cosine(x)), "csc": lambda x: inverse(sine(x)),
+    "Rx": rotation(0), "Ry": rotation(1), "Rz": rotation(2), "hstack": _hstack, "qmul": _product_of_quaternions,
+    "vee": lambda rows: column([needed(rows, (3, 3))[2][1], rows[0][2], rows[1][0]]),
+    "dot": lambda a, b: dot([row[0] for row in needed(a, (None, 1))], [row[0] for row in needed(b, (None, 1))]),
+    "det": lambda rows: determinant(needed(rows)), "inverse": lambda rows: inverted(needed(rows)),
+    "transpose": transposed, "trace": lambda rows: sum((row[i] for i, row in enumerate(needed(rows))), 0.0),
+    "eye": lambda n: tuple(tuple(float(i == j) for j in range(int(n))) for i in range(int(n))),
+    "diag": lambda *d: tuple(tuple(d[i] if i == j else 0.0 for j in range(len(d))) for i in range(len(d))),
+}  # fmt: skip
+_VALUE: dict[str, Callable[[Point, Node], Any]] = {
+    "number": lambda point, node: float(node.value), "name": _name, "sum": _sum, "product": _product,
+    "neg": lambda point, node: mapped(minus, point._value(node.args[0])),
+    "inv": lambda point, node: inverse(point._value(node.args[0])), "power": _raised, "index": _index, "list": _list,
+    "transpose": lambda point, node: transposed(point._value(node.args[0])), "call": _call,
+}  # fmt: skip
+
+
+# -- points -----------------------------------------------------------------------------------------------------------
+
+
+def points(
+    symbols: Sequence[str], functions: Sequence[str], definitions: Mapping[str, Node],
+    hypotheses: Sequence[tuple[Node, Node]], kept: frozenset[int], count: int = 2, most: float = 1.7,
+) -> list[Point]:  # fmt: skip
+    """Return seeded points, symbols between 0.3 and ``most``, that obey the hypotheses to double precision.
+
+    They are fewer where Newton's method fails.
+    """
+    found = []
+    for seed in range(3 * count):
+        source = Random(seed)
+        point = Point(
+            {name: source.uniform(0.3, most) for name in symbols},
+            {name: tuple(source.uniform(0.3, 1.3) for _ in range(DERIVATIVES)) for name in functions},
+            definitions,
+            kept,
+        )
+        settled = _settled(point, hypotheses)
+        if settled is not None:
+            found.append(settled)
+        if len(found) == count:
+            break
+    return found
+
+
+def _settled(point: Point, hypotheses: Sequence[tuple[Node, Node]]) -> Point | None:
+    """Move a point onto its hypotheses by Newton's method with the shortest steps."""
+    variables = [Node("name", name) for name in point.symbols]
+    variables += [Node("call", name, (Node("name", "t"),)) for name in point.functions]
+    for _ in range(30 if hypotheses else 0):
+        residuals, slopes = [], []
+        try:
+            for left, right in hypotheses:
+                difference = plus(point.value(left), mapped(minus, point.value(right)))
+                residuals += entries_of(difference)
+                columns = []
+                for variable in variables:
+                    lifted = point.raised(variable)
+                    change = plus(lifted.value(left), mapped(minus, lifted.value(right)))
+                    columns.append(entries_of(mapped(lambda x: x.slope if isinstance(x, Dual) else 0.0, change)))
+                slopes += list(zip(*columns, strict=True))
+        except Meaningless:
+            return None
+        if max(map(abs, residuals)) < 1e-14:
+            return point
+        step = np.linalg.lstsq(np.array(slopes), -np.array(residuals), rcond=None)[0]
+        moves = dict(zip([variable.value for variable in variables], map(float, step), strict=True))
+        point = Point(
+            {name: value + moves[name] for name, value in point.symbols.items()},
+            {name: (jet[0] + moves[name], *jet[1:]) for name, jet in point.functions.items()},
+            point.definitions,
+            point.kept,
+            point.spent,
+        )
+    return None if hypotheses and max(map(abs, residuals)) > 1e-12 else point

@@ -1,0 +1,162 @@
+"""Small matrices as tuples of rows, over any kind of number: sums, products, rotations, quaternions."""
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from symrot.checker.repair.dual import Meaningless, cosine, inverse, plain, sine
+
+__all__ = [
+    "Rows", "agree", "column", "determinant", "dot", "entries_of", "hamilton", "inverted", "is_matrix", "mapped",
+    "needed", "plus", "rotation", "shape_of", "skew", "times", "transposed", "turning",
+]  # fmt: skip
+
+CLOSE = 1e-8
+"""Relative difference up to which two values in double precision agree."""
+
+
+Rows = tuple[tuple[Any, ...], ...]
+
+
+def is_matrix(value: Any) -> bool:
+    """Return whether a value is a matrix."""
+    return isinstance(value, tuple)
+
+
+def entries_of(value: Any) -> list[float]:
+    """Return the entries of a value row by row, as numbers."""
+    return [plain(entry) for row in value for entry in row] if is_matrix(value) else [plain(value)]
+
+
+def shape_of(value: Any) -> tuple[int, int] | None:
+    """Return (rows, columns), or None for a scalar."""
+    return (len(value), len(value[0])) if is_matrix(value) else None
+
+
+def mapped(function: Callable[[Any], Any], value: Any) -> Any:
+    """Return a function of every entry."""
+    return tuple(tuple(function(entry) for entry in row) for row in value) if is_matrix(value) else function(value)
+
+
+def plus(left: Any, right: Any) -> Any:
+    """Return the sum; ``Meaningless`` for shapes that differ."""
+    if shape_of(left) != shape_of(right):
+        raise Meaningless("shapes in a sum")
+    if is_matrix(left):
+        return tuple(tuple(a + b for a, b in zip(x, y, strict=True)) for x, y in zip(left, right, strict=True))
+    return left + right
+
+
+def times(left: Any, right: Any) -> Any:
+    """Return the product, of scalars or matrices."""
+    if not is_matrix(left):
+        return mapped(lambda entry: left * entry, right)
+    if not is_matrix(right):
+        return mapped(lambda entry: entry * right, left)
+    if len(left[0]) != len(right):
+        raise Meaningless("shapes in a product")
+    columns = tuple(zip(*right, strict=True))
+    return tuple(tuple(dot(row, column) for column in columns) for row in left)
+
+
+def dot(left: Sequence[Any], right: Sequence[Any]) -> Any:
+    """Return the sum of products of two sequences."""
+    total: Any = 0.0
+    for a, b in zip(left, right, strict=True):
+        total = total + a * b
+    return total
+
+
+def transposed(value: Any) -> Rows:
+    """Return the transpose."""
+    return tuple(zip(*needed(value), strict=True))
+
+
+def needed(value: Any, shape: tuple[int | None, int | None] = (None, None)) -> Rows:
+    """Return a matrix; ``Meaningless`` if it is none, or of another shape."""
+    found = shape_of(value)
+    if found is None or any(want not in (None, got) for want, got in zip(shape, found, strict=True)):
+        raise Meaningless("a matrix of another shape")
+    rows: Rows = value
+    return rows
+
+
+def determinant(rows: Rows) -> Any:
+    """Return the determinant of a matrix of at most 6 rows, by minors."""
+    if len(rows) != len(rows[0]) or len(rows) > 6:
+        raise Meaningless("a determinant")
+    if len(rows) == 1:
+        return rows[0][0]
+    total: Any = 0.0
+    for column, entry in enumerate(rows[0]):
+        minor = tuple((*row[:column], *row[column + 1 :]) for row in rows[1:])
+        total = total + (entry * determinant(minor)) * (-1.0) ** column
+    return total
+
+
+def inverted(rows: Rows) -> Rows:
+    """Return the inverse, by minors."""
+    below = inverse(determinant(rows))
+    size = range(len(rows))
+    if len(rows) == 1:
+        return ((below,),)
+    return tuple(
+        tuple(
+            determinant(tuple((*rows[r][:i], *rows[r][i + 1 :]) for r in size if r != j)) * below * (-1.0) ** (i + j)
+            for j in size
+        )
+        for i in size
+    )
+
+
+def column(values: Sequence[Any]) -> Rows:
+    """Return a column."""
+    return tuple((value,) for value in values)
+
+
+def skew(a: Any, b: Any, c: Any) -> Rows:
+    """Return the matrix of the cross product with (a, b, c)."""
+    return ((0.0, -c, b), (c, 0.0, -a), (-b, a, 0.0))
+
+
+def rotation(axis: int) -> Callable[[Any], Rows]:
+    """Return the active rotation about axis 0, 1 or 2, as a function of the angle, rad."""
+
+    def turn(angle: Any) -> Rows:
+        c, s = cosine(angle), sine(angle)
+        rows = [[0.0] * 3 for _ in range(3)]
+        i, j = (axis + 1) % 3, (axis + 2) % 3
+        rows[axis][axis], rows[i][i], rows[j][j], rows[i][j], rows[j][i] = 1.0, c, c, -s, s
+        return tuple(map(tuple, rows))
+
+    return turn
+
+
+def hamilton(p: Sequence[Any], q: Sequence[Any]) -> list[Any]:
+    """Return the product of quaternions, scalar first."""
+    a, b, c, d = p
+    e, f, g, h = q
+    return [
+        a * e + -(b * f) + -(c * g) + -(d * h), a * f + b * e + c * h + -(d * g),
+        a * g + -(b * h) + c * e + d * f, a * h + b * g + -(c * f) + d * e,
+    ]  # fmt: skip
+
+
+def turning(*q: Any) -> Rows:
+    """Return the matrix of v -> q v q*, not divided by the square of the norm."""
+    a, b, c, d = q
+    conjugate = [a, -b, -c, -d]
+    columns = [hamilton(hamilton(q, [0.0, *(float(i == j) for j in range(3))]), conjugate)[1:] for i in range(3)]
+    return tuple(zip(*columns, strict=True))
+
+
+def agree(left: Any, right: Any) -> list[bool] | None:
+    """Return entry by entry whether two values agree to double precision; None if their shapes differ."""
+    lefts, rights = entries_of(left), entries_of(right)
+    if shape_of(left) != shape_of(right):
+        if not is_matrix(left) and lefts == [0.0]:
+            lefts = [0.0] * len(rights)
+        elif not is_matrix(right) and rights == [0.0]:
+            rights = [0.0] * len(lefts)
+        else:
+            return None
+    return [abs(a - b) <= CLOSE * (abs(a) + abs(b)) + 1e-11 for a, b in zip(lefts, rights, strict=True)]

@@ -1,0 +1,1 @@
+"""Units of the quantities of a claim, and the check that its terms agree in them."""

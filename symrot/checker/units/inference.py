@@ -1,0 +1,354 @@
+"""Units through the tree of a formula: names, sums, products, powers, matrices, and where they contradict."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from functools import reduce
+from typing import Any
+
+from symrot.checker.claim.tree import Node, text, walk
+from symrot.checker.units.units import NOTHING, Dimension, UnitSystem, customary, raised, read_unit, shown_unit, times
+
+__all__ = ["ZERO", "Rows", "Unreadable", "Value", "Walker", "angles_of", "number_of", "shape_of", "shown_piece"]
+
+LONGEST_SHOWN = 60
+LARGEST_DETERMINANT = 4
+
+TURNS = ("sin", "cos", "tan", "cot", "sec", "csc", "Rx", "Ry", "Rz")
+
+Value = Any
+"""A dimension, None for what is zero and goes with every unit, or the rows of a matrix of these."""
+
+ZERO = None
+Rows = tuple[tuple[Any, ...], ...]
+
+
+class Unreadable(Exception):
+    """Shapes that do not fit, or something that has no dimension here."""
+
+
+@dataclass
+class Walker:
+    """Follows units through trees; ``calls`` says what functions do."""
+
+    units: dict[str, Dimension]
+    calls: Mapping[str, Callable[["Walker", Node], Value]]
+    names: set[str]
+    angles: set[str]
+    system: UnitSystem = field(default_factory=UnitSystem)
+    values: dict[str, Value] = field(default_factory=dict)
+    assumed: dict[str, str] = field(default_factory=dict)
+    known: bool = False
+    unitless: bool = False  # whether a definition is a number without its unit, which others may lack as well
+    fresh: int = 0
+    faults: list[str] = field(default_factory=list)
+    place: str = ""
+
+    # -- what is stated ---------------------------------------------------------------------------------------------
+
+    def define(self, name: str, tree: Node) -> None:
+        """Give a name the dimension of its definition; a bare number is a value whose unit was not written."""
+        self.place = f"in the definition of {name}"
+        value = self.value(tree)
+        if _bare(tree):
+            self.unitless |= name not in self.units and not _is_unit(tree)
+            value = self.unit_of(name) if not isinstance(value, tuple) else self.values_of(value, tree)
+        elif name in self.units and not isinstance(value, tuple):
+            self.same(self.units[name], value, f"{name} was given the unit {{0}}, its definition has {{1}}")
+        self.values[name] = value
+
+    def relation(self, left: Node, right: Node, what: str) -> None:
+        """Compare two sides."""
+        values: list[Value] = []
+        for node, side in ((left, "left"), (right, "right")):
+            self.place = f"in {what}" if what else f"on the {side} side"
+            values.append(self.value(node))
+        names = {left.kind, right.kind} & {"name", "call", "index"}
+        for node, n in ((left, 0), (right, 1)):
+            if _bare(node) and (names or not _is_unit(node)):
+                value = values[n]
+                values[n] = self.values_of(value, node) if isinstance(value, tuple) else self.unknown()
+        prefix = f"in {what} " if what else ""
+        self.place = ""
+        self.same(values[0], values[1], f"{prefix}the left side is {{0}}, the right side is {{1}}")
+
+    def inferred(self) -> dict[str, str]:
+        """Return the units of the names that had none, where they follow."""
+        found = {}
+        for name in sorted(self.names & self.system.solved.keys()):
+            unit = self.system.reduced({name: Fraction(1)})
+            if all(base.startswith("[") for base in unit):
+                found[name] = shown_unit(unit)
+        return found
+
+    # -- units of names ---------------------------------------------------------------------------------------------
+
+    def unknown(self) -> Dimension:
+        self.fresh += 1
+        return {f"?{self.fresh}": Fraction(1)}
+
+    def unit_of(self, name: str) -> Dimension:
+        """Return the unit of a symbol or function of time: its own, that of custom, or an unknown one."""
+        if name in self.units:
+            self.known = True
+            return self.units[name]
+        quaternion = {f"{name[:-1]}{n}" for n in range(4)}
+        plain = name in self.angles or (name[:-1] in ("q", "q_") and quaternion <= self.names)
+        unit = "1" if plain else customary(name) if len(name) > 1 or self.physical() else None
+        if unit is None:
+            return {name: Fraction(1)}
+        self.known = True
+        dimension = read_unit(unit)
+        if dimension:
+            self.assumed[name] = unit
+        return dimension
+
+    def physical(self) -> bool:
+        """Return whether letters such as m and t are quantities here: units are given, or longer names have one."""
+        return bool(self.units) or any(len(name) > 1 and customary(name) not in (None, "rad") for name in self.names)
+
+    def values_of(self, rows: Rows, node: Node) -> Rows:
+        """Return the dimensions of a matrix of numbers: of none for unit vectors, else whatever they stand for."""
+        if _is_unit(node):
+            return rows
+        return tuple(tuple(ZERO if entry is ZERO else self.unknown() for entry in row) for row in rows)
+
+    # -- equations --------------------------------------------------------------------------------------------------
+
+    def same(self, first: Value, second: Value, words: str) -> Value:
+        """Demand that two values have one dimension, entry by entry, and return it."""
+        if isinstance(first, tuple) or isinstance(second, tuple):
+            return self.same_matrices(first, second, words)
+        if first is ZERO or second is ZERO:
+            return second if first is ZERO else first
+        if not self.system.equate(first, second):
+            place = f"{self.place} " if self.place else ""
+            self.faults.append(place + words.format(*map(self.said, (first, second))))
+        return first
+
+    def said(self, dimension: Dimension) -> str:
+        unit = shown_unit(self.system.reduced(dimension))
+        return "dimensionless" if unit == "1" else unit
+
+    def same_matrices(self, first: Value, second: Value, words: str) -> Value:
+        shapes = [shape_of(value) for value in (first, second)]
+        if None in shapes:
+            zero = first if shapes[0] is None else second
+            if zero is not ZERO:
+                raise Unreadable
+            return second if shapes[0] is None else first
+        if shapes[0] != shapes[1]:
+            raise Unreadable
+        assert isinstance(first, tuple) and isinstance(second, tuple)
+        return tuple(
+            tuple(
+                self.same(a, b, f"in entry ({i}, {j}) {words}")
+                for j, (a, b) in enumerate(zip(row, other, strict=True), start=1)
+            )
+            for i, (row, other) in enumerate(zip(first, second, strict=True), start=1)
+        )
+
+    def plain(self, value: Value, words: str) -> Dimension:
+        """Demand that a scalar has no dimension."""
+        if isinstance(value, tuple):
+            raise Unreadable
+        self.same(value, NOTHING, words)
+        return NOTHING
+
+    # -- trees ------------------------------------------------------------------------------------------------------
+
+    def value(self, node: Node) -> Value:
+        """Return the dimension of a piece of a formula."""
+        return _VALUE[node.kind](self, node)
+
+    def scalar(self, node: Node) -> Dimension | None:
+        value: Value = self.value(node)
+        if isinstance(value, tuple):
+            raise Unreadable
+        return value  # type: ignore[no-any-return]
+
+    def matrix(self, node: Node) -> Rows:
+        value = self.value(node)
+        if node.kind == "list" and isinstance(value, list):
+            value = tuple((entry,) for entry in value)
+        if not isinstance(value, tuple):
+            raise Unreadable
+        return value
+
+    def total(self, values: Sequence[Value], what: str) -> Value:
+        """Return the dimension of a sum."""
+        found = values[0]
+        for number, value in enumerate(values[1:], start=2):
+            found = self.same(found, value, f"term 1 of {what} is {{0}}, term {number} is {{1}}")
+        return found
+
+    def times(self, first: Value, second: Value) -> Value:
+        if not isinstance(first, tuple) and not isinstance(second, tuple):
+            return ZERO if first is ZERO or second is ZERO else times(first, second)
+        if not isinstance(second, tuple):
+            first, second = second, first
+        if not isinstance(first, tuple):
+            return _map(lambda entry: self.times(first, entry), second)
+        assert isinstance(second, tuple)
+        if len(first[0]) != len(second):
+            raise Unreadable
+        return tuple(tuple(self.dot(row, column) for column in zip(*second, strict=True)) for row in first)
+
+    def dot(self, first: Sequence[Any], second: Sequence[Any]) -> Value:
+        if len(first) != len(second):
+            raise Unreadable
+        return self.total([self.times(a, b) for a, b in zip(first, second, strict=True)], "a product of vectors")
+
+    def power(self, base: Value, exponent: Fraction) -> Value:
+        if isinstance(base, tuple):
+            if exponent.denominator != 1 or abs(exponent) > LARGEST_DETERMINANT or not exponent:
+                raise Unreadable
+            factor = base if exponent > 0 else self.inverse(base)
+            return reduce(self.times, [factor] * abs(int(exponent)))
+        return base if base is ZERO else raised(base, exponent)
+
+    def inverse(self, rows: Rows) -> Rows:
+        size = range(len(rows))
+        below = self.determinant(rows)
+        if below is ZERO or isinstance(below, tuple):
+            raise Unreadable
+        if len(rows) == 1:
+            return ((raised(below, Fraction(-1)),),)
+        return tuple(
+            tuple(self.times(self.determinant(_minor(rows, j, i)), raised(below, Fraction(-1))) for j in size)
+            for i in size
+        )
+
+    def determinant(self, rows: Rows) -> Value:
+        if len(rows) != len(rows[0]) or len(rows) > LARGEST_DETERMINANT:
+            raise Unreadable
+        if len(rows) == 1:
+            entry: Value = rows[0][0]
+            return entry
+        terms = [self.times(entry, self.determinant(_minor(rows, 0, j))) for j, entry in enumerate(rows[0])]
+        return self.total(terms, "a determinant")
+
+
+def angles_of(tree: Node) -> Iterator[str]:
+    """Yield the letters that a formula itself makes angles: ``g`` in ``sin(2*g)``, not ``t`` in ``sin(w*t)``."""
+    for _, node in walk(tree):
+        if node.kind == "call" and node.value in TURNS:
+            for argument in node.args:
+                for term in argument.args if argument.kind == "sum" else (argument,):
+                    named = [piece for _, piece in walk(term) if piece.kind in ("name", "call")]
+                    if named and (len(named) == 1 or named[0].args == tuple(named[1:])):
+                        yield from (named[0].value,) if len(named[0].value) == 1 else ()
+
+
+def shape_of(value: Value) -> tuple[int, int] | None:
+    return (len(value), len(value[0])) if isinstance(value, tuple) else None
+
+
+def _map(function: Callable[[Any], Any], rows: Rows) -> Rows:
+    return tuple(tuple(function(entry) for entry in row) for row in rows)
+
+
+def _minor(rows: Rows, row: int, column: int) -> Rows:
+    return tuple((*r[:column], *r[column + 1 :]) for n, r in enumerate(rows) if n != row)
+
+
+def _bare(tree: Node) -> bool:
+    """Return whether a tree holds numbers and no name."""
+    loose = (node for _, node in walk(tree) if node.kind in ("name", "call"))
+    return all(node.value in ("pi", "Matrix", "sqrt", "diag", "transpose") for node in loose)
+
+
+def _is_unit(tree: Node) -> bool:
+    """Return whether all numbers in a tree are 0 and 1: a direction, a norm."""
+    return all(node.value in (0, 1) for _, node in walk(tree) if node.kind == "number") and not any(
+        node.kind == "name" for _, node in walk(tree)
+    )
+
+
+def shown_piece(node: Node) -> str:
+    shown = text(node)
+    return shown if len(shown) <= LONGEST_SHOWN else shown[: LONGEST_SHOWN - 2] + ".."
+
+
+def number_of(node: Node) -> Fraction | None:
+    """Return the number that a tree of numbers stands for, as exponents are written."""
+    if node.kind == "number":
+        return Fraction(node.value)
+    inner = [number_of(child) for child in node.args]
+    if node.kind not in ("neg", "inv", "product", "sum") or None in inner:
+        return None
+    values = [value for value in inner if value is not None]
+    if node.kind == "neg":
+        return -values[0]
+    if node.kind == "inv":
+        return 1 / values[0] if values[0] else None
+    return sum(values, Fraction(0)) if node.kind == "sum" else reduce(lambda a, b: a * b, values)
+
+
+# -- the kinds of node ------------------------------------------------------------------------------------------------
+
+
+def _number(walker: Walker, node: Node) -> Value:
+    return NOTHING if node.value else ZERO
+
+
+def _name(walker: Walker, node: Node) -> Value:
+    if node.value in walker.values:
+        return walker.values[node.value]
+    return NOTHING if node.value == "pi" else walker.unit_of(node.value)
+
+
+def _sum(walker: Walker, node: Node) -> Value:
+    return walker.total([walker.value(term) for term in node.args], f"the sum {shown_piece(node)}")
+
+
+def _product(walker: Walker, node: Node) -> Value:
+    return reduce(walker.times, [walker.value(factor) for factor in node.args])
+
+
+def _inverse(walker: Walker, node: Node) -> Value:
+    below = walker.value(node.args[0])
+    if below is ZERO:
+        raise Unreadable
+    return walker.power(below, Fraction(-1))
+
+
+def _power(walker: Walker, node: Node) -> Value:
+    base, exponent = walker.value(node.args[0]), number_of(node.args[1])
+    if exponent is not None:
+        return walker.power(base, exponent) if exponent else NOTHING
+    walker.plain(walker.value(node.args[1]), f"the exponent {shown_piece(node.args[1])} is {{0}} instead of a number")
+    return walker.plain(base, f"{shown_piece(node.args[0])}, under a symbolic exponent, is {{0}} instead of a number")
+
+
+def _index(walker: Walker, node: Node) -> Value:
+    rows = walker.matrix(node.args[0])
+    places = [number_of(index) for index in node.args[1:]]
+    if len(places) == 1:
+        places = [places[0], Fraction(0)] if len(rows[0]) == 1 else [Fraction(0), places[0]]
+    if None in places or any(place != int(place or 0) for place in places):
+        raise Unreadable
+    try:
+        entry: Value = rows[int(places[0] or 0)][int(places[1] or 0)]
+    except IndexError:
+        raise Unreadable from None
+    return entry
+
+
+def _list(walker: Walker, node: Node) -> Any:
+    return [walker.value(member) for member in node.args]
+
+
+def _call(walker: Walker, node: Node) -> Value:
+    if node.value in walker.calls:
+        return walker.calls[node.value](walker, node)
+    if node.args and all(argument.kind == "name" for argument in node.args):
+        return walker.unit_of(node.value)
+    raise Unreadable
+
+
+_VALUE: dict[str, Callable[[Walker, Node], Any]] = {
+    "number": _number, "name": _name, "sum": _sum, "product": _product, "inv": _inverse, "power": _power,
+    "neg": lambda walker, node: walker.value(node.args[0]), "index": _index, "list": _list, "call": _call,
+    "transpose": lambda walker, node: tuple(zip(*walker.matrix(node.args[0]), strict=True)),
+}  # fmt: skip

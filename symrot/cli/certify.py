@@ -1,0 +1,150 @@
+"""Commands of certification: prove, certify, audit, bound, selftest. Parse, call, print, as in :mod:`symrot.cli.main`."""
+
+import sys
+from argparse import ArgumentParser, Namespace
+from pathlib import Path
+
+from symrot.cli.output import FAILED, GOOD, Command, json_option, progress, say, say_json
+from symrot.errors import CertificateError, InputError
+from symrot.report.layout import one_line
+
+__all__ = ["COMMANDS"]
+
+
+def _prove(options: Namespace) -> int:
+    from symrot.workshop import coq_files as proofs
+
+    written, result = proofs.prove(options.coq, options.check, progress)
+    progress("")
+    if options.json:
+        say_json(proofs.facts(options.coq, written, result))
+    else:
+        say(proofs.lines(options.coq, result))
+    return FAILED if result is not None and not result else GOOD
+
+
+def _selftest(options: Namespace) -> int:
+    from symrot.certificates.selftest import run_selftest
+
+    found = run_selftest(bits=not options.bounds)
+    if options.json:
+        say_json(found.facts())
+    else:
+        say(found.lines())
+    return GOOD if found.passed else FAILED
+
+
+def _bound(options: Namespace) -> int:
+    from symrot.workshop import bounds
+
+    progress("bounding ..")
+    if options.target is None:
+        if options.variable:
+            raise InputError("--variable: expected --target X beside it, whose box is looked for")
+        found = bounds.facts(options.kernel, options.box, options.precision)
+    else:
+        found = bounds.target_facts(options.kernel, options.box, options.precision, options.target, options.variable)
+    progress("")
+    if options.json:
+        say_json(found)
+    else:
+        say((bounds.lines if options.target is None else bounds.target_lines)(found))
+    return GOOD
+
+
+def _certify(options: Namespace) -> int:
+    from symrot.workshop import certify as certificates
+
+    if options.all:
+        if options.kernel or options.box or options.no_bounds:
+            raise InputError("certify: expected --all without a KERNEL, --box or --no-bounds "
+                             "(see `symrot certify --help`)")  # fmt: skip
+        every, written = certificates.certify_all(options.directory, options.objects, progress)
+        progress("")
+        say_json(every) if options.json else say([*certificates.all_lines(every), *map(str, written)])
+        return FAILED if options.objects and certificates.refuted(every.values()) else GOOD
+    if not options.kernel:
+        raise InputError("certify: expected a KERNEL or --all (see `symrot certify --help`)")
+    found, written = certificates.certify(
+        options.kernel, options.box, options.directory, options.objects, not options.no_bounds, progress
+    )
+    progress("")
+    say_json(found) if options.json else say([*certificates.lines(found, options.objects), *map(str, written)])
+    return FAILED if options.objects and certificates.refuted([found]) else GOOD
+
+
+def _audit(options: Namespace) -> int:
+    from symrot.workshop import certify as certificates
+
+    try:
+        under = [] if options.flags is None else certificates.flag_lines(options.flags)
+        found = certificates.audit_files(
+            options.certificates, options.object, options.rerun_bounds, options.coq, progress
+        )
+    except CertificateError as reason:
+        progress("")
+        if options.json:
+            say_json({"holds": False, "reason": one_line(str(reason))})
+        sys.stderr.write(f"symrot: {one_line(str(reason))}\n")
+        return FAILED
+    progress("")
+    if options.json:
+        say_json({"holds": True, "certificates": found} | ({"flags": under} if under else {}))
+    else:
+        say([*(line for each in found.values() for line in each), *under])
+    return GOOD
+
+
+def _prove_arguments(parser: ArgumentParser) -> None:
+    parser.add_argument("--coq", type=Path, metavar="DIR", required=True, help="write the theorems as files of Coq")
+    parser.add_argument("--check", action="store_true", help="demand that Coq checks them; it does where it is there")
+    json_option(parser)
+
+
+def _selftest_arguments(parser: ArgumentParser) -> None:
+    parser.add_argument("--bounds", action="store_true", help="for the error bounds only: contraction is no failure")
+    json_option(parser)
+
+
+def _bound_arguments(parser: ArgumentParser) -> None:
+    parser.add_argument("kernel", metavar="KERNEL", help="a kernel of the library (see `symrot emit --list`), a scene")
+    parser.add_argument("--box", metavar="NAME=LOW:HIGH", action="append", default=[],
+                        help="range of an input, theta=-1.4:1.4 (default: the kernel's), or of a physical constant of "
+                        "a scene, A=1:2; may be repeated")  # fmt: skip
+    parser.add_argument("--target", type=float, metavar="X", help="find the largest box on which no error is above X")
+    parser.add_argument("--variable", metavar="NAME", action="append", default=[],
+                        help="with --target: resize the range of this input alone; may be repeated")  # fmt: skip
+    parser.add_argument("--precision", choices=("double", "float"), default="double", help="(default: double)")
+    json_option(parser)
+
+
+def _certify_arguments(parser: ArgumentParser) -> None:
+    parser.add_argument("kernel", metavar="KERNEL", nargs="?",
+                        help="a kernel of the library, its C file or certificate, or a scene")  # fmt: skip
+    parser.add_argument("--all", action="store_true", help="certify the library and the kernels of all shipped scenes")
+    parser.add_argument("--box", metavar="NAME=LOW:HIGH", action="append", default=[],
+                        help="range of an input for the bounds of rounding errors, or of a physical constant of a "
+                        "scene; may be repeated")  # fmt: skip
+    parser.add_argument("--objects", action="store_true", help="compile it, and compare the object code with it")
+    parser.add_argument("--no-bounds", action="store_true", help="leave the bounds of rounding errors out")
+    parser.add_argument("-o", type=Path, metavar="DIR", dest="directory", help="write kernel and certificate there")
+    json_option(parser)
+
+
+def _audit_arguments(parser: ArgumentParser) -> None:
+    parser.add_argument("certificates", type=Path, nargs="+", metavar="FILE.cert.json", help="the files beside it")
+    parser.add_argument("--object", type=Path, metavar="FILE.o", help="what your compiler made of the C file")
+    parser.add_argument("--flags", metavar="'CC FLAGS'", help="what holds under your compiler's flags: 'gcc -O3 -mfma'")
+    parser.add_argument("--rerun-bounds", action="store_true", help="find the bounds of rounding errors again")
+    parser.add_argument("--coq", action="store_true", help="have Coq check the theorem about the kernel")
+    json_option(parser)
+
+
+COMMANDS: dict[str, Command] = {
+    "prove": ("print the kinematics as theorems, and have Coq check them", _prove, _prove_arguments),
+    "certify": ("certify a kernel: laws, C text, rounding errors, object code", _certify, _certify_arguments),
+    "audit": ("check that a certificate holds for the files beside it", _audit, _audit_arguments),
+    "bound": ("bound the rounding errors of a kernel on a box of inputs", _bound, _bound_arguments),
+    "selftest": ("check that this machine computes as the certificates assume", _selftest, _selftest_arguments),
+}
+"""As in :data:`symrot.cli.main.COMMANDS`."""

@@ -1,0 +1,496 @@
+"""The command line: parse, call, print. Texts come from :mod:`symrot.report`; stdout is data, stderr is progress.
+
+Exit codes: 0 good, 1 a check failed, 2 bad usage or input, 130 interrupted, 141 nobody reads the output any more.
+"""
+
+import os
+import sys
+from argparse import ArgumentParser, HelpFormatter, Namespace
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from time import perf_counter
+from typing import Any, NoReturn, TextIO
+
+import symrot
+from symrot.cli import certify as cli_certify
+from symrot.cli.output import BAD, FAILED, GOOD, INTERRUPTED, UNREAD, Command, json_option, progress, say, say_json
+from symrot.errors import InputError, PropagationError, SymrotError
+from symrot.report.layout import emphasis, one_line
+
+__all__ = ["main"]
+
+TARGETS = ("c", "numpy")
+PAGES: dict[str, Callable[[Any], str]] = {
+    "markdown": lambda found: found.markdown(),
+    "latex": lambda found: found.latex(),
+    "html": lambda found: found.html(),
+}
+
+
+class _Formatter(HelpFormatter):
+    """Help as wide as the terminal; argparse makes one for every argument, and asks shutil, which is slow to import."""
+
+    def __init__(self, prog: str) -> None:
+        super().__init__(prog, width=_columns() - 2)
+
+
+def _columns() -> int:
+    """Return the width of the terminal, as :func:`shutil.get_terminal_size` does."""
+    try:
+        columns = int(os.environ.get("COLUMNS", "0"))
+    except ValueError:
+        columns = 0
+    try:
+        return columns if columns > 0 else os.get_terminal_size(sys.__stdout__.fileno()).columns or 80  # type: ignore[union-attr]
+    except (AttributeError, ValueError, OSError):
+        return 80
+
+
+class _Parser(ArgumentParser):
+    """A parser whose complaints are errors of ours, one sentence each."""
+
+    def __init__(self, **given: Any) -> None:
+        super().__init__(**given, formatter_class=_Formatter)
+
+    def error(self, message: str) -> NoReturn:
+        raise InputError(f"{message} (see `{self.prog} --help`)")
+
+
+# --- the commands -----------------------------------------------------------------------------------------------------
+
+
+def _run(options: Namespace) -> int:
+    from symrot.report.summary import facts, summary
+    from symrot.files.writing import check_target
+
+    if options.out:
+        from symrot.report import output
+
+        check_target(options.out, tuple(output.FORMATS), "--out")
+    if options.plot:
+        from symrot.report import plot
+
+        check_target(options.plot, plot.SUFFIXES, "--plot")
+        plot.require_matplotlib()
+    scene = symrot.load_scene(options.scene, table_folders=options.table_folder)
+    progress("preparing the kernel (a compiler has at most 300 s) ..")
+    start = perf_counter()
+    propagator = symrot.propagator(scene, options.method, options.tolerance, state=options.state)
+    propagator.prepare()
+    preparation = perf_counter() - start
+    trajectory = _followed(propagator, options)
+    if trajectory is None:
+        return INTERRUPTED
+    found = facts(propagator, trajectory, preparation)
+    if options.out:
+        progress("writing ..")
+        names = output.save(trajectory, options.out, propagator.tolerance)
+        found["written"]["out"] = {"file": str(options.out), "samples": len(trajectory), "arrays": names}
+    if options.plot:
+        progress("drawing ..")
+        plot.save(propagator, trajectory, options.plot)
+        found["written"]["plot"] = {"file": str(options.plot)}
+    progress("")
+    if options.json:
+        say_json(found)
+        return GOOD
+    title, *rest = summary(found)
+    say([emphasis(title, sys.stdout), *rest])
+    return GOOD
+
+
+def _followed(propagator: Any, options: Namespace) -> Any:
+    """Return the trajectory; of one that ends early, the samples before go into ``--out``. None: interrupted."""
+    from symrot.propagation.progress import reporting
+
+    started = shown = perf_counter()
+
+    def show(t: float, start: float, stop: float) -> None:
+        nonlocal shown
+        now = perf_counter()
+        if now - shown > 0.2:
+            shown = now
+            progress(f"propagating: {abs(t - start) / abs(stop - start):.1%} of the span, {now - started:.0f} s ..")
+
+    progress("propagating ..")
+    try:
+        with reporting(show):
+            return propagator()
+    except PropagationError as error:
+        raise PropagationError(f"{error}{_saved(error, propagator, options)}") from None
+    except KeyboardInterrupt as error:
+        progress("")
+        part = getattr(error, "trajectory", None)
+        until = f" at t = {float(part.t[-1])!r} s" if part is not None and len(part) else ""
+        sys.stderr.write(f"symrot: interrupted{until}{_saved(error, propagator, options)}\n")
+        return None
+
+
+def _saved(error: BaseException, propagator: Any, options: Namespace) -> str:
+    """Save the samples before an error where ``--out`` says, and return what to say of it."""
+    part = getattr(error, "trajectory", None)
+    if not options.out or part is None or not len(part):
+        return ""
+    from symrot.report import output
+
+    output.save(part, options.out, propagator.tolerance)
+    return f"; {options.out} holds the {len(part)} samples before"
+
+
+def _explain(options: Namespace) -> int:
+    from symrot.report import explain
+
+    scene = symrot.load_scene(options.scene, table_folders=options.table_folder)
+    progress("counting operations ..")
+    found = explain.facts(symrot.plan(scene))
+    progress("")
+    if options.json:
+        say_json(found)
+        return GOOD
+    title, *rest = explain.lines(found)
+    say([emphasis(title, sys.stdout), *rest])
+    return GOOD
+
+
+def _emit(options: Namespace) -> int:
+    from symrot.workshop import kernel_files as kernels
+
+    if sum(map(bool, (options.kernel, options.all, options.check, options.list))) != 1:
+        raise InputError("emit: expected exactly one of a KERNEL or SCENE, --all, --check and --list "
+                         "(see `symrot emit --help`)")  # fmt: skip
+    if options.list:
+        say(kernels.kernel_lines())
+        return GOOD
+    targets = (options.target,) if options.target else TARGETS
+    if options.check:
+        different = kernels.stale(options.directory or Path("generated"), targets, progress)
+        progress("")
+        say(different)
+        return FAILED if different else GOOD
+    if options.all:
+        written = kernels.write_all(options.directory or Path("generated"), targets, progress)
+    else:
+        bounds = kernels.kept_bounds(options.kernel, options.directory) if options.target != "numpy" else None
+        found = kernels.kernel_files(options.kernel, options.target or "c", bounds)
+        if options.directory is None:
+            sys.stdout.write("\n".join(found.values()))
+            return GOOD
+        if options.target != "numpy":
+            found |= kernels.certificate_files(options.kernel, options.directory, bounds)
+        written = kernels.write_files(options.directory, found)
+    progress("")
+    say(str(path) for path in written)
+    return GOOD
+
+
+def _derive(options: Namespace) -> int:
+    from symrot import catalogue
+
+    if sum(map(bool, (options.name, options.all, options.check))) > 1:
+        raise InputError("derive: expected at most one of a NAME, --all and --check (see `symrot derive --help`)")
+    if options.step is None and options.detail:
+        raise InputError("derive: expected --step N with --detail (see `symrot derive --help`)")
+    if options.step is not None and not options.name:
+        raise InputError("derive: expected a NAME with --step N (see `symrot derive --help`)")
+    if options.format != "markdown" and options.check:
+        raise InputError("derive: expected --format with a NAME or --all; --check compares the Markdown pages")
+    if options.format != "markdown" and options.all:
+        if options.directory is None:
+            raise InputError(f"derive: expected a folder, -o DIR, for all pages as {options.format}")
+        say(str(path) for path in catalogue.write_pages(options.directory, options.format))
+        return GOOD
+    directory = options.directory or Path("derivations")
+    if options.check:
+        if not directory.is_dir():
+            raise InputError(f"{str(directory)!r}: expected the folder that `symrot derive --all` writes, got none")
+        different = catalogue.check(directory)
+        sys.stdout.write("".join(diff for _, diff in different))
+        return FAILED if different else GOOD
+    if options.all:
+        say(str(path) for path in catalogue.derive_all(directory))
+    elif options.name:
+        found = catalogue.derivation(options.name)
+        if options.step is not None:
+            found = found.part(options.step, options.detail)
+        sys.stdout.write(PAGES[options.format](found))
+    else:
+        say(catalogue.names())
+    return GOOD
+
+
+def _check(options: Namespace) -> int:
+    from symrot.report import verdicts
+
+    if (options.claim is None) == (options.textbook is None):
+        raise InputError("check: expected a CLAIM, a FILE or --textbook NAME (see `symrot check --help`)")
+    if options.all and options.textbook != "all":
+        raise InputError("--all: expected --textbook all beside it, since the page holds every document")
+    if options.textbook:
+        return _check_textbook(options)
+    found = verdicts.check(options.claim, options.given, options.unit, not options.no_repair, progress)
+    progress("")
+    if options.json:
+        say_json([verdict.to_json() for verdict in found])
+    else:
+        say(verdicts.lines(found, options.claim))
+    refused = [verdict for verdict in found if verdict.verdict == "refused"]
+    sys.stderr.write("".join(f"symrot: {one_line(verdict.reason)}\n" for verdict in refused))
+    return BAD if refused else GOOD if all(found) else FAILED
+
+
+def _check_textbook(options: Namespace) -> int:
+    from symrot.report import errata
+    from symrot.textbook import DOCUMENTS
+    from symrot.files import writing as files
+
+    names = DOCUMENTS if options.textbook == "all" else (options.textbook,)
+    target = Path(options.output) / "errata.md"
+    if options.all:
+        files.check_target(target, (".md",), "--output")
+    found = errata.survey(names, not options.no_repair, progress)
+    progress("")
+    if options.all:
+        files.write(target, lambda stream: stream.write(errata.page(found).encode("utf-8")))
+        say([f"{target}: written"])
+    elif options.json:
+        say_json(errata.facts(found))
+    else:
+        say(errata.lines(found))
+    return GOOD if options.all or all(item.outcome == "holds" for _, items in found for item in items) else FAILED
+
+
+def _identify(options: Namespace) -> int:
+    found = symrot.identify(options.formula)
+    if options.json:
+        say_json([identification.to_json() for identification in found])
+    else:
+        say(f"{identification}\n  {identification.source}" for identification in found)
+        if not found:
+            say(["nothing that symrot derives is equal to it"])
+    return GOOD if found else FAILED
+
+
+def _bench(options: Namespace) -> int:
+    from symrot.bench import command
+
+    outcome = command.run(options, progress)
+    progress("")
+    if options.json:
+        say_json(outcome.found)
+    else:
+        title, *rest = outcome.lines
+        say([emphasis(title, sys.stdout), *rest])
+    return GOOD if outcome.good else FAILED
+
+
+def _scenes(options: Namespace) -> int:
+    from symrot.report.layout import columns
+
+    found = symrot.shipped_scenes()
+    if options.json:
+        say_json([{"name": name, "title": title, "source": source} for name, title, source in found])
+    else:
+        say(columns([(name, one_line(title)) for name, title, _ in found]))
+    return GOOD
+
+
+def _doctor(options: Namespace) -> int:
+    from symrot.workshop import doctor as health
+
+    if options.clear_cache:
+        removed = health.clear_cache()
+        say_json({"removed": removed}) if options.json else say([f"removed {removed} files from the cache"])
+        return GOOD
+    found = health.facts()
+    if options.json:
+        say_json(found)
+    else:
+        say(health.lines(found))
+    return FAILED if found["problems"] else GOOD
+
+
+# --- what each takes --------------------------------------------------------------------------------------------------
+
+
+def _scene_argument(parser: ArgumentParser, **more: Any) -> None:
+    parser.add_argument("scene", metavar="SCENE", help="a shipped scene (see `symrot scenes`), or a file", **more)
+
+
+def _table_folder_option(parser: ArgumentParser) -> None:
+    parser.add_argument("--table-folder", metavar="DIR", action="append", default=[],
+                        help="let the scene name files of samples in this folder too; may be repeated "
+                        "(default: its own folder alone)")  # fmt: skip
+
+
+def _run_arguments(parser: ArgumentParser) -> None:
+    _scene_argument(parser)
+    _table_folder_option(parser)
+    parser.add_argument("--method", default="auto", metavar="NAME", help="auto, exact, taylor, dop853 or scipy:NAME")
+    parser.add_argument("--tolerance", metavar="X", help="error to aim for, 1e-15 to 1e-2 (default: the scene's own)")
+    parser.add_argument("--state", default="quaternion", metavar="SEQUENCE", help="step Euler angles, such as ZXZ")
+    parser.add_argument("--out", type=Path, metavar="FILE", help="write the quantities asked for: FILE.npz or FILE.csv")
+    parser.add_argument("--plot", type=Path, metavar="FILE", help="draw the motion on one page: FILE.png, .pdf or .svg")
+    json_option(parser)
+
+
+def _explain_arguments(parser: ArgumentParser) -> None:
+    _scene_argument(parser)
+    _table_folder_option(parser)
+    json_option(parser)
+
+
+def _emit_arguments(parser: ArgumentParser) -> None:
+    parser.add_argument("kernel", metavar="KERNEL", nargs="?", help="a kernel of the library, a scene, or its file")
+    parser.add_argument("--list", action="store_true", help="list the kernels of the library")
+    parser.add_argument("--all", action="store_true", help="write the library and the kernels of all shipped scenes")
+    parser.add_argument("--check", action="store_true", help="compare the written kernels; exit 1 with a diff if stale")
+    parser.add_argument("--target", choices=TARGETS, help="language (default: c for a kernel, both for --all, --check)")
+    parser.add_argument("-o", type=Path, metavar="DIR", dest="directory",
+                        help="folder (default: standard output for a kernel, ./generated otherwise)")  # fmt: skip
+
+
+def _derive_arguments(parser: ArgumentParser) -> None:
+    parser.add_argument("name", metavar="NAME", nargs="?", help="a derivation; without one they are listed")
+    parser.add_argument("--all", action="store_true", help="write the pages of all derivations")
+    parser.add_argument("--check", action="store_true", help="compare the written pages; exit 1 with a diff if stale")
+    parser.add_argument("--format", choices=PAGES, default="markdown", help="of a derivation (default: markdown)")
+    parser.add_argument("--step", type=int, metavar="N", help="print one step of a derivation")
+    parser.add_argument(
+        "--detail", action="store_true", help="with --step: show every expression between its two sides"
+    )
+    parser.add_argument("-o", type=Path, metavar="DIR", dest="directory",
+                        help="folder of --all and --check (default: ./derivations)")  # fmt: skip
+
+
+def _check_arguments(parser: ArgumentParser) -> None:
+    parser.add_argument("claim", metavar="CLAIM", nargs="?", help="'left == right', LaTeX, or a FILE.toml of claims")
+    parser.epilog = ("Budget: 20 000 characters and 1 000 000 products of terms a claim; beyond it a claim is refused, "
+                     "or undecided with this reason. Counted, never timed: all machines give one verdict.")  # fmt: skip
+    parser.add_argument("--textbook", metavar="NAME", help="check what a document says: chen, sahakian, brown, "
+                        "beer-johnston, or all")  # fmt: skip
+    parser.add_argument("--all", action="store_true", help="with --textbook all: write the page of errata")
+    parser.add_argument("-o", "--output", metavar="DIR", default="generated", help="folder of --all (./generated)")
+    parser.add_argument("--given", metavar="HYPOTHESIS", action="append", default=[],
+                        help="'a == b', 'x > 0' or 'x != 0', with a claim as text; may be repeated")  # fmt: skip
+    parser.add_argument("--unit", metavar="NAME=UNIT", action="append", default=[],
+                        help="unit of a symbol, with a claim as text: 'F=kg m/s^2'; may be repeated")  # fmt: skip
+    parser.add_argument("--no-repair", action="store_true", help="do not look for true formulas near a false one")
+    json_option(parser)
+
+
+def _identify_arguments(parser: ArgumentParser) -> None:
+    parser.add_argument("formula", metavar="FORMULA", help="a formula or matrix, as text or LaTeX")
+    json_option(parser)
+
+
+def _bench_arguments(parser: ArgumentParser) -> None:
+    from symrot.bench import command
+
+    command.arguments(parser)
+
+
+def _doctor_arguments(parser: ArgumentParser) -> None:
+    parser.add_argument("--clear-cache", action="store_true", help="remove the kernels kept in the cache")
+    json_option(parser)
+
+
+COMMANDS: dict[str, Command] = {
+    "run": ("propagate a scene and summarise its motion", _run, _run_arguments),
+    "explain": ("show what is computed for a scene, what is skipped and why", _explain, _explain_arguments),
+    "derive": ("print derivations, proven step by step", _derive, _derive_arguments),
+    "check": ("decide whether formulas hold, and what would", _check, _check_arguments),
+    "identify": ("say what a formula is, whatever its symbols are called", _identify, _identify_arguments),
+    "emit": ("print a kernel of the library, or that of a scene, as C or NumPy", _emit, _emit_arguments),
+    **cli_certify.COMMANDS,
+    "bench": ("measure time against error, on a scene of yours", _bench, _bench_arguments),
+    "scenes": ("list the scenes that come with symrot", _scenes, json_option),
+    "doctor": ("check compiler, cache and installed versions", _doctor, _doctor_arguments),
+}
+"""Command -> what it does, the function that does it, the function that declares its arguments."""
+
+
+def _nowhere() -> TextIO:
+    """Return a stream for a process that was started with that one closed."""
+    return Path(os.devnull).open("w", encoding="utf-8")
+
+
+def _parser(only: str = "") -> _Parser:
+    """Return the parser of the command line; of one command alone where its name is known, which saves the others."""
+    parser = _Parser(
+        prog="symrot",
+        description="Rigid-body rotation: derived, specialised, compiled, propagated.",
+        epilog="Try: symrot run tumbling_prism --plot prism.png",
+        allow_abbrev=False,
+    )
+    parser.add_argument("--version", action="version", version=f"symrot {symrot.__version__}")
+    commands = parser.add_subparsers(metavar="COMMAND", dest="command", required=True, prog=parser.prog)
+    for name, (about, function, declare) in COMMANDS.items():
+        if only not in ("", name):
+            continue
+        spoken = f"{about[0].upper()}{about[1:]}."
+        command = commands.add_parser(name, help=about, description=spoken, allow_abbrev=False)
+        declare(command)
+        command.set_defaults(function=function)
+    return parser
+
+
+def _known(arguments: Sequence[str]) -> None:
+    """Refuse a command that is none, with the nearest that is one."""
+    if arguments and not arguments[0].startswith("-") and arguments[0] not in COMMANDS:
+        from symrot.scene.reader import nearest
+
+        hint = nearest(arguments[0], COMMANDS)
+        said = f"expected a command, one of {', '.join(COMMANDS)}, got {arguments[0][:60]!r}"
+        raise InputError(f"{said} ({hint})" if hint else said)
+
+
+def _silence(stream: Any) -> None:
+    """Point a stream whose reader is gone to nowhere, so that Python can close it without a word."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+
+
+def _stop_compilers() -> None:
+    """Kill the compilers that were started, if any: Python waits at its end for threads that wait for them."""
+    library = sys.modules.get("symrot.build.cache")
+    if library is not None:
+        library.stop_compilers()
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one command and return its exit code.
+
+    Parameters
+    ----------
+    argv : sequence of str, optional
+        The words after ``symrot``; default: those of this process.
+    """
+    arguments = sys.argv[1:] if argv is None else list(argv)
+    sys.stdout, sys.stderr = sys.stdout or _nowhere(), sys.stderr or _nowhere()
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="replace")  # a title in letters that the terminal has not is no reason to fail
+    try:
+        if not arguments:
+            _parser().print_help(sys.stderr)
+            return BAD
+        _known(arguments)
+        options = _parser(arguments[0] if arguments[0] in COMMANDS else "").parse_args(arguments)
+        code: int = options.function(options)
+        sys.stdout.flush()
+        return code
+    except SymrotError as error:
+        progress("")
+        sys.stderr.write(f"symrot: {one_line(str(error))}\n")
+        return BAD
+    except BrokenPipeError:
+        _silence(sys.stdout)
+        return UNREAD
+    except OSError as error:
+        progress("")
+        place = f"{error.filename}: " if error.filename else ""
+        sys.stderr.write(f"symrot: {one_line(place)}{error.strerror or error}\n")
+        return BAD
+    except KeyboardInterrupt:
+        _stop_compilers()
+        progress("")
+        return INTERRUPTED

@@ -1,0 +1,121 @@
+"""Arithmetic on arrays of pairs of doubles, ``high + low``, to about 2^-104, and the exponential in it.
+
+Every rounding counts: NumPy rounds each operation as written. Sums and products: Dekker, Numer. Math. 18 (1971) 224;
+Knuth, The Art of Computer Programming, vol. 2, section 4.2.2. The exponential: 2^(j/8) from a table times a series.
+"""
+
+from fractions import Fraction
+from functools import cache
+from math import factorial
+from typing import Any
+
+import numpy as np
+
+from symrot.closed_form.arithmetic.pairs import pair
+from symrot.closed_form.build import Floats
+from symrot.formula import exact_numbers as number
+
+__all__ = ["NEAR", "Pair", "add", "exponential", "ln2", "multiply", "second", "two_product", "two_sum"]
+
+Pair = tuple[Any, Any]
+"""High and low, each an array or a float."""
+
+NEAR = 1 / 16
+"""The series of :func:`second` holds its digits up to here."""
+
+_SPLITTER = 134217729.0  # 2^27 + 1
+_PARTS = 8  # of an octave, in the table of the exponential
+_SHORT = 39  # bits of ln 2/8 that can be multiplied by any j (14 bits) without rounding
+_LEAST = -745.2  # below it the exponential is 0
+_HEAD, _TAIL = 8, 16  # NEAR^8/10! < 2^-53, so the terms from the 8th on need doubles; NEAR^16/18! < 2^-116 ends them
+
+
+def two_sum(a: Any, b: Any) -> Pair:
+    """Return a + b and its rounding error."""
+    total = a + b
+    part = total - a
+    return total, (a - (total - part)) + (b - part)
+
+
+def two_product(a: Any, b: Any) -> Pair:
+    """Return a*b and its rounding error."""
+    product = a * b
+    wide_a, wide_b = _SPLITTER * np.asarray(a), _SPLITTER * np.asarray(b)
+    high_a, high_b = wide_a - (wide_a - a), wide_b - (wide_b - b)
+    low_a, low_b = a - high_a, b - high_b
+    return product, ((high_a * high_b - product) + high_a * low_b + low_a * high_b) + low_a * low_b
+
+
+def _renewed(high: Any, low: Any) -> Pair:
+    total = high + low
+    return total, low - (total - high)
+
+
+def add(a: Pair, b: Pair) -> Pair:
+    """Return a + b, to 2^-104 of the larger of the two."""
+    total, error = two_sum(a[0], b[0])
+    return _renewed(total, error + (a[1] + b[1]))
+
+
+def multiply(a: Pair, b: Pair) -> Pair:
+    """Return a*b."""
+    product, error = two_product(a[0], b[0])
+    return _renewed(product, error + (a[0] * b[1] + a[1] * b[0]))
+
+
+@cache
+def ln2(bits: int) -> Fraction:
+    """Return ln 2 to an absolute error below 2^-bits: the sum of 2/((2 k + 1) 3^(2 k + 1))."""
+    total, power, k = 0, (2 << (bits + 16)) // 3, 0
+    while power:
+        total += power // (2 * k + 1)
+        power, k = power // 9, k + 1
+    return Fraction(total, 1 << (bits + 16))
+
+
+@cache
+def _coefficients() -> list[tuple[float, float]]:
+    return [pair(Fraction(1, factorial(k + 2))) for k in range(_TAIL)]
+
+
+@cache
+def _octave() -> tuple[tuple[Floats, Floats], tuple[float, float, float]]:
+    """Return the table of 2^(j/8), and ln 2/8 in three parts, the first two short."""
+    root, step = Fraction(2), _PARTS
+    while step > 1:
+        root, step = number.sqrt(root), step // 2
+    powers = np.array([pair(root**j) for j in range(_PARTS)])
+    rest, parts = ln2(number.BITS) / _PARTS, []
+    for place in (_SHORT, 2 * _SHORT):
+        parts.append(Fraction(int(rest * 2 ** (place + 3)), 2 ** (place + 3)))
+        rest -= parts[-1]
+    return (powers[:, 0], powers[:, 1]), (float(parts[0]), float(parts[1]), float(rest))
+
+
+def second(x: Pair) -> Pair:
+    """Return (exp(x) - 1 - x)/x^2 for \\|x\\| <= NEAR."""
+    coefficients, (high, low) = _coefficients(), x
+    total: Any = 0.0
+    for coefficient, _ in reversed(coefficients[_HEAD:]):
+        total = total * high + coefficient
+    rest: Any = 0.0
+    for known, error in reversed(coefficients[:_HEAD]):
+        product, lost = two_product(total, high)
+        rest = lost + (total * low + rest * high) + error
+        total = known + product  # of which the known one is larger
+        rest = rest + (product - (total - known))
+    return _renewed(total, rest)
+
+
+def exponential(x: Pair) -> Pair:
+    """Return exp(x) for x <= 709; the low part is lost with the smallest numbers."""
+    (high, low), (first, middle, last) = _octave()
+    above = np.maximum(x[0], _LEAST)
+    j = np.rint(above * (_PARTS / float(ln2(number.BITS))))
+    rest = two_sum(above - j * first, -j * middle)  # both products and the difference are exact
+    r = add(rest, (x[1] - j * last, 0.0))
+    grown = add(r, multiply(multiply(r, r), second(r)))
+    octave, index = np.divmod(j.astype(np.int64), _PARTS)
+    power = high[index], low[index]
+    found = add(power, multiply(power, grown))
+    return np.ldexp(found[0], octave), np.ldexp(found[1], octave)

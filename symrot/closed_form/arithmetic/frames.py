@@ -1,0 +1,49 @@
+"""Changes of axes to 30 digits for the closed forms: rotation matrices of Fractions and their quaternions."""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import TypeVar
+
+from symrot.formula.exact_numbers import unit
+
+__all__ = ["Rows", "product", "quaternion_of", "to_axis"]
+
+Exact = TypeVar("Exact", int, Fraction)
+Rows = Sequence[Sequence[Fraction]]
+
+
+def quaternion_of(r: Rows) -> tuple[Fraction, ...]:
+    """Return the unit quaternion of a proper rotation matrix (Shepperd's choice of the largest component)."""
+    trace = r[0][0] + r[1][1] + r[2][2]
+    candidates = (
+        (1 + trace, r[2][1] - r[1][2], r[0][2] - r[2][0], r[1][0] - r[0][1]),
+        (r[2][1] - r[1][2], 1 + 2 * r[0][0] - trace, r[0][1] + r[1][0], r[2][0] + r[0][2]),
+        (r[0][2] - r[2][0], r[0][1] + r[1][0], 1 + 2 * r[1][1] - trace, r[1][2] + r[2][1]),
+        (r[1][0] - r[0][1], r[2][0] + r[0][2], r[1][2] + r[2][1], 1 + 2 * r[2][2] - trace),
+    )
+    return unit(max(candidates, key=lambda row: sum(x * x for x in row)))
+
+
+def product(a: Sequence[Exact], b: Sequence[Exact]) -> tuple[Exact, Exact, Exact, Exact]:
+    """Return the product of two quaternions, scalar first, of integers or of fractions."""
+    a0, a1, a2, a3 = a
+    b0, b1, b2, b3 = b
+    return (
+        a0 * b0 - a1 * b1 - a2 * b2 - a3 * b3,
+        a0 * b1 + a1 * b0 + a2 * b3 - a3 * b2,
+        a0 * b2 - a1 * b3 + a2 * b0 + a3 * b1,
+        a0 * b3 + a1 * b2 - a2 * b1 + a3 * b0,
+    )
+
+
+def to_axis(direction: Sequence[Fraction]) -> tuple[tuple[Fraction, ...], ...]:
+    """Return a rotation whose third column is the unit vector along ``direction``; no axis moves that need not."""
+    third = unit(direction)
+    if third[0] == third[1] == 0:
+        sign = 1 if third[2] > 0 else -1
+        return tuple(tuple(Fraction(x) for x in row) for row in ((1, 0, 0), (0, sign, 0), (0, 0, sign)))
+    helper = min(range(3), key=lambda k: abs(third[k]))
+    raw = [Fraction(int(k == helper)) - third[helper] * third[k] for k in range(3)]
+    first = unit(raw)
+    second = tuple(third[(k + 1) % 3] * first[(k + 2) % 3] - third[(k + 2) % 3] * first[(k + 1) % 3] for k in range(3))
+    return tuple(tuple(column[row] for column in (first, second, third)) for row in range(3))

@@ -1,0 +1,120 @@
+"""Exact numbers as pairs of doubles, ``hi + lo``, to 31 digits. Standard library only."""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from math import isfinite, lcm, ulp
+from typing import Any
+
+from symrot.errors import InputError
+from symrot.formula.exact_numbers import equal, show
+
+__all__ = [
+    "GRID", "LARGEST", "SMALLEST", "Number", "attitude", "common", "numbers", "pair", "quotient", "same", "spread",
+]  # fmt: skip
+
+Number = float | int | Fraction
+
+LARGEST = 1e205
+"""Of the numbers that give a motion, in their units: the constants made of them stay doubles."""
+
+SMALLEST = 1e-205
+"""Of the moments of inertia, kg m^2."""
+
+GRID = 2.0**-33
+"""Of the last bit of hi: what lo of an attitude is a multiple of."""
+
+_BITS = 600  # 2^600 and its inverse lie inside these bounds
+
+
+def quotient(numerator: int, denominator: int) -> tuple[float, float]:
+    """Return numerator/denominator as hi, lo. An integer division of Python's rounds correctly."""
+    hi = numerator / denominator
+    top, bottom = hi.as_integer_ratio()
+    return hi, (numerator * bottom - top * denominator) / (denominator * bottom)
+
+
+def pair(value: Number) -> tuple[float, float]:
+    """Return a number as hi, lo."""
+    return (value, 0.0) if isinstance(value, float) else quotient(value.numerator, value.denominator)
+
+
+def spread(values: Sequence[Number]) -> list[float]:
+    """Return hi, lo of each number in one list."""
+    result: list[float] = []
+    for value in values:
+        result += (value, 0.0) if isinstance(value, float) else quotient(value.numerator, value.denominator)
+    return result
+
+
+def attitude(values: Sequence[Number]) -> list[float]:
+    """Return hi, lo of each component of a quaternion in one list, to 2^-86 of the component.
+
+    An attitude needs no more, and arithmetic in pairs of doubles finds the same numbers for many attitudes at once.
+    """
+    result: list[float] = []
+    for value in values:
+        hi, lo = (value, 0.0) if isinstance(value, float) else quotient(value.numerator, value.denominator)
+        step = ulp(hi) * GRID
+        result += (hi, round(lo / step) * step if lo and step else lo)
+    return result
+
+
+def same(a: Number, b: Number) -> bool:
+    """Return whether two numbers are equal, to 2^-200."""
+    return a == b or (not (isinstance(a, float) and isinstance(b, float)) and equal(Fraction(a), Fraction(b)))
+
+
+def common(values: Sequence[Number]) -> tuple[list[int], int]:
+    """Return integers and the denominator that they share."""
+    ratios = [value.as_integer_ratio() for value in values]
+    shared = lcm(*(bottom for _, bottom in ratios))
+    return [top * (shared // bottom) for top, bottom in ratios], shared
+
+
+def numbers(what: str, values: Sequence[Number], length: int, least: float = -LARGEST) -> list[Number]:
+    """Return numbers, each a float (NumPy's too), an int or a Fraction, as they are.
+
+    Raises
+    ------
+    InputError
+        If there is another count of them, or one is no real number, beyond :data:`LARGEST`, or below ``least``.
+    """
+    found = _listed(what, values, length)
+    if {*map(type, found)} == {float} and all(map(isfinite, found)) and max(found) <= LARGEST and min(found) >= least:
+        return found
+    for index, value in enumerate(found):
+        if type(value) is Fraction and _moderate(value, least):
+            continue
+        if isinstance(value, bool) or not isinstance(value, float | int | Fraction):
+            found[index] = value = _double(what, value)
+        if not abs(value) <= LARGEST:
+            raise InputError(f"{what}: expected finite numbers of a magnitude up to {LARGEST:g}, got {show(value)}")
+        if value < least:
+            raise InputError(f"{what}: expected positive numbers, {least:g} at least, got {show(value)}")
+    return found
+
+
+def _moderate(value: Fraction, least: float) -> bool:
+    """Return whether a fraction surely lies within the bounds of :func:`numbers`, by its length in bits alone."""
+    top, bottom = value.numerator, value.denominator
+    size = top.bit_length() - bottom.bit_length()  # of the power of two next to it, or one more
+    return size < _BITS and (least < 0 or (top > 0 and size > -_BITS))
+
+
+def _listed(what: str, values: Sequence[Number], length: int) -> list[Any]:
+    try:
+        found = list(values)
+    except TypeError:
+        raise InputError(f"{what}: expected {length} numbers, got {show(values)}") from None
+    if len(found) != length:
+        raise InputError(f"{what}: expected {length} numbers, got {len(found)}")
+    return found
+
+
+def _double(what: str, value: Any) -> float:
+    try:
+        if not isinstance(value, bool | str):
+            return float(value)
+    except (TypeError, ValueError, OverflowError):
+        pass
+    raise InputError(f"{what}: expected real numbers, got {show(value)}")

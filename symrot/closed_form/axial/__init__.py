@@ -1,0 +1,1 @@
+"""Rotation driven and damped about one axis."""

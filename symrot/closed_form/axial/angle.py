@@ -1,0 +1,190 @@
+"""The angle turned about one axis under constant torque and linear damping, in turns, whole turns left out.
+
+Between ``t`` and the start lie ``rate t (exp(x) - 1)/x + push t^2 (exp(x) - 1 - x)/x^2`` turns, ``x = -decay t``; away
+from ``x = 0`` the same is ``(push/decay) t + (rate - push/decay) (1 - exp(x))/decay``. Doubles hold it to 1e-16 of the
+angle, which is enough for a small one alone. Others take pairs of doubles, to 1e-20 of a turn. A few at once, and
+angles of more than 1e10 turns, take integers of as many bits as the motion needs: a few of them are done before NumPy
+has begun. Pairs and integers end in the same double.
+
+Proof: ``derivations/driven_rotation.md``.
+"""
+
+from fractions import Fraction
+
+import numpy as np
+
+from symrot.closed_form.arithmetic import double_double as dd
+from symrot.closed_form.arithmetic.pairs import pair
+from symrot.closed_form.build import Floats
+from symrot.errors import InputError
+from symrot.formula import exact_numbers as number
+
+__all__ = ["FEW", "LARGE", "SMALL", "Turning", "fallen"]
+
+FEW = 64
+"""So many times at once are a matter of integers."""
+
+SMALL = 1 / 16
+"""Turns: up to here doubles suffice, to 2e-16 rad."""
+
+LARGE = 1e10
+"""Turns: from here on pairs of doubles would not do."""
+
+_BLOCK = 4096  # times at once: what they need stays in the caches
+_BITS = 192  # behind the point of a turn, with 64 for the size of the time
+_HALVINGS = 8  # of the argument of the exponential in integers
+_GROWN = 1500.0  # the exponential of more is beyond all doubles, times the smallest of them too
+_GUARD = 16  # bits for what they lose
+_TERMS = 20  # of the series of (exp(x) - 1 - x)/x^2 for |x| <= 1, whose next is 2^-70
+
+
+def fallen(high: Floats, low: Floats) -> tuple[Floats, Floats]:
+    """Return exp(x) and exp(x) - 1 of pairs, rounded to doubles."""
+    grown = np.exp(high)
+    return grown * (1.0 + low), np.expm1(high) + grown * low
+
+
+def _second(x: Floats) -> Floats:
+    """Return (exp(x) - 1 - x)/x^2 for \\|x\\| <= 1."""
+    series = np.full_like(x, 1.0 / (_TERMS + 2))
+    for n in range(_TERMS + 1, 1, -1):
+        series = (1.0 + series * x) / n
+    return series
+
+
+def _less_whole_turns(turns: dd.Pair) -> Floats:
+    high, low = turns
+    rest: Floats = (high - np.rint(high)) + (low - np.rint(low))
+    return rest
+
+
+class Turning:
+    """An angle with its constants, each rounded once from exact numbers.
+
+    Parameters
+    ----------
+    share : Fraction
+        How many times the angle is meant.
+    rate : Fraction
+        rad/s, at the start.
+    push : Fraction
+        rad/s^2, of the constant torque.
+    decay : Fraction
+        1/s, of the damping.
+    """
+
+    def __init__(self, share: Fraction, rate: Fraction, push: Fraction, decay: Fraction) -> None:
+        turn = share / (2 * number.PI)
+        self._share, self._rate, self._push, self._decay = share, pair(rate * turn), pair(push * turn), pair(-decay)
+        final = push / decay if decay else rate
+        rest = (rate - final) / decay if decay else push / 2
+        self._exact = final, rest, decay
+        try:
+            self._final, self._rest = pair(final * turn), pair(rest * turn)
+        except OverflowError:
+            raise InputError(
+                "expected no damping, or one that ends the motion within turns that doubles can count, got a decay of "
+                f"{float(decay)!r} 1/s under {float(push)!r} rad/s^2"
+            ) from None
+        self._bits = _BITS + max(int(abs(x)) for x in self._exact).bit_length()
+        self._scaled: dict[int, tuple[int, int, int, int]] = {}
+
+    @np.errstate(over="ignore")  # of a size: what is so large is a matter of integers
+    def __call__(self, t: Floats) -> Floats:
+        """Return the turns at each time, from -1/2 to 1/2."""
+        if len(t) > _BLOCK:
+            return np.concatenate([self(t[k : k + _BLOCK]) for k in range(0, len(t), _BLOCK)])
+        x = self._decay[0] * t
+        size, near = np.abs(t) * (abs(self._rate[0]) + abs(self._push[0] * t)), np.abs(x) <= dd.NEAR
+        small = (size <= SMALL) & (np.abs(x) <= 1.0)
+        if small.all():
+            return self._in_doubles(t)
+        large = ~small
+        if np.count_nonzero(large) > FEW:
+            far = np.abs(self._final[0] * t) + abs(self._rest[0]) * np.exp(np.maximum(x, 0.0))
+            pairs = large & (np.where(near, size, far) <= LARGE)
+            ways = [(small, self._in_doubles), (pairs & near, self._near), (pairs & ~near, self._far)]
+            ways.append((large & ~pairs, self._by_integers))
+        else:
+            ways = [(small, self._in_doubles), (large, self._by_integers)]
+        turns = np.empty_like(t)
+        for chosen, way in ways:
+            if chosen.any():
+                turns[chosen] = way(t[chosen])
+        return turns - np.rint(turns)
+
+    def _in_doubles(self, t: Floats) -> Floats:
+        x = self._decay[0] * t
+        series = _second(x)
+        return self._rate[0] * t * (1.0 + x * series) + self._push[0] * t * t * series
+
+    def _near(self, t: Floats) -> Floats:
+        """Return the turns in pairs, by the series about x = 0."""
+        time = t, np.zeros_like(t)
+        x = dd.multiply(time, self._decay)
+        series = dd.second(x) if self._decay[0] else (0.5, 0.0)
+        first = dd.add((1.0, 0.0), dd.multiply(x, series)) if self._decay[0] else (1.0, 0.0)
+        pushed = dd.multiply(dd.multiply(dd.multiply(time, self._push), time), series)
+        return _less_whole_turns(dd.add(dd.multiply(dd.multiply(time, self._rate), first), pushed))
+
+    def _far(self, t: Floats) -> Floats:
+        """Return the turns in pairs, by the steady part and what the transient leaves."""
+        time = t, np.zeros_like(t)
+        high, low = dd.exponential(dd.multiply(time, self._decay))
+        left = dd.multiply(dd.add((1.0, 0.0), (-high, -low)), self._rest)
+        return _less_whole_turns(dd.add(dd.multiply(time, self._final), left))
+
+    def _by_integers(self, t: Floats) -> Floats:
+        return np.array([self._exactly(time) for time in t.tolist()])
+
+    def _integers(self, bits: int) -> tuple[int, int, int, int]:
+        """Return final and rest in turns, the decay and ln 2, with so many bits behind the point (ln 2: and guards)."""
+        if bits not in self._scaled:
+            from mpmath import mp
+
+            places, (final, rest, decay) = bits + _BITS, self._exact
+            with mp.workprec(places + 8):
+                circle = 2 * int(mp.pi * mp.mpf(2) ** places)
+            turns = [
+                (x.numerator * self._share.numerator << (bits + places))
+                // (x.denominator * self._share.denominator * circle)
+                for x in (final, rest)
+            ]
+            octave = int(dd.ln2(bits + _GUARD) * (1 << bits + _GUARD))
+            self._scaled[bits] = turns[0], turns[1], (decay.numerator << bits) // decay.denominator, octave
+        return self._scaled[bits]
+
+    def _exactly(self, t: float) -> float:
+        """Return the turns at one time, in integers."""
+        top, bottom = t.as_integer_ratio()
+        growth = max(0.0, self._decay[0] * t)  # of which each octave takes a bit from all others
+        if growth > _GROWN:
+            raise InputError(f"expected times at which the angular velocity is a finite number, got {t!r} s")
+        bits = self._bits + 64 * int(growth / 32)
+        final, rest, decay, octave = self._integers(bits)
+        shift, one = bottom.bit_length() - 1, 1 << bits
+        if decay:
+            grown = _exponential(-(decay * top >> shift), bits, octave)
+            turns = (final * top >> shift) + (rest * (one - grown) >> bits)
+        else:
+            turns = (final * top >> shift) + (rest * top * top >> 2 * shift)
+        turns &= one - 1
+        return (turns - one if 2 * turns > one else turns) / one
+
+
+def _exponential(x: int, bits: int, octave: int) -> int:
+    """Return exp(x), both of so many bits behind the point."""
+    if x < -bits << bits:
+        return 0
+    octaves, rest = divmod(x << _GUARD, octave)
+    bits += _GUARD
+    rest >>= _HALVINGS
+    total = term = 1 << bits
+    n = 1
+    while term:
+        term = (term * rest >> bits) // n
+        total += term
+        n += 1
+    for _ in range(_HALVINGS):
+        total = total * total >> bits
+    return (total << octaves if octaves > 0 else total >> -octaves) >> _GUARD

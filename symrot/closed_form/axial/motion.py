@@ -1,0 +1,231 @@
+"""Rotation driven and damped about one axis, at any time, in closed form: C dw/dt = N - c w.
+
+About a principal axis that nothing else disturbs this is the whole motion. In a symmetric body that also turns across
+its axis, the transverse angular velocity follows by a turn through ``(C - A)/A`` of the angle about the axis, and
+decays by its own damping. Its attitude then takes parabolic cylinder functions, see :mod:`symrot.closed_form.spin_up.motion`; with damping it
+has no closed form here.
+
+Angles are carried in turns, as pairs of doubles: errors of the attitude stay at a few 1e-16 however many turns have
+passed, with damping or without. C does it where there is a compiler (:file:`axial_at.c`), and hands back the samples
+of more than 1e10 turns of transient, or 1e30 in all; NumPy and Python's integers do those, and all without a compiler.
+
+Proof: ``derivations/driven_rotation.md``.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from typing import NoReturn
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from symrot.closed_form.arithmetic.double_double import two_product
+from symrot.closed_form.arithmetic.pairs import LARGEST, SMALLEST, Number, common, numbers, pair
+from symrot.closed_form.axial import compiled as axial_compiled
+from symrot.closed_form.axial.angle import Turning, fallen
+from symrot.closed_form.build import Floats, times_of
+from symrot.errors import InputError
+from symrot.formula import exact_numbers as number
+from symrot.scene.scene import Initial
+
+__all__ = ["AxialMotion", "motion", "starts"]
+
+_BITS = 200  # of a norm
+_LARGEST = 700.0  # the exponential of more leaves the doubles
+
+
+class AxialMotion:
+    """One motion. Times are counted from that of the initial state."""
+
+    regime = "steady"  # see symrot.closed_form.motion.REGIMES: no series of its own
+
+    def __init__(
+        self,
+        axis: int,
+        axial: tuple[Fraction, Fraction, Fraction],
+        rates: list[Fraction],
+        across: tuple[Fraction, Fraction],
+        attitude: tuple[list[float], list[float]],
+    ) -> None:
+        self._axis, (self._rate, self._push, self._decay) = axis, axial
+        self._across = rates[(axis + 1) % 3], rates[(axis + 2) % 3]
+        self._lag, self._decay_across = across
+        self._attitude, self._turned = attitude
+        self._fastest = float(max(self._decay, self._decay_across))
+        self._known: dict[Fraction, Turning] = {}
+        self._first = -_LARGEST / self._fastest if self._fastest else -math.inf
+        self._loops = (
+            axial_compiled.loops(axis, axial, rates, across, attitude, self._first)
+            if axial_compiled.available()
+            else None
+        )
+
+    @property
+    def has_attitude(self) -> bool:
+        """Whether the attitude is known in closed form: nothing turns across the axis."""
+        return not any(self._across)
+
+    def evaluate(
+        self, t: ArrayLike, omega: bool = True, quaternion: bool = True
+    ) -> tuple[Floats | None, Floats | None]:
+        """Return angular velocity and attitude at any times; as :meth:`.ExactMotion.evaluate`.
+
+        Raises
+        ------
+        InputError
+            If a time is not finite, or the damped angular velocity at it is beyond all doubles, or the attitude is
+            asked for and :attr:`has_attitude` is false.
+        """
+        if quaternion and not self.has_attitude:
+            raise InputError(
+                "the attitude of a body that is driven about its axis and turns across it too has another closed form, "
+                "that of symrot.closed_form.spin_up.motion, and none with damping"
+            )
+        times = times_of(t)
+        if self._loops is None:
+            if (times < self._first).any():
+                self._refuse(times)
+            return (self._rates(times) if omega else None), (self._quaternions(times) if quaternion else None)
+        rates = np.empty((len(times), 3)) if omega else None
+        attitudes = np.empty((len(times), 4)) if quaternion else None
+        status = self._loops(times, rates, attitudes)
+        if status == axial_compiled.EARLY:
+            self._refuse(times)
+        if status == axial_compiled.LOST:
+            for found, way in ((rates, self._rates), (attitudes, self._quaternions)):
+                if found is not None and (lost := np.isnan(found).any(axis=1)).any():
+                    found[lost] = way(times[lost])
+        return rates, attitudes
+
+    def _refuse(self, times: Floats) -> NoReturn:
+        raise InputError(
+            f"expected times after {self._first!r} s, before which the damped angular velocity was "
+            f"beyond all doubles, got {float(times.min())!r} s"
+        )
+
+    def _angle(self, t: Floats, share: Fraction) -> tuple[Floats, Floats]:
+        """Return sine and cosine of so many times the angle turned about the axis."""
+        turning = self._known.get(share)
+        if turning is None:
+            turning = self._known[share] = Turning(share, self._rate, self._push, self._decay)
+        part = 2.0 * np.pi * turning(t)
+        return np.sin(part), np.cos(part)
+
+    def _rates(self, t: Floats) -> Floats:
+        rates = np.zeros((len(t), 3))
+        rates[:, self._axis] = self._axial(t)
+        if not any(self._across):
+            return rates
+        left = np.exp(-float(self._decay_across) * t)
+        first, second = (float(w) * left for w in self._across)
+        sine, cosine = self._angle(t, self._lag)
+        rates[:, (self._axis + 1) % 3] = first * cosine - second * sine
+        rates[:, (self._axis + 2) % 3] = first * sine + second * cosine
+        return rates
+
+    def _axial(self, t: Floats) -> Floats:
+        """Return the angular velocity about the axis."""
+        rate, push, (high, low) = float(self._rate), float(self._push), pair(-self._decay)
+        found: Floats = rate + push * t
+        if not high:
+            return found
+        x, error = two_product(t, high)
+        left, lost = fallen(x, error + t * low)
+        found = rate * left + push * (lost / high)
+        early = x > 1.0
+        if early.any():  # where rate and push would all but cancel
+            final = self._push / self._decay
+            found[early] = float(final) + float(self._rate - final) * left[early]
+        return found
+
+    def _quaternions(self, t: Floats) -> Floats:
+        sine, cosine = self._angle(t, Fraction(1, 2))
+        attitudes: Floats = cosine[:, None] * np.array(self._attitude) + sine[:, None] * np.array(self._turned)
+        return attitudes
+
+
+def motion(
+    inertia: Sequence[Number],
+    axis: int,
+    torque: Number,
+    omega0: Sequence[Number],
+    quaternion0: Sequence[Number] = (1.0, 0.0, 0.0, 0.0),
+    damping: Number = 0.0,
+    damping_across: Number = 0.0,
+) -> AxialMotion:
+    """Return the motion of a body under a constant torque and linear damping about one principal axis.
+
+    Parameters
+    ----------
+    inertia : 3 numbers
+        Principal moments, kg m^2, positive.
+    axis : 0, 1 or 2
+    torque : number
+        N m, about the axis, fixed in the body.
+    omega0 : 3 numbers
+        rad/s; across the axis only where the body is symmetric about it.
+    quaternion0 : 4 numbers
+        Body to space, scalar first.
+    damping : number
+        N m s, of the torque ``-damping*omega`` about the axis.
+    damping_across : number
+        N m s, the same about every axis across it.
+
+    Raises
+    ------
+    InputError
+        If the body turns across the axis and is not symmetric about it, or a number is not of this domain.
+    """
+    return _Driven(inertia, axis, torque, damping, damping_across).motion(omega0, quaternion0)
+
+
+def starts(
+    inertia: Sequence[Number], axis: int, torque: Number, damping: Number = 0.0, damping_across: Number = 0.0
+) -> Callable[[Initial], AxialMotion]:
+    """Return what gives the motion from an initial state; see :func:`motion`."""
+    body = _Driven(inertia, axis, torque, damping, damping_across)
+    return lambda start: body.motion(start.omega_b, start.quaternion)
+
+
+class _Driven:
+    """A driven body with what its motions share: the quotients of its constants, exact."""
+
+    def __init__(
+        self, inertia: Sequence[Number], axis: int, torque: Number, damping: Number, damping_across: Number
+    ) -> None:
+        self._moments = moments = [Fraction(x) for x in numbers("inertia", inertia, 3, SMALLEST)]
+        given = numbers("torque and damping", [torque, damping, damping_across], 3)
+        push, drag, slowing = (Fraction(x) for x in given)
+        if not isinstance(axis, int) or axis not in (0, 1, 2):
+            raise InputError(f"expected an axis 0, 1 or 2, got {number.show(axis)}")
+        self._axis = axis
+        across, other, own = moments[axis - 2], moments[axis - 1], moments[axis]
+        self._symmetric = number.equal(across, other)
+        self._turning = (own - across) / across, slowing / across
+        self._driven = push / own, drag / own
+        if max(map(abs, (*self._driven, *self._turning))) > LARGEST:
+            raise InputError(
+                f"expected torque, damping and moments with quotients up to {LARGEST:g}, got moments "
+                f"{[float(x) for x in moments]} kg m^2, torque {float(push)!r} N m, damping {float(drag)!r} and "
+                f"{float(slowing)!r} N m s"
+            )
+
+    def motion(self, omega0: Sequence[Number], quaternion0: Sequence[Number]) -> AxialMotion:
+        """Return the motion from an initial state."""
+        axis, rates = self._axis, [Fraction(x) for x in numbers("omega", omega0, 3)]
+        attitude, _ = common(numbers("quaternion", quaternion0, 4))
+        square = sum([x * x for x in attitude])
+        if not square:
+            raise InputError(f"expected a quaternion that is not zero, got {list(quaternion0)}")
+        if (rates[axis - 2] or rates[axis - 1]) and not self._symmetric:
+            raise InputError(
+                "a body that turns across the driven axis must be symmetric about it, got moments "
+                f"{[float(x) for x in self._moments]} kg m^2 and omega {[float(x) for x in rates]} rad/s"
+            )
+        norm = math.isqrt(square << 2 * _BITS)
+        start = [(x << _BITS) / norm for x in attitude]
+        turned = [0.0] * 4  # the product of the start and the axis
+        turned[0], turned[axis + 1] = -start[axis + 1], start[0]
+        turned[(axis + 1) % 3 + 1], turned[(axis + 2) % 3 + 1] = start[(axis + 2) % 3 + 1], -start[(axis + 1) % 3 + 1]
+        return AxialMotion(axis, (rates[axis], *self._driven), rates, self._turning, (start, turned))

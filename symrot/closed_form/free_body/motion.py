@@ -1,0 +1,160 @@
+"""The free rigid body at any time, exactly: spherical, symmetric, asymmetric, about either outer axis, on separatrices.
+
+No stepping: each sample costs the same however far it lies from the start, forward or backward, and carries an error
+of a few 1e-16, since the constants of the motion are found to 31 digits and phases are carried in turns. The formulas
+are in :file:`free_body.c`.
+
+Source: Whittaker, Analytical Dynamics, 4th ed., section 69; van Zon & Schofield, J. Comput. Phys. 225 (2007) 145.
+
+Proof: ``derivations/free_body_attitude.md``, ``derivations/free_body_separatrix.md``.
+"""
+
+from collections.abc import Callable, Sequence
+
+from symrot.closed_form.arithmetic.frames import quaternion_of
+from symrot.closed_form.arithmetic.pairs import SMALLEST, Number, attitude, common, numbers, quotient, spread
+from symrot.closed_form.motion import ExactMotion, prepared
+from symrot.inertia.principal import Principal, principal_axes
+from symrot.scene.scene import Initial
+
+__all__ = ["NEGLIGIBLE", "Body", "Defect", "motion", "motion_of_tensor", "starts"]
+
+NEGLIGIBLE = 200  # bits: what is smaller is taken for zero, as in number.equal
+
+
+def motion(
+    inertia: Sequence[Number], omega0: Sequence[Number], quaternion0: Sequence[Number] = (1.0, 0.0, 0.0, 0.0)
+) -> ExactMotion:
+    """Return the motion of a free body from its initial state.
+
+    Parameters
+    ----------
+    inertia : 3 numbers
+        Principal moments, kg m^2, positive, in any order. Fractions, ints and floats are taken at their exact values.
+    omega0 : 3 numbers
+        Angular velocity along the principal axes, rad/s. Components below 1e-150 of the largest count as zero.
+    quaternion0 : 4 numbers
+        Attitude, body to space, scalar first; it is normalised.
+
+    Raises
+    ------
+    InputError
+        If a number is not of this domain.
+
+    Examples
+    --------
+    >>> omega, _ = motion((1, 1, 2), (0, 0, 1)).evaluate([0.0], quaternion=False)
+    >>> omega.tolist()
+    [[0.0, 0.0, 1.0]]
+    """
+    moments, rates = numbers("inertia", inertia, 3, SMALLEST), numbers("omega", omega0, 3)
+    start = attitude(numbers("quaternion", quaternion0, 4))
+    exact = None if all(isinstance(x, float) for x in (*moments, *rates)) else _differences(moments, rates)
+    return _prepared(spread(moments), spread(rates), start, exact, None)
+
+
+def motion_of_tensor(
+    inertia: Sequence[Sequence[Number]],
+    omega0: Sequence[Number],
+    quaternion0: Sequence[Number] = (1.0, 0.0, 0.0, 0.0),
+) -> ExactMotion:
+    """Return the motion of a free body whose axes need not be principal; omega and attitude refer to the given axes.
+
+    The principal axes are found to 110 digits and turn into the constants of the motion before anything is rounded to a
+    double. Arguments as :func:`motion`, but ``inertia`` is a symmetric 3x3 tensor (kg m^2).
+    """
+    return Body(principal_axes([list(row) for row in inertia])).motion(omega0, quaternion0)
+
+
+def starts(principal: Principal) -> Callable[[Initial], ExactMotion]:
+    """Return what gives the motion of a body from an initial state; see :func:`motion_of_tensor`."""
+    body = Body(principal)
+    return lambda start: body.motion(start.omega_b, start.quaternion)
+
+
+class Body:
+    """A free body with what its motions share: moments, their differences, and axes where they are not principal."""
+
+    def __init__(self, body: Principal) -> None:
+        integers, shared = common(body.moments)
+        self.moments, self.gaps, self.defect = spread(body.moments), _gaps(integers, shared), Defect(integers)
+        entries = [x for row in body.axes for x in row]
+        self._axes, self._unit = common(entries)
+        self._rates: tuple[Sequence[Number], list[float], list[float]] = (
+            (),
+            [],
+            [],
+        )  # the last, which the next may share
+        self._attitude: tuple[Sequence[Number], list[float]] = (), []
+        self.axes = None if body.given_axes else spread([*entries, *quaternion_of(body.axes)])
+
+    def along(self, omega0: Sequence[Number]) -> tuple[list[int], int]:
+        """Return angular velocity along the principal axes, as integers over one denominator."""
+        rates, shared = common(omega0)
+        largest = max(map(abs, rates)) * self._unit
+        if self.axes is not None:
+            axes = self._axes
+            rates = [sum([axes[3 * i + k] * rates[i] for i in range(3)]) for k in range(3)]
+            shared *= self._unit
+        return [0 if abs(x) << NEGLIGIBLE < largest else x for x in rates], shared
+
+    def motion(self, omega0: Sequence[Number], quaternion0: Sequence[Number]) -> ExactMotion:
+        """Return the motion from an initial state along the given axes."""
+        given, omega, exact = self._rates
+        if omega0 is not given:
+            rates, shared = self.along(numbers("omega", omega0, 3))
+            omega = [part for x in rates for part in quotient(x, shared)]
+            exact = [*self.gaps, *self.defect(rates)]
+            self._rates = omega0, omega, exact
+        attitude0, start = self._attitude
+        if quaternion0 is not attitude0:
+            start = attitude(numbers("quaternion", quaternion0, 4))
+            self._attitude = quaternion0, start
+        return _prepared(self.moments, omega, start, exact, self.axes)
+
+
+def _differences(moments: Sequence[Number], omega: Sequence[Number]) -> list[float]:
+    """Return I2 - I3, I3 - I1, I1 - I2 and the defect |L|^2 - 2 T I_mid, scaled as free_body.c takes it, as hi, lo."""
+    integers, shared = common(moments)
+    return [*_gaps(integers, shared), *Defect(integers)(common(omega)[0])]
+
+
+def _gaps(i: list[int], shared: int) -> list[float]:
+    found: list[float] = []
+    for k in range(3):
+        difference = i[(k + 1) % 3] - i[(k + 2) % 3]
+        if abs(difference) << NEGLIGIBLE < max(i[(k + 1) % 3], i[(k + 2) % 3]):
+            difference = 0
+        found += quotient(difference, shared)
+    return found
+
+
+class Defect:
+    """|L|^2 - 2 T I_mid over the square of the largest moment times the largest rate, for moments as integers."""
+
+    def __init__(self, i: list[int]) -> None:
+        middle = sorted(i)[1]
+        self._one, self._two, self._three = [moment * (moment - middle) for moment in i]
+        self._largest = max(i)
+
+    def __call__(self, w: list[int]) -> tuple[float, float]:
+        """Return it for rates as integers, as hi, lo."""
+        x, y, z = w
+        one, two, three = self._one * x * x, self._two * y * y, self._three * z * z
+        defect, largest = one + two + three, self._largest * max(abs(x), abs(y), abs(z))
+        if not defect or abs(defect) << NEGLIGIBLE < max(abs(one), abs(two), abs(three)):
+            return 0.0, 0.0
+        return quotient(defect, largest * largest)
+
+
+def _prepared(
+    moments: list[float], omega: list[float], start: list[float], exact: list[float] | None, axes: list[float] | None
+) -> ExactMotion:
+    return prepared(
+        "free_body",
+        (moments, omega, start, exact, axes),
+        lambda: (
+            "a free body has three positive moments of inertia (kg m^2), a finite angular velocity (rad/s) and a "
+            f"quaternion that is not zero; got moments {moments[::2]}, omega {omega[::2]}, quaternion {start[::2]}"
+        ),
+    )

@@ -1,0 +1,1 @@
+"""A free symmetric body with a rotor along its axis."""

@@ -1,0 +1,77 @@
+"""A free symmetric body with a constant rotor along its axis, at any time, exactly: two steady rotations.
+
+The formulas are in :file:`gyrostat.c`. Source: Landau & Lifshitz, Mechanics, 3rd ed., section 33, for no rotor.
+
+Proof: ``derivations/symmetric_gyrostat.md``.
+"""
+
+from collections.abc import Callable, Sequence
+
+from symrot.closed_form.arithmetic.pairs import SMALLEST, Number, attitude, numbers, same, spread
+from symrot.closed_form.motion import ExactMotion, prepared
+from symrot.errors import InputError
+from symrot.scene.scene import Initial
+
+__all__ = ["Gyrostat", "motion", "starts"]
+
+
+def motion(
+    inertia: Sequence[Number],
+    rotor: Sequence[Number],
+    omega0: Sequence[Number],
+    quaternion0: Sequence[Number] = (1.0, 0.0, 0.0, 0.0),
+) -> ExactMotion:
+    """Return the motion of a gyrostat whose rotor lies along the symmetry axis.
+
+    Parameters
+    ----------
+    inertia : 3 numbers
+        Principal moments, kg m^2, the rotor's mass included; the two across the rotor's axis are equal.
+    rotor : 3 numbers
+        Its angular momentum relative to the body, kg m^2/s, constant; along one principal axis, or zero.
+    omega0, quaternion0 : 3 and 4 numbers
+        Angular velocity along the principal axes, rad/s; attitude, body to space, scalar first.
+
+    Raises
+    ------
+    InputError
+        If the body is not symmetric about the rotor's axis, or a number is not of this domain.
+    """
+    return Gyrostat(inertia, rotor).motion(omega0, quaternion0)
+
+
+def starts(inertia: Sequence[Number], rotor: Sequence[Number]) -> Callable[[Initial], ExactMotion]:
+    """Return what gives the motion from an initial state; see :func:`motion`."""
+    body = Gyrostat(inertia, rotor)
+    return lambda start: body.motion(start.omega_b, start.quaternion)
+
+
+class Gyrostat:
+    """A gyrostat with what its motions share."""
+
+    def __init__(self, inertia: Sequence[Number], rotor: Sequence[Number]) -> None:
+        self._given = moments = numbers("inertia", inertia, 3, SMALLEST)
+        momentum = numbers("rotor", rotor, 3)
+        symmetric = [k for k in range(3) if same(moments[k - 2], moments[k - 1])]
+        fitting = [k for k in symmetric if not momentum[k - 2] and not momentum[k - 1]]
+        if not fitting:
+            raise InputError(
+                "a gyrostat moves in closed form here when its rotor lies along the axis of a symmetric body, got "
+                f"moments {[float(x) for x in moments]} kg m^2 and rotor {[float(x) for x in momentum]} kg m^2/s"
+            )
+        axis = fitting[0]
+        self.named = [(axis + 1) % 3, (axis + 2) % 3, axis]
+        self.moments, self.rotor = spread([moments[axis - 2], moments[axis]]), spread([momentum[axis]])
+
+    def motion(self, omega0: Sequence[Number], quaternion0: Sequence[Number]) -> ExactMotion:
+        """Return the motion from an initial state."""
+        rates, start = numbers("omega", omega0, 3), attitude(numbers("quaternion", quaternion0, 4))
+        named = spread([rates[k] for k in self.named])
+        return prepared(
+            "gyrostat",
+            (self.moments, self.rotor, named, start, [*map(float, self.named), 0.0]),
+            lambda: (
+                "a gyrostat has positive moments (kg m^2), a finite angular velocity (rad/s) and a quaternion that is "
+                f"not zero, got moments {[float(x) for x in self._given]}, omega {[float(x) for x in rates]}"
+            ),
+        )

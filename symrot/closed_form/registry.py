@@ -1,0 +1,208 @@
+"""Which scenes have an exact motion, and that motion: a table of forms, each with its condition."""
+
+from collections.abc import Callable
+from fractions import Fraction
+from typing import NamedTuple, Protocol
+
+from numpy.typing import ArrayLike
+
+from symrot.build import cache as library
+from symrot.closed_form.build import Floats
+from symrot.formula.exact_numbers import equal
+from symrot.planning.plan import ATTITUDE_QUANTITIES
+from symrot.scene.scene import Initial, Scene
+
+__all__ = ["FORMS", "Exact", "Form", "exact_form"]
+
+
+class Exact(Protocol):
+    """A motion known at any time; times count from the initial state, s."""
+
+    def evaluate(
+        self, t: ArrayLike, omega: bool = True, quaternion: bool = True
+    ) -> tuple[Floats | None, Floats | None]:
+        """Return angular velocity (n, 3) in the body and attitude (n, 4), what is not asked for as None."""
+
+
+Vector = tuple[Fraction, ...]
+Starts = Callable[[Initial], Exact]
+
+
+class Form(NamedTuple):
+    """A class of motions in closed form: what it is, which scenes have it, and how to make it."""
+
+    name: str
+    fits: Callable[[Scene], bool]
+    starts: Callable[[Scene], Starts]  # with all that motions from different starts share
+    library: str  # what it evaluates, see symrot.closed_form.build; "" for none
+    derivation: str  # what proves it
+
+    def motion(self, scene: Scene) -> Exact:
+        """Return the motion of a scene."""
+        return self.starts(scene)(scene.initial)
+
+    def begin(self) -> None:
+        """Start what compiles the form, if it must be compiled; other work can be done meanwhile."""
+        from symrot.closed_form.build import begin
+
+        if self.library and not library.missing():
+            begin(self.library)
+
+
+def _torques(scene: Scene) -> list[str]:
+    return [torque.kind for torque in scene.torques]
+
+
+def _moments(scene: Scene) -> tuple[Fraction, Fraction, Fraction]:
+    a, b, c = (scene.body.inertia[i][i] for i in range(3))
+    return a, b, c
+
+
+def _symmetric_about(scene: Scene, axis: int) -> bool:
+    across, other = (moment for i, moment in enumerate(_moments(scene)) if i != axis)
+    return scene.body.principal.given_axes and equal(across, other)
+
+
+def _only_axis(vector: tuple[Fraction, ...]) -> int | None:
+    """Return the axis that a vector lies along, if it does."""
+    along = [axis for axis, component in enumerate(vector) if component != 0]
+    return along[0] if len(along) == 1 else None
+
+
+def _is_free(scene: Scene) -> bool:
+    return not scene.torques
+
+
+def _free_body(scene: Scene) -> Starts:
+    from symrot.closed_form.free_body import motion as free_body
+
+    return free_body.starts(scene.body.principal)
+
+
+def _is_symmetric_top(scene: Scene) -> bool:
+    if _torques(scene) != ["gravity"]:
+        return False
+    axis = _only_axis(scene.torques[0].values["center_of_mass"])
+    return axis is not None and _symmetric_about(scene, axis)
+
+
+def _heavy_top(scene: Scene) -> Starts:
+    from symrot.closed_form.heavy_top import motion as heavy_top
+
+    given = scene.torques[0].values
+    return heavy_top.starts(_moments(scene), given["weight"], given["center_of_mass"], given["direction"])
+
+
+def _is_symmetric_gyrostat(scene: Scene) -> bool:
+    if _torques(scene) != ["rotor"]:
+        return False
+    axis = _only_axis(scene.torques[0].values["angular_momentum"])
+    return axis is not None and _symmetric_about(scene, axis)
+
+
+def _gyrostat(scene: Scene) -> Starts:
+    from symrot.closed_form.gyrostat import motion as gyrostat
+
+    return gyrostat.starts(_moments(scene), scene.torques[0].values["angular_momentum"])
+
+
+def _push_and_drag(scene: Scene) -> tuple[Vector, Vector]:
+    """Return the constant torque in the body and the coefficients of linear damping."""
+    found = []
+    for kind, field in (("constant_body", "torque"), ("damping", "linear")):
+        given = [torque.values[field] for torque in scene.torques if torque.kind == kind]
+        found.append(tuple(sum((vector[i] for vector in given), Fraction(0)) for i in range(3)))
+    return found[0], found[1]
+
+
+def _is_driven(scene: Scene) -> bool:
+    if not scene.torques or not set(_torques(scene)) <= {"constant_body", "damping"}:
+        return False
+    return scene.body.principal.given_axes and not any(torque.values.get("quadratic") for torque in scene.torques)
+
+
+def _driven_axis(scene: Scene) -> int | None:
+    """Return the principal axis that constant torques and linear damping keep a rotation to."""
+    if not _is_driven(scene):
+        return None
+    push, turning = _push_and_drag(scene)[0], _only_axis(scene.initial.omega_b)
+    axis = turning if turning is not None else _only_axis(push)
+    across = [*scene.initial.omega_b, *push]
+    return None if any(x for i, x in enumerate(across) if i % 3 != axis) else axis
+
+
+def _driven_symmetry_axis(scene: Scene) -> int | None:
+    """Return the symmetry axis that a constant torque acts about; undamped, where an attitude is asked for."""
+    if not _is_driven(scene):
+        return None
+    push, drag = _push_and_drag(scene)
+    if any(drag) and set(scene.output.quantities) & ATTITUDE_QUANTITIES:
+        return None
+    for axis in range(3):
+        if (
+            _symmetric_about(scene, axis)
+            and drag[axis - 2] == drag[axis - 1]
+            and not push[axis - 2]
+            and not push[axis - 1]
+        ):
+            return axis
+    return None
+
+
+def _axial(scene: Scene) -> Starts:
+    from symrot.closed_form.axial import motion as axial
+
+    axis = _driven_axis(scene)
+    axis = _driven_symmetry_axis(scene) if axis is None else axis
+    assert axis is not None
+    push, drag = _push_and_drag(scene)
+    return axial.starts(_moments(scene), axis, push[axis], drag[axis], drag[axis - 1])
+
+
+def _is_spun_up(scene: Scene) -> bool:
+    return bool(set(scene.output.quantities) & ATTITUDE_QUANTITIES) and _driven_symmetry_axis(scene) is not None
+
+
+def _spin_up(scene: Scene) -> Starts:
+    from symrot.closed_form.spin_up import motion as spin_up
+
+    axis = _driven_symmetry_axis(scene)
+    assert axis is not None
+    moments, torque = _moments(scene), _push_and_drag(scene)[0][axis]
+    return lambda start: spin_up.motion(moments, axis, torque, start.omega_b, start.quaternion)
+
+
+FORMS = (
+    Form("free body, theta functions", _is_free, _free_body, "free_body", "free_body_attitude"),
+    Form("symmetric heavy top, theta functions", _is_symmetric_top, _heavy_top, "heavy_top", "heavy_top_motion"),
+    Form(
+        "symmetric gyrostat, two steady rotations",
+        _is_symmetric_gyrostat,
+        _gyrostat,
+        "gyrostat",
+        "symmetric_gyrostat",
+    ),
+    Form("rotation about one axis", lambda scene: _driven_axis(scene) is not None, _axial, "axial", "driven_rotation"),
+    Form(
+        "symmetric body driven about its axis, parabolic cylinder functions",
+        _is_spun_up,
+        _spin_up,
+        "spin_up",
+        "driven_rotation",
+    ),
+    Form(
+        "symmetric body driven about its axis, angular velocity alone",
+        lambda scene: _driven_symmetry_axis(scene) is not None,
+        _axial,
+        "axial",
+        "driven_rotation",
+    ),
+)
+"""The motions in closed form, in the order in which they are looked for."""
+
+
+def exact_form(scene: Scene) -> Form | None:
+    """Return the form of a scene's exact motion, or None if it has none here."""
+    if scene.table is not None:  # samples act besides what the forms look at
+        return None
+    return next((form for form in FORMS if form.fits(scene)), None)

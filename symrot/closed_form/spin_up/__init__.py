@@ -1,0 +1,1 @@
+"""A symmetric body under a constant torque about its axis."""

@@ -1,0 +1,91 @@
+"""The compiled constants and loops of :mod:`symrot.closed_form.spin_up.motion`: :file:`spin_up.c`, :file:`spin_up_at.c`."""
+
+import ctypes
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from symrot.build import cache as library
+from symrot.build.address import address
+from symrot.closed_form.build import Floats, load
+from symrot.closed_form.spin_up import series as spin_up_series
+from symrot.closed_form.spin_up.resonance import DEGREE, PIECES
+from symrot.errors import CompilerError
+
+__all__ = ["Compiled", "available"]
+
+_COUNT = int(spin_up_series.NEAR) * PIECES
+_LACKING, _LOST = 1, 2  # what samples lack, see spin_up.h
+
+
+class _Functions(NamedTuple):
+    prepare: Any
+    evaluate: Any
+    record: Any
+    numbers: Any
+    limits: Any
+
+
+_bound: list[_Functions] = []
+
+
+def available() -> bool:
+    """Return whether the loops are loaded, or there is a compiler."""
+    return bool(_bound) or not library.missing()
+
+
+def _functions() -> _Functions:
+    if not _bound:
+        constants, samples = load("spin_up")
+        prepare, length = constants.symrot_spin_up_prepare, constants.symrot_spin_up_length
+        evaluate, pointer, size = samples.symrot_spin_up_at, ctypes.c_void_p, ctypes.c_ssize_t
+        length.restype, prepare.restype, evaluate.restype = size, ctypes.c_int, ctypes.c_int
+        prepare.argtypes = (ctypes.c_int, pointer, pointer, pointer, pointer)
+        evaluate.argtypes = (pointer, pointer, size, pointer, pointer, pointer)
+        double = ctypes.c_double
+        _bound.append(_Functions(prepare, evaluate, double * length(), double * 20, double * 3))
+    return _bound[0]
+
+
+class Compiled:
+    """The constants of one motion, found by C, and its loops over samples.
+
+    ``longest`` is the time, s, from which on pairs of doubles may not count the turns.
+
+    Parameters
+    ----------
+    axis : 0, 1 or 2
+    numbers : 20 floats
+        What ``symrot_spin_up_prepare`` takes.
+
+    Raises
+    ------
+    CompilerError
+        If the C compiler refuses the source, or breaks error-free arithmetic.
+    """
+
+    def __init__(self, axis: int, numbers: list[float]) -> None:
+        self._axis, self._numbers = axis, numbers
+        self._evaluate = _functions().evaluate
+        self._known = constants, _, _ = self._prepared(None)
+        self.longest: float = constants[1] / constants[0]
+
+    def _prepared(self, table: Floats | None) -> tuple[Any, int, Floats | None]:
+        """Return the constants, where they are, and the table, which is filled if there is one."""
+        functions = _functions()
+        constants = functions.record()
+        place = ctypes.addressof(constants)
+        limits = functions.limits(spin_up_series.NEAR, spin_up_series.WIDE, spin_up_series.MOST)
+        if functions.prepare(self._axis, functions.numbers(*self._numbers), limits, address(table), place):
+            raise CompilerError("the C compiler breaks error-free arithmetic: it must round every operation as written")
+        return constants, place, table
+
+    def fill(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> bool:
+        """Write samples where an array is given; return whether some are beyond :attr:`longest`, which are wrong."""
+        given = len(times), address(times), address(omega), address(quaternion)
+        _, place, table = self._known
+        status: int = self._evaluate(place, address(table), *given)
+        if status & _LACKING:
+            self._known = _, place, table = self._prepared(np.empty((_COUNT, DEGREE + 1, 4)))
+            status = self._evaluate(place, address(table), *given)
+        return bool(status & _LOST)

@@ -1,0 +1,146 @@
+"""Far from resonance, to 90 digits: rotations of the body between two times, in Fractions.
+
+In axes that turn with its transverse angular velocity the body turns at ``(W, 0, Omega)``, ``Omega = Omega0 + s t``.
+From ``Omega0`` on the integral of ``S = sqrt(Omega^2 + W^2)`` over a time t is
+
+    t/(2 D) (E sqrt(1 + z^2) + W^2 asinh(z)/z),  E = S0 S + Omega0 Omega,  D^2 = (W^2 + E)/2,  z = s t/(2 D):
+
+a sum of positive terms, which keeps its digits for every s.
+
+Proof: ``derivations/driven_rotation.md``.
+"""
+
+from collections.abc import Sequence
+from fractions import Fraction
+
+from symrot.closed_form.build import Floats
+from symrot.closed_form.spin_up.series import NEAR, Series
+from symrot.formula import exact_numbers as number
+
+__all__ = ["FIXED", "ONE", "Quaternion", "Sweep", "about_third", "conjugate", "fixed", "product", "rounded"]
+
+FIXED = 144
+"""Bits behind the point of unit quaternions, which are integers here: with Fractions they take four times as long."""
+
+Quaternion = tuple[int, int, int, int]
+
+ONE: Quaternion = (1 << FIXED, 0, 0, 0)
+
+_HALVINGS = 12  # of the argument of asinh, at least
+_SMALL = Fraction(1, 1 << _HALVINGS)
+
+
+def rounded(value: Fraction) -> Fraction:
+    """Return a number with a relative error below 2^-320, as an integer times a power of two."""
+    if not value:
+        return value
+    shift = number.BITS + 2 - value.numerator.bit_length() + value.denominator.bit_length()
+    if shift > 0:
+        return Fraction((value.numerator << shift) // value.denominator, 1 << shift)
+    return Fraction((value.numerator // value.denominator >> -shift) << -shift)
+
+
+def fixed(values: Sequence[Fraction]) -> Quaternion:
+    """Return a unit quaternion in integers."""
+    q0, q1, q2, q3 = ((x.numerator << FIXED) // x.denominator for x in values)
+    return q0, q1, q2, q3
+
+
+def product(a: Quaternion, *others: Quaternion) -> Quaternion:
+    """Return the product of unit quaternions."""
+    for b0, b1, b2, b3 in others:
+        a0, a1, a2, a3 = a
+        a = (
+            a0 * b0 - a1 * b1 - a2 * b2 - a3 * b3 >> FIXED,
+            a0 * b1 + a1 * b0 + a2 * b3 - a3 * b2 >> FIXED,
+            a0 * b2 - a1 * b3 + a2 * b0 + a3 * b1 >> FIXED,
+            a0 * b3 + a1 * b2 - a2 * b1 + a3 * b0 >> FIXED,
+        )
+    return a
+
+
+def conjugate(q: Quaternion) -> Quaternion:
+    """Return the inverse of a unit quaternion."""
+    return (q[0], -q[1], -q[2], -q[3])
+
+
+def about_third(angle: Fraction) -> Quaternion:
+    """Return the turn through an angle, rad, about the third axis."""
+    return fixed([number.cos(angle / 2), Fraction(0), Fraction(0), number.sin(angle / 2)])
+
+
+def _asinh_ratio(z: Fraction) -> Fraction:
+    """Return asinh(z)/z: the argument is halved until the series of atanh(z/sqrt(1 + z^2)) is short."""
+    if not z:
+        return Fraction(1)
+    halvings, small = 0, abs(z)
+    while small > _SMALL:
+        root = number.sqrt(rounded(1 + small * small))
+        small = rounded(small / number.sqrt(2 * (1 + root)))
+        halvings += 1
+    t = rounded(small / number.sqrt(rounded(1 + small * small)))
+    square, total = rounded(t * t), Fraction(0)
+    for k in range(number.BITS // (2 * _HALVINGS) + 2, -1, -1):
+        total = rounded(total * square + Fraction(1, 2 * k + 1))
+    return rounded(total * t * (1 << halvings) / abs(z))
+
+
+def _polynomial(coefficients: Floats, y: float) -> float:
+    total: float = 0.0
+    for c in reversed(coefficients.tolist()):
+        total = total * y + c
+    return total
+
+
+class Sweep:
+    """The turning axes of a motion: W, s and the series of its kappa^2 = W^2/s."""
+
+    def __init__(self, across: Fraction, s: Fraction, series: Series) -> None:
+        self.across, self.s, self.series = across, s, series
+        self._square = rounded(across * across)
+        self.unit = self._square + (0 if series.wide else Fraction(NEAR) ** 2 * s)
+
+    def speed(self, omega: Fraction) -> Fraction:
+        """Return S, rad/s."""
+        return number.sqrt(rounded(omega * omega + self._square))
+
+    def _places(self, omega: Fraction) -> tuple[float, float, float]:
+        """Return sine and cosine of theta, and y."""
+        speed = self.speed(omega)
+        return float(self.across / speed), float(omega / speed), float(rounded(self.unit / (speed * speed)))
+
+    def delta(self, omega: Fraction) -> float:
+        """Return delta, rad."""
+        _, cosine, y = self._places(omega)
+        return cosine * _polynomial(self.series.e, y)
+
+    def axes(self, omega: Fraction) -> Quaternion:
+        """Return the turn that takes the third axis to the vector at rest that follows the rotation."""
+        sine, cosine, y = self._places(omega)
+        g, c = _polynomial(self.series.g, y), _polynomial(self.series.c, y)
+        m1, m2 = Fraction(sine * cosine * y * y * g), Fraction(sine * y * c)
+        m3 = 1 + number.sqrt(1 - m1 * m1 - m2 * m2)
+        larger = number.sqrt(rounded((1 + abs(omega) / self.speed(omega)) / 2))
+        smaller = rounded(self.across / (2 * larger * self.speed(omega)))
+        half = (larger, smaller) if omega >= 0 else (smaller, larger)
+        turn = fixed([half[0], Fraction(0), half[1], Fraction(0)])
+        return product(turn, fixed(number.unit((m3, -m2, m1, Fraction(0)))))
+
+    def angle(self, start: Fraction, time: Fraction) -> Fraction:
+        """Return the angle that the body turns about that vector within a time, from Omega = start."""
+        omega = start + self.s * time
+        here, there, product = self.speed(omega), self.speed(start), rounded(omega * start)
+        if product >= 0:
+            together = here * there + product
+        else:
+            together = self._square * (self._square + omega * omega + start * start) / (here * there - product)
+        middle = number.sqrt(rounded((self._square + together) / 2))
+        half = rounded(time / (2 * middle))
+        z = rounded(self.s * half)
+        steady = half * (number.sqrt(rounded(1 + z * z)) * together + self._square * _asinh_ratio(z))
+        return rounded(steady) + Fraction(self.delta(omega)) - Fraction(self.delta(start))
+
+    def rotation(self, start: Fraction, time: Fraction) -> Quaternion:
+        """Return the rotation of the body within a time, seen from it, all of which is far."""
+        end = conjugate(self.axes(start + self.s * time))
+        return product(self.axes(start), about_third(self.angle(start, time)), end)

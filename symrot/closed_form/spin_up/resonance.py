@@ -1,0 +1,88 @@
+"""The attitude near resonance: Taylor's series at evenly spaced places, in integers, rounded once.
+
+A body at rest in the axes of space at ``x = 0`` that turns at ``(kappa, 0, x)`` has the attitude ``(alpha, beta)``,
+``alpha = q0 + i q3``, ``beta = q1 + i q2``, with
+
+    2 alpha' = i x alpha - kappa beta,  2 beta' = kappa alpha - i x beta,
+
+parabolic cylinder functions of x. For ``-x`` q1 and q2 change their signs. At a place the equations give each
+coefficient from the two before; every series begins where the one before ends.
+
+Proof: ``derivations/driven_rotation.md``.
+"""
+
+from fractions import Fraction
+
+import numpy as np
+
+from symrot.closed_form.build import Floats
+from symrot.closed_form.spin_up.off_resonance import FIXED, Quaternion
+from symrot.closed_form.spin_up.series import NEAR
+
+__all__ = ["DEGREE", "PIECES", "Near"]
+
+PIECES = 4
+"""In a unit of x."""
+
+DEGREE = 19
+"""Of the polynomials: (r/2)^20/20!/8^20 < 1e-20 for r < 13.5."""
+
+_TERMS = 34  # of a series in integers
+
+_Spinor = tuple[int, int, int, int]  # q0, q3, q1, q2
+
+
+class Near:
+    """The attitudes of one kappa for \\|x\\| <= NEAR."""
+
+    def __init__(self, kappa: Fraction) -> None:
+        self._kappa = self._fixed(kappa)
+        half = Fraction(1, 2 * PIECES)
+        spinor = self._sum(self._coefficients((1 << FIXED, 0, 0, 0), Fraction(0)), half)
+        self._series: list[list[_Spinor]] = []
+        for piece in range(int(NEAR) * PIECES):
+            self._series.append(self._coefficients(spinor, (2 * piece + 1) * half))
+            spinor = self._sum(self._series[-1], 2 * half)
+
+    @staticmethod
+    def _fixed(value: Fraction) -> int:
+        return (value.numerator << FIXED) // value.denominator
+
+    def _coefficients(self, spinor: _Spinor, place: Fraction) -> list[_Spinor]:
+        """Return the series about a place, whose denominator is a power of two."""
+        top, shift, kappa = place.numerator, place.denominator.bit_length() - 1, self._kappa
+        found: list[_Spinor] = [spinor]
+        before: _Spinor = (0, 0, 0, 0)
+        for n in range(1, _TERMS):
+            q0, q3, q1, q2 = now = found[-1]
+            p0, p3, p1, p2 = before
+            found.append(
+                (
+                    (-(q3 * top >> shift) - p3 - (kappa * q1 >> FIXED)) // (2 * n),
+                    ((q0 * top >> shift) + p0 - (kappa * q2 >> FIXED)) // (2 * n),
+                    ((q2 * top >> shift) + p2 + (kappa * q0 >> FIXED)) // (2 * n),
+                    (-(q1 * top >> shift) - p1 + (kappa * q3 >> FIXED)) // (2 * n),
+                )
+            )
+            before = now
+        return found
+
+    def _sum(self, series: list[_Spinor], step: Fraction) -> _Spinor:
+        x, total = self._fixed(step), [0, 0, 0, 0]
+        for term in reversed(series):
+            total = [(value * x >> FIXED) + more for value, more in zip(total, term, strict=True)]
+        return total[0], total[1], total[2], total[3]
+
+    def quaternion(self, x: Fraction) -> Quaternion:
+        """Return the attitude at one x, to 1e-30."""
+        piece = min(int(abs(x) * PIECES), len(self._series) - 1)
+        q0, q3, q1, q2 = self._sum(self._series[piece], abs(x) - Fraction(2 * piece + 1, 2 * PIECES))
+        sign = -1 if x < 0 else 1
+        return q0, sign * q1, sign * q2, q3
+
+    def table(self) -> Floats:
+        """Return the coefficients, by piece, power of the distance from its middle, and component of the quaternion."""
+        one = 1 << FIXED
+        return np.array(
+            [[[q0 / one, q1 / one, q2 / one, q3 / one] for q0, q3, q1, q2 in s[: DEGREE + 1]] for s in self._series]
+        )

@@ -1,0 +1,111 @@
+"""A vector at rest in space, seen from a body far from resonance: asymptotic series in the inverse of its rate.
+
+In axes in which a body turns at ``(kappa, 0, x)``, ``x`` the time, a vector ``n`` at rest obeys ``n' = n x (kappa, 0,
+x)``. One such vector follows the axis of rotation. With ``r^2 = x^2 + kappa^2``, ``v = 1/r^2`` and
+
+    n1 = (kappa/r) a(v),  n2 = (kappa/r) v c(v),  n3 = (x/r) b(v),
+
+the equation becomes ``c = -(a + 2 v a')``, ``b - a = -v^2 (3 c + 2 v c')``, ``2 (1 - kappa^2 v) b' = kappa^2 (b + c)``:
+coefficients follow one from another. They are ordered by powers of ``v^2``; each order is a polynomial in
+``kappa^2 v``, at most 1. The series does not converge, yet beyond :data:`NEAR`, or for more than :data:`WIDE`, its
+terms fall below 1e-18 before they grow.
+
+What is left of ``n`` in axes whose third is the axis of rotation is ``m = (kappa/r) (x/r v^2 g, v c, ..)``. The angle
+about it exceeds the integral of ``r`` by ``delta = (x/r) e(v)``.
+
+Source: DLMF 12.9 and 12.10 for the functions of which these are the modulus and the phase. Proof:
+``derivations/driven_rotation.md``.
+"""
+
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+
+from symrot.closed_form.build import Floats
+
+__all__ = ["DEGREE", "MOST", "NEAR", "WIDE", "Series", "series"]
+
+NEAR = 10.0
+"""From this x on the series holds for every kappa."""
+
+WIDE = 9.0
+"""From this kappa on the series holds for every x."""
+
+MOST = 1e13
+"""rad, from here on pairs of doubles would not count a phase."""
+
+DEGREE = 12
+"""Of the polynomials that stand for the series."""
+
+_ORDERS = 14  # powers of v^2
+_SMALL = 0.2  # kappa^2/radius2: below it the angle is counted from infinity
+_TERMS = 32  # of it, powers of kappa^2 v <= _SMALL
+
+
+class Series(NamedTuple):
+    """The functions of a motion as polynomials in ``y = v radius2``, 0 <= y <= 1, lowest power first.
+
+    ``radius2`` is kappa^2 where the series holds for every x, ``wide``, and the least r^2 elsewhere.
+    """
+
+    wide: bool
+    g: Floats  # times v^2 at y = 1
+    c: Floats  # times v at y = 1
+    e: Floats  # rad
+
+
+@cache
+def _nodes() -> tuple[Floats, Floats]:
+    """Return Chebyshev's points between 0 and 1, and their powers, as many as a series has."""
+    y = 0.5 - 0.5 * np.cos(np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1))
+    return y, np.vander(y, 3 * _ORDERS + 1, increasing=True)
+
+
+def _first(share: float, v: float) -> Floats:
+    """Return the coefficients of a by the power of y; ``share`` is kappa^2/radius2, v = 1/radius2."""
+    order, total = {0: 1.0}, [0.0] * (3 * _ORDERS + 1)
+    total[0] = 1.0
+    for _ in range(_ORDERS):
+        found: dict[int, float] = {}
+        for power, value in order.items():
+            j = power + 2
+            gap = (2 * j - 1) * (2 * j - 3) * v * v * value  # b_j - a_j
+            found[j] = found.get(j, 0.0) - gap
+            found[j + 1] = found.get(j + 1, 0.0) + share * (2 * j + 1) * gap / (2 * j + 2)
+        for power, value in found.items():
+            total[power] += value
+        order = found
+    return np.array(total)
+
+
+def _angle(share: float, v: float, h: Floats) -> Floats:
+    """Return e at the nodes from the coefficients of h, where delta' = kappa^2 v^(5/2) h."""
+    powers = _nodes()[1]
+    if share >= _SMALL:  # from x = 0
+        e = np.zeros(len(h) + 2)
+        for j in range(len(h), -1, -1):
+            e[j] = ((v * h[j - 1] if j else 0.0) + 2 * (j + 1) * e[j + 1] / share) / (1 + 2 * j)
+    else:  # from infinity
+        e = np.zeros(_TERMS)
+        for j in range(_TERMS - 1):
+            e[j + 1] = share * ((1 + 2 * j) * e[j] - (v * h[j - 1] if 0 < j <= len(h) else 0.0)) / (2 * j + 2)
+    angle: Floats = powers[:, : len(e)] @ e
+    return angle
+
+
+def series(kappa2: float, inverse: float) -> Series:
+    """Return the series of a motion from kappa^2 and its inverse, which may be zero and the other infinite."""
+    wide = kappa2 >= WIDE * WIDE
+    radius2 = kappa2 if wide else NEAR * NEAR + kappa2
+    share, v = (1.0, inverse) if wide else (kappa2 / radius2, 1.0 / radius2)
+    y, powers = _nodes()
+    square = powers[:, : DEGREE + 1]
+    a, twice = _first(share, v), 2.0 * np.arange(powers.shape[1])
+    g, c = -powers @ ((twice + 3.0) * (twice + 1.0) * a), -powers @ ((twice + 1.0) * a)
+    first2 = share * y * (1.0 - share * y) * (v * y) ** 4 * g * g
+    second2 = share * y * (v * y) ** 2 * c * c
+    h = np.asarray(np.linalg.solve(square, -c / (1.0 + np.sqrt(1.0 - first2 - second2))), np.float64)
+    e = _angle(share, v, h)
+    kept = np.asarray(np.linalg.solve(square, np.stack([v * v * g, v * c, e], axis=1)), np.float64)
+    return Series(wide, kept[:, 0], kept[:, 1], kept[:, 2])

@@ -1,0 +1,1 @@
+"""The enclosure of a right-hand side: which terms it needs, and its C."""

@@ -1,0 +1,107 @@
+"""Print the enclosure of a right-hand side as C: how far its enclosed terms deviate from a constant on discs.
+
+The text stands between :file:`propagation/enclosures/disc.h`, which has the rules, and a stepper. Standard library only.
+"""
+
+from collections.abc import Mapping, Sequence
+
+from symrot.codegen.enclosure.terms import LOW_ORDER, REACHES, Enclosure, enclosure, value_operands
+from symrot.codegen.printing.c_source import c_expression
+from symrot.codegen.taylor.recurrences import Recurrences, recurrences
+from symrot.errors import InputError
+from symrot.formula.program import Program
+from symrot.formula.tree import Node, rename
+
+__all__ = ["enclosure_definitions", "enclosure_source"]
+
+
+def enclosure_source(program: Program, order: int, edges: Sequence[int]) -> str:
+    """Return the C text of the enclosure of a right-hand side; arguments as :func:`enclosure_definitions`.
+
+    A right-hand side without Taylor series (abs) has none.
+    """
+    try:
+        return enclosure_definitions(enclosure(recurrences(program)), order, edges)
+    except InputError:
+        return enclosure_definitions(None, order, edges)
+
+
+def enclosure_definitions(found: Enclosure | None, order: int, edges: Sequence[int]) -> str:
+    """Return the C text of an enclosure: the function ``symrot_deviations`` and its tables.
+
+    Parameters
+    ----------
+    found : Enclosure or None
+        None for a right-hand side that needs no enclosure.
+    order : int
+        Order N of the polynomials that follow the states, which the table of radii is for: a step of size h misses at
+        most ``h D reach^-N/((N + 1)(1 - 1/reach))`` where the rates deviate by at most D on a disc of ``reach`` steps.
+    edges : sequence of int
+        Edges of the blocks of states whose errors are judged apart, from 0 to the number of states.
+    """
+    if found is None:
+        return "#define SYMROT_ENCLOSED 0\n#define SYMROT_DEPENDS 0\n"
+    system = found.system
+    places = {name: f"p[{i}]" for i, name in enumerate(system.parameters)}
+    lines = [f"const symrot_disc d{i} = {_disc(system, i, places)};" for i in found.series]
+    for state, own in enumerate(found.terms):
+        parts = [f"{_size(weight, places)}d{operand}.r" for weight, operand in own]
+        lines.append(f"deviation[{state}] = {' + '.join(parts) or '0.0'};")
+    used = ", ".join("1" if state in found.states else "0" for state in range(len(system.states)))
+    radii = REACHES[order < LOW_ORDER]
+    reaches = ", ".join(f"{{{r!r}, {r**-order / ((order + 1) * (1 - 1 / r))!r}}}" for r in radii)
+    return "\n".join([
+        "#define SYMROT_ENCLOSED 1",
+        f"#define SYMROT_DEPENDS {int(bool(found.states))}",
+        f"#define SYMROT_ENCLOSED_ORDER {order}",
+        f"#define SYMROT_REACHES {len(radii)}",
+        f"#define SYMROT_BORDERS {len(edges) - 1}",
+        f"static const int symrot_borders[] = {{{', '.join(map(str, edges))}}};",
+        f"static const double symrot_reaches[][2] = {{{reaches}}};  /* in steps; the share of a deviation missed */",
+        f"static const int symrot_encloses[] = {{{used}}};  /* whether the enclosed terms depend on a state */",
+        "",
+        "/* Bound how far the enclosed terms of each rate deviate from a constant for times within `reach` of t and",
+        " * states within `radius` of y. */",
+        "static void symrot_deviations(double t, double reach, const double *y, const double *radius, const double *p,",
+        "    double *deviation)",
+        "{",
+        *(f"    (void){name};" for name in ("t", "reach", "y", "radius", "p")),
+        *(f"    {line}" for line in lines),
+        "}",
+        "",
+    ])  # fmt: skip
+
+
+def _size(weight: Node, places: Mapping[str, str]) -> str:
+    return "" if weight[0] == "number" and abs(weight[1]) == 1 else f"fabs({_constant(weight, places)})*"
+
+
+def _constant(node: Node, places: Mapping[str, str]) -> str:
+    return c_expression(rename(node, places))
+
+
+def _disc(system: Recurrences, number: int, places: Mapping[str, str]) -> str:
+    """Return the disc of one series as C."""
+    series = system.series[number]
+    own = [f"d{operand}" for operand in value_operands(series)]
+    if series.rule == "state":
+        return f"symrot_disc_of(y[{series.number}], radius[{series.number}])"
+    if series.rule == "time":
+        return "symrot_disc_of(t, reach)"
+    if series.rule == "clock":
+        rate, offset = (None if weight is None else _constant(weight, places) for weight in series.weights)
+        angle = f"({rate})*t" + (f" + ({offset})" if offset else "")
+        return f"symrot_disc_{series.function}(symrot_disc_of({angle}, fabs({rate})*reach))"
+    if series.rule == "sum":
+        *weights, constant = series.weights
+        centres = [f"({_constant(w, places)})*{d}.c" for d, w in zip(own, weights, strict=True) if w is not None]
+        radii = [f"{_size(w, places)}{d}.r" for d, w in zip(own, weights, strict=True) if w is not None]
+        centres += [f"({_constant(constant, places)})"] if constant is not None else []
+        return f"symrot_disc_of({' + '.join(centres) or '0.0'}, {' + '.join(radii) or '0.0'})"
+    if series.rule == "product":
+        return f"symrot_disc_square({own[0]})" if len(set(own)) == 1 else f"symrot_disc_product({', '.join(own)})"
+    if series.rule == "quotient":
+        inverse = f"symrot_disc_inverse({own[-1]})"
+        return f"symrot_disc_product({own[0]}, {inverse})" if len(own) > 1 else inverse
+    name = "ln" if series.function == "log" else series.function
+    return f"symrot_disc_{name}({', '.join(own)})"

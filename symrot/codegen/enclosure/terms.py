@@ -1,0 +1,83 @@
+"""What a step of a right-hand side may miss: the parts of it whose size must be enclosed.
+
+A stepper sees a right-hand side where it evaluates it. A pulse, a switch or a pole between two such places leaves no
+trace there, but the formula tells: evaluated over complex discs (:file:`propagation/enclosures/disc.h`), it bounds all Taylor
+coefficients that a step leaves out.
+
+Polynomials of low degree in the states, in time and in sine and cosine of ``a*t + b`` need no enclosure: they have no
+feature narrower than their coefficients show. So a rate is split as its terms stand, and only the others are enclosed;
+a right-hand side without such terms costs nothing.
+
+Standard library only.
+"""
+
+from typing import NamedTuple
+
+from symrot.codegen.taylor.recurrences import Recurrences, Series
+from symrot.formula.tree import Node
+
+__all__ = ["LOW_ORDER", "REACHES", "Enclosure", "enclosure", "value_operands"]
+
+HIGHEST_DEGREE = 6  # of a polynomial that hides nothing: cos(t)**6 is as broad as a pulse of half a radian
+BEYOND = HIGHEST_DEGREE + 1
+REACHES = {  # radii of the discs, in steps, by whether the order is low: a disc must be wide where few orders are known
+    False: (1.3, 1.8, 2.6, 3.6, 5.0, 7.0, 10.0, 16.0),
+    True: (1.5, 2.5, 4.0, 7.0, 12.0, 20.0, 40.0, 80.0),
+}
+LOW_ORDER = 10
+BOUNDED = ("sin", "cos")  # functions of a*t + b whose size their coefficients show at every time
+
+
+class Enclosure(NamedTuple):
+    """The terms of the rates of a system that must be enclosed.
+
+    ``series`` lists the numbers of the series they are made of, each after those it needs; ``terms`` holds for each
+    rate (weight, series) of its enclosed terms; ``states`` the numbers of the states on which they depend.
+    """
+
+    system: Recurrences
+    series: tuple[int, ...]
+    terms: tuple[tuple[tuple[Node, int], ...], ...]
+    states: tuple[int, ...]
+
+
+def value_operands(series: Series) -> tuple[int, ...]:
+    """Return the series whose values give the value of a series: not those that only drive its coefficients."""
+    first = {"driven": 2, "primitive": 3}.get(series.rule, 0)
+    return () if series.rule == "clock" else series.operands[first:]
+
+
+def enclosure(system: Recurrences) -> Enclosure | None:
+    """Return what must be enclosed of the rates of a system, or None if nothing must."""
+    degrees: list[int] = []
+    for series in system.series:
+        degrees.append(min(_degree(series, degrees), BEYOND))
+    terms = tuple(
+        tuple(
+            (weight, operand)
+            for operand, weight in zip(rate.operands, rate.weights, strict=False)
+            if weight is not None and degrees[operand] == BEYOND
+        )
+        for rate in system.rates
+    )
+    if not any(terms):
+        return None
+    needed: set[int] = set()
+    waiting = [operand for own in terms for _, operand in own]
+    while waiting:
+        number = waiting.pop()
+        if number not in needed:
+            needed.add(number)
+            waiting += value_operands(system.series[number])
+    states = {system.series[i].number for i in needed if system.series[i].rule == "state"}
+    return Enclosure(system, tuple(sorted(needed)), terms, tuple(sorted(states)))
+
+
+def _degree(series: Series, degrees: list[int]) -> int:
+    """Return the degree of a series as a polynomial, BEYOND for what is none."""
+    if series.rule in ("state", "time"):
+        return 1
+    if series.rule == "clock":
+        return 1 if series.function in BOUNDED else BEYOND
+    own = [degrees[operand] for operand in value_operands(series)] if series.rule in ("sum", "product") else [BEYOND]
+    return sum(own) if series.rule == "product" else max(own, default=0)

@@ -1,0 +1,1 @@
+"""From formulas of SymPy to straight-line programs with few operations."""

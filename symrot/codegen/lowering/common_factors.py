@@ -1,0 +1,130 @@
+"""Factors and sums that formulas have in common, each computed once."""
+
+from collections import Counter
+from collections.abc import Callable, Iterable
+from itertools import combinations, combinations_with_replacement
+from typing import Any
+
+from symrot.codegen.lowering.constants import Tree
+
+__all__ = ["Share"]
+
+
+class Share:
+    """Finds common factors and common sums, most frequent pair first, ties by order of appearance."""
+
+    def __init__(self) -> None:
+        self.identity: dict[Tree, int] = {}
+        self.nodes: list[tuple[Any, ...]] = []  # over identities
+
+    def intern(self, node: Tree) -> int:
+        """Return the identity of a node over identities: equal nodes have one."""
+        if node not in self.identity:
+            self.identity[node] = len(self.nodes)
+            self.nodes.append(node)
+        return self.identity[node]
+
+    def add(self, tree: Tree) -> int:
+        """Return the identity of a tree, whose parts get theirs."""
+        kind = tree[0]
+        if kind in ("sym", "num"):
+            return self.intern(tree)
+        if kind == "call":
+            return self.intern(("call", tree[1], tuple(self.add(argument) for argument in tree[2])))
+        if kind == "mul":
+            factors, divisors = (tuple(sorted(self.add(item) for item in part)) for part in tree[1:])
+            return self.intern(("mul", factors, divisors))
+        return self.intern(("add", tuple(sorted(((self.add(item), sign) for sign, item in tree[1])))))
+
+    def extract(self) -> None:
+        """Replace the most frequent pair by a node of its own until none occurs twice."""
+        for kind, pairs, swap in (
+            ("mul", self._quotient_pairs, self._swap_quotient),
+            ("mul", self._reciprocals, self._swap_reciprocal),
+            ("mul", self._product_pairs, self._swap_product),
+            ("add", self._sum_pairs, self._swap_sum),
+        ):
+            while True:
+                count: Counter[Any] = Counter()
+                for node in self.nodes:
+                    if node[0] == kind:
+                        count.update(set(pairs(node)))
+                best = max(count, key=lambda pair: (count[pair], self._is_variable(pair), _negated(pair)), default=None)
+                if best is None or count[best] < 2:
+                    break
+                self._replace(kind, best, swap)
+
+    def _quotient_pairs(self, node: tuple[Any, ...]) -> Iterable[Any]:
+        return ((("mul", (a,), (b,))) for a in set(node[1]) for b in set(node[2]))
+
+    def _reciprocals(self, node: tuple[Any, ...]) -> Iterable[Any]:
+        return (("mul", (), (b,)) for b in set(node[2]) if node[1:] != ((), (b,)))
+
+    def _product_pairs(self, node: tuple[Any, ...]) -> Iterable[Any]:
+        for part in node[1:]:
+            held = Counter(part)
+            for a, b in combinations_with_replacement(sorted(held), 2):
+                if a != b or held[a] > 1:
+                    yield "mul", (a, b), ()
+
+    def _sum_pairs(self, node: tuple[Any, ...]) -> Iterable[Any]:
+        for (a, s), (b, r) in combinations(node[1], 2):
+            yield "add", ((a, 1), (b, s * r))
+
+    def _is_variable(self, pair: Any) -> bool:
+        """Whether a pair holds no constant: such pairs are shared first."""
+        return pair[0] == "add" or not any(self.nodes[i][0] == "num" for part in pair[1:] for i in part)
+
+    def _replace(self, kind: str, pair: tuple[Any, ...], swap: Callable[..., tuple[Any, ...]]) -> None:
+        """Give the pair an identity of its own, an existing one if there is, and put it wherever the pair stands."""
+        if pair not in self.nodes:
+            self.nodes.append(pair)
+        new = self.nodes.index(pair)
+        for index, node in enumerate(self.nodes):
+            if index != new and node[0] == kind:
+                self.nodes[index] = swap(node, pair, new)
+
+    @staticmethod
+    def _swap_quotient(node: tuple[Any, ...], pair: tuple[Any, ...], new: int) -> tuple[Any, ...]:
+        (a,), (b,) = pair[1:]
+        if a not in node[1] or b not in node[2]:
+            return node
+        return "mul", tuple(sorted((*_without(node[1], a), new))), _without(node[2], b)
+
+    @staticmethod
+    def _swap_reciprocal(node: tuple[Any, ...], pair: tuple[Any, ...], new: int) -> tuple[Any, ...]:
+        (b,) = pair[2]
+        if b not in node[2]:
+            return node
+        return "mul", tuple(sorted((*node[1], new))), _without(node[2], b)
+
+    @staticmethod
+    def _swap_product(node: tuple[Any, ...], pair: tuple[Any, ...], new: int) -> tuple[Any, ...]:
+        wanted = Counter(pair[1])
+        parts = []
+        for part in node[1:]:
+            held = Counter(part)
+            while all(held[i] >= n for i, n in wanted.items()):
+                held = held - wanted
+                held[new] += 1
+            parts.append(tuple(sorted(held.elements())))
+        return "mul", *parts
+
+    @staticmethod
+    def _swap_sum(node: tuple[Any, ...], pair: tuple[Any, ...], new: int) -> tuple[Any, ...]:
+        (a, _), (b, relative) = pair[1]
+        signs = dict(node[1])
+        if a not in signs or b not in signs or signs[a] * signs[b] != relative:
+            return node
+        rest = (item for item in node[1] if item[0] not in (a, b))
+        return "add", tuple(sorted((*rest, (new, signs[a]))))
+
+
+def _without(part: tuple[int, ...], item: int) -> tuple[int, ...]:
+    where = part.index(item)
+    return part[:where] + part[where + 1 :]
+
+
+def _negated(pair: Any) -> Any:
+    """Order pairs so that `max` takes the one that appeared first."""
+    return tuple(_negated(item) if isinstance(item, tuple) else -item for item in pair if not isinstance(item, str))

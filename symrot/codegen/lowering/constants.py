@@ -1,0 +1,196 @@
+"""Constants of an expression, gathered and hoisted: whatever depends on no variable is one number, computed once."""
+
+from collections.abc import Iterable, Sequence
+from fractions import Fraction
+from typing import Any
+
+from sympy import Expr, Integer, Mul, S, Symbol, default_sort_key
+
+from symrot.codegen.lowering.formulas import function_name
+from symrot.errors import InputError
+
+__all__ = ["HOISTED", "Gather", "Tree"]
+
+Tree = tuple[Any, ...]
+"""sym name | num Fraction | mul factors divisors | add (sign, tree)... | call name args"""
+
+HOISTED = "$"
+"""First letter of a constant that has no number yet."""
+
+LARGEST_POWER = 64  # of what is written as one product
+ONE: Tree = ("num", Fraction(1))
+
+
+class Gather:
+    """Splits every expression into constant times core, hoisting what does not depend on the variables.
+
+    Parameters
+    ----------
+    variables : iterable of Symbol
+        What changes with time or state.
+    flat : bool
+        Whether the terms of sums inside a sum join its own.
+    """
+
+    def __init__(self, variables: Iterable[Symbol], flat: bool = False) -> None:
+        self.variables, self.flat = frozenset(variables), flat
+        self.hoisted: dict[Expr, str] = {}
+        self.memo: dict[Expr, tuple[Expr, Tree]] = {}
+
+    def is_variable(self, expr: Expr) -> bool:
+        """Return whether an expression holds a variable."""
+        return bool(expr.free_symbols & self.variables)
+
+    def constant(self, value: Expr) -> tuple[int, Tree | None]:
+        """Return sign and atom of a constant; the atom of one is None."""
+        sign, value = _oriented(value)
+        if value == 1:
+            return sign, None
+        if value.is_Rational:
+            return sign, ("num", Fraction(int(value.p), int(value.q)))
+        name = self.hoisted.setdefault(value, f"{HOISTED}{len(self.hoisted)}")
+        return sign, ("sym", name)
+
+    def scaled(self, coefficient: Expr, core: Tree) -> tuple[int, Tree]:
+        """Return sign and tree of coefficient times core."""
+        sign, atom = self.constant(coefficient)
+        if atom is None:
+            return sign, core
+        if core == ONE:
+            return sign, atom
+        factors, divisors = (core[1], core[2]) if core[0] == "mul" else ((core,), ())
+        return sign, ("mul", (atom, *factors), divisors)
+
+    def split(self, expr: Expr) -> tuple[Expr, Tree]:
+        """Return (constant, core) with expr = constant * core; the core of a constant is ONE."""
+        if expr not in self.memo:
+            self.memo[expr] = self._split(expr)
+        return self.memo[expr]
+
+    def _split(self, expr: Expr) -> tuple[Expr, Tree]:
+        if not self.is_variable(expr):
+            return expr, ONE
+        if expr.is_Symbol:
+            return S.One, ("sym", str(expr))
+        if expr.is_Mul:
+            return self._product(expr.args)
+        if expr.is_Add:
+            return self._sum(expr.args)
+        if expr.is_Pow:
+            return self._power(expr)
+        name = function_name(expr)
+        return S.One, ("call", name, tuple(self.whole(argument) for argument in expr.args))
+
+    def whole(self, expr: Expr) -> Tree:
+        """Return the tree of an expression with its constant inside."""
+        sign, tree = self.scaled(*self.split(expr))
+        return tree if sign > 0 else ("add", ((-1, tree),))
+
+    def _distributed(self, ordered: Sequence[Expr]) -> list[Expr]:
+        """Return the terms of a constant times one sum, which are cheaper: c*(a + b*x) is c*a + (c*b)*x; else none."""
+        sums = [argument for argument in ordered if self.is_variable(argument)]
+        if len(sums) != 1 or not sums[0].is_Add:
+            return []
+        outer = Mul(*(argument for argument in ordered if argument is not sums[0]))
+        return [outer * term for term in sums[0].args]
+
+    def _flattened(self, terms: Iterable[Expr]) -> Iterable[Expr]:
+        """Yield the terms of a sum, and those of sums in it, so that constants and equal terms meet."""
+        for term in terms:
+            inner = list(term.args) if term.is_Add else []
+            if term.is_Mul:
+                inner = self._distributed(sorted(term.args, key=default_sort_key))
+            yield from self._flattened(inner) if inner else (term,)
+
+    def _product(self, arguments: Iterable[Expr]) -> tuple[Expr, Tree]:
+        constant, factors, divisors = S.One, [], []
+        ordered = sorted(arguments, key=default_sort_key)
+        if terms := self._distributed(ordered):
+            return self._sum(terms)
+        for argument in ordered:
+            own, core = self.split(argument)
+            constant *= own
+            if core == ONE:
+                continue
+            if core[0] == "mul":
+                factors += core[1]
+                divisors += core[2]
+            else:
+                factors.append(core)
+        if not divisors and len(factors) == 1:
+            return constant, factors[0]
+        return constant, ("mul", tuple(factors), tuple(divisors))
+
+    def _power(self, expr: Expr) -> tuple[Expr, Tree]:
+        base, power = expr.as_base_exp()
+        if not (2 * power).is_Integer:
+            raise InputError(f"expected whole and half powers in a kernel, got {expr}")
+        if power.is_Integer:
+            constant, core = self.split(base)
+        else:
+            constant, core, power = S.One, ("call", "sqrt", (self.whole(base),)), Integer(2 * power)
+        factors, divisors = (core[1], core[2]) if core[0] == "mul" else ((core,), ())
+        if power < 0:
+            factors, divisors = divisors, factors
+        count = abs(int(power))
+        if count == 1 and not divisors and len(factors) == 1:
+            return constant**power, factors[0]
+        if count > LARGEST_POWER:
+            return constant**power, _repeated(("mul", factors, divisors), count)
+        return constant**power, ("mul", factors * count, divisors * count)
+
+    def _sum(self, terms: Iterable[Expr]) -> tuple[Expr, Tree]:
+        total: dict[Tree, Expr] = {}  # core -> its constant, equal cores taken together
+        for term in sorted(self._flattened(terms) if self.flat else terms, key=default_sort_key):
+            constant, core = self.split(term)
+            total[core] = total.get(core, S.Zero) + constant
+        groups: dict[Expr, list[tuple[int, Tree]]] = {}
+        for core, constant in total.items():
+            if constant != 0:
+                sign, constant = _oriented(constant)
+                groups.setdefault(constant, []).append((sign, core))
+        if not groups:
+            return S.Zero, ONE
+        if len(groups) == 1:
+            ((constant, group),) = groups.items()
+            sign, tree = _signed_sum(group)
+            return constant * sign, tree
+        parts: list[tuple[int, Tree]] = []
+        for constant, group in groups.items():
+            if constant == 1:
+                parts += group
+                continue
+            outer, tree = _signed_sum(group)
+            inner, scaled = self.scaled(constant, tree)
+            parts.append((outer * inner, scaled))
+        sign, tree = _signed_sum(parts)
+        return Integer(sign), tree
+
+
+def _repeated(tree: Tree, count: int) -> Tree:
+    """Return a large power of a tree as squares of squares: a product of all its factors would be too deep."""
+    if count <= LARGEST_POWER:
+        return ("mul", (tree,) * count, ())
+    half = _repeated(tree, count // 2)
+    return ("mul", (half, half, tree) if count % 2 else (half, half), ())
+
+
+def _oriented(value: Expr) -> tuple[int, Expr]:
+    """Return sign and size of a constant: the same size for a and for -a, for (A - C)/A and for (C - A)/A."""
+    sign, factors = 1, []
+    for factor in Mul.make_args(value):
+        base, power = factor.as_base_exp()
+        if power.is_Integer and (base.is_Add or base.is_Number) and base.could_extract_minus_sign():
+            sign, factor = sign * (-1) ** int(power), (-base) ** power
+        factors.append(factor)
+    return sign, Mul(*factors)
+
+
+def _signed_sum(terms: Sequence[tuple[int, Tree]]) -> tuple[int, Tree]:
+    """Return the sum with its first term positive, and the sign taken out for that."""
+    if len(terms) == 1:
+        return terms[0]
+    sign = 1 if any(s > 0 for s, _ in terms) else -1
+    if sum(s for s, _ in terms) < 0 or (sum(s for s, _ in terms) == 0 and terms[0][0] < 0):
+        sign = -1
+    return sign, ("add", tuple((s * sign, tree) for s, tree in terms))

@@ -1,0 +1,225 @@
+"""SymPy expressions to a straight-line program with few operations.
+
+Three steps, each exact: constants are gathered and hoisted (whatever does not depend on time or state is computed
+once, when parameters are bound: :mod:`symrot.codegen.lowering.constants`), common factors and sums are shared
+(:mod:`symrot.codegen.lowering.common_factors`), and names are given. The result depends on the expressions alone, never on the order of
+a hash table.
+"""
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from sympy import Expr, Number, Symbol
+
+from symrot.codegen.lowering.common_factors import Share
+from symrot.codegen.lowering.constants import HOISTED, Gather, Tree
+from symrot.codegen.lowering.formulas import chain, to_node
+from symrot.codegen.lowering.sums import negative, summed
+from symrot.errors import InputError
+from symrot.formula.program import Argument, Program, Signature
+from symrot.formula.tree import Node, children, rename, text
+
+__all__ = ["Lowered", "lower"]
+
+
+@dataclass(frozen=True)
+class Lowered:
+    """A program and the constants it takes: ``parameters[k]`` is (name, formula over the physical constants)."""
+
+    program: Program
+    parameters: tuple[tuple[str, Node], ...]
+
+
+class _Writer:
+    """Gives names to shared nodes and writes formulas in the order they are needed."""
+
+    def __init__(self, share: Share, roots: Sequence[int], taken: Iterable[str], named: dict[int, str]) -> None:
+        self.nodes, self.named, self.taken = share.nodes, dict(named), set(taken) | set(named.values())
+        self.uses: Counter[int] = Counter()
+        seen: set[int] = set()
+        for root in roots:
+            self._count(root, seen)
+        self.temporaries: list[tuple[str, Node]] = []
+        self.written: set[int] = set()
+
+    def _operands(self, index: int) -> list[int]:
+        node = self.nodes[index]
+        if node[0] == "mul":
+            return [*node[1], *node[2]]
+        if node[0] == "add":
+            return [i for i, _ in node[1]]
+        return list(node[2]) if node[0] == "call" else []
+
+    def _count(self, index: int, seen: set[int]) -> None:
+        self.uses[index] += 1
+        if index not in seen:
+            seen.add(index)
+            for operand in self._operands(index):
+                self._count(operand, seen)
+
+    def node(self, index: int) -> Node:
+        """Return the formula of a node, as a symbol when it has a name."""
+        kind = self.nodes[index][0]
+        if kind == "num":
+            return ("number", self.nodes[index][1])
+        if kind == "sym":
+            return ("symbol", self.nodes[index][1])
+        if index not in self.named and kind != "call" and self.uses[index] < 2:
+            return self._formula(index)
+        if index not in self.written:
+            formula = self._formula(index)
+            self.named.setdefault(index, self._name(index))
+            self.written.add(index)
+            self.temporaries.append((self.named[index], formula))
+        return ("symbol", self.named[index])
+
+    def _name(self, index: int) -> str:
+        kind, *rest = self.nodes[index]
+        if kind == "call" and len(rest[1]) == 1 and self.nodes[rest[1][0]][0] == "sym":
+            name = f"{rest[0]}_{self.nodes[rest[1][0]][1]}"
+        else:
+            count = 0
+            while (name := f"x{count}") in self.taken:
+                count += 1
+        self.taken.add(name)
+        return name
+
+    def _is_constant(self, index: int) -> bool:
+        kind, first, *_ = self.nodes[index]
+        return bool(kind == "num" or (kind == "sym" and first.startswith(HOISTED)))
+
+    def _is_sum(self, index: int) -> bool:
+        """Whether a node is written as a sum in brackets: such a factor comes first, as in (A - B) x y."""
+        return bool(self.nodes[index][0] == "add" and self.uses[index] < 2 and index not in self.named)
+
+    def _formula(self, index: int) -> Node:
+        node = self.nodes[index]
+        if node[0] == "call":
+            return ("call", node[1], tuple(self.node(argument) for argument in node[2]))
+        if node[0] == "mul":
+            factors = sorted(node[1], key=lambda i: (not self._is_constant(i), not self._is_sum(i)))
+            top = chain("*", [self.node(i) for i in factors] or [("number", Fraction(1))])
+            return top if not node[2] else ("/", top, chain("*", [self.node(i) for i in node[2]]))
+        terms = sorted(node[1], key=lambda item: item[1] < 0)
+        first, sign = terms[0]
+        start = self.node(first) if sign > 0 else negative(self.node(first))
+        return summed(start, [(sign, self.node(term)) for term, sign in terms[1:]])
+
+
+def lower(
+    signature: Signature,
+    outputs: Sequence[tuple[str, Expr]],
+    definitions: Sequence[tuple[Symbol, Expr]] = (),
+    parameter_argument: str = "p",
+) -> Lowered:
+    """Return the straight-line program of some expressions.
+
+    Parameters
+    ----------
+    signature : Signature
+        The variables are the components of its input arguments; every other symbol is a physical constant. It must
+        not hold the parameter argument, which is appended here once its size is known.
+    outputs : sequence of (component name, Expr)
+        In the order of the output argument.
+    definitions : sequence of (Symbol, Expr)
+        Quantities with a physical name, used by later definitions and outputs as that symbol.
+    parameter_argument : str
+        Name of the array of hoisted constants.
+
+    Returns
+    -------
+    Lowered
+        The program and the formulas of its parameters over the physical constants.
+
+    Raises
+    ------
+    InputError
+        For a function or a power that kernels do not hold.
+    """
+    ways = [_lowered(signature, outputs, definitions, parameter_argument, flat) for flat in (False, True)]
+    return min(ways, key=lambda way: way.program.operations().total())
+
+
+def _lowered(
+    signature: Signature, outputs: Sequence[tuple[str, Expr]], definitions: Sequence[tuple[Symbol, Expr]],
+    parameter_argument: str, flat: bool,
+) -> Lowered:  # fmt: skip
+    """Return the program with sums as they stand, whose parts may be shared, or with ``flat`` ones."""
+    inputs = [name for a in signature.arguments if a.role == "in" for name, *_ in a.components]
+    held = {symbol for _, expr in [*outputs, *definitions] for symbol in expr.free_symbols}
+    defined = [symbol for symbol, _ in definitions]
+    gather = Gather([symbol for symbol in held if str(symbol) in inputs or symbol in defined], flat)
+    share, named = Share(), {}
+    alias: dict[str, Tree] = {}
+    for symbol, expr in definitions:
+        alias[str(symbol)] = _substitute(gather.whole(_exact(expr)), alias)
+        index = share.add(alias[str(symbol)])
+        if share.nodes[index][0] not in ("sym", "num"):
+            named[index] = str(symbol)
+    signed = [gather.scaled(*gather.split(_exact(expr))) for _, expr in outputs]
+    roots = [share.add(_substitute(tree, alias)) for _, tree in signed]
+    share.extract()
+    writer = _Writer(share, roots, inputs, named)
+    formulas = [writer.node(root) for root in roots]
+    formulas = [node if sign > 0 else negative(node) for (sign, _), node in zip(signed, formulas, strict=True)]
+    targets = [name for name, _ in outputs]
+    return _numbered(signature, gather.hoisted, writer.temporaries, targets, formulas, parameter_argument)
+
+
+def _numbered(
+    signature: Signature,
+    hoisted: dict[Expr, str],
+    temporaries: Sequence[tuple[str, Node]],
+    targets: Sequence[str],
+    formulas: Sequence[Node],
+    parameter_argument: str,
+) -> Lowered:
+    """Number the constants in the order of their use, and append them to the signature."""
+    order: dict[str, str] = {}
+    for node in [node for _, node in temporaries] + list(formulas):
+        for name in _leaves(node):
+            if name.startswith(HOISTED):
+                order.setdefault(name, f"{parameter_argument}{len(order)}")
+    values = {name: to_node(value) for value, name in hoisted.items()}
+    parameters = tuple((new, values[old]) for old, new in order.items())
+    inputs = [a for a in signature.arguments if a.role == "in"]
+    outs = [a for a in signature.arguments if a.role == "out"]
+    described = tuple((name, "", text(formula)) for name, formula in parameters)
+    full = Signature(signature.name, (*inputs, Argument(parameter_argument, "in", described), *outs))
+    program = Program(
+        full,
+        tuple((name, rename(node, order)) for name, node in temporaries),
+        tuple((name, rename(node, order)) for name, node in zip(targets, formulas, strict=True)),
+    )
+    return Lowered(program, parameters)
+
+
+def _leaves(node: Node) -> Iterable[str]:
+    """Yield the symbols of a formula from left to right."""
+    if node[0] == "symbol":
+        yield node[1]
+    for child in children(node):
+        yield from _leaves(child)
+
+
+def _exact(expr: Expr) -> Expr:
+    """Return the expression with floats refused: the symbolic layer is exact."""
+    if expr.has(Number) and any(not number.is_Rational for number in expr.atoms(Number)):
+        raise InputError(f"expected exact numbers in a kernel, got a float in {expr}")
+    return expr
+
+
+def _substitute(tree: Tree, alias: dict[str, Tree]) -> Tree:
+    """Put the trees of defined symbols in their place."""
+    kind = tree[0]
+    if kind == "sym":
+        return alias.get(tree[1], tree)
+    if kind == "num":
+        return tree
+    if kind == "call":
+        return ("call", tree[1], tuple(_substitute(argument, alias) for argument in tree[2]))
+    if kind == "mul":
+        return ("mul", *(tuple(_substitute(item, alias) for item in part) for part in tree[1:]))
+    return ("add", tuple((sign, _substitute(item, alias)) for sign, item in tree[1]))

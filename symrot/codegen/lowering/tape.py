@@ -1,0 +1,92 @@
+"""A straight-line program as a tape: one operation after the other, equal ones once. Standard library only.
+
+What is printed operation by operation starts here: values in pairs of doubles and their gradients
+(:mod:`symrot.codegen.taylor.invariant_source`), values with what rounding may do to them (:mod:`symrot.codegen.printing.event_source`).
+"""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+from symrot.formula.program import Program
+from symrot.formula.tree import Node, children
+
+__all__ = ["Operation", "Tape", "tape_of"]
+
+
+class Operation(NamedTuple):
+    """One operation: ``+ - * / neg``, a function of :data:`symrot.formula.tree.FUNCTIONS`, ``number`` or ``symbol``."""
+
+    kind: str
+    operands: tuple[int, ...] = ()
+    value: Any = None  # of a number, the Fraction; of a symbol, its name
+
+
+class Tape(NamedTuple):
+    """Operations in an order in which they can be computed, and where the outputs stand."""
+
+    operations: tuple[Operation, ...]
+    outputs: tuple[int, ...]
+
+    def of(self, output: int) -> list[int]:
+        """Return the operations that one output needs, in order."""
+        needed = {self.outputs[output]}
+        for index in range(self.outputs[output], -1, -1):
+            if index in needed:
+                needed.update(self.operations[index].operands)
+        return sorted(needed)
+
+
+class _Writer:
+    def __init__(self) -> None:
+        self.known: dict[Operation, int] = {}
+        self.names: dict[str, int] = {}
+
+    def add(self, kind: str, *operands: int, value: Any = None) -> int:
+        return self.known.setdefault(Operation(kind, operands, value), len(self.known))
+
+    def read(self, node: Node) -> int:
+        kind = node[0]
+        if kind == "number":
+            return self.add("number", value=node[1])
+        if kind == "symbol":
+            return self.names[node[1]] if node[1] in self.names else self.add("symbol", value=node[1])
+        parts = [self.read(child) for child in children(node)]
+        if kind == "**":
+            return self.power(parts[0], node[2])
+        return self.add(node[1] if kind == "call" else kind, *parts)
+
+    def power(self, base: int, exponent: int) -> int:
+        if exponent < 0:
+            return self.add("/", self.add("number", value=Fraction(1)), self.power(base, -exponent))
+        if exponent == 0:
+            return self.add("number", value=Fraction(1))
+        result = base
+        for bit in format(exponent, "b")[1:]:
+            result = self.add("*", result, result)
+            result = self.add("*", result, base) if bit == "1" else result
+        return result
+
+
+def tape_of(program: Program, outputs: Sequence[str], more: Sequence[Node] = ()) -> Tape:
+    """Return the tape of some outputs of a program, then of more formulas over its inputs and its outputs."""
+    writer = _Writer()
+    formulas = dict(program.outputs)
+    for name, node in program.temporaries:
+        writer.names[name] = writer.read(node)
+    places = [writer.read(formulas[name]) for name in outputs]
+    if more:
+        writer.names |= {name: writer.read(node) for name, node in formulas.items()}
+        places += [writer.read(node) for node in more]
+    return _trimmed(Tape(tuple(writer.known), tuple(places)))
+
+
+def _trimmed(tape: Tape) -> Tape:
+    """Return a tape without the operations that no output needs."""
+    kept = sorted({index for output in range(len(tape.outputs)) for index in tape.of(output)})
+    place = {old: new for new, old in enumerate(kept)}
+    operations = (tape.operations[old] for old in kept)
+    return Tape(
+        tuple(op._replace(operands=tuple(place[i] for i in op.operands)) for op in operations),
+        tuple(place[old] for old in tape.outputs),
+    )

@@ -1,0 +1,1 @@
+"""Print programs as C and NumPy."""

@@ -1,0 +1,427 @@
+"""Print a program as C99 that is also valid C++: one sample, and a batch over structure-of-arrays."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property
+from struct import pack, unpack
+from textwrap import wrap
+
+from symrot.codegen.printing.banner import WIDTH, Description, banner
+from symrot.codegen.printing.kernel_functions import NEAR, called, own_function, turning_arguments, without_branches
+from symrot.formula.program import Argument, Program
+from symrot.formula.tree import FUNCTIONS, Node, names, rename, text
+from symrot.kernels.removable import FUNCTIONS as OWN_FUNCTIONS
+
+__all__ = ["DOUBLE", "FLOAT", "MATH_HEADER", "Real", "c_expression", "c_function", "c_header", "c_source"]
+
+MATH_HEADER = "symrot_math.h"
+INDEPENDENT = "SYMROT_INDEPENDENT"  # in front of a loop over samples: none of them reads what another one writes
+RELATIONS = {"==": "eq", "<": "lt"}
+STREAMS = 16  # arrays that a loop walks along before processors fetch ahead for it no more
+REGISTERS = 16  # of vectors, from SSE2 to AVX2
+WAYS = 12  # arrays of which the first cache of processors holds a line each, where n is a multiple of 512 (8 to 12)
+SPAN = "SYMROT_SPAN"  # samples that loops of a batch take in turn: what one has read is in cache for the next
+
+
+@dataclass(frozen=True)
+class Real:
+    """A C type of numbers: its name, the letter that its functions and literals carry, its precision."""
+
+    type: str
+    suffix: str
+    precision: str
+
+    def literal(self, value: Fraction) -> str:
+        """Return the number of this type nearest to an exact one, as the shortest text that reads back to it."""
+        shown = _shortest_float(value) if self.suffix else repr(float(value))
+        return (shown if "." in shown or "e" in shown or "n" in shown else f"{shown}.0") + self.suffix
+
+    @cached_property
+    def functions(self) -> dict[str, str]:
+        """Return the names in C of the functions that kernels call."""
+        own = {name: f"symrot_{name}" for name in OWN_FUNCTIONS}
+        found = {name: name for name in FUNCTIONS} | own | {"abs": "fabs", "copysign": "copysign"}
+        return {name: f"{called}{self.suffix}" for name, called in found.items()}
+
+    @cached_property
+    def near_functions(self) -> dict[str, str]:
+        """Return their names in a batch, where angles are in the range of ``symrot_math.h``."""
+        own = {name: f"symrot_near_{name}{self.suffix}" for name in NEAR}
+        shared = {"sin": "sin", "cos": "cos", "atan2": "atan2", "select_ge": "choose_ge"}
+        return self.functions | own | {name: f"symrot_{other}{self.suffix}" for name, other in shared.items()}
+
+    @property
+    def bits(self) -> str:
+        """Return the unsigned type of the same size."""
+        return "uint32_t" if self.suffix else "uint64_t"
+
+
+DOUBLE = Real("double", "", "binary64")
+FLOAT = Real("float", "f", "binary32")
+
+
+def _shortest_float(value: Fraction) -> str:
+    for digits in range(1, 10):
+        shown = f"{float(value):.{digits}g}"
+        if _as_float(float(shown)) == _as_float(float(value)):
+            break
+    return shown
+
+
+def _as_float(value: float) -> float:
+    return float(unpack("f", pack("f", value))[0])
+
+
+def c_expression(node: Node, real: Real = DOUBLE, near: bool = False) -> str:
+    """Return a formula as C, with the brackets that keep its order of evaluation; ``near`` as in a batch."""
+    return text(rename(node, functions=real.near_functions if near else real.functions), 0, real.literal)
+
+
+def c_arguments(program: Program, real: Real = DOUBLE) -> str:
+    """Return the parameter list of the one-sample function."""
+    return ", ".join(_declared(argument, real) for argument in program.signature.arguments if argument.size)
+
+
+def _head(name: str, arguments: str, qualifier: str = "", returns: str = "void") -> str:
+    """Return a function's head, its arguments on lines of their own where one line is too long."""
+    head = f"{qualifier}{returns} {name}({arguments})"
+    if len(head) <= WIDTH:
+        return head
+    unbroken = arguments.replace(", ", ",\0").replace(" ", "\1").replace("\0", " ")  # break after commas only
+    lines = wrap(unbroken, WIDTH - 4, break_long_words=False)
+    return f"{qualifier}{returns} {name}(\n    " + "\n    ".join(lines).replace("\1", " ") + ")"
+
+
+def _declared(argument: Argument, real: Real) -> str:
+    const = "const " if argument.role == "in" else ""
+    size = "" if argument.is_scalar else f"[{argument.size}]"
+    return f"{'' if argument.is_scalar else const}{real.type} {argument.name}{size}"
+
+
+def _used(program: Program) -> set[str]:
+    return set().union(*(names(node) for _, node in program.temporaries + program.outputs))
+
+
+def _statement(head: str, formula: str, indent: str, mark: str = "=") -> list[str]:
+    """Return ``head = formula;``, broken after operators where one line is too long."""
+    line = f"{indent}{head} {mark} {formula};"
+    if len(line) <= WIDTH + 10:
+        return [line]
+    return wrap(line, WIDTH + 10, subsequent_indent=f"{indent}    ", break_long_words=False, break_on_hyphens=False)
+
+
+def _body(
+    program: Program, element: str, indent: str, real: Real, near: bool = False, late: bool = False
+) -> list[str]:  # fmt: skip
+    """Return the statements, each value before the first output argument that needs it: few are kept at a time.
+
+    ``element`` is the index of a component in its array, with {i} for its number. With ``late`` nothing is computed
+    after the first store: results have names until then, and are computed in an order of their own.
+    """
+    results = dict(program.outputs)
+    lines: list[str] = []
+    stores: dict[str, list[str]] = {a.name: [] for a in program.signature.arguments}
+    taken = _taken(program, real)
+    waiting: dict[str, tuple[set[str], list[str]]] = {}  # name -> names that it needs, its statement
+    for argument in program.signature.arguments:
+        if argument.role == "in" and not argument.is_scalar:
+            place = "{i}" if argument.name == "p" else element
+            for index, (name, *_) in enumerate(argument.components):
+                statement = f"{indent}const {real.type} {name} = {argument.name}[{place.format(i=index)}];"
+                waiting[name] = (set(), [statement])
+    angles = [node[1] for node in turning_arguments(program) if node[1] in waiting]
+    waiting = {name: waiting[name] for name in (*angles, *waiting)}  # gcc calls sincos where the angle is loaded
+    for name, node in program.temporaries:
+        statements = _statement(f"const {real.type} {name}", c_expression(node, real, near), indent)
+        waiting[name] = (names(node), statements)
+    outputs = [a for a in program.signature.arguments if a.role == "out"]
+    for argument in _computed_in_turn(program) if late else outputs:
+        due = _due(set().union(*(names(results[name]) for name, *_ in argument.components)), waiting)
+        lines += [*([""] if due and lines else []), *due, *([""] if due else [])]
+        for index, (name, *_) in enumerate(argument.components):
+            place, value = f"{argument.name}[{element.format(i=index)}]", c_expression(results[name], real, near)
+            if late and results[name][0] not in ("symbol", "number"):
+                while name in taken:
+                    name += "_"
+                taken.add(name)
+                lines += _statement(f"const {real.type} {name}", value, indent)
+                value = name
+            (stores[argument.name] if late else lines).extend(_statement(place, value, indent))
+    return [*lines, "", *(line for a in outputs for line in stores[a.name])] if late else lines
+
+
+def _computed_in_turn(program: Program) -> list[Argument]:
+    """Return the output arguments as a loop that stores last computes them: the one of the fewest inputs first.
+
+    They stay in their order where all inputs and results fit into registers. With gcc 12 on Zen 3 this takes, in the
+    geometric mean over n = 512, 1000, 1024, 4096, 10^6, 0.88 of the time of the order of the arguments for
+    inertia_tetrahedron, 0.95 for heavy_top (1.03 at 1000, 0.97 at 10^6), 0.98 for heavy_top_symmetric; of the kernels
+    with fewer values, inertia_triangular_prism and inertia_frustum would take 1.06.
+    """
+    outputs = [a for a in program.signature.arguments if a.role == "out"]
+    if _streams(program) <= REGISTERS:
+        return outputs
+    return sorted(outputs, key=lambda a: _streams(_part(program, a)) - a.size)
+
+
+def _taken(program: Program, real: Real) -> set[str]:
+    """Return the names that a result in a batch cannot have."""
+    arguments = program.signature.arguments
+    inputs = {name for a in arguments if a.role == "in" for name, *_ in a.components}
+    functions = {*real.functions.values(), *real.near_functions.values()}
+    words = {"n", "k", "start", "end", "again", "beyond"}
+    return {a.name for a in arguments} | inputs | {name for name, _ in program.temporaries} | functions | words
+
+
+def _due(needed: set[str], waiting: dict[str, tuple[set[str], list[str]]]) -> list[str]:
+    """Return the statements that some names need, in their order, and take them off the list."""
+    for name, (of, _) in reversed(waiting.items()):
+        if name in needed:
+            needed = needed | of
+    return [line for name in [each for each in waiting if each in needed] for line in waiting.pop(name)[1]]
+
+
+def _silenced(program: Program, indent: str) -> list[str]:
+    """Return a statement for each argument that the formulas do not use, so that no compiler warns."""
+    used = _used(program)
+    idle = [
+        argument.name
+        for argument in program.signature.arguments
+        if argument.role == "in" and argument.size and not any(name in used for name, *_ in argument.components)
+    ]
+    return [f"{indent}(void){name};" for name in idle]
+
+
+def _name(program: Program, real: Real) -> str:
+    return f"{program.signature.name}{real.suffix}"
+
+
+def c_function(program: Program, qualifier: str = "", real: Real = DOUBLE) -> str:
+    """Return the one-sample function alone.
+
+    Parameters
+    ----------
+    program : Program
+        What it computes. Outputs must not overlap inputs.
+    qualifier : str
+        In front of the definition, e.g. ``"static inline "``.
+    real : Real
+        ``DOUBLE`` or ``FLOAT``, whose function has an ``f`` behind its name.
+    """
+    head = _head(_name(program, real), c_arguments(program, real), qualifier)
+    lines = [head, "{", *_silenced(program, "    "), *_body(program, "{i}", "    ", real), "}"]
+    return "\n".join(lines) + "\n"
+
+
+def _own_function(name: str, real: Real) -> list[str]:
+    """Return a function that kernels call beyond those of the mathematical library."""
+    parameters, temporaries, (relation, left, right, then, other) = own_function(name, real.precision)
+    arguments = ", ".join(f"{real.type} {parameter}" for parameter in parameters)
+    lines = [_head(real.functions[name], arguments, "static inline ", real.type), "{"]
+    for temporary, node in temporaries:
+        lines += _statement(f"const {real.type} {temporary}", c_expression(node, real), "    ")
+    condition = f"{c_expression(left, real)} {relation} {c_expression(right, real)}"
+    return [*lines, f"    return {condition} ? {c_expression(then, real)} : {c_expression(other, real)};", "}", ""]
+
+
+def _near_function(name: str, real: Real) -> list[str]:
+    """Return the form of an own function that batches call: both sides of its choice computed, no branch."""
+    parameters, temporaries, (relation, left, right, then, other) = own_function(name, real.precision)
+    arguments = ", ".join(f"{real.type} {parameter}" for parameter in parameters)
+    lines = [_head(real.near_functions[name], arguments, "static inline ", real.type), "{"]
+    for temporary, node in temporaries:
+        lines += _statement(f"const {real.type} {temporary}", c_expression(node, real, True), "    ")
+    taken = ", ".join(c_expression(node, real, True) for node in (left, right, then, other))
+    return [*lines, f"    return symrot_select_{RELATIONS[relation]}{real.suffix}({taken});", "}", ""]
+
+
+def _batch_arguments(program: Program, real: Real) -> str:
+    parts = ["size_t n"]
+    for argument in program.signature.arguments:
+        const = "const " if argument.role == "in" else ""
+        if argument.name == "p" and argument.size:
+            parts.append(_declared(argument, real))
+        elif argument.size:
+            parts.append(f"{const}{real.type} *SYMROT_RESTRICT {argument.name}")
+    return ", ".join(parts)
+
+
+def _batch(program: Program, real: Real, near: bool) -> list[str]:
+    """Return the function that computes n samples, those of a block with angles out of range a second time."""
+    head = [_head(f"{_name(program, real)}_batch", _batch_arguments(program, real)), "{", *_silenced(program, "    ")]
+    scalars = [a for a in program.signature.arguments if a.is_scalar and a.role == "in"]
+    each = {a.name: f"{a.name}_k" for a in scalars}  # a scalar of one sample is an array in a batch
+    used = _used(program)
+    loaded = [f"const {real.type} {a.name}_k = {a.name}[k];" for a in scalars if a.components[0][0] in used]
+    of_sample = _with_names(program, each)
+    angles = turning_arguments(of_sample) if near else []
+    parts = _split(program)
+    if len(parts) > 1:
+        loops = [
+            _loop(part, real, ("start", "end"), (), "        ", _stores_last(part), INDEPENDENT, near) for part in parts
+        ]
+        return [*head, *_blocks(SPAN), *(line for loop in loops for line in loop), "    }", "}"]
+    late = _stores_last(program)
+    if not angles:
+        return [*head, *_loop(of_sample, real, ("0", "n"), loaded, "    ", late, INDEPENDENT, near), "}"]
+    far = " + ".join(f"symrot_far{real.suffix}({c_expression(angle, real, True)})" for angle in angles)
+    return [
+        *head,
+        *_blocks("SYMROT_BLOCK"),
+        f"        {real.bits} beyond = 0;",
+        *_loop(of_sample, real, ("start", "end"), loaded, "        ", late, INDEPENDENT, near=True)[:-1],
+        *_statement("beyond", far, "            ", "+="),
+        "        }",
+        "        const size_t again = beyond == 0 ? start : end;",
+        *_loop(of_sample, real, ("start", "again"), loaded, "        ", late),
+        "    }",
+        "}",
+    ]
+
+
+def _blocks(size: str) -> list[str]:
+    """Return the head of a loop over blocks of samples."""
+    return [
+        f"    for (size_t start = 0; start < n; start += {size}) {{",
+        f"        const size_t end = n - start < {size} ? n : start + {size};",
+    ]
+
+
+def _split(program: Program) -> list[Program]:
+    """Return a program in parts, one for each output argument, where loops of their own are the faster; else whole.
+
+    They are where the whole walks along more arrays than can be fetched ahead and each part does not, as long as no
+    operation is done twice and what is read twice is at most a fifth more. Sines take longer than the memory.
+    """
+    whole = _streams(program)
+    scalars = any(a.is_scalar for a in program.signature.arguments if a.role == "in")
+    if whole <= STREAMS or scalars or turning_arguments(program):
+        return [program]
+    parts = [_part(program, a) for a in program.signature.arguments if a.role == "out"]
+    apart = [_streams(part) for part in parts]
+    again = sum(len(part.temporaries) for part in parts) > len(program.temporaries)
+    return [program] if again or max(apart) > STREAMS or 5 * sum(apart) > 6 * whole else parts
+
+
+def _part(program: Program, output: Argument) -> Program:
+    """Return what computes one output argument alone."""
+    own = {name for name, *_ in output.components}
+    outputs = tuple((name, node) for name, node in program.outputs if name in own)
+    needed = set().union(*(names(node) for _, node in outputs))
+    kept = []
+    for name, node in reversed(program.temporaries):
+        if name in needed:
+            needed |= names(node)
+            kept.append((name, node))
+    arguments = tuple(a for a in program.signature.arguments if a.role == "in" or a is output)
+    return Program(replace(program.signature, arguments=arguments), tuple(reversed(kept)), outputs)
+
+
+def _streams(program: Program) -> int:
+    """Return how many arrays a loop over samples walks along."""
+    used = _used(program)
+    moved = [a for a in program.signature.arguments if a.name != "p"]
+    return sum(a.role == "out" or name in used for a in moved for name, *_ in a.components)
+
+
+def _stores_last(program: Program) -> bool:
+    """Tell whether the loops of a batch store behind all that they compute.
+
+    They do where they, or a part of them, walk along more arrays than share a set of the first cache: what compilers
+    read again after a store is no longer there. With gcc 12 on Zen 3, the kernels of the library that do so take 0.9 of
+    the time of stores in between at n = 512 m (heavy_top 0.7, but heavy_top_symmetric 1.1) and the same at others;
+    quaternion_product, of 12 arrays, would take 1.15 at n = 1000, where gcc tunes for Zen 3: 26 loads a turn, not 22.
+    """
+    return _streams(program) > WAYS
+
+
+def _loop(
+    program: Program, real: Real, range_: tuple[str, str], loaded: Sequence[str], indent: str, late: bool,
+    pragma: str = "", near: bool = False,
+) -> list[str]:  # fmt: skip
+    start, end = range_
+    inner = f"{indent}    "
+    return [
+        *([f"{indent}{pragma}"] if pragma else []),
+        f"{indent}for (size_t k = {start}; k < {end}; ++k) {{",
+        *(f"{inner}{line}" for line in loaded),
+        *_body(program, "{i}*n + k", inner, real, near, late),
+        f"{indent}}}",
+    ]
+
+
+def _with_names(program: Program, names: dict[str, str]) -> Program:
+    """Return the program with some inputs called differently."""
+    signature = program.signature
+    arguments = tuple(
+        replace(a, components=tuple((names.get(c[0], c[0]), *c[1:]) for c in a.components)) for a in signature.arguments
+    )
+    return Program(
+        replace(signature, arguments=arguments),
+        tuple((name, rename(node, names)) for name, node in program.temporaries),
+        tuple((name, rename(node, names)) for name, node in program.outputs),
+    )
+
+
+def _includes(program: Program, near: bool) -> list[str]:
+    calls = any(op not in ("add", "mul", "div", "neg") for op in program.operations())
+    return [*(["#include <math.h>"] if calls else []), *([f'#include "{MATH_HEADER}"'] if near else [])]
+
+
+def _prototypes(program: Program, real: Real) -> list[str]:
+    name = _name(program, real)
+    return [
+        f"{_head(name, c_arguments(program, real))};",
+        f"{_head(f'{name}_batch', _batch_arguments(program, real))};",
+    ]
+
+
+_SPAN = (f"#ifndef {SPAN} /* samples that the loops of a batch take in turn */", f"#define {SPAN} 2048", "#endif", "")
+
+
+def c_header(program: Program, description: Description, reals: Sequence[Real] = (DOUBLE,)) -> str:
+    """Return the header text: contract, include guard, prototypes, usable from C and C++."""
+    guard = f"SYMROT_{program.signature.name.upper()}_H"
+    ones, batches = zip(*(_prototypes(program, real) for real in reals), strict=True)
+    shapes = ["/* one sample */", *ones, "", "/* n samples; component i of sample k stands at [i*n + k] */", *batches]
+    return "\n".join([
+        *banner(program, description, "/*", " *", " */"), f"#ifndef {guard}", f"#define {guard}", "",
+        "#include <stddef.h>", "", "#ifndef SYMROT_RESTRICT", "#ifdef __cplusplus",
+        "#define SYMROT_RESTRICT __restrict", "#else", "#define SYMROT_RESTRICT restrict", "#endif", "#endif", "",
+        "#ifndef SYMROT_INDEPENDENT /* in front of a loop over samples: outputs do not overlap inputs */",
+        "#if defined(__clang__) && defined(__NO_MATH_ERRNO__) /* with errno, calls of <math.h> keep a loop as it is */",
+        '#define SYMROT_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")',
+        "#elif defined(__GNUC__) && !defined(__clang__)", '#define SYMROT_INDEPENDENT _Pragma("GCC ivdep")',
+        "#else", "#define SYMROT_INDEPENDENT", "#endif", "#endif", "", *(_SPAN if len(_split(program)) > 1 else ()),
+        "#ifdef __cplusplus", 'extern "C" {', "#endif",
+        "", *shapes, "",
+        "#ifdef __cplusplus", "}", "#endif", "", "#endif",
+    ]) + "\n"  # fmt: skip
+
+
+def c_source(program: Program, description: Description, reals: Sequence[Real] = (DOUBLE,), near: bool = False) -> str:
+    """Return the C99 text of a kernel. Same program, same bytes: no clock, no path, no environment.
+
+    Parameters
+    ----------
+    program : Program
+        What it computes.
+    description : Description
+        What the head says beside that.
+    reals : sequence of Real
+        The types of numbers, each with its one-sample and its batch function.
+    near : bool
+        Whether batches take sine and cosine from ``symrot_math.h``, which compilers vectorise, with those of the C
+        library for blocks with an angle out of its range.
+    """
+    near = near and without_branches(program)
+    lines = [*banner(program, description, "/*", " *", " */"), *_includes(program, near)]
+    lines += [f'#include "{program.signature.name}.h"', ""]
+    for real in reals:
+        for name in called(program):
+            lines += _own_function(name, real)
+            if near and name in NEAR:
+                lines += _near_function(name, real)
+    parts = ["\n".join([c_function(program, real=real), *_batch(program, real, near)]) for real in reals]
+    return "\n".join(lines) + "\n" + "\n\n".join(parts) + "\n"

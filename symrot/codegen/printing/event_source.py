@@ -1,0 +1,169 @@
+"""Print formulas whose zeros are sought as C: the value with a bound of its rounding errors, and enclosures.
+
+The bound is carried along the tape with the value, operation by operation, to first order: it tells a curve that
+touches zero from one that comes near it, and says below which size a sign means nothing.
+
+The enclosures, by real intervals and by complex discs, hold all values over an interval of time, from those of the
+states: they show where there is no zero, and bound what samples of the formula cannot see.
+
+The text stands between :file:`event_enclosures.h` and :file:`events.c`.
+"""
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+from symrot.codegen.lowering.tape import Operation, Tape, tape_of
+from symrot.codegen.printing.c_source import c_expression
+from symrot.formula.program import Program
+from symrot.formula.tree import FUNCTIONS, Node
+
+__all__ = ["event_definitions"]
+
+SLOPES = {  # function -> a bound of its slope, from argument a and value v
+    "sqrt": "0.5/{v}", "sin": "1.0", "cos": "1.0", "tan": "(1.0 + {v}*{v})", "exp": "{v}", "log": "1.0/{a}",
+    "abs": "1.0", "sinh": "sqrt(1.0 + {v}*{v})", "cosh": "{v}", "tanh": "1.0", "asin": "1.0/sqrt(1.0 - {a}*{a})",
+    "acos": "1.0/sqrt(1.0 - {a}*{a})", "atan": "1.0/(1.0 + {a}*{a})", "atan2": "1.0/sqrt({a}*{a} + {b}*{b})",
+}  # fmt: skip
+assert set(SLOPES) == set(FUNCTIONS)
+ENCLOSURES = {  # kind -> how a number with an error becomes one, and what nothing is
+    "range": ("symrot_range_around", "symrot_nowhere()"), "disc": ("symrot_disc_of", "symrot_disc_unknown()"),
+}  # fmt: skip
+OPERATIONS = {"+": "add", "-": "sub", "*": "mul", "/": "div", "neg": "neg"}
+
+
+def event_definitions(
+    program: Program, formulas: Sequence[Node], states: Sequence[str], edges: Sequence[int], scales: Sequence[float]
+) -> str:
+    """Return the C function ``symrot_event`` of some formulas.
+
+    Parameters
+    ----------
+    program : Program
+        Quantities of t, states and parameters; the formulas may use its outputs by name.
+    formulas : sequence of Node
+    states : sequence of str
+        Names of the states, in order.
+    edges, scales
+        Blocks of states, as :func:`symrot.propagation.steppers.dop853.translation_unit` takes them: a state is known to a few
+        units in the last place of the largest of its block, or of the scale.
+    """
+    places = {"t": "t", **{name: f"y[{i}]" for i, name in enumerate(states)}}
+    for argument in program.signature.arguments:
+        if argument.name == "p":
+            places |= {name: f"p[{i}]" for i, (name, *_) in enumerate(argument.components)}
+    known, sizes = {"t": "0.0"}, []
+    for b, (low, high) in enumerate(pairwise(edges)):
+        size = _number(scales[b]) if scales[b] > 0.0 else _largest([f"fabs(y[{i}])" for i in range(low, high)])
+        sizes += [f"    const double size{b} = SYMROT_STATE_ERROR*{size};", f"    (void)size{b};"]
+        known |= {states[i]: f"size{b}" for i in range(low, high)}
+    tapes = [tape_of(program, (), [formula]) for formula in formulas]
+    spans = [_span(tape, states, edges) for tape in tapes]
+    cost = max((len(tape.operations) for tape in tapes), default=1)
+    values = [
+        [text for i, op in enumerate(tape.operations) for text in _statements(i, op, places, known)] for tape in tapes
+    ]
+    lines = [
+        f"#define SYMROT_STATES {len(states)}",
+        f"#define SYMROT_EVENTS {len(formulas)}",
+        f"#define SYMROT_COST {cost}  /* operations in the longest formula */",
+        "",
+        "/* The states that each event depends on: the first, and the one behind the last. */",
+        f"static const int symrot_spans[][2] = {{{', '.join(f'{{{a}, {b}}}' for a, b in [*spans, (0, 0)])}}};",
+        "",
+        "static double symrot_event(int which, double t, const double *y, const double *p, double *noise)",
+        *_switch(sizes, tapes, values, ["*noise = e{last};", "return v{last};"]),
+        "    *noise = 0.0;",
+        "    return 0.0;",
+        "}",
+    ]
+    for kind, (around, ending) in ENCLOSURES.items():
+        texts = [
+            [f"x{i} = {_enclosed(kind, around, op, places, known)}" for i, op in enumerate(tape.operations)]
+            for tape in tapes
+        ]
+        lines += [
+            "",
+            f"static symrot_{kind} symrot_event_{kind}(",
+            "    int which, double t, double h, const double *y, const double *r, const double *p)",
+            *_switch(["    (void)h;", "    (void)r;", *sizes], tapes, texts, ["return x{last};"], f"symrot_{kind}"),
+            f"    return {ending};",
+            "}",
+        ]
+    return "\n".join([*lines, ""])
+
+
+def _switch(
+    head: Sequence[str],
+    tapes: Sequence[Tape],
+    texts: Sequence[Sequence[str]],
+    ends: Sequence[str],
+    kind: str = "double",
+) -> list[str]:
+    """Return the body of a function of all events, up to what is returned for none."""
+    lines = ["{", "    (void)t;", "    (void)y;", "    (void)p;", *head, "    switch (which) {"]
+    for number, (tape, statements) in enumerate(zip(tapes, texts, strict=True)):
+        lines += [f"    case {number}: {{", *(f"        const {kind} {text};" for text in statements)]
+        lines += [*(f"        {end.format(last=tape.outputs[0])}" for end in ends), "    }"]
+    return [*lines, "    }"]
+
+
+def _span(tape: Tape, states: Sequence[str], edges: Sequence[int]) -> tuple[int, int]:
+    """Return the first state that a formula depends on, and the one behind the last, whole blocks at a time."""
+    used = {op.value for op in tape.operations if op.kind == "symbol"}
+    places = [i for i, name in enumerate(states) if name in used]
+    if not places:
+        return 0, 0
+    return max(edge for edge in edges if edge <= places[0]), min(edge for edge in edges if edge > places[-1])
+
+
+def _number(value: float) -> str:
+    return repr(float(value))
+
+
+def _largest(terms: Sequence[str]) -> str:
+    return terms[0] if len(terms) == 1 else f"fmax({terms[0]}, {_largest(terms[1:])})"
+
+
+def _statements(index: int, op: Operation, places: dict[str, str], known: dict[str, str]) -> tuple[str, str]:
+    """Return the definitions of an operation's value and of the bound of its error."""
+    v, e = f"v{index}", f"e{index}"
+    values, errors = [f"v{i}" for i in op.operands], [f"e{i}" for i in op.operands]
+    own = f"SYMROT_ROUNDING*fabs({v})"
+    if op.kind == "number":
+        return f"{v} = {c_expression(('number', op.value))}", f"{e} = {'0.0' if float(op.value) == op.value else own}"
+    if op.kind == "symbol":
+        return f"{v} = {places[op.value]}", f"{e} = {known.get(op.value, own)}"
+    if op.kind == "neg":
+        return f"{v} = -{values[0]}", f"{e} = {errors[0]}"
+    if op.kind in "+-":
+        return f"{v} = {values[0]} {op.kind} {values[1]}", f"{e} = {errors[0]} + {errors[1]} + {own}"
+    if op.kind == "*":
+        shares = f"fabs({values[0]})*{errors[1]} + fabs({values[1]})*{errors[0]}"
+        return f"{v} = {values[0]}*{values[1]}", f"{e} = {shares} + {own}"
+    if op.kind == "/":
+        shares = f"({errors[0]} + fabs({v})*{errors[1]})/fabs({values[1]})"
+        return f"{v} = {values[0]}/{values[1]}", f"{e} = {shares} + {own}"
+    if op.kind == "exp":
+        return f"{v} = symrot_exp({values[0]})", f"{e} = {v}*{errors[0]} + 2.0*{own}"
+    slope = SLOPES[op.kind].format(v=v, a=values[0], b=values[-1])
+    return (
+        f"{v} = {c_expression(('call', op.kind, tuple(('symbol', name) for name in values)))}",
+        f"{e} = fabs({slope})*({' + '.join(errors)}) + 2.0*{own}",
+    )
+
+
+def _enclosed(kind: str, around: str, op: Operation, places: dict[str, str], known: dict[str, str]) -> str:
+    """Return the enclosure of an operation: a call of a function of :file:`event_enclosures.h`."""
+    if op.kind == "number":
+        return f"symrot_{kind}_point({c_expression(('number', op.value))})"
+    if op.kind == "symbol":
+        place = places[op.value]
+        if place == "t":
+            return f"{around}(t, h)"
+        if op.value in known:
+            return f"{around}({place}, {place.replace('y', 'r')} + {known[op.value]})"
+        return f"symrot_{kind}_point({place})"
+    if op.kind == "*" and op.operands[0] == op.operands[1]:
+        return f"symrot_{kind}_square(x{op.operands[0]})"
+    name = OPERATIONS.get(op.kind, op.kind)
+    return f"symrot_{kind}_{name}({', '.join(f'x{i}' for i in op.operands)})"

@@ -1,0 +1,78 @@
+"""Text of the functions that kernels call beyond those of <math.h> (:mod:`symrot.kernels.removable`)."""
+
+from collections.abc import Iterable, Iterator
+from fractions import Fraction
+
+from symrot.codegen.lowering.formulas import to_node
+from symrot.formula.program import Program
+from symrot.formula.tree import Node, children
+from symrot.kernels.removable import FUNCTIONS, REMOVABLE, Removable
+
+__all__ = ["NEAR", "called", "own_function", "series", "turning_arguments", "without_branches"]
+
+TURNING = ("sinc", *REMOVABLE)  # own functions that take a sine or cosine of their argument
+NEAR = (*TURNING, "arc_ratio")  # own functions with a form for batches, without a branch
+
+Statement = tuple[str, Node]  # name of a temporary, formula
+ONE, ZERO = ("number", Fraction(1)), ("number", Fraction(0))
+Choice = tuple[str, Node, Node, Node, Node]  # relation, left, right, then, else
+_A, _B, _X, _Y, _S, _C = (("symbol", name) for name in "abxysc")
+_CHOICES: dict[str, tuple[tuple[str, ...], Choice]] = {
+    "select_ge": (("a", "b", "x", "y"), (">=", _A, _B, _X, _Y)),
+    "sinc": (("x",), ("==", _X, ZERO, ONE, ("/", ("call", "sin", (_X,)), _X))),
+    "arc_ratio": (("s", "c"), ("==", _S, ZERO, ("/", ONE, _C), ("/", ("call", "atan2", (_S, _C)), _S))),
+}
+
+
+def _calls(program: Program) -> Iterator[tuple[str, tuple[Node, ...]]]:
+    """Yield function and arguments of every call in a program, inner ones first."""
+
+    def visit(node: Node) -> Iterator[tuple[str, tuple[Node, ...]]]:
+        for child in children(node):
+            yield from visit(child)
+        if node[0] == "call":
+            yield node[1], node[2]
+
+    for _, node in program.temporaries + program.outputs:
+        yield from visit(node)
+
+
+def turning_arguments(program: Program) -> list[Node]:
+    """Return the angles of which a program takes a sine or cosine, itself or in a function of its own, once each."""
+    return list(dict.fromkeys(taken[0] for name, taken in _calls(program) if name in ("sin", "cos", *TURNING)))
+
+
+def without_branches(program: Program) -> bool:
+    """Tell whether a program calls what batches take from ``symrot_math.h``."""
+    return any(name in ("sin", "cos", "atan2", "select_ge", *NEAR) for name, _ in _calls(program))
+
+
+def called(program: Program) -> list[str]:
+    """Return the own functions that a program calls, but for those that C has itself, in the order of the table."""
+    used = {name for name, _ in _calls(program)}
+    return [name for name in FUNCTIONS if name in used and (name in _CHOICES or name in REMOVABLE)]
+
+
+def series(coefficients: Iterable[Fraction], variable: str) -> Node:
+    """Return a polynomial by Horner's rule."""
+    first, *rest = reversed(tuple(coefficients))
+    node: Node = ("number", first)
+    for coefficient in rest:
+        node = ("+", ("number", coefficient), ("*", ("symbol", variable), node))
+    return node
+
+
+def own_function(name: str, precision: str) -> tuple[tuple[str, ...], list[Statement], Choice]:
+    """Return parameters, temporaries and the choice (relation, left, right, then, else) that a function returns."""
+    if name in _CHOICES:
+        parameters, choice = _CHOICES[name]
+        return parameters, [], choice
+    return _removable(REMOVABLE[name], precision)
+
+
+def _removable(which: Removable, precision: str) -> tuple[tuple[str, ...], list[Statement], Choice]:
+    square = ("t", ("*", ("symbol", "x"), ("symbol", "x")))
+    taylor = ("taylor", series(which.coefficients(precision), "t"))
+    direct = ("/", ("/", to_node(which.scaled), _X), _X)
+    choice = ("<", ("symbol", "t"), ("number", which.split), ("symbol", "taylor"), direct)
+    return ("x",), [square, taylor], choice

@@ -1,0 +1,389 @@
+"""Let quantities made of the attitude alone follow equations of their own: companions of the states.
+
+The components of a fixed direction in the body, ``gamma = R(q)^T e``, are sums of products of q0..q3, which then stand
+in further products: at each order of a series one convolution waits for another. But ``gamma' = gamma x omega``, so
+that gamma is known one order ahead like a state. Nothing of this is written down here: a quantity that holds nothing
+but the attitude and functions of time is differentiated along the motion, what stands beside each rate becomes a
+companion too if it is not one yet, and so on until nothing new comes; if that does not end soon, all stays as it is.
+
+A companion starts from the attitude anew at every step, so that it cannot drift. Identities hold for a unit quaternion,
+whose norm must be found constant along the motion.
+"""
+
+from collections.abc import Iterable
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+from symrot.codegen.taylor.recurrences import Recurrences, Series
+from symrot.formula.tree import Node, children
+
+__all__ = ["with_companions"]
+
+QUATERNION = ("q0", "q1", "q2", "q3")
+MOST_COMPANIONS, MOST_TERMS = 9, 200  # three directions; beyond that nothing is gained
+ONE: Node = ("number", Fraction(1))
+
+Monomial = tuple[tuple[int, int], ...]  # variables with their powers, sorted
+Polynomial = dict[Monomial, Fraction]
+
+
+class _Open(Exception):
+    """The equations do not close, or not soon."""
+
+
+class _Term(NamedTuple):
+    """A companion, or one (None), times a number, a constant formula and perhaps a state, by its number."""
+
+    companion: int | None
+    number: Fraction
+    constant: Node
+    state: int | None
+
+
+def with_companions(system: Recurrences) -> Recurrences:
+    """Return a system with companions in the place of what holds the attitude alone, or the system as it is.
+
+    Companions are states beyond those of the program: ``seeds`` of the result has a formula for coefficient 0 of each,
+    in the states and t, and ``rates`` their rates.
+    """
+    if not set(QUATERNION) <= set(system.states):
+        return system
+    try:
+        return _Closure(system).result()
+    except _Open:
+        return system
+
+
+def _times(a: Polynomial, b: Polynomial) -> Polynomial:
+    found: Polynomial = {}
+    for left, x in a.items():
+        for right, y in b.items():
+            powers = dict(left)
+            for variable, power in right:
+                powers[variable] = powers.get(variable, 0) + power
+            monomial = tuple(sorted(powers.items()))
+            found[monomial] = found.get(monomial, Fraction(0)) + x * y
+    if len(found) > MOST_TERMS:
+        raise _Open
+    return {monomial: x for monomial, x in found.items() if x}
+
+
+def _plus(a: Polynomial, b: Polynomial) -> Polynomial:
+    found = dict(a)
+    for monomial, x in b.items():
+        found[monomial] = found.get(monomial, Fraction(0)) + x
+    return {monomial: x for monomial, x in found.items() if x}
+
+
+class _Closure:
+    def __init__(self, system: Recurrences) -> None:
+        self.system, self.series = system, system.series
+        self.variables: list[tuple[str, Any]] = []  # state and number, clock and series, constant and formula
+        self.polynomials: dict[int, Polynomial | None] = {}
+        numbers = [system.states.index(name) for name in QUATERNION]
+        self.attitude = {self.variable("state", number) for number in numbers}
+        self.norm: Polynomial = {((q, 2),): Fraction(1) for q in self.attitude}
+        if self.derivative(self.norm):
+            raise _Open
+        self.companions: list[Polynomial] = []
+        self.known: dict[frozenset[tuple[Monomial, Fraction]], tuple[int, Fraction]] = {}
+        self.replaced: dict[int, list[_Term]] = {}  # series -> what it is, in companions
+        self.parts: dict[Series, tuple[set[int], list[_Term]]] = {}  # sum -> operands replaced, by what
+
+    # -------------------------------------------------------------------------------------------- polynomials
+
+    def variable(self, kind: str, what: Any) -> int:
+        if (kind, what) not in self.variables:
+            self.variables.append((kind, what))
+        return self.variables.index((kind, what))
+
+    def single(self, kind: str, what: Any) -> Polynomial:
+        return {((self.variable(kind, what), 1),): Fraction(1)}
+
+    def constant(self, node: Node) -> Polynomial:
+        """Return a constant formula; what is no polynomial is one of a new variable."""
+        if node[0] == "number":
+            return {(): node[1]} if node[1] else {}
+        if node[0] not in ("neg", "*", "+", "-"):
+            return self.single("constant", node)
+        parts = [self.constant(child) for child in children(node)]
+        if node[0] == "neg":
+            return _times(parts[0], {(): Fraction(-1)})
+        if node[0] == "*":
+            return _times(*parts)
+        return _plus(parts[0], parts[1] if node[0] == "+" else _times(parts[1], {(): Fraction(-1)}))
+
+    def polynomial(self, i: int) -> Polynomial | None:
+        """Return a series as a polynomial of states, clocks and constants, or None."""
+        if i not in self.polynomials:
+            s = self.series[i]
+            found: Polynomial | None = None
+            if s.rule == "state":
+                found = self.single("state", s.number)
+            elif s.rule == "clock":
+                found = self.single("clock", i)
+            elif s.rule == "sum":
+                found = self.sum(s)
+            elif s.rule == "product":
+                a, b = map(self.polynomial, s.operands)
+                found = None if a is None or b is None else _times(a, b)
+            self.polynomials[i] = found
+        return self.polynomials[i]
+
+    def sum(self, s: Series, only: Iterable[int] | None = None) -> Polynomial | None:
+        """Return a sum, or that of some of its operands alone, as a polynomial."""
+        *weights, constant = s.weights
+        total = self.constant(constant) if constant is not None and only is None else {}
+        for operand, weight in zip(s.operands, weights, strict=True):
+            if only is None or operand in only:
+                part = self.polynomial(operand)
+                if part is None or weight is None:
+                    return None
+                total = _plus(total, _times(part, self.constant(weight)))
+        return total
+
+    def rate(self, variable: int) -> Polynomial:
+        """Return the rate of a variable along the motion."""
+        kind, what = self.variables[variable]
+        if kind == "constant":
+            return {}
+        if kind == "clock":
+            s = self.series[what]
+            assert s.weights[0] is not None
+            partner = _times(self.single("clock", s.operands[0]), self.constant(s.weights[0]))
+            return _times(partner, {(): Fraction(s.sign)})
+        found = self.sum(self.system.rates[what])
+        if found is None:
+            raise _Open
+        return found
+
+    def derivative(self, form: Polynomial) -> Polynomial:
+        total: Polynomial = {}
+        for monomial, x in form.items():
+            for variable, power in monomial:
+                rest = tuple((v, p - (v == variable)) for v, p in monomial if (v, p) != (variable, 1))
+                total = _plus(total, _times({rest: x * power}, self.rate(variable)))
+        return total
+
+    def is_inner(self, variable: int) -> bool:
+        return variable in self.attitude or self.variables[variable][0] == "clock"
+
+    def of_attitude(self, form: Polynomial | None) -> bool:
+        """Return whether a form is made of the attitude, functions of time and constants, and is no mere state."""
+        if form is None:
+            return False
+        free = [v for monomial in form for v, _ in monomial if self.variables[v][0] != "constant"]
+        return all(map(self.is_inner, free)) and max(map(self.degree, form), default=0) > 1
+
+    def degree(self, monomial: Monomial) -> int:
+        """Return the degree in the attitude."""
+        return sum(power for variable, power in monomial if variable in self.attitude)
+
+    def split(self, form: Polynomial) -> list[tuple[Node, int | None, Polynomial]]:
+        """Return a form as constants times states times what holds the attitude and functions of time."""
+        groups: dict[Monomial, Polynomial] = {}
+        for monomial, x in form.items():
+            outer = tuple((v, p) for v, p in monomial if not self.is_inner(v))
+            groups.setdefault(outer, {})[tuple((v, p) for v, p in monomial if self.is_inner(v))] = x
+        found = []
+        for outer, inner in groups.items():
+            constant, state = ONE, None
+            for variable, power in outer:
+                kind, what = self.variables[variable]
+                if kind == "state":
+                    if state is not None or power > 1:
+                        raise _Open
+                    state = what
+                for _ in range(power if kind == "constant" else 0):
+                    constant = what if constant == ONE else ("*", constant, what)
+            found.append((constant, state, inner))
+        return found
+
+    # -------------------------------------------------------------------------------------------- closing
+
+    def adjoin(self, inner: Polynomial) -> tuple[int | None, Fraction, Fraction]:
+        """Return the companion that a form is, how many times, and a number besides.
+
+        For a unit quaternion all terms of a form can be given one degree; of degree two, they have a trace to spare.
+        """
+        degrees = {self.degree(monomial) for monomial in inner}
+        top = max(degrees)
+        if any((top - degree) % 2 for degree in degrees):
+            raise _Open
+        whole: Polynomial = {}
+        for monomial, x in inner.items():
+            part: Polynomial = {monomial: x}
+            for _ in range((top - self.degree(monomial)) // 2):
+                part = _times(part, self.norm)
+            whole = _plus(whole, part)
+        spare = Fraction(0)
+        if top == 2 and all(variable in self.attitude for monomial in inner for variable, _ in monomial):
+            spare = sum((whole.get(square, Fraction(0)) for square in self.norm), start=Fraction(0)) / 4
+            whole = _plus(whole, _times(self.norm, {(): -spare}))
+            inner = _plus(inner, {(): -spare})
+        if not whole:
+            return None, Fraction(0), spare
+        lead = whole[min(whole)]
+        key = frozenset((monomial, x / lead) for monomial, x in whole.items())
+        if key not in self.known:
+            if len(self.companions) == MOST_COMPANIONS:
+                raise _Open
+            self.known[key] = len(self.companions), lead
+            self.companions.append(inner)
+        index, own = self.known[key]
+        return index, lead / own, spare
+
+    def terms(self, form: Polynomial) -> list[_Term]:
+        found = []
+        for constant, state, inner in self.split(form):
+            index, number, spare = self.adjoin(inner)
+            found += [_Term(one, x, constant, state) for one, x in ((index, number), (None, spare)) if x]
+        return found
+
+    def seek(self, i: int) -> None:
+        """Replace what holds the attitude alone in a series and in all it is made of."""
+        s = self.series[i]
+        if i in self.replaced or s.rule not in ("sum", "product"):
+            return
+        if self.of_attitude(self.polynomial(i)):
+            self.replaced[i] = self.terms(self.polynomial(i) or {})
+        elif s.rule == "sum":
+            self.seek_in(s)
+        else:
+            for operand in s.operands:
+                self.seek(operand)
+
+    def seek_in(self, s: Series) -> None:
+        """Replace the products of the attitude in a sum, all together, and what stands in its other operands."""
+        alone = {
+            i for i in s.operands if self.series[i].rule == "product" and self.of_attitude(self.polynomial(i))
+            and not any(self.of_attitude(self.polynomial(factor)) for factor in self.series[i].operands)
+        }  # fmt: skip
+        if alone and s not in self.parts:
+            self.parts[s] = alone, self.terms(self.sum(s, alone) or {})
+        for operand in s.operands:
+            if operand in alone:
+                continue
+            if self.series[operand].rule == "product":  # of directions: each of them is replaced
+                for factor in self.series[operand].operands:
+                    self.seek(factor)
+            else:
+                self.seek(operand)
+
+    def result(self) -> Recurrences:
+        for rate in self.system.rates:
+            self.seek_in(rate)
+        if not self.companions:
+            return self.system
+        rates: list[list[_Term]] = []
+        while len(rates) < len(self.companions):
+            rates.append(self.terms(self.derivative(self.companions[len(rates)])))
+        return _rebuilt(self, rates)
+
+    def seed(self, form: Polynomial) -> Node:
+        """Return a form as a formula of states and time: terms of one factor of time together."""
+        groups: dict[Monomial, dict[Fraction, list[Node]]] = {}
+        for monomial, x in sorted(form.items()):
+            clocks = tuple((v, p) for v, p in monomial if v not in self.attitude)
+            product = _product(self.symbol(v) for v, p in monomial if v in self.attitude for _ in range(p))
+            size = abs(x)
+            if product == ONE:
+                product, size = ("number", size), Fraction(1)
+            groups.setdefault(clocks, {}).setdefault(size, []).append(product if x > 0 else ("neg", product))
+        parts = []
+        for clocks, numbers in groups.items():
+            sums = [_product([*([("number", x)] if x != 1 else []), _total(terms)]) for x, terms in numbers.items()]
+            parts.append(_product([*(self.symbol(v) for v, p in clocks for _ in range(p)), _total(sums)]))
+        return _total(parts)
+
+    def symbol(self, variable: int) -> Node:
+        kind, what = self.variables[variable]
+        if kind == "state":
+            return ("symbol", self.system.states[what])
+        s = self.series[what]
+        rate, offset = s.weights
+        turned: Node = ("*", rate, ("symbol", "t"))
+        return ("call", s.function, (turned if offset is None else ("+", turned, offset),))
+
+
+def _product(factors: Iterable[Node]) -> Node:
+    found = ONE
+    for factor in factors:
+        found = factor if found == ONE else found if factor == ONE else ("*", found, factor)
+    return found
+
+
+def _total(terms: list[Node]) -> Node:
+    first = next((i for i, term in enumerate(terms) if term[0] != "neg"), 0)
+    found, *rest = [terms[first], *terms[:first], *terms[first + 1 :]]
+    for term in rest:
+        found = ("-", found, term[1]) if term[0] == "neg" else ("+", found, term)
+    return found
+
+
+def _rebuilt(closure: _Closure, rates: list[list[_Term]]) -> Recurrences:
+    """Return the system with companions as further states; series that nothing needs any more are left out."""
+    system, old = closure.system, closure.series
+    count = len(system.states)
+    alias = {
+        i: terms[0].companion for i, terms in closure.replaced.items()
+        if len(terms) == 1 and terms[0].companion is not None and terms[0].number == 1 and terms[0].constant == ONE
+    }  # fmt: skip
+
+    def left(s: Series) -> list[int]:
+        """Return the operands of a sum, or of another series, that stay."""
+        return [i for i in s.operands if i not in closure.parts.get(s, (set(),))[0]]
+
+    needed: set[int] = set()
+    waiting = [i for rate in system.rates for i in left(rate)]
+    while waiting:
+        i = waiting.pop()
+        if i not in needed:
+            needed.add(i)
+            waiting += [] if i in closure.replaced else left(old[i])
+    place = {i: s.number for i, s in enumerate(old) if s.rule == "state"}
+    place |= {i: count + companion for i, companion in alias.items()}
+    kept = [i for i in sorted(needed) if i not in place]
+    place |= {i: count + len(rates) + k for k, i in enumerate(kept)}
+    series = [Series("state", number=number) for number in range(count + len(rates))]
+
+    def weight(term: _Term) -> Node:
+        number: Node = ("number", term.number)
+        return _product([*([number] if term.number != 1 else []), term.constant])
+
+    def summed(
+        terms: list[_Term], pairs: Iterable[tuple[int, Node | None]] = (), constant: Node | None = None
+    ) -> Series:
+        """Return a sum of series with weights, companions and a constant."""
+        for term in terms:
+            if term.companion is None:
+                constant = weight(term) if constant is None else ("+", constant, weight(term))
+        both = [*pairs, *((count + term.companion, weight(term)) for term in terms if term.companion is not None)]
+        return Series("sum", tuple(i for i, _ in both), (*(w for _, w in both), constant))
+
+    def moved(s: Series) -> Series:
+        if s.rule != "sum":
+            operands = tuple(place[i] for i in s.operands)
+            return s._replace(operands=tuple(sorted(operands)) if s.rule == "product" else operands)
+        gone, terms = closure.parts.get(s, (set(), []))
+        pairs = [(place[i], w) for i, w in zip(s.operands, s.weights, strict=False) if i not in gone]
+        return summed(terms, pairs, s.weights[-1])
+
+    for i in kept:
+        series.append(summed(closure.replaced[i]) if i in closure.replaced else moved(old[i]))
+    found = [moved(rate) for rate in system.rates]
+    products: dict[tuple[int, int], int] = {}
+    for terms in rates:
+        operands = []
+        for term in terms:
+            if term.companion is None and term.state is None:
+                raise _Open  # a rate that nothing moves has no place here
+            both = (term.state, None if term.companion is None else count + term.companion)
+            pair = [own for own in both if own is not None]
+            if len(pair) == 2 and tuple(pair) not in products:
+                products[(pair[0], pair[1])] = len(series)
+                series.append(Series("product", tuple(pair)))
+            operands.append(products[(pair[0], pair[1])] if len(pair) == 2 else pair[0])
+        found.append(Series("sum", tuple(operands), (*map(weight, terms), None)))
+    seeds = tuple(map(closure.seed, closure.companions))
+    return Recurrences(system.states, system.parameters, tuple(series), tuple(found), seeds)

@@ -1,0 +1,127 @@
+"""The Taylor coefficients of a system, from its recurrences, over any kind of number.
+
+With Fractions they are exact, which is how the rules are proven; with numbers of 40 digits they are a reference.
+Standard library only.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+from symrot.codegen.taylor.recurrences import ONE, ZERO, Recurrences, Series
+from symrot.formula.tree import Node, evaluate
+
+__all__ = ["coefficients"]
+
+
+class _Run(NamedTuple):
+    """What the rules need while coefficients are computed: constants as numbers, functions, all series so far."""
+
+    constant: Callable[[Node], Any]
+    functions: Mapping[str, Callable[..., Any]]
+    found: list[list[Any]]
+    t: Any
+
+
+def coefficients(
+    system: Recurrences,
+    order: int,
+    values: Mapping[str, Any],
+    functions: Mapping[str, Callable[..., Any]] | None = None,
+    number: Callable[[Fraction], Any] = lambda value: value,
+) -> list[list[Any]]:
+    """Return the Taylor coefficients 0 to ``order`` of every state, over any kind of number.
+
+    Parameters
+    ----------
+    values : mapping
+        States, parameters and t by name.
+    functions, number
+        As :func:`symrot.formula.tree.evaluate` takes them.
+
+    Examples
+    --------
+    With Fractions the coefficients are exact, which is how the rules are proven (``tests/test_recurrences.py``).
+    """
+    run = _Run(
+        lambda node: evaluate(node, values, functions, number), functions or {}, [[] for _ in system.series],
+        values.get("t", number(Fraction(0))),
+    )  # fmt: skip
+    state = {series.number: run.found[i] for i, series in enumerate(system.series) if series.rule == "state"}
+    for i, name in enumerate(system.states):
+        state.setdefault(i, []).append(values[name])
+    for i, seed in enumerate(system.seeds, start=len(system.states)):
+        state[i].append(run.constant(seed))
+    for n in range(order):
+        for series, own in zip(system.series, run.found, strict=True):
+            if series.rule != "state":
+                own.append(_RULES[series.rule](run, series, n, own))
+        for i, rate in enumerate(system.rates):
+            state[i].append(_sum_rule(run, rate, n, []) / (n + 1))
+    return [state[i] for i in range(len(system.states))]
+
+
+def _convolution(u: Sequence[Any], v: Sequence[Any], n: int, first: int, last: int) -> Any:
+    return sum((u[k] * v[n - k] for k in range(first, last + 1)), start=0)
+
+
+def _sum_rule(run: _Run, series: Series, n: int, own: list[Any]) -> Any:
+    *weights, constant = series.weights
+    total = run.constant(constant if n == 0 and constant is not None else ZERO)
+    for operand, weight in zip(series.operands, weights, strict=True):
+        total = total + run.constant(weight) * run.found[operand][n]  # type: ignore[arg-type]
+    return total
+
+
+def _product_rule(run: _Run, series: Series, n: int, own: list[Any]) -> Any:
+    u, v = (run.found[i] for i in series.operands)
+    if u is not v:
+        return _convolution(u, v, n, 0, n)
+    pairs = 2 * _convolution(u, u, n, 0, (n - 1) // 2)
+    return pairs if n % 2 else pairs + u[n // 2] * u[n // 2]
+
+
+def _quotient_rule(run: _Run, series: Series, n: int, own: list[Any]) -> Any:
+    *top, v = (run.found[i] for i in series.operands)
+    upper = top[0][n] if top else run.constant(ONE) if n == 0 else 0
+    return (upper - _convolution(v, own, n, 1, n)) / v[0]
+
+
+def _root_rule(run: _Run, series: Series, n: int, own: list[Any]) -> Any:
+    (u,) = (run.found[i] for i in series.operands)
+    return run.functions["sqrt"](u[0]) if n == 0 else (u[n] - _convolution(own, own, n, 1, n - 1)) / (2 * own[0])
+
+
+def _seed(run: _Run, series: Series, first: int) -> Any:
+    return run.functions[series.function](*(run.found[i][0] for i in series.operands[first:]))
+
+
+def _driven_rule(run: _Run, series: Series, n: int, own: list[Any]) -> Any:
+    e, v = (run.found[i] for i in series.operands[:2])
+    return _seed(run, series, 2) if n == 0 else series.sign * _convolution(e, v, n, 1, n) / n
+
+
+def _primitive_rule(run: _Run, series: Series, n: int, own: list[Any]) -> Any:
+    g, e, v = (run.found[i] for i in series.operands[:3])
+    return _seed(run, series, 3) if n == 0 else (g[n] - _convolution(e, v, n, 1, n - 1)) / (n * v[0])
+
+
+def _clock_rule(run: _Run, series: Series, n: int, own: list[Any]) -> Any:
+    rate, offset = (0 if weight is None else run.constant(weight) for weight in series.weights)
+    if n == 0:
+        return run.functions[series.function](rate * run.t + offset)
+    return series.sign * rate * run.found[series.operands[0]][n - 1] / n
+
+
+_RULES: dict[str, Callable[[_Run, Series, int, list[Any]], Any]] = {
+    "time": lambda run, series, n, own: run.t if n == 0 else run.constant(ONE) if n == 1 else 0,
+    "sum": _sum_rule,
+    "product": _product_rule,
+    "quotient": _quotient_rule,
+    "root": _root_rule,
+    "theta": lambda run, series, n, own: n * run.found[series.operands[0]][n],
+    "driven": _driven_rule,
+    "primitive": _primitive_rule,
+    "clock": _clock_rule,
+}
+"""Coefficient n of each rule."""

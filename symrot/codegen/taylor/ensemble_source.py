@@ -1,0 +1,444 @@
+"""Print the recurrences of a system as C with one trajectory in each lane: the jet of an ensemble.
+
+Nothing is moved between lanes: a series is an array of vectors, and each operation is done for all trajectories at
+once. Convolutions that enter all sums with one weight share an accumulator. Two orders are taken together: loops over
+the coefficients that are known already serve both and read each number once, then come order n and order n + 1 with the
+terms that hold the newest coefficients. Nothing is unrolled over the order.
+
+The text stands between :file:`lanes.h` and :file:`lanes.c` of :mod:`symrot.ensemble`.
+"""
+
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+from symrot.codegen.printing.c_source import c_expression
+from symrot.codegen.taylor.lane_functions import lane_functions
+from symrot.codegen.taylor.recurrences import Recurrences, Series, recurrences, split_sign
+from symrot.codegen.taylor.source import checked_system
+from symrot.formula.program import Program
+from symrot.formula.tree import Node, names, rename
+
+__all__ = ["lane_definitions", "multiplications"]
+
+ONE: Node = ("number", 1)
+CIRCLE = {"sin", "cos"}  # found at once
+LOAD_OF_LOOP = 24  # accumulators and factors of a loop: half more than the 16 registers of AVX2 hold, as measured
+
+
+class Convolution(NamedTuple):
+    """``sum(a[k] b[n-k])`` and which of its two ends belong to it: both, that with the newest of a (last), or none."""
+
+    a: int
+    b: int
+    ends: str
+
+    @property
+    def square(self) -> bool:
+        return self.a == self.b
+
+
+class Slot(NamedTuple):
+    """Convolutions that are added up, each with its sign, in one accumulator."""
+
+    terms: tuple[tuple[int, Convolution], ...]
+
+    @property
+    def square(self) -> bool:
+        return self.terms[0][1].square
+
+
+CONVOLUTIONS = {  # rule -> operands a and b of its convolution (-1: the series itself), and its ends
+    "product": (0, 1, "both"),
+    "quotient": (-2, -1, "last"),
+    "root": (-1, -1, "none"),
+    "driven": (0, 1, "last"),
+    "primitive": (1, 2, "none"),
+}
+
+
+def lane_definitions(program: Program, edges: Sequence[int], scales: Sequence[float], order: int) -> str:
+    """Return the C text of a system for :file:`lanes.c`: sizes, blocks, constants and the jet.
+
+    Arguments as :func:`symrot.codegen.taylor.source.taylor_definitions` takes them.
+
+    Raises
+    ------
+    InputError
+        For an operation without a Taylor series, or an order or blocks that cannot be used.
+    """
+    system = checked_system(program, edges, scales, order)
+    inverses = ", ".join(["0.0", *(f"1.0/{n}" for n in range(1, order + 1))])
+    return "\n".join(
+        (
+            f"#define SYMROT_STATES {len(system.states)}",
+            f"#define SYMROT_PARAMETERS {len(system.parameters)}",
+            f"#define SYMROT_ORDER {order}",
+            f"#define SYMROT_BLOCKS {len(scales)}",
+            f"#define SYMROT_EDGES {{{', '.join(map(str, edges))}}}",
+            f"#define SYMROT_SCALES {{{', '.join(repr(float(scale)) for scale in scales)}}}",
+            "",
+            f"static const double symrot_inverse[] = {{{inverses}}};",
+            lane_functions() if any(s.rule == "clock" or s.function in CIRCLE for s in system.series) else "",
+            _Jet(system).text(),
+        )
+    )
+
+
+def multiplications(program: Program, order: int) -> int:
+    """Return the products that the loops of one jet take for each trajectory."""
+    jet = _Jet(recurrences(program))
+    shares = [(0.5 if slot.square else 1.0) * len(slot.terms) for slot in jet.slots]
+    return int(sum(shares) * order * (order + 1) / 2)
+
+
+class _Jet:
+    """Writes one system. ``v{i}`` is the newest coefficient of series i, ``u{i}`` (or ``x[i]``) holds all of them."""
+
+    def __init__(self, system: Recurrences) -> None:
+        self.system, self.series = system, system.series
+        self.state = {i: s.number for i, s in enumerate(self.series) if s.rule == "state"}
+        self.constants: dict[Node, int] = {}
+        self.slots: list[Slot] = []
+        self.slot_of: dict[int, tuple[int, int]] = {}  # series -> its sign in its slot, the number of the slot
+        self.shared: set[int] = set()  # products that have no value of their own
+        self._make_slots()
+        self.stored = {
+            operand for slot in self.slots for _, c in slot.terms for operand in (c.a, c.b) if operand not in self.state
+        }
+        self.divided = [i for i, s in enumerate(self.series) if s.rule in ("quotient", "root", "primitive")]
+
+    def _make_slots(self) -> None:
+        """Give each convolution an accumulator; products with the same weights in the same sums share one."""
+        uses: dict[int, list[tuple[int, Node, int]]] = {}
+        own: set[int] = set()
+        for place, s in enumerate((*self.series, *self.system.rates)):
+            if s.rule == "sum":
+                for operand, weight in zip(s.operands, s.weights, strict=False):
+                    assert weight is not None
+                    sign, size = split_sign(weight)
+                    uses.setdefault(operand, []).append((place, size, sign))
+            else:
+                own |= set(s.operands)
+        found: dict[object, list[tuple[int, Convolution, int]]] = {}
+        for i, s in enumerate(self.series):
+            if s.rule not in CONVOLUTIONS:
+                continue
+            c, sign = self._convolution(i, s), 1
+            key: object = i
+            if s.rule == "product" and i not in own and i in uses:
+                sign = uses[i][0][2]
+                key = (c.square, tuple((place, size, sign * other) for place, size, other in uses[i]))
+                self.shared.add(i)
+            found.setdefault(key, []).append((sign, c, i))
+        for members in sorted(found.values(), key=lambda one: (one[0][1].square, -len(one))):
+            lead = members[0][0]
+            self.slot_of |= {i: (sign * lead, len(self.slots)) for sign, _, i in members}
+            self.slots.append(Slot(tuple((sign * lead, c) for sign, c, _ in members)))
+
+    def _convolution(self, i: int, s: Series) -> Convolution:
+        a, b, ends = CONVOLUTIONS[s.rule]
+        places = {-1: i, -2: s.operands[-1], **dict(enumerate(s.operands))}
+        return Convolution(places[a], places[b], ends)
+
+    # -------------------------------------------------------------------------------------------- expressions
+
+    def at(self, series: int, n: str) -> str:
+        return f"x[{self.state[series]}][{n}]" if series in self.state else f"u{series}[{n}]"
+
+    def weight(self, node: Node) -> str:
+        """Return a positive constant: a number as it stands, what holds parameters from its place in each lane."""
+        if not names(node) and node[0] == "number":
+            return f"V_ALL({c_expression(node)})"
+        return f"c[{self.constants.setdefault(node, len(self.constants))}]"
+
+    def signed(self, node: Node | None) -> str:
+        """Return a constant of either sign; None is zero."""
+        sign, size = split_sign(node or ("number", 0))
+        return self.weight(size) if sign > 0 else f"V_SUB(V_ALL(0.0), {self.weight(size)})"
+
+    def slot(self, number: int, phase: str, sums: str) -> str:
+        """Return coefficient n of a slot; of two chains of sums, so that neither waits for all the newest."""
+        older = f"{sums}{number}" if phase == "later" else ""
+        newer = ""
+        for sign, (a, b, ends) in self.slots[number].terms:
+            if phase == "first":
+                older = _plus(older, sign, f"{self.at(a, '0')}, {self.at(b, '0')}") if ends == "both" else older
+            elif a == b and ends == "both":
+                older = _plus(older, sign, f"V_ADD({self.at(a, '0')}, {self.at(a, '0')}), v{a}")
+            elif ends != "none":
+                older = _plus(older, sign, f"v{a}, {self.at(b, '0')}")
+                if ends == "both":
+                    newer = _plus(newer, sign, f"{self.at(a, '0')}, v{b}")
+        return f"V_ADD({older}, {newer})" if older and newer else older or newer
+
+    def sum(self, s: Series, first: bool, factor: str = "") -> str:
+        """Return a sum, times a factor. The terms that come last to hand are added last."""
+        value = ""
+        *weights, constant = s.weights
+        if first and constant is not None and constant != ("number", 0):
+            sign, size = split_sign(constant)
+            value = f"V_MUL({self.weight(size)}, {factor})" if factor else self.weight(size)
+            value = value if sign > 0 else f"V_SUB(V_ALL(0.0), {value})"
+        done: set[int] = set()
+        parts = []
+        for operand, weight in zip(s.operands, weights, strict=True):
+            assert weight is not None
+            sign, size = split_sign(weight)
+            name = f"v{operand}"
+            if operand in self.shared:
+                own, slot = self.slot_of[operand]
+                if slot in done:
+                    continue
+                done.add(slot)
+                sign, name = sign * own, f"s{slot}"
+            parts.append((operand in self.shared, sign, size, name))
+        for _, sign, size, name in sorted(parts, key=lambda part: part[0]):
+            scale = "" if size == ONE else self.weight(size)
+            scale = f"V_MUL({scale}, {factor})" if scale and factor else scale or factor
+            if scale:
+                value = _plus(value, sign, f"{name}, {scale}")
+            elif value:
+                value = f"V_{'ADD' if sign > 0 else 'SUB'}({value}, {name})"
+            else:
+                value = name if sign > 0 else f"V_SUB(V_ALL(0.0), {name})"
+        return value or "V_ALL(0.0)"
+
+    # -------------------------------------------------------------------------------------------- series
+
+    def coefficient(self, i: int, n: str, phase: str, sums: str) -> list[str]:
+        """Return the statements that set ``v{i}`` to coefficient n of a series."""
+        s, name = self.series[i], f"v{i}"
+        if s.rule == "sum":
+            return [f"{name} = {self.sum(s, phase == 'first')};"]
+        if s.rule == "time":
+            value = {"first": "t", "second": "unit"}.get(phase, "V_ALL(0.0)")
+            return [f"{name} = {value};"]
+        if s.rule == "theta":
+            factor = {"first": "0.0", "second": "1.0"}.get(phase, f"(double)({n})")
+            return [f"{name} = V_MUL(v{s.operands[0]}, V_ALL({factor}));"]
+        if s.rule == "clock":
+            return self._clock_start(i, s) if phase == "first" else self._clock(s, name, n)
+        total = self.slot(self.slot_of[i][1], phase, sums)
+        if s.rule == "product":
+            return [f"{name} = {total};"]
+        if s.rule == "quotient":
+            divisor = s.operands[-1]
+            if phase == "first":
+                upper = f"v{s.operands[0]}" if len(s.operands) > 1 else "V_ALL(1.0)"
+                return [f"d{i} = v{divisor};", f"{name} = V_DIV({upper}, d{i});"]
+            upper = f"v{s.operands[0]}" if len(s.operands) > 1 else "V_ALL(0.0)"
+            return [f"{name} = V_DIV(V_SUB({upper}, {total}), d{i});"]
+        if s.rule == "driven":
+            if phase == "first" and s.function in CIRCLE:
+                v, w = (f"v{one}" for one in (i, s.operands[1]))
+                return [f"symrot_circle(v{s.operands[2]}, V_ALL(0.0), &{v}, &{w});"] if s.function == "sin" else []
+            if phase == "first":
+                return [f"{name} = {_called(s, 2)};"]
+            sign = "" if s.sign > 0 else "-"
+            return [f"{name} = V_MUL({total}, V_ALL({sign}symrot_inverse[{n}]));"]
+        if s.rule == "root":
+            if phase == "first":
+                return [f"{name} = {_called(s, 0)};", f"d{i} = V_ADD({name}, {name});"]
+            upper = f"V_SUB(v{s.operands[0]}, {total})" if total else f"v{s.operands[0]}"
+            return [f"{name} = V_DIV({upper}, d{i});"]
+        if phase == "first":  # primitive
+            return [f"{name} = {_called(s, 3)};", f"d{i} = v{s.operands[2]};"]
+        upper = f"V_SUB(v{s.operands[0]}, {total})" if total else f"v{s.operands[0]}"
+        return [f"{name} = V_DIV({upper}, V_MUL(d{i}, V_ALL((double)({n}))));"]
+
+    def _clock(self, s: Series, name: str, n: str) -> list[str]:
+        """Return coefficient n of a function of ``a t + b`` from coefficient n - 1 of its partner."""
+        rate, _ = s.weights
+        assert rate is not None
+        sign, size = split_sign(rate)
+        step = f"V_MUL(unit, V_ALL(symrot_inverse[{n}]))"
+        step = step if size == ONE else f"V_MUL({self.weight(size)}, {step})"
+        step = step if sign * s.sign > 0 else f"V_SUB(V_ALL(0.0), {step})"
+        return [f"{name} = V_MUL(p{s.operands[0]}, {step});"]
+
+    def _clock_start(self, i: int, s: Series) -> list[str]:
+        """Return coefficient 0 of functions of ``a t + b`` that drive each other, with the first one of them."""
+        both = sorted({i, s.operands[0]})
+        if i != both[0]:
+            return []
+        rate, offset = (self.signed(node) for node in s.weights)
+        lines = [f"symrot_v low{i};", f"const symrot_v high{i} = symrot_turn({rate}, {offset}, t, t_low, &low{i});"]
+        if s.function in CIRCLE:
+            return [*lines, f"symrot_circle(high{i}, low{i}, &v{i}, &v{both[1]});"]
+        for one in both:
+            lines.append(f"const symrot_v k{one} = V_CALL({self.series[one].function}, high{i});")
+        for one in both:  # what rounding took from the phase is put right by the slope
+            slope = "FMA" if self.series[one].sign > 0 else "FNMA"
+            lines.append(f"v{one} = V_{slope}(low{i}, k{self.series[one].operands[0]}, k{one});")
+        return lines
+
+    # -------------------------------------------------------------------------------------------- orders
+
+    def order(self, n: str, phase: str, sums: str) -> list[str]:
+        """Return the statements of one order: series as they come to hand, then the next of the states."""
+        lines: list[str] = []
+        made: set[int] = set()
+
+        def slots_of(s: Series) -> Iterable[str]:
+            for operand in s.operands if s.rule == "sum" else ():
+                if operand in self.shared and (slot := self.slot_of[operand][1]) not in made:
+                    made.add(slot)
+                    yield f"const symrot_v s{slot} = {self.slot(slot, phase, sums)};"
+
+        if phase != "first":
+            lines += [f"const symrot_v p{i} = v{i};" for i in self._partners()]
+        for i, s in enumerate(self.series):
+            if s.rule == "state" or i in self.shared:
+                continue
+            lines += slots_of(s)
+            lines += self.coefficient(i, n, phase, sums)
+            if i in self.stored:
+                lines.append(f"u{i}[{n}] = v{i};")
+        following = {"0": "1", "1": "2", "n": "n + 1", "m": "m + 1"}[n]
+        lines.append(f"const symrot_v step = V_MUL(unit, V_ALL(symrot_inverse[{following}]));")
+        for s in self.system.rates:
+            lines += slots_of(s)
+        rates = self.system.rates
+        lines += [f"const symrot_v y{i} = {self.sum(s, phase == 'first', 'step')};" for i, s in enumerate(rates)]
+        lines += [f"x[{i}][{following}] = y{i};" for i in range(len(rates))]
+        lines += [f"v{series} = y{i};" for series, i in self.state.items()]
+        return lines
+
+    def _partners(self) -> list[int]:
+        """Return the series whose coefficient of one order before is needed."""
+        return sorted({s.operands[0] for s in self.series if s.rule == "clock"})
+
+    def loops(self) -> list[str]:
+        """Return the sums over what is known for orders n (even) and m = n + 1: a over k + j = n, b over k + j = m."""
+        return [line for group in self._groups() for line in self._loop(group)]
+
+    def _groups(self) -> list[list[int]]:
+        """Return the slots of each loop: those that share factors together, as far as registers go."""
+        left = list(range(len(self.slots)))
+        groups: list[list[int]] = []
+        while left:
+            group = [left.pop(0)]
+            alike = [i for i in left if self.slots[i].square == self.slots[group[0]].square]
+            while (
+                alike
+                and self._load([*group, best := min(alike, key=lambda i: self._load([*group, i]))]) <= LOAD_OF_LOOP
+            ):
+                group.append(best)
+                alike.remove(best)
+                left.remove(best)
+            groups.append(group)
+        return groups
+
+    def _load(self, group: Sequence[int]) -> int:
+        """Return how many registers a loop would like: two accumulators for each slot, its factors at two orders."""
+        terms = [c for i in group for _, c in self.slots[i].terms]
+        return 2 * len(group) + 2 * len({c.a for c in terms}) + len({c.b for c in terms})
+
+    def _loop(self, group: Sequence[int]) -> list[str]:
+        square = self.slots[group[0]].square
+        terms = [(i, sign, c) for i in group for sign, c in self.slots[i].terms]
+        left, right = sorted({c.a for *_, c in terms}), sorted({c.b for *_, c in terms})
+        lines = [f"symrot_v a{i} = V_ALL(0.0), b{i} = a{i};" for i in group]
+        if not square:
+            return lines + self._products(terms, left, right)
+        lines.append("for (int64_t k = 1; k < n/2; ++k) {")
+        lines += [f"    const symrot_v h{i} = {self.at(i, 'n - k')};" for i in right]
+        lines += [f"    const symrot_v f{i} = {self.at(i, 'k')}, g{i} = {self.at(i, 'k + 1')};" for i in left]
+        for i, sign, (a, b, _) in terms:
+            lines.append(f"    {_add(f'a{i}', sign, f'f{a}, h{b}')}")
+            lines.append(f"    {_add(f'b{i}', sign, f'g{a}, h{b}')}")
+        lines.append("}")
+        lines += [f"{sums}{i} = V_ADD({sums}{i}, {sums}{i});" for i in group for sums in "ab"]
+        lines += [_add(f"a{i}", sign, f"{self.at(c.a, 'n/2')}, {self.at(c.b, 'n/2')}") for i, sign, c in terms]
+        return lines
+
+    def _products(
+        self, terms: Sequence[tuple[int, int, Convolution]], left: Sequence[int], right: Sequence[int]
+    ) -> list[str]:
+        """Return a loop of products: two numbers k at a time, one factor of the right after the other."""
+        lines = ["{", *(f"    symrot_v f{i} = {self.at(i, '1')};" for i in left)]
+        lines.append("    for (int64_t k = 1; k < n - 1; k += 2) {")
+        for new, old, ahead, behind in (("g", "f", "k + 1", "n - k"), ("f", "g", "k + 2", "n - k - 1")):
+            kind = "const symrot_v " if new == "g" else ""
+            lines += [f"        {kind}{new}{i} = {self.at(i, ahead)};" for i in left]
+            for factor in right:
+                value = f"{'h' if new == 'g' else 'j'}{factor}"
+                lines.append(f"        const symrot_v {value} = {self.at(factor, behind)};")
+                for i, sign, c in terms:
+                    if c.b == factor:
+                        lines.append(f"        {_add(f'a{i}', sign, f'{old}{c.a}, {value}')}")
+                        lines.append(f"        {_add(f'b{i}', sign, f'{new}{c.a}, {value}')}")
+        lines.append("    }")
+        lines += [f"    {_add(f'a{i}', sign, f'f{c.a}, ' + self.at(c.b, '1'))}" for i, sign, c in terms]
+        return [*lines, "}"]
+
+    def between(self) -> list[str]:
+        """Return the terms of order m that hold coefficient n, which has just been computed."""
+        lines: list[str] = []
+        for i, slot in enumerate(self.slots):
+            for sign, (a, b, _) in slot.terms:
+                one = self.at(a, "1")
+                if a == b:
+                    lines.append(_add(f"b{i}", sign, f"V_ADD({one}, {one}), {self.at(a, 'n')}"))
+                else:
+                    lines.append(_add(f"b{i}", sign, f"{one}, {self.at(b, 'n')}"))
+                    lines.append(_add(f"b{i}", sign, f"{self.at(a, 'n')}, {self.at(b, '1')}"))
+        return lines
+
+    def text(self) -> str:
+        own = [i for i in range(len(self.series)) if i not in self.shared]
+        orders = {"0": self.order("0", "first", ""), "1": self.order("1", "second", ""),
+                  "n": self.order("n", "later", "a"), "m": self.order("m", "later", "b")}  # fmt: skip
+        body = [
+            "(void)c;",
+            "(void)t;",
+            "(void)t_low;",
+            *(f"symrot_v u{i}[SYMROT_ORDER + 1];" for i in sorted(self.stored)),
+            *(f"symrot_v v{i} = {self.at(i, '0')};" if i in self.state else f"symrot_v v{i};" for i in own),
+            *(f"symrot_v d{i};" for i in self.divided),
+            "{", *_indented(orders["0"]), "}",
+            "{", *_indented(orders["1"]), "}",
+            "for (int64_t n = 2; n < order; n += 2) {",
+            *_indented(["const int64_t m = n + 1;", *self.loops(), "{", *_indented(orders["n"]), "}",
+                        *self.between(), "{", *_indented(orders["m"]), "}"]),
+            "}",
+        ]  # fmt: skip
+        places = {name: f"p[{i}]" for i, name in enumerate(self.system.parameters)}
+        values = [f"c[{i}] = {c_expression(rename(node, places))};" for node, i in self.constants.items()]
+        return "\n".join([
+            f"#define SYMROT_CONSTANTS {max(1, len(self.constants))}",
+            "",
+            "static void symrot_constants(const double *p, double *c)",
+            "{",
+            *_indented(["(void)p;", "c[0] = 0.0;" if not values else "", *values]),
+            "}",
+            "",
+            "/* Fill x[i][1] to x[i][order], order even, from x[i][0], in powers of the unit of time of each lane. */",
+            "static SYMROT_APART void symrot_jet(const symrot_v *SYMROT_RESTRICT c, symrot_v t, symrot_v t_low,",
+            "    symrot_v unit, int64_t order, symrot_v (*SYMROT_RESTRICT x)[SYMROT_ORDER + 1])",
+            "{",
+            *_indented(body),
+            "}",
+        ]) + "\n"  # fmt: skip
+
+
+def _plus(value: str, sign: int, factors: str) -> str:
+    """Return a value plus or minus a product; an empty value is zero."""
+    if value:
+        return f"V_{'FMA' if sign > 0 else 'FNMA'}({factors}, {value})"
+    return f"V_MUL({factors})" if sign > 0 else f"V_SUB(V_ALL(0.0), V_MUL({factors}))"
+
+
+def _add(name: str, sign: int, factors: str) -> str:
+    """Return the statement that adds a product to a sum, or takes it away."""
+    return f"{name} = V_{'FMA' if sign > 0 else 'FNMA'}({factors}, {name});"
+
+
+def _called(s: Series, first: int) -> str:
+    """Return coefficient 0 of a function of series."""
+    arguments = [f"v{operand}" for operand in s.operands[first:]]
+    return f"V_CALL{'' if len(arguments) == 1 else len(arguments)}({s.function}, {', '.join(arguments)})"
+
+
+def _indented(lines: Iterable[str]) -> list[str]:
+    return [f"    {line}" if line else "" for line in lines]

@@ -1,0 +1,122 @@
+"""Print what a motion keeps as C: values in pairs of doubles, about 32 digits, and gradients in doubles.
+
+The values say how far a motion has left its invariants long before a double could; the gradients say which small change
+of the states takes it back. Gradients are accumulated backwards along the tape, one pass for each invariant.
+
+The text stands between :file:`taylor.h` and :file:`taylor.c`; :file:`projection.c` uses it.
+"""
+
+from collections.abc import Sequence
+from fractions import Fraction
+
+from symrot.codegen.lowering.tape import Operation, Tape, tape_of
+from symrot.formula.program import Program
+from symrot.formula.tree import parse
+
+__all__ = ["invariant_definitions", "projectable"]
+
+QUATERNION = tuple(f"q{i}" for i in range(4))
+NORM = "q0*q0 + q1*q1 + q2*q2 + q3*q3"
+IN_PAIRS = {"+", "-", "*", "/", "neg", "sqrt", "number", "symbol"}  # operations that exist for pairs of doubles
+
+
+def projectable(program: Program, outputs: Sequence[str]) -> list[str]:
+    """Return those outputs that can be computed in pairs of doubles: all but those with sin, exp and the like."""
+    return [name for name in outputs if {op.kind for op in tape_of(program, [name]).operations} <= IN_PAIRS]
+
+
+def invariant_definitions(
+    program: Program, outputs: Sequence[str], states: Sequence[str], parameters: Sequence[str]
+) -> str:
+    """Return the C text of the invariants.
+
+    Parameters
+    ----------
+    program : Program
+        Quantities of t, states and parameters.
+    outputs : sequence of str
+        Those that the motion keeps; what is not :func:`projectable` is left out. The norm of the quaternion is added.
+    states : sequence of str
+        Names of the states, in order.
+    parameters : sequence of str
+        Names of the parameters; the text takes two numbers for each, a value and what its rounding left out.
+    """
+    norm = set(QUATERNION) <= set(states)
+    tape = tape_of(program, projectable(program, outputs), [parse(NORM)] if norm else [])
+    places = {"t": "t", **{name: f"y[{i}]" for i, name in enumerate(states)}}
+    places |= {name: f"symrot_pair_of(p[{2 * i}], p[{2 * i + 1}])" for i, name in enumerate(parameters)}
+    pairs = [f"const symrot_pair v{i} = {_in_pairs(op, places)};" for i, op in enumerate(tape.operations)]
+    lines = [
+        f"#define SYMROT_INVARIANTS {len(tape.outputs)}",
+        f"#define SYMROT_INVARIANT_PARAMETERS {2 * len(parameters)}",
+        f"#define SYMROT_QUATERNION {states.index('q0') if norm else -1}",
+        "",
+    ]
+    if tape.outputs:
+        lines += [
+            "static SYMROT_APART void symrot_invariants(symrot_pair t, const symrot_pair *y, const double *p,",
+            "    symrot_pair *value, double (*gradient)[SYMROT_STATES])",
+            "{",
+            "    (void)t;",
+            "    (void)p;",
+            *(f"    {line}" for line in pairs),
+        ]
+        for number, place in enumerate(tape.outputs):
+            lines.append(f"    value[{number}] = v{place};")
+            lines += [f"    {line}" for line in _gradient(tape, number, states)]
+        lines += ["}", ""]
+    return "\n".join(lines)
+
+
+def _in_pairs(op: Operation, places: dict[str, str]) -> str:
+    if op.kind == "number":
+        high = float(op.value)
+        return f"symrot_pair_of({high!r}, {float(op.value - Fraction(high))!r})"
+    if op.kind == "symbol":
+        return places[op.value]
+    name = {"+": "add", "-": "subtract", "*": "multiply", "/": "divide", "neg": "negate", "sqrt": "root"}[op.kind]
+    return f"symrot_pair_{name}({', '.join(f'v{i}' for i in op.operands)})"
+
+
+def _gradient(tape: Tape, output: int, states: Sequence[str]) -> list[str]:
+    """Return the statements that fill the gradient of one output: adjoints from the last operation to the first."""
+    needed = tape.of(output)
+    varying = _varying(tape, needed, set(states))
+    terms: dict[int, list[str]] = {tape.outputs[output]: ["1.0"]}
+    lines: list[str] = []
+    for index in reversed(needed):
+        op = tape.operations[index]
+        if index not in varying or op.kind == "symbol":
+            continue
+        own = f"g{output}_{index}"
+        lines.append(f"const double {own} = {' + '.join(terms.pop(index))};")
+        for operand, share in zip(op.operands, _shares(op, index, own), strict=True):
+            if operand in varying:
+                terms.setdefault(operand, []).append(share)
+    found = {tape.operations[index].value: " + ".join(parts) for index, parts in terms.items()}
+    return lines + [f"gradient[{output}][{i}] = {found.get(name, '0.0')};" for i, name in enumerate(states)]
+
+
+def _varying(tape: Tape, needed: Sequence[int], states: set[str]) -> set[int]:
+    found: set[int] = set()
+    for index in needed:
+        op = tape.operations[index]
+        if (op.kind == "symbol" and op.value in states) or found.intersection(op.operands):
+            found.add(index)
+    return found
+
+
+def _shares(op: Operation, index: int, own: str) -> list[str]:
+    """Return what an operation passes on to each of its operands, from its own adjoint."""
+    values = [f"v{i}.high" for i in op.operands]
+    if op.kind == "+":
+        return [own, own]
+    if op.kind == "-":
+        return [own, f"-{own}"]
+    if op.kind == "neg":
+        return [f"-{own}"]
+    if op.kind == "*":
+        return [f"{own}*{values[1]}", f"{own}*{values[0]}"]
+    if op.kind == "/":
+        return [f"{own}/{values[1]}", f"-{own}*v{index}.high/{values[1]}"]
+    return [f"0.5*{own}/v{index}.high"]  # sqrt

@@ -1,0 +1,364 @@
+"""Place the series of a system in rows of four lanes, and its convolutions in groups that share their shape.
+
+A row holds up to four series of one rule that can be computed together; the states keep rows of their own. A slot of a
+row is a sum of columns, a column the lane by lane convolution of two packs of four series: each lane of a row of sums
+takes its products with one constant from one slot. A pack whose lanes are one series is broadcast and costs no
+storage, which is how ``dq/dt = 1/2 q*(0, omega)`` becomes three broadcasts times a permuted quaternion.
+"""
+
+from collections.abc import Iterable, Sequence
+from fractions import Fraction
+from itertools import pairwise, product
+from typing import NamedTuple
+
+from symrot.codegen.taylor.recurrences import Recurrences, Series, split_sign
+from symrot.formula.tree import Node
+
+__all__ = ["LANES", "Address", "Column", "Layout", "Pack", "Row", "Slot", "Term", "cost", "lay_out"]
+
+LANES = 4
+MOST_USES = (1, 2)  # sums in which a product may stand without a row of its own
+ZERO: Node = ("number", Fraction(0))
+ONE: Node = ("number", Fraction(1))
+
+
+class Address(NamedTuple):
+    """One lane of one row, with a sign; with sign 0 a lane that holds zero."""
+
+    sign: int
+    row: int
+    lane: int
+
+
+Pack = tuple[Address, ...]  # four of them
+_Pair = tuple[tuple[int, int], tuple[int, int]]  # two factors, each a sign and a series
+
+
+class Column(NamedTuple):
+    """A convolution ``sum(a[k] b[n-k])``, lane by lane; ``ends`` says which of k = 0 and k = n are in the sum.
+
+    ``both``: 0 to n; ``last``: 1 to n, where b[n] is what is being computed; ``none``: 1 to n - 1.
+    """
+
+    a: Pack
+    b: Pack
+    ends: str
+
+
+class Slot(NamedTuple):
+    """A weighted sum of columns: numbers of columns, and one constant per lane."""
+
+    columns: tuple[int, ...]
+    weights: tuple[Node, ...]
+
+
+class Term(NamedTuple):
+    """A weighted row: the lanes of some row, and one constant per lane."""
+
+    pack: Pack
+    weights: tuple[Node, ...]
+
+
+class Row(NamedTuple):
+    """Four lanes computed by one rule.
+
+    ``lanes`` are numbers of series, or None in a lane of no use, which holds zero; ``slots`` the convolutions;
+    ``terms`` what is added to them, for the rule ``sum``, else the operands of the rule in its order; ``constant`` what
+    is added to coefficient 0.
+    """
+
+    rule: str
+    lanes: tuple[int | None, ...]
+    slots: tuple[Slot, ...] = ()
+    terms: tuple[Term, ...] = ()
+    constant: tuple[Node, ...] | None = None
+
+
+class Layout(NamedTuple):
+    """Rows in the order of their computation: first the states, then their companions, then the rest.
+
+    ``rates`` has one row per row of states and of companions; ``seeds`` the formulas of coefficient 0 of companions.
+    """
+
+    series: tuple[Series, ...]
+    rows: tuple[Row, ...]
+    rates: tuple[Row, ...]
+    columns: tuple[Column, ...]
+    states: tuple[tuple[int, ...], ...]  # the numbers of the states in each row of states
+    names: tuple[str, ...]  # of the states
+    seeds: tuple[tuple[Node, ...], ...] = ()  # one per row of companions
+
+
+def lay_out(system: Recurrences, edges: Sequence[int]) -> Layout:
+    """Return the layout of a system; ``edges`` are those of the blocks of states, which never share a row.
+
+    A product in two sums is computed once, or once in each: what is quicker is tried.
+    """
+    bundled = _with_bundles(system)
+    return min((_Placer(bundled, edges, uses).layout() for uses in MOST_USES), key=cost)
+
+
+def cost(layout: Layout) -> int:
+    """Return a measure of the time an order takes: convolutions, and rows that wait for one another."""
+    return len(layout.columns) + len(layout.rows)
+
+
+def _with_bundles(system: Recurrences) -> Recurrences:
+    """Give products that always stand together in several sums a sum of their own, computed once."""
+    series = list(system.series)
+    sums = [(i, s) for i, s in enumerate(series) if s.rule == "sum"]
+    sums += [(-1 - i, rate) for i, rate in enumerate(system.rates)]
+    elsewhere = {i for s in series if s.rule != "sum" for i in s.operands}
+    uses: dict[int, list[tuple[int, int, Node]]] = {}
+    for name, s in sums:
+        for operand, weight in zip(s.operands, s.weights, strict=False):
+            if series[operand].rule == "product" and operand not in elsewhere:
+                uses.setdefault(operand, []).append((name, *split_sign(weight)))  # type: ignore[arg-type]
+    bundles: dict[tuple[object, ...], list[tuple[int, int]]] = {}
+    for operand, used in uses.items():
+        if len(used) > 1:
+            turn = used[0][1]
+            key = tuple((name, sign * turn, weight) for name, sign, weight in used)
+            bundles.setdefault(key, []).append((operand, turn))
+    swap: dict[int, tuple[int, int]] = {}  # product -> bundle, sign of its first product
+    for members in bundles.values():
+        if len(members) > 1:
+            signs = [ONE if sign > 0 else ("neg", ONE) for _, sign in members]
+            new = len(series)
+            series.append(Series("sum", tuple(operand for operand, _ in members), (*signs, None)))
+            swap.update({operand: (new, sign if k == 0 else 0) for k, (operand, sign) in enumerate(members)})
+
+    def bundled(s: Series) -> Series:
+        operands: list[int] = []
+        weights: list[Node | None] = []
+        for operand, weight in zip(s.operands, s.weights, strict=False):
+            into, sign = swap.get(operand, (operand, 1))
+            if sign:
+                operands.append(into)
+                weights.append(weight if sign > 0 else ("neg", weight))
+        return s._replace(operands=tuple(operands), weights=(*weights, s.weights[-1]))
+
+    found = [bundled(s) if s.rule == "sum" and i < len(system.series) else s for i, s in enumerate(series)]
+    return system._replace(series=tuple(found), rates=tuple(map(bundled, system.rates)))
+
+
+class _Placer:
+    def __init__(self, system: Recurrences, edges: Sequence[int], most_uses: int) -> None:
+        self.system, self.series = system, system.series
+        self.rows: list[Row] = []
+        self.columns: list[Column] = []
+        self.place: dict[int, Address] = {}
+        numbers = {s.number: i for i, s in enumerate(self.series) if s.rule == "state"}
+        count = edges[-1]
+        self.state_rows = [
+            tuple(range(first, min(first + LANES, high)))
+            for low, high in pairwise([*edges, count + len(system.seeds)])
+            for first in range(low, high, LANES)
+        ]
+        self.companion_rows = [states for states in self.state_rows if states[0] >= count]
+        for states in self.state_rows:
+            self.put(Row("state", tuple(numbers.get(s) for s in states)))
+        self.inlined = self._inlined(most_uses)
+        self.levels: dict[int, int] = {}
+
+    def put(self, row: Row) -> None:
+        lanes = (*row.lanes, *(None,) * (LANES - len(row.lanes)))
+        for lane, series in enumerate(lanes):
+            if series is not None:
+                self.place.setdefault(series, Address(1, len(self.rows), lane))
+        self.rows.append(row._replace(lanes=lanes))
+
+    def _inlined(self, most_uses: int) -> set[int]:
+        """Return the products that stand in so few sums and nowhere else: they need no coefficients of their own."""
+        count: dict[int, int] = {}
+        for s in (*self.series, *self.system.rates):
+            for operand in s.operands:
+                if self.series[operand].rule == "product":
+                    count[operand] = count.get(operand, 0) + (1 if s.rule == "sum" else most_uses + 1)
+        return {operand for operand, uses in count.items() if uses <= most_uses}
+
+    def level(self, i: int) -> int:
+        """Return in which round of one order a series can be computed: the states are there before the first."""
+        if i not in self.levels:
+            s = self.series[i]
+            older = {"driven": (1,), "primitive": (1,), "clock": (0,)}.get(s.rule, ())  # used below coefficient n alone
+            waits = [operand for k, operand in enumerate(s.operands) if k not in older]
+            deepest = max((self.level(operand) for operand in waits), default=0)
+            self.levels[i] = 0 if s.rule == "state" else deepest if i in self.inlined else 1 + deepest
+        return self.levels[i]
+
+    def layout(self) -> Layout:
+        waiting = [i for i, s in enumerate(self.series) if s.rule != "state" and i not in self.inlined]
+        waiting.sort(key=lambda i: (self.level(i), self.series[i].rule, *self._shape(i), i))
+        groups: list[list[int]] = []
+        for i in waiting:
+            kind = (self.level(i), self.series[i].rule)
+            last = groups[-1] if groups else []
+            if last and len(last) < LANES and kind == (self.level(last[0]), self.series[last[0]].rule):
+                last.append(i)
+            else:
+                groups.append([i])
+        for group in groups:  # every lane holds a series, so that none divides by zero
+            self.put(Row(self.series[group[0]].rule, tuple(group + [group[-1]] * (LANES - len(group)))))
+        for number in range(len(self.state_rows), len(self.rows)):
+            self.rows[number] = self._filled(self.rows[number])
+        rates = []
+        for states in self.state_rows:
+            sums = [self.system.rates[s] for s in states]
+            rates.append(self._sum_row((*(None for _ in range(LANES)),), [*sums, *[None] * (LANES - len(sums))]))
+        count = len(self.system.states)
+        seeds = tuple(tuple(self.system.seeds[number - count] for number in numbers) for numbers in self.companion_rows)
+        own = tuple(self.state_rows[: len(self.state_rows) - len(seeds)])
+        return Layout(self.series, tuple(self.rows), tuple(rates), tuple(self.columns), own, self.system.states, seeds)
+
+    def _shape(self, i: int) -> tuple[int, ...]:
+        """Return what series are sorted by within a level: pairs first, then sums with many products."""
+        s = self.series[i]
+        products = sum(operand in self.inlined for operand in s.operands)
+        return (s.function == "exp", -products)
+
+    # -------------------------------------------------------------------------------------------- packs
+
+    def pack(self, items: Sequence[tuple[int, int] | None]) -> Pack:
+        """Return the addresses of signed series; a lane of no use takes what costs nothing."""
+        found = [None if item is None else self.address(*item, lane) for lane, item in enumerate(items)]
+        first = next(address for address in found if address is not None)
+        if len({address for address in found if address is not None}) == 1 and len(found) - found.count(None) > 1:
+            return (first,) * LANES
+        return tuple(Address(1, first.row, lane) if a is None else a for lane, a in enumerate(found))
+
+    def address(self, sign: int, series: int, lane: int) -> Address:
+        """Return where a series stands, in that lane if it stands there too."""
+        first = self.place[series]
+        return Address(sign, first.row, lane if self.rows[first.row].lanes[lane] == series else first.lane)
+
+    def column(self, pairs: Sequence[_Pair | None], ends: str, needed: Sequence[bool] = ()) -> int:
+        """Make a column; a lane without a pair adds nothing where it is needed, else whatever costs nothing."""
+        a = self.pack([None if pair is None else pair[0] for pair in pairs])
+        b = self.pack([None if pair is None else pair[1] for pair in pairs])
+        empty = [pair is None and need for pair, need in zip(pairs, needed, strict=False)]
+        if any(empty):
+            b = tuple(b[lane]._replace(sign=0) if empty[lane] else b[lane] for lane in range(LANES))
+        self.columns.append(Column(a, b, ends))
+        return len(self.columns) - 1
+
+    # -------------------------------------------------------------------------------------------- rows
+
+    def _filled(self, row: Row) -> Row:
+        lanes = [self.series[i] for i in row.lanes if i is not None]
+        own = [i for i in row.lanes if i is not None]
+
+        def operand(number: int) -> Term:
+            return Term(self.pack([(1, s.operands[number]) for s in lanes]), (ONE,) * LANES)
+
+        def one(pairs: list[_Pair], ends: str) -> tuple[Slot, ...]:
+            return (Slot((self.column(pairs, ends),), (ONE,) * LANES),)
+
+        if row.rule == "sum":
+            return self._sum_row(row.lanes, lanes)
+        if row.rule == "product":
+            return row._replace(slots=one([((1, s.operands[0]), (1, s.operands[1])) for s in lanes], "both"))
+        if row.rule == "theta":
+            return row._replace(terms=(operand(0),))
+        if row.rule == "quotient":
+            pairs = [((1, s.operands[-1]), (1, i)) for s, i in zip(lanes, own, strict=True)]
+            top = [None if len(s.operands) == 1 else (1, s.operands[0]) for s in lanes]
+            weights = tuple(ZERO if item is None else ONE for item in top)
+            terms = [Term(self.pack(top), weights)] if any(top) else []
+            constant = tuple(ONE if item is None else ZERO for item in top)
+            return row._replace(slots=one(pairs, "last"), terms=(operand(-1), *terms), constant=constant)
+        if row.rule == "root":
+            return row._replace(slots=one([((1, i), (1, i)) for i in own], "none"), terms=(operand(0),))
+        if row.rule == "driven":
+            pairs = [((s.sign, s.operands[0]), (1, s.operands[1])) for s in lanes]
+            return row._replace(slots=one(pairs, "last"))
+        if row.rule == "primitive":
+            pairs = [((1, s.operands[1]), (1, s.operands[2])) for s in lanes]
+            return row._replace(slots=one(pairs, "none"), terms=(operand(2), operand(0)))
+        if row.rule == "clock":
+            rates = tuple(s.weights[0] if s.sign > 0 else ("neg", s.weights[0]) for s in lanes)
+            offsets = tuple(ZERO if s.weights[1] is None else s.weights[1] for s in lanes)
+            return row._replace(terms=(operand(0)._replace(weights=rates),), constant=offsets)  # type: ignore[arg-type]
+        return row
+
+    def _sum_row(self, lanes: tuple[int | None, ...], sums: Sequence[Series | None]) -> Row:
+        slots: list[list[tuple[Node, list[tuple[int, int]]]]] = []  # per lane: weight, signed products
+        lines: list[list[tuple[Node, int]]] = []
+        for s in sums:
+            products: dict[Node, list[tuple[int, int]]] = {}
+            line = []
+            for operand, weight in zip(s.operands, s.weights, strict=False) if s is not None else ():
+                assert weight is not None
+                if operand in self.inlined:
+                    sign, size = split_sign(weight)
+                    products.setdefault(size, []).append((sign, operand))
+                else:
+                    line.append((weight, operand))
+            slots.append(sorted(map(_first_positive, products.items()), key=lambda item: -len(item[1])))
+            lines.append(line)
+        constants = tuple(ZERO if s is None or s.weights[-1] is None else s.weights[-1] for s in sums)
+        made = []
+        for depth in range(max(map(len, slots))):
+            held = [slot[depth] if depth < len(slot) else (ZERO, []) for slot in slots]
+            made.append(Slot(tuple(self._columns([terms for _, terms in held])), tuple(w for w, _ in held)))
+        terms = []
+        for depth in range(max(map(len, lines))):
+            at = [line[depth] if depth < len(line) else None for line in lines]
+            pack = self.pack([None if item is None else (1, item[1]) for item in at])
+            terms.append(Term(pack, tuple(ZERO if item is None else item[0] for item in at)))
+        return Row("sum", lanes, tuple(made), tuple(terms), None if set(constants) == {ZERO} else constants)
+
+    def _columns(self, lanes: list[list[tuple[int, int]]]) -> Iterable[int]:
+        """Yield columns that hold all products of the lanes: broadcasts while they last, then one per lane each."""
+        rest = [[(sign, self.series[p].operands[0], self.series[p].operands[1]) for sign, p in lane] for lane in lanes]
+        needed = [bool(lane) for lane in lanes]
+        while any(rest):
+            shared = self._shared([lane for lane in rest if lane])
+            picked: list[_Pair | None] = []
+            if shared is None:
+                yield self._mixed([lane.pop(0) if lane else None for lane in rest], needed)
+                continue
+            for lane in rest:
+                term = next((term for term in lane if shared in term[1:]), None)
+                if term is None:
+                    picked.append(None)
+                    continue
+                lane.remove(term)
+                sign, u, v = term
+                picked.append(((1, shared), (sign, v if u == shared else u)))
+            yield self.column(picked, "both", needed)
+
+    def _shared(self, lanes: list[list[tuple[int, int, int]]]) -> int | None:
+        """Return a series that stands in a product of every lane, the first one, if there are several lanes."""
+        if len(lanes) < 2:
+            return None
+        common = set.intersection(*({u for _, *pair in lane for u in pair} for lane in lanes))
+        return min(common, default=None)
+
+    def _mixed(self, terms: list[tuple[int, int, int] | None], needed: Sequence[bool]) -> int:
+        """Make a column of one product per lane, with the factors on the sides that repeat the most packs."""
+        known = {pack for column in self.columns for pack in (column.a, column.b)}
+        whole = {tuple(Address(1, row, lane) for lane in range(LANES)) for row in range(len(self.rows))}
+        best: tuple[int, list[_Pair | None]] | None = None
+        for turns in product((False, True), repeat=sum(term is not None for term in terms)):
+            turn = iter(turns)
+            pairs: list[_Pair | None] = []
+            for term in terms:
+                if term is None:
+                    pairs.append(None)
+                    continue
+                sign, u, v = term
+                u, v = (v, u) if next(turn) else (u, v)
+                pairs.append(((1, u), (sign, v)))
+            sides = [self.pack([None if pair is None else pair[side] for pair in pairs]) for side in (0, 1)]
+            score = sum((side in known) + 2 * (side in whole or len(set(side)) == 1) for side in sides)
+            if best is None or score > best[0]:
+                best = score, pairs
+        assert best is not None
+        return self.column(best[1], "both", needed)
+
+
+def _first_positive(item: tuple[Node, list[tuple[int, int]]]) -> tuple[Node, list[tuple[int, int]]]:
+    """Move the sign of the first product into the constant."""
+    weight, terms = item
+    return item if terms[0][0] > 0 else (("neg", weight), [(-sign, operand) for sign, operand in terms])

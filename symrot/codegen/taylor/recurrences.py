@@ -1,0 +1,427 @@
+"""From a right-hand side to the recurrences of its Taylor coefficients, by one rule for each operation.
+
+A series stands for the coefficients ``u[0], u[1], ...`` of one quantity along the motion. Every operation of a program
+becomes a rule that gives coefficient n of its result from coefficients up to n of its operands; the states close the
+circle, ``x[n+1] = rate[n]/(n+1)``. What is linear stays linear (a sum with constant weights), equal operations are one
+series, and a product is the only rule with a sum over n terms besides those solved from one:
+
+=====================  ====================================================================================
+product ``w = u v``    ``w[n] = sum(u[k] v[n-k], k = 0..n)``; a square adds each pair once and doubles it
+quotient ``w v = u``   ``w[n] = (u[n] - sum(v[k] w[n-k], k = 1..n))/v[0]``
+root ``w w = u``       ``w[n] = (u[n] - sum(w[k] w[n-k], k = 1..n-1))/(2 w[0])``
+driven                 ``n w[n] = s sum(e[k] v[n-k], k = 1..n)``: ``t w' = s e v``, ``e = t u'``; exp, sin, tan, sech
+primitive              ``n w[n] = (g[n] - sum(e[k] v[n-k], k = 1..n-1))/v[0]``: ``v e = g``, ``e = t w'``; log, atan
+clock                  ``n w[n] = s a v[n-1]``: exp, sin, cos, sinh, cosh of ``a t + b``
+=====================  ====================================================================================
+
+Here t is the time from the middle of the expansion, so that ``t u'`` has the coefficients ``n u[n]``.
+Source: A. Griewank, A. Walther, Evaluating Derivatives, 2nd ed., sections 10.2 and 13.2.
+
+Standard library only: the recurrences of a cached kernel are made without SymPy.
+"""
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+from symrot.errors import InputError
+from symrot.formula.program import Program
+from symrot.formula.tree import Node, children, evaluate
+
+__all__ = ["ONE", "ZERO", "Recurrences", "Series", "recurrences", "split_sign"]
+
+ONE: Node = ("number", Fraction(1))
+ZERO: Node = ("number", Fraction(0))
+HALF_TURNS: dict[str, tuple[str, str, int, int]] = {  # function -> sine-like, cosine-like, signs of their rates
+    "sin": ("sin", "cos", 1, -1), "cos": ("sin", "cos", 1, -1),
+    "sinh": ("sinh", "cosh", 1, 1), "cosh": ("sinh", "cosh", 1, 1),
+}  # fmt: skip
+TANGENTS = {"tan": 1, "tanh": -1}  # function -> sign in t w' = (1 + sign w^2) t u'
+
+
+class Series(NamedTuple):
+    """One series: its rule, the series it is made of, and what else the rule needs.
+
+    ``weights`` holds the constants of a sum, one per operand, and then the constant that is added to coefficient 0 (or
+    None); for a clock, a and b. ``function`` gives coefficient 0 where the rule does not, from coefficient 0 of
+    the last operands; ``sign`` is s of the rule. A state has its number in ``number``.
+    """
+
+    rule: str  # state time sum product quotient root theta driven primitive clock
+    operands: tuple[int, ...] = ()
+    weights: tuple[Node | None, ...] = ()
+    function: str = ""
+    sign: int = 1
+    number: int = 0
+
+
+class Recurrences(NamedTuple):
+    """The recurrences of a program: all series in an order in which each coefficient can be computed.
+
+    ``rates`` holds one sum per state: its series is the rate of the state. States beyond those of the program, if any,
+    have their start from ``seeds``: formulas of the states and t, see :mod:`symrot.codegen.taylor.auxiliary_states`.
+    """
+
+    states: tuple[str, ...]
+    parameters: tuple[str, ...]
+    series: tuple[Series, ...]
+    rates: tuple[Series, ...]
+    seeds: tuple[Node, ...] = ()
+
+
+class _Linear(NamedTuple):
+    """A constant plus series with constant weights."""
+
+    constant: Node | None
+    terms: dict[int, Node]
+
+
+def recurrences(program: Program) -> Recurrences:
+    """Return the recurrences of a right-hand side ``dy = f(t, y, p)``.
+
+    Parameters
+    ----------
+    program : Program
+        Arguments t (may be missing), y, p (may be missing) and dy, one component of dy per component of y.
+
+    Raises
+    ------
+    InputError
+        For an operation that has no Taylor series everywhere: abs.
+    """
+    return _Builder(program).result()
+
+
+class _Builder:
+    def __init__(self, program: Program) -> None:
+        self.program = program
+        inputs = {a.name: tuple(name for name, *_ in a.components) for a in program.signature.arguments}
+        self.states, self.parameters = inputs["y"], inputs.get("p", ())
+        self.series: list[Series] = []
+        self.known: dict[tuple[Any, ...], int] = {}
+        self.cosh_arguments: dict[int, _Linear] = {}
+        self.values: dict[str, _Linear] = {name: _Linear(("symbol", name), {}) for name in self.parameters}
+        for i, name in enumerate(self.states):
+            self.values[name] = _alone(self.add(Series("state", number=i)))
+        self.clock_names = inputs.get("t", ())
+
+    def result(self) -> Recurrences:
+        for name in self.clock_names:
+            self.values[name] = _Linear(None, {})  # made when it is first used
+        for name, node in self.program.temporaries:
+            self.values[name] = self.read(node)
+        rates = tuple(self.sum_of(self.read(node)) for _, node in self.program.outputs)
+        return _without_unused(Recurrences(self.states, self.parameters, tuple(self.series), rates))
+
+    def add(self, series: Series) -> int:
+        if series not in self.known:
+            self.known[series] = len(self.series)
+            self.series.append(series)
+        return self.known[series]
+
+    def read(self, node: Node) -> _Linear:
+        """Return a formula as a linear form in series."""
+        kind = node[0]
+        if kind == "number":
+            return _Linear(node, {})
+        if kind == "symbol":
+            return _alone(self.add(Series("time"))) if node[1] in self.clock_names else self.values[node[1]]
+        parts = [self.read(child) for child in children(node)]
+        if kind in "+-*/neg" and not any(part.terms for part in parts):
+            return _Linear(_folded((kind, *map(_value, parts))), {})
+        return _READERS[kind](self, node, parts)
+
+    def series_of(self, form: _Linear) -> int:
+        """Return the series of a linear form."""
+        if form.constant is None and list(form.terms.values()) == [ONE]:
+            return next(iter(form.terms))
+        return self.add(self.sum_of(form))
+
+    @staticmethod
+    def sum_of(form: _Linear) -> Series:
+        terms = sorted(form.terms.items())
+        return Series("sum", tuple(i for i, _ in terms), (*(weight for _, weight in terms), form.constant))
+
+    def factored(self, form: _Linear) -> tuple[Node, int]:
+        """Return a constant and a series whose product is the form; forms in one ratio share their series."""
+        if form.constant is None and len(form.terms) == 1:
+            ((series, weight),) = form.terms.items()
+            return weight, series
+        parts = [_number_and_rest(weight) for _, weight in sorted(form.terms.items())]
+        rests = {rest for _, rest in parts}
+        if form.constant is not None:
+            rests.add(_number_and_rest(form.constant)[1])
+        lead, rest = parts[0][0], ONE
+        if len(rests) == 1:
+            (rest,) = rests
+        elif abs(lead) != 1:
+            lead = Fraction(1 if lead > 0 else -1)
+
+        def reduced(weight: Node) -> Node:
+            number, own = _number_and_rest(weight)
+            return _folded(("*", ("number", number / lead), ONE if len(rests) == 1 else own))
+
+        constant = None if form.constant is None else reduced(form.constant)
+        whole = self.series_of(_Linear(constant, {series: reduced(w) for series, w in form.terms.items()}))
+        return _folded(("*", ("number", lead), rest)), whole
+
+    def product(self, left: _Linear, right: _Linear) -> _Linear:
+        if not left.terms or not right.terms:
+            constant, form = (left, right) if not left.terms else (right, left)
+            return _scaled(form, _value(constant))
+        (a, u), (b, v) = self.factored(left), self.factored(right)
+        return _Linear(None, {self.add(Series("product", (min(u, v), max(u, v)))): _folded(("*", a, b))})
+
+    def quotient(self, left: _Linear, right: _Linear) -> _Linear:
+        if not right.terms:
+            return _scaled(left, _folded(("/", ONE, _value(right))))
+        b, v = self.factored(right)
+        over = self.reciprocal(v)
+        if over is not None:
+            return _scaled(self.product(left, over), _folded(("/", ONE, b)))
+        if left.terms:
+            a, u = self.factored(left)
+            return _Linear(None, {self.add(Series("quotient", (u, v))): _folded(("/", a, b))})
+        return _Linear(None, {self.add(Series("quotient", (v,))): _folded(("/", _value(left), b))})
+
+    def reciprocal(self, number: int) -> _Linear | None:
+        """Return 1/v as series of its own where v is a product of hyperbolic cosines, which overflow; else None."""
+        series = self.series[number]
+        if series.rule == "product":
+            left, right = map(self.reciprocal, series.operands)
+            return None if left is None or right is None else self.product(left, right)
+        if number not in self.cosh_arguments:
+            return None
+        return self.secant(self.cosh_arguments[number])
+
+    def secant(self, argument: _Linear) -> _Linear:
+        """Return sech: t w' = -tanh(u) w t u'."""
+        u = self.series_of(argument)
+        if ("sech", u) not in self.known:
+            ((tangent, _),) = self.tangent("tanh", argument).terms.items()
+            drive, own = self.theta(u), len(self.series)
+            self.known[("sech", u)] = own
+            self.series.append(Series("driven", (drive, own + 1, u), (), "sech", -1))
+            self.add(Series("product", (tangent, own)))
+        return _alone(self.known[("sech", u)])
+
+    def power(self, base: _Linear, exponent: int) -> _Linear:
+        if exponent < 0:
+            return self.quotient(_Linear(ONE, {}), self.power(base, -exponent))
+        result = _Linear(ONE, {})
+        for bit in format(exponent, "b"):
+            result = self.product(result, result)
+            result = self.product(result, base) if bit == "1" else result
+        return result
+
+    def call(self, name: str, arguments: list[_Linear]) -> _Linear:
+        if not any(argument.terms for argument in arguments):
+            return _Linear(("call", name, tuple(map(_value, arguments))), {})
+        if name in HALF_TURNS:
+            return self.half_turn(name, arguments[0])
+        if name not in _FUNCTIONS:
+            raise InputError(
+                f"method taylor: expected functions with a Taylor series everywhere, got {name} of a quantity that "
+                "changes; use method dop853"
+            )
+        return _FUNCTIONS[name](self, name, *arguments)
+
+    def theta(self, series: int) -> int:
+        return self.add(Series("theta", (series,)))
+
+    def clock(self, form: _Linear) -> tuple[Node, Node | None] | None:
+        """Return (a, b) where the form is a t + b, else None."""
+        ((series, weight),) = form.terms.items() if len(form.terms) == 1 else ((-1, ONE),)
+        return (weight, form.constant) if series >= 0 and self.series[series].rule == "time" else None
+
+    def driven(self, functions: Sequence[tuple[str, int]], partners: Sequence[int], argument: _Linear) -> int:
+        """Return the first of some new series that drive each other: function, sign and partner of each."""
+        clock = self.clock(argument)
+        seed = () if clock else (self.series_of(argument),)
+        drive = () if clock else (self.theta(*seed),)
+        key = ("driven", functions[0], clock or seed)
+        if key not in self.known:
+            first = self.known[key] = len(self.series)
+            for (function, sign), partner in zip(functions, partners, strict=True):
+                rule = "clock" if clock else "driven"
+                self.series.append(Series(rule, (*drive, first + partner, *seed), clock or (), function, sign))
+        return self.known[key]
+
+    def half_turn(self, name: str, argument: _Linear) -> _Linear:
+        """Add both of a pair that drive each other: sin and cos, sinh and cosh."""
+        sine, cosine, *signs = HALF_TURNS[name]
+        first = self.driven(((sine, signs[0]), (cosine, signs[1])), (1, 0), argument)
+        if cosine == "cosh":
+            self.cosh_arguments[first + 1] = argument
+        return _alone(first + (name == cosine))
+
+    def exponential(self, name: str, argument: _Linear) -> _Linear:
+        return _alone(self.driven(((name, 1),), (0,), argument))
+
+    def tangent(self, name: str, argument: _Linear) -> _Linear:
+        u = self.series_of(argument)
+        drive, own = self.theta(u), len(self.series)
+        if ("tangent", name, u) in self.known:
+            return _alone(self.known[("tangent", name, u)])
+        self.known[("tangent", name, u)] = own
+        self.series.append(Series("driven", (drive, own + 2, u), (), name))
+        square = self.add(Series("product", (own, own)))
+        self.add(self.sum_of(_Linear(ONE, {square: ("number", Fraction(TANGENTS[name]))})))
+        return _alone(own)
+
+    def primitive(self, name: str, drive: int, divisor: int, seeds: tuple[int, ...]) -> _Linear:
+        key = ("primitive", name, drive, divisor, seeds)
+        own = self.known.get(key, len(self.series))
+        if own == len(self.series):
+            self.known[key] = own
+            self.series.append(Series("primitive", (drive, own + 1, divisor, *seeds), (), name))
+            self.theta(own)
+        return _alone(own)
+
+    def one_and_square(self, series: int, sign: int) -> _Linear:
+        """Return 1 + sign u^2."""
+        return _sum(_Linear(ONE, {}), _scaled(self.product(_alone(series), _alone(series)), sign), 1)
+
+    def root(self, name: str, argument: _Linear) -> _Linear:
+        return _alone(self.add(Series("root", (self.series_of(argument),), (), name)))
+
+    def logarithm(self, name: str, argument: _Linear) -> _Linear:
+        u = self.series_of(argument)
+        return self.primitive(name, self.theta(u), u, (u,))
+
+    def arc_sine(self, name: str, argument: _Linear) -> _Linear:
+        u = self.series_of(argument)
+        ((divisor, _),) = self.root("sqrt", self.one_and_square(u, -1)).terms.items()
+        drive = self.theta(u)
+        if name == "acos":
+            drive = self.series_of(_scaled(_alone(drive), -1))
+        return self.primitive(name, drive, divisor, (u,))
+
+    def arc_tangent(self, name: str, argument: _Linear) -> _Linear:
+        u = self.series_of(argument)
+        return self.primitive(name, self.theta(u), self.series_of(self.one_and_square(u, 1)), (u,))
+
+    def angle(self, name: str, y: _Linear, x: _Linear) -> _Linear:
+        """Return atan2: (x^2 + y^2) t w' = x t y' - y t x'."""
+        turning = _sum(self.product(x, self.theta_form(y)), self.product(y, self.theta_form(x)), -1)
+        square = _sum(self.product(x, x), self.product(y, y), 1)
+        return self.primitive(
+            name, self.series_of(turning), self.series_of(square), (self.series_of(y), self.series_of(x))
+        )
+
+    def theta_form(self, form: _Linear) -> _Linear:
+        return _alone(self.theta(self.series_of(form))) if form.terms else _Linear(ZERO, {})
+
+
+def _without_unused(system: Recurrences) -> Recurrences:
+    """Return a system without the series that neither a rate nor another series needs; states stay."""
+    needed = {i for i, series in enumerate(system.series) if series.rule == "state"}
+    waiting = [operand for rate in system.rates for operand in rate.operands]
+    while waiting:
+        number = waiting.pop()
+        if number not in needed:
+            needed.add(number)
+            waiting += system.series[number].operands
+    if len(needed) == len(system.series):
+        return system
+    place = {old: new for new, old in enumerate(sorted(needed))}
+
+    def moved(series: Series) -> Series:
+        return series._replace(operands=tuple(place[operand] for operand in series.operands))
+
+    return system._replace(
+        series=tuple(moved(system.series[old]) for old in place), rates=tuple(map(moved, system.rates))
+    )
+
+
+def _alone(series: int) -> _Linear:
+    return _Linear(None, {series: ONE})
+
+
+def _value(form: _Linear) -> Node:
+    return form.constant if form.constant is not None else ZERO
+
+
+def _folded(node: Node) -> Node:
+    """Return a constant formula with its numbers put together, its sign in front and no factors of one."""
+    kind, parts = node[0], children(node)
+    if kind == "neg":
+        sign, inner = split_sign(parts[0])
+        return _signed(-sign, inner)
+    if kind in "+-*/" and all(part[0] == "number" for part in parts) and (kind != "/" or parts[1] != ZERO):
+        return ("number", evaluate(node, {}))
+    if kind not in "*/":
+        return node
+    (s, a), (r, b) = map(split_sign, parts)
+    if b == ONE or (kind == "*" and a == ONE):
+        return _signed(s * r, a if b == ONE else b)
+    return _signed(s * r, (kind, b, a) if kind == "*" and b[0] == "number" else (kind, a, b))
+
+
+def _signed(sign: int, node: Node) -> Node:
+    if sign > 0:
+        return node
+    return ("number", -node[1]) if node[0] == "number" else ("neg", node)
+
+
+def split_sign(node: Node) -> tuple[int, Node]:
+    """Return the sign in front of a constant, and the constant without it."""
+    if node[0] == "neg":
+        sign, inner = split_sign(node[1])
+        return -sign, inner
+    if node[0] == "number" and node[1] < 0:
+        return -1, ("number", -node[1])
+    return 1, node
+
+
+def _number_and_rest(weight: Node) -> tuple[Fraction, Node]:
+    """Return a constant as a number times what has none."""
+    sign, size = split_sign(weight)
+    if size[0] == "number":
+        return (sign * size[1], ONE) if size[1] else (Fraction(1), size)
+    if size[0] == "*" and size[1][0] == "number":
+        return sign * size[1][1], size[2]
+    return Fraction(sign), size
+
+
+def _scaled(form: _Linear, factor: Node | int) -> _Linear:
+    weight: Node = ("number", Fraction(factor)) if isinstance(factor, int) else factor
+    if weight == ZERO:
+        return _Linear(ZERO, {})
+
+    def times(value: Node) -> Node:
+        return _folded(("*", weight, value))
+
+    constant = None if form.constant is None else times(form.constant)
+    return _Linear(constant, {series: times(value) for series, value in form.terms.items()})
+
+
+def _sum(left: _Linear, right: _Linear, sign: int) -> _Linear:
+    right = right if sign > 0 else _scaled(right, -1)
+    constant = left.constant if right.constant is None else right.constant
+    if left.constant is not None and right.constant is not None:
+        constant = _folded(("+", left.constant, right.constant))
+    terms = dict(left.terms)
+    for series, weight in right.terms.items():
+        total = _folded(("+", terms[series], weight)) if series in terms else weight
+        if total == ZERO:
+            del terms[series]
+        else:
+            terms[series] = total
+    return _Linear(None if terms and constant == ZERO else constant, terms)
+
+
+_READERS: dict[str, Callable[[_Builder, Node, list[_Linear]], _Linear]] = {
+    "+": lambda builder, node, parts: _sum(parts[0], parts[1], 1),
+    "-": lambda builder, node, parts: _sum(parts[0], parts[1], -1),
+    "neg": lambda builder, node, parts: _scaled(parts[0], -1),
+    "*": lambda builder, node, parts: builder.product(*parts),
+    "/": lambda builder, node, parts: builder.quotient(*parts),
+    "**": lambda builder, node, parts: builder.power(parts[0], node[2]),
+    "call": lambda builder, node, parts: builder.call(node[1], parts),
+}
+_FUNCTIONS: dict[str, Callable[..., _Linear]] = {
+    "sqrt": _Builder.root, "exp": _Builder.exponential, "tan": _Builder.tangent, "tanh": _Builder.tangent,
+    "log": _Builder.logarithm, "asin": _Builder.arc_sine, "acos": _Builder.arc_sine, "atan": _Builder.arc_tangent,
+    "atan2": _Builder.angle,
+}  # fmt: skip

@@ -1,0 +1,436 @@
+"""Print the recurrences of a system as C: one function that fills the Taylor coefficients of all states, the jet.
+
+Two orders are taken together: first the sums over coefficients that are known already, in loops that read each number
+once for both orders and do not wait for one another, then order n and order n + 1 with the terms that hold the newest
+coefficients. Nothing is unrolled over the order, so the code stays small whatever the order is.
+
+The text stands between :file:`taylor.h`, which has the operations on four lanes, and :file:`taylor.c`, which steps.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+
+from symrot.codegen.printing.c_source import c_expression
+from symrot.codegen.taylor.auxiliary_states import with_companions
+from symrot.codegen.taylor.lanes import LANES, Address, Layout, Pack, Row, cost, lay_out
+from symrot.codegen.taylor.recurrences import Recurrences, recurrences
+from symrot.errors import InputError
+from symrot.formula.program import Program
+from symrot.formula.tree import Node, children, names, rename
+
+__all__ = ["ORDER", "checked_system", "jet_source", "taylor_definitions"]
+
+ORDER = 20  # by measurement: below errors of 1e-6, orders 16 to 24 lie within a tenth of each other
+COLUMNS_PER_LOOP = 4  # two sums each, so that sums and factors stay in 16 registers
+
+
+def taylor_definitions(program: Program, edges: Sequence[int], scales: Sequence[float], order: int = ORDER) -> str:
+    """Return the C text of a system for :file:`taylor.c`: sizes, tables, constants and the jet.
+
+    Parameters
+    ----------
+    program : Program
+        The right-hand side ``dy = f(t, y, p)``.
+    edges : sequence of int
+        Edges of the blocks of states whose errors are judged apart, from 0 to the number of states.
+    scales : sequence of float
+        One per block: 0 judges its error against the block's own size, a positive number against that number.
+    order : int
+        Even, at least 4.
+
+    Raises
+    ------
+    InputError
+        For an operation without a Taylor series, or an order or blocks that cannot be used.
+    """
+    system = checked_system(program, edges, scales, order)
+    layout = min((lay_out(one, edges) for one in (system, with_companions(system))), key=cost)
+    blocks = [next(b for b in range(len(scales)) if states[0] < edges[b + 1]) for states in layout.states]
+    return "\n".join(
+        (
+            f"#define SYMROT_STATES {len(system.states)}",
+            f"#define SYMROT_PARAMETERS {len(system.parameters)}",
+            f"#define SYMROT_ORDER {order}",
+            f"#define SYMROT_ROWS {len(layout.states)}",
+            f"#define SYMROT_ROW_STARTS {_table(str(states[0]) for states in layout.states)}",
+            f"#define SYMROT_ROW_SIZES {_table(str(len(states)) for states in layout.states)}",
+            f"#define SYMROT_ROW_BLOCKS {_table(map(str, blocks))}",
+            f"#define SYMROT_SCALES {_table(repr(float(scale)) for scale in scales)}",
+            "",
+            f"static const double symrot_inverse[] = {_table(['0.0', *(f'1.0/{n}' for n in range(1, order + 1))])};",
+            "",
+            jet_source(layout, system.parameters),
+        )
+    )
+
+
+def checked_system(program: Program, edges: Sequence[int], scales: Sequence[float], order: int) -> Recurrences:
+    """Return the recurrences of a program; arguments and errors as :func:`taylor_definitions`."""
+    if order < 4 or order % 2:
+        raise InputError(f"order of the Taylor method: expected an even number from 4 on, got {order}")
+    system = recurrences(program)
+    count = len(system.states)
+    if [*edges[:1], *edges[-1:]] != [0, count] or list(edges) != sorted(set(edges)) or len(scales) != len(edges) - 1:
+        raise InputError(
+            f"blocks of {count} states rise from 0 to {count} and have one scale each; got blocks {list(edges)} and "
+            f"scales {list(scales)}"
+        )
+    return system
+
+
+def _table(items: Iterable[str]) -> str:
+    return f"{{{', '.join(items)}}}"
+
+
+def jet_source(layout: Layout, parameters: Sequence[str]) -> str:
+    """Return the C functions ``symrot_constants`` and ``symrot_jet`` of a layout."""
+    return _Jet(layout, parameters).text()
+
+
+class _Jet:
+    """Writes one layout; each pack and each vector of constants has one name."""
+
+    def __init__(self, layout: Layout, parameters: Sequence[str]) -> None:
+        self.layout, self.rows, self.parameters = layout, layout.rows, parameters
+        self.state_rows, self.own_rows = len(layout.rates), len(layout.states)
+        self.constants: dict[tuple[Node, ...], int] = {}
+        self.packs: dict[Pack, int] = {}  # those with coefficients of their own
+        self.stored: set[int] = set()  # rows that are not states and whose coefficients are kept
+        for column in layout.columns:
+            for pack in (column.a, column.b):
+                if _is_row(pack) or _is_broadcast(pack):
+                    self.stored |= {pack[0].row} - set(range(self.own_rows))
+                else:
+                    self.packs.setdefault(pack, len(self.packs))
+
+    # -------------------------------------------------------------------------------------------- expressions
+
+    def constant(self, weights: tuple[Node, ...]) -> str:
+        return f"c[{self.constants.setdefault(weights, len(self.constants))}]"
+
+    def at(self, pack: Pack, n: str) -> str:
+        """Return a pack's coefficient n from memory."""
+        if pack in self.packs:
+            return f"k{self.packs[pack]}[{n}]"
+        row = f"{self._array(pack[0].row)}[{n}]"
+        return row if _is_row(pack) else f"V_ALL(V_LANE({row}, {pack[0].lane}))"
+
+    def _array(self, row: int) -> str:
+        return f"x[{row}]" if row < self.own_rows else f"u{row}"
+
+    def newest(self, pack: Pack) -> str:
+        """Return a pack's coefficient of the order in work, from registers."""
+        return f"l{self.packs[pack]}" if pack in self.packs else self.picked(pack)
+
+    def picked(self, pack: Pack) -> str:
+        """Return the newest coefficients of some lanes."""
+        rows = sorted({address.row for address in pack})
+        if _is_row(pack):
+            return f"r{rows[0]}"
+        if len(rows) <= 2:
+            lanes = ", ".join(str(a.lane + LANES * rows.index(a.row)) for a in pack)
+            value = f"V_PICK(r{rows[0]}, r{rows[-1]}, {lanes})"
+        else:
+            value = f"V_SET({', '.join(f'V_LANE(r{a.row}, {a.lane})' for a in pack)})"
+        signs = [address.sign for address in pack]
+        if 0 in signs:
+            value = f"V_KEEP({value}, {', '.join(str(abs(sign)) for sign in signs)})"
+        return f"V_FLIP({value}, {', '.join('-1' if sign < 0 else '1' for sign in signs)})" if -1 in signs else value
+
+    def column(self, index: int, phase: str, sums: str) -> str:
+        """Return coefficient n of a column: the sum over known coefficients and the ends; empty where it is zero."""
+        a, b, ends = self.layout.columns[index]
+        known = f"{sums}{index}" if phase == "later" else ""
+        if ends == "none":
+            return known
+        if phase == "first":
+            return f"V_MUL({self.at(a, '0')}, {self.at(b, '0')})" if ends == "both" else ""
+        last = f"{self.newest(a)}, {self.at(b, '0')}"
+        inner = f"V_FMA({last}, {known})" if known else f"V_MUL({last})"
+        return f"V_FMA({self.at(a, '0')}, {self.newest(b)}, {inner})" if ends == "both" else inner
+
+    def slot(self, columns: Sequence[int], phase: str, sums: str) -> str:
+        parts = [part for part in (self.column(index, phase, sums) for index in columns) if part]
+        total = parts[0] if parts else ""
+        for part in parts[1:]:
+            total = f"V_ADD({total}, {part})"
+        return total
+
+    # -------------------------------------------------------------------------------------------- rows
+
+    def sum(self, row: Row, phase: str, sums: str, factor: str = "") -> str:
+        """Return a row of sums, times a factor. The terms that come last to hand are added last."""
+        value = ""
+        parts = [(self.picked(term.pack), term.weights) for term in row.terms]
+        parts += [(self.slot(slot.columns, phase, sums), slot.weights) for slot in reversed(row.slots)]
+        if phase == "first" and row.constant is not None:
+            value = self._weighted(row.constant, factor) or "V_ALL(1.0)"
+        for part, weights in parts:
+            if part:
+                scale = self._weighted(weights, factor)
+                if not scale:
+                    value = f"V_ADD({part}, {value})" if value else part
+                else:
+                    value = f"V_FMA({part}, {scale}, {value})" if value else f"V_MUL({part}, {scale})"
+        return value or "V_ALL(0.0)"
+
+    def _weighted(self, weights: tuple[Node, ...], factor: str) -> str:
+        """Return a vector of constants times the factor; empty when both are one."""
+        ones = all(weight == ("number", 1) for weight in weights)
+        if ones:
+            return factor
+        constant = self.constant(weights)
+        return f"V_MUL({constant}, {factor})" if factor else constant
+
+    def row(self, number: int, n: str, phase: str, sums: str) -> list[str]:
+        """Return the statements that set ``r{number}`` to coefficient n of a row."""
+        row, name = self.rows[number], f"r{number}"
+        terms = [self.picked(term.pack) for term in row.terms]
+        total = self.slot(row.slots[0].columns, phase, sums) if row.slots else ""
+        if row.rule in ("sum", "product"):
+            return [f"{name} = {self.sum(row, phase, sums) if row.rule == 'sum' else total};"]
+        if row.rule == "time":
+            value = {"first": "t", "second": "step[1]"}.get(phase, "0.0")
+            return [f"{name} = V_ALL({value});"]
+        if row.rule == "theta":
+            count = {"first": "0.0", "second": "1.0"}.get(phase, f"(double)({n})")
+            return [f"{name} = {terms[0]};" if phase == "second" else f"{name} = V_MUL({terms[0]}, V_ALL({count}));"]
+        if row.rule == "quotient":
+            return self._quotient(row, name, phase, terms, total)
+        if row.rule == "clock":
+            if phase == "first":
+                return self._clock_seed(row, name)
+            rates = self._weighted(row.terms[0].weights, f"V_ALL(step[{n}])")
+            return [f"{name} = V_MUL({terms[0]}, {rates});"]
+        if row.rule == "driven":
+            if phase == "first":
+                return [f"{name} = {self._seed(row)};"]
+            share = f"V_MUL({total}, V_ALL(symrot_inverse[{n}]))"
+            return [f"{name} = {total if phase == 'second' else share};"]
+        if row.rule == "root":
+            if phase == "first":
+                return [f"{name} = {self._seed(row)};", f"d{number} = V_ADD({name}, {name});"]
+            upper = f"V_SUB({terms[0]}, {total})" if total else terms[0]
+            return [f"{name} = V_DIV({upper}, d{number});"]
+        if phase == "first":  # primitive
+            return [f"{name} = {self._seed(row)};", f"d{number} = {terms[0]};"]
+        upper = f"V_SUB({terms[1]}, {total})" if total else terms[1]
+        lower = f"d{number}" if phase == "second" else f"V_MUL(d{number}, V_ALL((double)({n})))"
+        return [f"{name} = V_DIV({upper}, {lower});"]
+
+    def _quotient(self, row: Row, name: str, phase: str, terms: list[str], total: str) -> list[str]:
+        """Return the statements of ``(u - sum)/v``, where a numerator of one counts in coefficient 0 alone."""
+        divisor, upper = f"d{name[1:]}", "V_ALL(0.0)"
+        if len(terms) > 1:
+            weights = self._weighted(row.terms[1].weights, "")
+            upper = f"V_MUL({terms[1]}, {weights})" if weights else terms[1]
+        if phase != "first":
+            return [f"{name} = V_DIV(V_SUB({upper}, {total}), {divisor});"]
+        if row.constant is not None and set(row.constant) != {("number", 0)}:
+            upper = f"V_ADD({upper}, {self.constant(row.constant)})"
+        return [f"{divisor} = {terms[0]};", f"{name} = V_DIV({upper}, {divisor});"]
+
+    def _seed(self, row: Row) -> str:
+        """Return coefficient 0 of a row of functions."""
+        first = {"driven": 2, "primitive": 3, "root": 0}[row.rule]
+        lanes = []
+        for series in row.lanes:
+            assert series is not None
+            s = self.layout.series[series]
+            arguments = [self._lane_of(operand) for operand in s.operands[first:]]
+            lanes.append(f"{s.function}({', '.join(arguments)})")
+        if len(set(lanes)) == 1:
+            return f"V_ALL({lanes[0]})"
+        return f"V_SET({', '.join(lanes)})"
+
+    def _clock_seed(self, row: Row, name: str) -> list[str]:
+        """Return coefficient 0 of functions of ``a t + b``, what rounding of that takes from it put right by slopes."""
+        series = [self.layout.series[i] for i in row.lanes if i is not None]
+        rates = self.constant(tuple(s.weights[0] for s in series))  # type: ignore[misc]
+        offsets = self.constant(row.constant) if row.constant and set(row.constant) != {("number", 0)} else ""
+        lines, turns = [], {}  # equal lanes take one call
+        for lane, s in enumerate(series):
+            if s.weights not in turns:
+                turn = turns[s.weights] = f"turn_{name}_{lane}"
+                a, b = f"V_LANE({rates}, {lane})", f"V_LANE({offsets}, {lane})" if offsets else "0.0"
+                lines.append(f"const symrot_pair {turn} = symrot_pair_turn({a}, {b}, t, t_low);")
+            for function in (s.function, self.layout.series[s.operands[0]].function):
+                value = f"const double {_of(function, turns[s.weights])} = {function}({turns[s.weights]}.high);"
+                lines += [value] if value not in lines else []
+        lanes = []
+        for s in series:
+            turn, partner = turns[s.weights], self.layout.series[s.operands[0]].function
+            sign = "-" if s.sign < 0 else "+"
+            lanes.append(f"{_of(s.function, turn)} {sign} {turn}.low*{_of(partner, turn)}")
+        return [*lines, f"{name} = V_SET({', '.join(lanes)});"]
+
+    def _lane_of(self, series: int) -> str:
+        row, lane = next((r, row.lanes.index(series)) for r, row in enumerate(self.rows) if series in row.lanes)
+        return f"V_LANE(r{row}, {lane})"
+
+    def seeds(self) -> list[str]:
+        """Return the statements that set coefficient 0 of the companions of the states."""
+        lines: list[str] = []
+        formulas = [formula for row in self.layout.seeds for formula in row]
+        places = {name: f"V_LANE({self.constant((('symbol', name),) * LANES)}, 0)"
+                  for name in self.parameters if any(name in names(formula) for formula in formulas)}  # fmt: skip
+        for row, states in enumerate(self.layout.states):
+            for lane, number in enumerate(states):
+                if any(self.layout.names[number] in names(formula) for formula in formulas):
+                    places[self.layout.names[number]] = f"y{number}"
+                    lines.append(f"const double y{number} = V_LANE(x[{row}][0], {lane});")
+        calls: dict[Node, str] = {}
+        for formula in formulas:
+            for call in _calls(formula):
+                if call not in calls:
+                    calls[call] = f"e{len(calls)}"
+                    lines.append(f"const double {calls[call]} = {c_expression(rename(call, places))};")
+        for row, seeds in enumerate(self.layout.seeds, start=self.own_rows):
+            parts = [c_expression(rename(_with_calls(formula, calls), places)) for formula in seeds]
+            lines.append(f"symrot_v4 r{row} = V_SET({', '.join([*parts, *['0.0'] * (LANES - len(parts))])});")
+            if row in self.stored:
+                lines.append(f"u{row}[0] = r{row};")
+        return lines
+
+    # -------------------------------------------------------------------------------------------- orders
+
+    def order(self, n: str, phase: str, sums: str) -> list[str]:
+        """Return the statements of one order: packs and rows as they come to hand, then the next of the states."""
+        lines: list[str] = []
+        done, packed = set(range(self.state_rows)), set[Pack]()
+
+        def pack_what_is_there() -> Iterable[str]:
+            for pack, index in self.packs.items():
+                if pack not in packed and {address.row for address in pack} <= done:
+                    packed.add(pack)
+                    yield f"const symrot_v4 l{index} = {self.picked(pack)};"
+                    yield f"k{index}[{n}] = l{index};"
+
+        lines += pack_what_is_there()
+        for number in range(self.state_rows, len(self.rows)):
+            lines += self.row(number, n, phase, sums)
+            if number in self.stored:
+                lines.append(f"u{number}[{n}] = r{number};")
+            done.add(number)
+            lines += pack_what_is_there()
+        following = {"0": "1", "1": "2", "n": "n + 1", "m": "m + 1"}[n]
+        lines.append(f"const symrot_v4 s = V_ALL(step[{following}]);")
+        for number, rate in enumerate(self.layout.rates):
+            lines.append(f"const symrot_v4 x{number} = {self.sum(rate, phase, sums, 's')};")
+        for number in range(self.state_rows):
+            lines.append(f"r{number} = x{number};")
+            if number < self.own_rows or number in self.stored:
+                lines.append(f"{self._array(number)}[{following}] = r{number};")
+        return lines
+
+    def loops(self) -> list[str]:
+        """Return the sums over what is known, for orders n and m = n + 1: a over k + j = n, b over k + j = m."""
+        lines: list[str] = []
+        columns = self.layout.columns
+        loops = -(-len(columns) // COLUMNS_PER_LOOP)
+        for loop in range(loops):  # all of about one length: a column alone would wait for its own sums
+            group = range(loop * len(columns) // loops, (loop + 1) * len(columns) // loops)
+            for i in group:
+                a, b, _ = columns[i]
+                lines.append(f"symrot_v4 h{i} = {self.at(b, 'n - 1')};")
+                lines.append(f"symrot_v4 a{i} = V_MUL({self.at(a, '1')}, h{i}), b{i} = V_ALL(0.0);")
+            lines.append("for (int64_t k = 2; k < n; k += 2) {")
+            for i in group:  # one column after the other: three numbers in work beside the sums
+                a, b, _ = columns[i]
+                lines += [
+                    f"    const symrot_v4 f{i} = {self.at(a, 'k')}, j{i} = {self.at(b, 'n - k')};",
+                    f"    b{i} = V_FMA(f{i}, h{i}, b{i});",
+                    f"    a{i} = V_FMA(f{i}, j{i}, a{i});",
+                    f"    const symrot_v4 g{i} = {self.at(a, 'k + 1')};",
+                    f"    h{i} = {self.at(b, 'n - k - 1')};",
+                    f"    b{i} = V_FMA(g{i}, j{i}, b{i});",
+                    f"    a{i} = V_FMA(g{i}, h{i}, a{i});",
+                ]
+            lines.append("}")
+        return lines
+
+    def between(self) -> list[str]:
+        """Return the terms of order m that hold coefficient n, which has just been computed."""
+        lines: list[str] = []
+        for i, (a, b, _) in enumerate(self.layout.columns):
+            one, two = (self.at(a, "1"), self.at(b, "n")), (self.at(a, "n"), self.at(b, "1"))
+            lines.append(f"b{i} = V_FMA({one[0]}, {one[1]}, V_FMA({two[0]}, {two[1]}, b{i}));")
+        return lines
+
+    def text(self) -> str:
+        rows = range(len(self.rows))
+        orders = {"0": self.order("0", "first", ""), "1": self.order("1", "second", ""),
+                  "n": self.order("n", "later", "a"), "m": self.order("m", "later", "b")}  # fmt: skip
+        divisors = [i for i in rows if self.rows[i].rule in ("quotient", "root", "primitive")]
+        body = [
+            "(void)c;",
+            "(void)t;",
+            "(void)t_low;",
+            *(f"symrot_v4 k{i}[SYMROT_ORDER + 1];" for i in self.packs.values()),
+            *(f"symrot_v4 u{i}[SYMROT_ORDER + 1];" for i in sorted(self.stored)),
+            *(f"symrot_v4 r{i} = x[{i}][0];" for i in range(self.own_rows)),
+            *self.seeds(),
+            *(f"symrot_v4 r{i};" for i in range(self.state_rows, len(self.rows))),
+            *(f"symrot_v4 d{i};" for i in divisors),
+            "{", *_indented(orders["0"]), "}",
+            "{", *_indented(orders["1"]), "}",
+            "for (int64_t n = 2; n < order; n += 2) {",
+            *_indented(["const int64_t m = n + 1;", *self.loops(), "{", *_indented(orders["n"]), "}",
+                        *self.between(), "{", *_indented(orders["m"]), "}"]),
+            "}",
+        ]  # fmt: skip
+        places = {name: f"p[{i}]" for i, name in enumerate(self.parameters)}
+        values = [
+            f"c[{index}] = V_SET({', '.join(c_expression(rename(weight, places)) for weight in weights)});"
+            for weights, index in self.constants.items()
+        ]
+        return "\n".join([
+            f"#define SYMROT_CONSTANTS {max(1, len(self.constants))}",
+            "",
+            "static void symrot_constants(const double *p, symrot_v4 *c)",
+            "{",
+            *_indented(["(void)p;", "(void)c;", *values]),
+            "}",
+            "",
+            "/*",
+            " * Fill x[row][1] to x[row][order], order even, from x[row][0], at t + t_low; step[n] is the unit of time",
+            " * over n.",
+            " */",
+            "static SYMROT_APART void symrot_jet(const symrot_v4 *SYMROT_RESTRICT c, double t, double t_low,",
+            "    const double *SYMROT_RESTRICT step, int64_t order, symrot_v4 (*SYMROT_RESTRICT x)[SYMROT_ORDER + 1])",
+            "{",
+            *_indented(body),
+            "}",
+        ]) + "\n"  # fmt: skip
+
+
+def _of(function: str, turn: str) -> str:
+    """Return the name of a function's value."""
+    return f"{function}_{turn}"
+
+
+def _calls(node: Node) -> list[Node]:
+    """Return the calls of functions in a formula."""
+    if node[0] == "call":
+        return [node]
+    return [call for child in children(node) for call in _calls(child)]
+
+
+def _with_calls(node: Node, calls: Mapping[Node, str]) -> Node:
+    """Return a formula with names in the place of calls."""
+    if node in calls:
+        return ("symbol", calls[node])
+    if node[0] in ("number", "symbol"):
+        return node
+    return (node[0], *(_with_calls(child, calls) for child in children(node)))
+
+
+def _indented(lines: Iterable[str]) -> list[str]:
+    return [f"    {line}" for line in lines]
+
+
+def _is_row(pack: Pack) -> bool:
+    return pack == tuple(Address(1, pack[0].row, lane) for lane in range(LANES))
+
+
+def _is_broadcast(pack: Pack) -> bool:
+    return set(pack) == {pack[0]} and pack[0].sign > 0

@@ -1,0 +1,225 @@
+"""Move the clock of a right-hand side, so that a motion can start at 0 on it however far from t = 0 that is.
+
+A double keeps 53 bits of ``a*t + b``: at t = 1e9 s a phase is off by 1e-7 rad, whatever steps. With ``t = epoch + tau``
+every polynomial of t, inside sine, cosine, exp or anywhere, is a polynomial of tau whose coefficients are found once,
+exactly, and rounded once; of what only sine, cosine and tangent see, whole turns are taken away before. Elsewhere
+products stay products of such polynomials of degree one: written out, ``((t - c)/w)**2`` would be a difference of large
+numbers beside a narrow pulse.
+
+Standard library only.
+"""
+
+from fractions import Fraction
+from math import comb
+from typing import NamedTuple
+
+from symrot.codegen.printing.c_source import c_function
+from symrot.formula.program import Argument, Program, Signature
+from symrot.formula.tree import Node, children, evaluate
+from symrot.planning.scene_kernel import EPOCH, Parameters, SceneKernel
+
+__all__ = ["from_epoch", "moved"]
+
+ZERO: Node = ("number", Fraction(0))
+ONE: Node = ("number", Fraction(1))
+TIME = "t"
+TURNING = {"sin", "cos", "tan"}
+CONSTANT = {"sqrt", "sin", "cos", "abs"}  # functions of constants that can be found exactly enough
+HIGHEST = 12  # degree of a polynomial that is moved as one
+
+
+def from_epoch(kernel: SceneKernel) -> SceneKernel:
+    """Return the kernel of a scene with rates in which t counts from the epoch, a constant like those of the scene.
+
+    What the motion keeps is left out where the time stands in it: that would be another time than in the rates.
+    """
+    rates, parameters = moved(kernel.rates, kernel.rate_parameters)
+    timeless = [
+        item._replace(kept=item.kept and not kernel.quantities.uses(TIME, (item.output,))) for item in kernel.conserved
+    ]
+    source = c_function(rates, "static inline ")
+    return SceneKernel.of(rates, parameters, kernel.quantities, kernel.quantity_parameters, tuple(timeless), source)
+
+
+def moved(program: Program, parameters: Parameters) -> tuple[Program, Parameters]:
+    """Return a right-hand side in which t counts from the epoch, and all its parameters as formulas.
+
+    Parameters
+    ----------
+    program : Program
+        ``dy = f(t, y, p)``, with the arguments t, y, p (may be missing) and dy; the time stands in it.
+    parameters : tuple of (name, Node)
+        What the components of p are: formulas of constants. Those of the result hold the symbol ``epoch`` too, s.
+    """
+    return _Mover(program, parameters).result()
+
+
+class _Form(NamedTuple):
+    """A formula, rewritten; and its terms where it is a polynomial of t with constant coefficients."""
+
+    node: Node | None  # None: of degree one, made from the terms where it is used
+    terms: tuple[Node, ...] | None = None
+    centred: bool = False  # whether it is a product of factors such as t - c, which are small near a time of their own
+
+
+class _Mover:
+    def __init__(self, program: Program, parameters: Parameters) -> None:
+        self.program, self.formulas = program, dict(parameters)
+        arguments = {a.name: a for a in program.signature.arguments}
+        self.states, self.own = arguments["y"], arguments.get("p", Argument("p", "in", ()))
+        self.forms: dict[str, _Form] = {TIME: _Form(None, (ZERO, ONE))}
+        self.forms |= {name: _Form(("symbol", name)) for name, *_ in self.states.components}
+        self.forms |= {name: _Form(("symbol", name), (("symbol", name),)) for name, *_ in self.own.components}
+        self.known: dict[tuple[tuple[Node, ...], bool], Node] = {}
+        self.added: list[tuple[str, Node]] = []
+
+    def result(self) -> tuple[Program, Parameters]:
+        temporaries = []
+        for name, node in self.program.temporaries:
+            form = self.read(node)
+            if form.node is not None:
+                temporaries.append((name, form.node))
+                form = form._replace(node=("symbol", name))
+            self.forms[name] = form
+        outputs = tuple((name, self.written(self.read(node))) for name, node in self.program.outputs)
+        signature = self.program.signature
+        added = tuple((name, "", "of a polynomial of the time") for name, _ in self.added)
+        own = Argument("p", "in", (*self.own.components, *added))
+        others = [a for a in signature.arguments if a.name != "p"]
+        place = others.index(self.states) + 1
+        program = Program(
+            Signature(signature.name, (*others[:place], own, *others[place:])), tuple(temporaries), outputs
+        )
+        return program, (*self.formulas.items(), *self.added)
+
+    def read(self, node: Node) -> _Form:
+        kind = node[0]
+        if kind == "number":
+            return _Form(node, (node,))
+        if kind == "symbol":
+            return self.forms[node[1]]
+        parts = [self.read(child) for child in children(node)]
+        terms = _terms(node, [part.terms for part in parts])
+        if terms is not None and len(terms) == 2:
+            return _Form(None, terms)
+        turns = kind == "call" and node[1] in TURNING
+        written = tuple(self.written(part, turns) for part in parts)
+        if kind == "call":
+            return _Form((kind, node[1], written), terms)
+        centred = any(part.centred for part in parts) or (kind in ("*", "**") and any(map(_is_shifted, parts)))
+        return _Form((kind, *written, *node[2:]) if kind == "**" else (kind, *written), terms, centred)
+
+    def written(self, form: _Form, turns: bool = False) -> Node:
+        """Return a form as a formula; a polynomial of t by Horner's rule, its coefficients parameters.
+
+        ``turns`` says that whole turns of it do not matter.
+        """
+        whole = turns and form.terms is not None and len(form.terms) > 1 and not form.centred
+        if form.node is not None and not whole:
+            return form.node
+        assert form.terms is not None
+        if (form.terms, turns) not in self.known:
+            self.known[form.terms, turns] = self.horner(form.terms, turns)
+        return self.known[form.terms, turns]
+
+    def horner(self, terms: tuple[Node, ...], turns: bool) -> Node:
+        old, time = [self.resolved(term) for term in terms], ("symbol", TIME)
+        value: Node | None = None
+        for i in reversed(range(len(old))):
+            new: Node = ZERO
+            for j in range(i, len(old)):
+                share = _times(("number", Fraction(comb(j, i))), old[j])
+                new = _plus(new, _times(share, ("**", ("symbol", EPOCH), j - i) if j > i else ONE))
+            new = ("call", "without_turns", (new,)) if turns and i == 0 else new
+            coefficient = new if new[0] == "number" else self.parameter(new)
+            grown = value if value is None else time if value == ONE else ("*", value, time)
+            value = coefficient if grown is None else grown if coefficient == ZERO else ("+", coefficient, grown)
+        assert value is not None
+        return value
+
+    def parameter(self, formula: Node) -> Node:
+        """Return a parameter of that formula."""
+        for name, known in (*self.formulas.items(), *self.added):
+            if known == formula:
+                return ("symbol", name)
+        self.added.append((f"clock_{len(self.added)}", formula))
+        return ("symbol", self.added[-1][0])
+
+    def resolved(self, node: Node) -> Node:
+        """Return a formula of parameters as one of the constants that they are made of."""
+        if node[0] == "symbol":
+            return self.formulas[node[1]]
+        if node[0] == "number":
+            return node
+        if node[0] == "call":
+            return ("call", node[1], tuple(map(self.resolved, node[2])))
+        return (node[0], *map(self.resolved, children(node)), *(node[2:] if node[0] == "**" else ()))
+
+
+def _is_shifted(form: _Form) -> bool:
+    """Return whether a form is a t + b with b other than zero."""
+    return form.terms is not None and len(form.terms) == 2 and form.terms[0] != ZERO
+
+
+def _terms(node: Node, parts: list[tuple[Node, ...] | None]) -> tuple[Node, ...] | None:
+    """Return the terms of a polynomial of t from those of its operands, or None if it is none."""
+    if any(part is None for part in parts):
+        return None
+    kind, found = node[0], [part for part in parts if part is not None]
+    constant = all(len(part) == 1 for part in found)
+    if kind == "call":
+        return (("call", node[1], tuple(part[0] for part in found)),) if constant and node[1] in CONSTANT else None
+    if constant:
+        return ((kind, found[0][0], node[2]) if kind == "**" else (kind, *(part[0] for part in found)),)
+    if kind == "neg":
+        return tuple(_negative(term) for term in found[0])
+    if kind in "+-":
+        size = max(map(len, found))
+        left, right = (part + (ZERO,) * (size - len(part)) for part in found)
+        return _trimmed([_plus(a, b if kind == "+" else _negative(b)) for a, b in zip(left, right, strict=True)])
+    if kind == "*":
+        return _product(*found)
+    if kind == "/":
+        return tuple(_over(term, found[1][0]) for term in found[0]) if len(found[1]) == 1 else None
+    if not 0 < node[2] <= HIGHEST:
+        return None
+    power: tuple[Node, ...] | None = (ONE,)
+    for _ in range(node[2]):
+        power = power and _product(power, found[0])
+    return power
+
+
+def _product(left: tuple[Node, ...], right: tuple[Node, ...]) -> tuple[Node, ...] | None:
+    if len(left) + len(right) - 2 > HIGHEST:
+        return None
+    terms = [ZERO] * (len(left) + len(right) - 1)
+    for i, a in enumerate(left):
+        for j, b in enumerate(right):
+            terms[i + j] = _plus(terms[i + j], _times(a, b))
+    return _trimmed(terms)
+
+
+def _trimmed(terms: list[Node]) -> tuple[Node, ...]:
+    while len(terms) > 1 and terms[-1] == ZERO:
+        terms.pop()
+    return tuple(terms)
+
+
+def _folded(node: Node) -> Node:
+    return ("number", evaluate(node, {})) if all(part[0] == "number" for part in children(node)) else node
+
+
+def _negative(a: Node) -> Node:
+    return _folded(("neg", a))
+
+
+def _plus(a: Node, b: Node) -> Node:
+    return b if a == ZERO else a if b == ZERO else _folded(("+", a, b))
+
+
+def _times(a: Node, b: Node) -> Node:
+    return ZERO if ZERO in (a, b) else b if a == ONE else a if b == ONE else _folded(("*", a, b))
+
+
+def _over(a: Node, b: Node) -> Node:
+    return a if ZERO in (a, b) or b == ONE else _folded(("/", a, b))

@@ -1,0 +1,1 @@
+"""Arguments of sines and cosines: sums of atoms, rational multiples of pi, inverse functions."""

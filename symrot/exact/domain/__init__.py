@@ -1,0 +1,1 @@
+"""Where a formula has a value, and points at which that is proven."""

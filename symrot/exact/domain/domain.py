@@ -1,0 +1,97 @@
+"""Where a formula is defined: what must not vanish, and what must not be negative."""
+
+from collections.abc import Container, Iterable
+
+from sympy import Abs, Expr, Pow, acos, asin, atan2, log
+
+from symrot.exact.domain.needs import is_leaf
+from symrot.exact.ring.ring import FormulaRing
+from symrot.exact.ring.roots import Root
+
+__all__ = ["divisors", "is_dense", "radicands", "signs", "split_radicands"]
+
+
+def divisors(ring: FormulaRing, granted: Container[int] = ()) -> list[tuple[Expr, Expr]]:
+    """Return what must not vanish, as it was divided by and as the factor found in it, less the ``granted`` factors.
+
+    A root is shown by what stands under it.
+    """
+    roots = {place: root for root, place in ring.roots.items()}
+    found: list[tuple[Expr, Expr]] = []
+    for number, (source, factor) in enumerate(zip(ring.ratios.sources, ring.ratios.factors, strict=True)):
+        if number in granted:
+            continue
+        places = [n for n, power in enumerate(factor.leading_expv()) if power] if len(factor) == 1 else []
+        root = roots.get(places[0]) if len(places) == 1 else None
+        inside = _inside(root) if root else factor.as_expr(*ring.generators)
+        found.append((source, inside))
+    found += [(formula, formula) for leaf in _leaves(ring) for formula in _nonzero(leaf)]
+    return [pair for pair in dict.fromkeys(found) if not any(form.is_nonzero or form.is_number for form in pair)]
+
+
+def _inside(root: Root) -> Expr:
+    return root.expression.args[0] if isinstance(root.expression, Abs) else root.power_expression
+
+
+def radicands(ring: FormulaRing) -> list[Expr]:
+    """Return what must not be negative: under roots, in logarithms, 1 - x^2 for asin(x) and acos(x)."""
+    bases = [radical.base for node, radical in ring.radicals.items() if isinstance(node, Pow)]
+    found = [base for base in bases if not _is_square(base)]
+    found += [formula for leaf in _leaves(ring) for formula in _nonnegative(leaf)]
+    found += split_radicands(ring)
+    return [formula for formula in dict.fromkeys(found) if not (formula.is_nonnegative or formula.is_number)]
+
+
+def split_radicands(ring: FormulaRing) -> list[Expr]:
+    """Return what is not negative where proofs hold although the formulas are real elsewhere too.
+
+    ``sqrt(P f^2)`` is read as ``|f| sqrt(P)``, which says nothing where f is zero and P is negative.
+    """
+    loose = [root for radical in ring.radicals.values() if radical.loose for root in radical.roots]
+    return list(dict.fromkeys(root.power_expression for root in loose if not root.power_expression.is_positive))
+
+
+def is_dense(ring: FormulaRing) -> bool:
+    """Return whether the points at which nothing vanishes that was divided by are dense: so it is in the core.
+
+    Not with roots, numbers that are not algebraic, or angles and exponents that may depend on each other as
+    ``x log(4)`` and ``x log(2)`` do.
+    """
+    return not ring.roots and not ring.outside_scope and all(map(_is_plain, (*ring.bases, *ring.exponent_bases)))
+
+
+def _is_plain(atom: Expr) -> bool:
+    """Return whether an angle or exponent is made of symbols, functions of time and rational numbers."""
+    if is_leaf(atom):
+        return True
+    if atom.is_Add or atom.is_Mul or (atom.is_Pow and atom.exp.is_Integer):
+        return all(map(_is_plain, atom.args))
+    return bool(atom.is_Rational)
+
+
+def signs(ring: FormulaRing) -> list[Expr]:
+    """Return what is not negative wherever the formulas are defined, in as many forms as are known."""
+    sides = [1 + sign * leaf.args[0] for leaf in _leaves(ring) if isinstance(leaf, asin | acos) for sign in (1, -1)]
+    return [*radicands(ring), *sides]
+
+
+def _leaves(ring: FormulaRing) -> Iterable[Expr]:
+    """Return inverse functions and logarithms: those that stand alone, and those inside sines and cosines."""
+    return [*ring.symbols, *(atom for form in ring.forms.values() for atom, _ in form.terms)]
+
+
+def _nonzero(leaf: Expr) -> list[Expr]:
+    if isinstance(leaf, atan2):
+        return [leaf.args[0] ** 2 + leaf.args[1] ** 2]
+    return [leaf.args[0]] if isinstance(leaf, log) else []
+
+
+def _nonnegative(leaf: Expr) -> list[Expr]:
+    if isinstance(leaf, asin | acos):
+        return [1 - leaf.args[0] ** 2]
+    return [leaf.args[0]] if isinstance(leaf, log) else []
+
+
+def _is_square(base: Expr) -> bool:
+    """Return whether a radicand is the even power of a real number."""
+    return bool(isinstance(base, Pow) and base.exp.is_Integer and base.exp % 2 == 0)

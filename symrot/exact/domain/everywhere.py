@@ -1,0 +1,161 @@
+"""The range of a formula over all real points: bounds that hold whatever the values of its symbols are.
+
+``cos(x) - 2`` lies between -3 and -1, so its root is real nowhere. Bounds are exact fractions or infinite; a formula
+whose range is not known this way has the bounds (-inf, inf), which say nothing.
+"""
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from math import inf
+from typing import Any
+
+import sympy
+from sympy import Expr
+
+from symrot.exact.domain.needs import Need, is_leaf
+from symrot.exact.intervals import enclosure
+
+__all__ = ["fails_everywhere", "range_everywhere"]
+
+Bound = Any  # Fraction or +-inf
+Range = tuple[Bound, Bound]
+
+REALS: Range = (-inf, inf)
+MOST_BITS = 2000
+"""Of a bound; one with more says nothing."""
+
+
+def fails_everywhere(need: Need) -> bool:
+    """Return whether a need is proven to hold at no real point."""
+    low, high = range_everywhere(need.formula)
+    return bool({">= 0": high < 0, "> 0": high <= 0, "!= 0": low == high == 0}.get(need.sign, False))
+
+
+def range_everywhere(formula: Expr) -> Range:
+    """Return (low, high) between which a formula lies at every real point where it has a value."""
+    return _range(formula, {})
+
+
+def _range(node: Expr, known: dict[Expr, Range]) -> Range:
+    if node not in known:
+        low, high = _computed(node, known)
+        size = [abs(bound.numerator).bit_length() for bound in (low, high) if isinstance(bound, Fraction)]
+        known[node] = REALS if max(size, default=0) > MOST_BITS or low > high else (low, high)
+    return known[node]
+
+
+def _computed(node: Expr, known: dict[Expr, Range]) -> Range:
+    if node.is_Rational:
+        return Fraction(int(node.p), int(node.q)), Fraction(int(node.p), int(node.q))
+    if is_leaf(node):
+        return (Fraction(0) if node.is_nonnegative else -inf), (Fraction(0) if node.is_nonpositive else inf)
+    if not node.free_symbols and not any(map(is_leaf, sympy.preorder_traversal(node))):
+        return _of_number(node)
+    parts = [_range(part, known) for part in node.args]
+    if node.is_Add or node.is_Mul:
+        total = parts[0]
+        for part in parts[1:]:
+            total = _plus(total, part) if node.is_Add else _times(total, part)
+        return total
+    if node.is_Pow:
+        return _power(parts[0], node.exp)
+    return _OF[type(node)](*parts) if type(node) in _OF else REALS
+
+
+def _of_number(node: Expr) -> Range:
+    held = enclosure(node)
+    return REALS if held is None else (_end(held.a), _end(held.b))
+
+
+def _end(value: Any) -> Fraction:
+    """Return the exact value of an end of an interval."""
+    sign, mantissa, power, _ = value._mpi_[0]
+    if abs(power) > MOST_BITS:
+        raise OverflowError
+    return (-1 if sign else 1) * int(mantissa) * Fraction(2) ** int(power)
+
+
+def _plus(a: Range, b: Range) -> Range:
+    low, high = (next((end for end in ends if end in (inf, -inf)), ends[0] + ends[1] if _finite(ends) else None)
+                 for ends in zip(a, b, strict=True))  # fmt: skip
+    return low, high
+
+
+def _finite(ends: Sequence[Bound]) -> bool:
+    return all(isinstance(end, Fraction) for end in ends)
+
+
+def _times(a: Range, b: Range) -> Range:
+    ends = [_product(x, y) for x in a for y in b]
+    return min(ends), max(ends)
+
+
+def _product(x: Bound, y: Bound) -> Bound:
+    if not x or not y:
+        return Fraction(0)
+    if _finite((x, y)):
+        return x * y
+    return inf if (x > 0) == (y > 0) else -inf
+
+
+def _power(base: Range, exponent: Expr) -> Range:
+    low, high = base
+    if not exponent.is_Rational:
+        return Fraction(0), inf  # of a positive number
+    if exponent.q > 1:
+        return (Fraction(0), inf)
+    power = int(exponent)
+    if power < 0:
+        return (Fraction(0), inf) if power % 2 == 0 or low >= 0 else (-inf, Fraction(0)) if high <= 0 else REALS
+    ends = (low**power, high**power)
+    if power % 2:
+        return ends
+    return (Fraction(0) if low <= 0 <= high else min(ends)), max(ends)
+
+
+def _monotone(function: Callable[[Expr], Expr], least: Bound, most: Bound) -> Callable[[Range], Range]:
+    """Return the range of a function that grows, between its limits at the ends of its domain."""
+
+    def of(argument: Range) -> Range:
+        low, high = (_at(function, end) for end in argument)
+        return (least if low is None else low[0]), (most if high is None else high[1])
+
+    return of
+
+
+def _at(function: Callable[[Expr], Expr], end: Bound) -> Range | None:
+    if not isinstance(end, Fraction):
+        return None
+    held = enclosure(function(sympy.Rational(end.numerator, end.denominator)))
+    try:
+        return None if held is None else (_end(held.a), _end(held.b))
+    except OverflowError:
+        return None
+
+
+def _absolute(argument: Range) -> Range:
+    low, high = argument
+    return (Fraction(0) if low <= 0 <= high else min(abs(low), abs(high))), max(abs(low), abs(high))
+
+
+def _between(low: Bound, high: Bound) -> Callable[..., Range]:
+    return lambda *arguments: (low, high)
+
+
+ZERO, ONE, TWO, FOUR = map(Fraction, (0, 1, 2, 4))
+
+_OF: dict[type, Callable[..., Range]] = {
+    sympy.sin: _between(-ONE, ONE),
+    sympy.cos: _between(-ONE, ONE),
+    sympy.tanh: _between(-ONE, ONE),
+    sympy.sign: _between(-ONE, ONE),
+    sympy.asin: _between(-TWO, TWO),
+    sympy.atan: _between(-TWO, TWO),
+    sympy.acos: _between(ZERO, FOUR),
+    sympy.atan2: _between(-FOUR, FOUR),
+    sympy.exp: _monotone(sympy.exp, ZERO, inf),
+    sympy.log: _monotone(sympy.log, -inf, inf),
+    sympy.cosh: _between(ONE, inf),
+    sympy.acosh: _between(ZERO, inf),
+    sympy.Abs: _absolute,
+}

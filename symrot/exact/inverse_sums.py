@@ -1,0 +1,133 @@
+"""Sums of inverse trigonometric functions, or of logarithms, that are zero: proven by what sine, cosine and exp make of
+them, and by the range of their values.
+
+``D = 0`` for a rational combination D of ``asin``, ``acos``, ``atan``, ``atan2`` and ``pi``, if ``sin D = 0``,
+``cos D = 1`` and D keeps strictly between -2 pi and 2 pi; or the same of D/2 and 4 pi. For real D with logarithms,
+``D = 0`` if and only if ``exp D = 1``.
+"""
+
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from mpmath import iv
+from sympy import Expr, Integer, Rational, cos, exp, log, pi, sin
+from sympy.polys.rings import PolyElement
+
+from symrot.errors import InputError
+from symrot.exact.angles.inverse import INVERSE, range_of
+from symrot.exact.intervals import enclosure
+from symrot.exact.ring.ring import FormulaRing
+
+__all__ = ["Lift", "lifts", "proof", "vanishes"]
+
+MOST_TERMS = 60
+"""Of a residual that is still factored."""
+
+_NAMES = (*INVERSE, log)
+
+
+@dataclass(frozen=True)
+class Lift:
+    """A factor of a residual is zero where all ``numerators``, in a ring of their own, are."""
+
+    ring: FormulaRing
+    numerators: tuple[PolyElement, ...]
+
+
+def vanishes(ring: FormulaRing, numerator: PolyElement) -> bool:
+    """Return whether a numerator is proven to be zero: by the relations, or by a factor that is."""
+    return proof(ring, numerator) is not None
+
+
+def proof(ring: FormulaRing, numerator: PolyElement) -> tuple[FormulaRing, ...] | None:
+    """Return the further rings by which a numerator is proven to be zero, none where the relations suffice.
+
+    The proof holds where nothing vanishes that those rings divide by. None: there is no proof.
+    """
+    numerator = ring.reduce(numerator)
+    if not numerator:
+        return ()
+    for lift in lifts(ring, numerator):
+        further = [proof(lift.ring, poly) for poly in lift.numerators]
+        if None not in further:
+            return (lift.ring, *(other for found in further if found for other in found))
+    return None
+
+
+def lifts(ring: FormulaRing, numerator: PolyElement) -> Iterator[Lift]:
+    """Yield, for factors of a reduced numerator, what suffices for them to vanish."""
+    places = {number for leaf, number in ring.symbols.items() if isinstance(leaf, _NAMES)}
+    if not places or len(numerator) > MOST_TERMS or not any(mono[n] for mono in numerator for n in places):
+        return
+    for factor, _ in numerator.factor_list()[1]:
+        used = {number for number in places if any(mono[number] for mono in factor)}
+        if used:
+            with suppress(InputError):  # a lift that cannot be read proves nothing
+                yield from _lifts_of(ring, factor, used)
+
+
+def _lifts_of(ring: FormulaRing, factor: PolyElement, used: set[int]) -> Iterator[Lift]:
+    names = {number: leaf for leaf, number in ring.symbols.items()}
+    if any(sum(mono[n] for n in used) > 1 for mono in factor):
+        return
+    difference = factor.as_expr(*ring.generators)
+    if all(isinstance(names[n], log) for n in used):
+        yield _lifted(ring, [(exp(difference.expand()), Integer(1))])
+    elif not any(isinstance(names[n], log) for n in used):
+        terms = _combination(ring, factor, names)
+        if terms is not None:
+            for part, period in ((Integer(1), 2), (Rational(1, 2), 4)):
+                if _keeps_within(terms, period):
+                    yield _lifted(ring, [(sin(part * difference), Integer(0)), (cos(part * difference), Integer(1))])
+
+
+def _lifted(ring: FormulaRing, equations: Sequence[tuple[Expr, Expr]]) -> Lift:
+    other = FormulaRing([side for sides in equations for side in sides], ring.hypotheses, ring.domain)
+    numerators = (other.reduce(other.difference(left, right).numerator) for left, right in equations)
+    return Lift(other, tuple(numerators))
+
+
+def _combination(ring: FormulaRing, factor: PolyElement, names: dict[int, Expr]) -> list[tuple[Expr, Fraction]] | None:
+    """Return a factor as a rational combination of inverse functions and pi, or None."""
+    terms = []
+    for mono, coefficient in factor.items():
+        places = [number for number, power in enumerate(mono) if power]
+        leaf = names.get(places[0]) if len(places) == 1 and mono[places[0]] == 1 else None
+        if leaf is None or not (leaf is pi or type(leaf) in INVERSE):
+            return None
+        terms.append((leaf, Fraction(int(coefficient.numerator), int(coefficient.denominator))))
+    return terms
+
+
+def _keeps_within(terms: Sequence[tuple[Expr, Fraction]], period: int) -> bool:
+    """Return whether a combination is strictly between -period and period half-turns."""
+    low, high = Fraction(0), Fraction(0)
+    low_taken = high_taken = True
+    for leaf, coefficient in terms:
+        least, most, least_taken, most_taken = _range(leaf)
+        if coefficient < 0:
+            least, most, least_taken, most_taken = most, least, most_taken, least_taken
+        low, high = low + coefficient * least, high + coefficient * most
+        low_taken, high_taken = low_taken and least_taken, high_taken and most_taken
+    return (low > -period or (low == -period and not low_taken)) and (
+        high < period or (high == period and not high_taken)
+    )
+
+
+def _range(leaf: Expr) -> tuple[Fraction, Fraction, bool, bool]:
+    if leaf is pi:
+        return Fraction(1), Fraction(1), True, True
+    held = enclosure(leaf) if leaf.is_number else None
+    if held is None:
+        return range_of(leaf)
+    turns = held / iv.pi
+    return _fraction(turns.a), _fraction(turns.b), True, True
+
+
+def _fraction(end: Any) -> Fraction:
+    """Return the exact value of an end of an interval."""
+    sign, mantissa, power, _ = end._mpi_[0]
+    return (-1 if sign else 1) * int(mantissa) * Fraction(2) ** int(power)

@@ -1,0 +1,146 @@
+"""The way from one side of an equation to the other, in steps that the engine takes itself.
+
+Each side is rewritten until nothing is left to rewrite: angles in base angles, products multiplied out, each relation
+put in, common factors cancelled. Both ways end in one normal form; the chain is one way forwards, then the other
+backwards, and every expression in it is equal to the next.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from sympy import Expr, Integer, Mul, cos, sin
+from sympy.polys.rings import PolyElement
+
+from symrot.exact.angles.angles import base_angle
+from symrot.exact.decide import flatten
+from symrot.exact.functions import TRIGONOMETRIC
+from symrot.exact.ring.ratio import Ratio
+from symrot.exact.ring.relations import Rule
+from symrot.exact.ring.ring import FormulaRing, as_zero
+
+__all__ = ["Chain", "Link", "chains"]
+
+
+@dataclass(frozen=True)
+class Link:
+    """One expression of a chain, and why it is equal to the one before; ``rule`` is (left, right) of a relation.
+
+    ``cofactors`` pairs polynomials with the hypotheses' consequences whose multiples were taken away.
+    """
+
+    expression: Expr
+    reason: str
+    rule: tuple[Expr, Expr] | None = None
+    cofactors: tuple[tuple[Expr, Expr], ...] = ()
+
+
+@dataclass(frozen=True)
+class Chain:
+    """The way from left to right in one entry, (row, column) from 1, or None for a scalar."""
+
+    entry: tuple[int, int] | None
+    links: tuple[Link, ...]
+
+
+def chains(left: Any, right: Any, relations: Sequence[Any] = ()) -> tuple[Chain, ...]:
+    """Return the way from left to right in every entry; none for entries that are one expression already.
+
+    Parameters
+    ----------
+    left, right : Expr or Matrix
+        Two sides of a proven equation, of one shape.
+    relations : sequence of Expr or Eq
+        Its hypotheses.
+
+    Raises
+    ------
+    InputError
+        If the sides cannot be read.
+    ValueError
+        If they are not equal.
+    """
+    (lefts, shape), (rights, _) = flatten(left), flatten(right)
+    hypotheses = [as_zero(relation) for relation in relations]
+    found = []
+    for place, (a, b) in enumerate(zip(lefts, rights, strict=True)):
+        if a != b:
+            entry = None if shape is None else (place // shape[1] + 1, place % shape[1] + 1)
+            found.append(Chain(entry, _chain(a, b, hypotheses)))
+    return tuple(found)
+
+
+def _chain(left: Expr, right: Expr, hypotheses: list[Expr]) -> tuple[Link, ...]:
+    ring = FormulaRing([left, right], hypotheses)
+    if ring.reduce(ring.difference(left, right).numerator):
+        raise ValueError(f"{left} and {right} are not proven equal")
+    forward, backward = list(_way(ring, left)), list(_way(ring, right))
+    links = [Link(left, ""), *forward]
+    if forward[-1].expression != backward[-1].expression:
+        links.append(Link(backward[-1].expression, "crosswise products of numerators and denominators agree"))
+    return _cleaned([*links, *_reversed(right, backward)])
+
+
+def _reversed(start: Expr, way: list[Link]) -> Iterator[Link]:
+    """Yield a way from its end to its start; each reason stays with its pair of expressions."""
+    places = [start, *(link.expression for link in way)]
+    for number in range(len(way) - 1, -1, -1):
+        yield Link(places[number], way[number].reason, way[number].rule, way[number].cofactors)
+
+
+def _cleaned(links: list[Link]) -> tuple[Link, ...]:
+    """Return the links without those that repeat the expression before."""
+    kept = links[:1]
+    for link in links[1:]:
+        if link.expression != kept[-1].expression:
+            kept.append(link)
+    return tuple(kept)
+
+
+def _way(ring: FormulaRing, side: Expr) -> Iterator[Link]:
+    """Yield the expressions after a side, down to its normal form."""
+    angles = {node: value for node, value in _angles(ring, side) if value != node}
+    if angles:
+        yield Link(side.xreplace(angles), "sums and multiples of angles")
+    value = ring.ratio(side)
+    yield Link(_fraction(ring, value.numerator, value), "products multiplied out over a common denominator")
+    numerator = value.numerator
+    for rule in ring.relations.rules:
+        reduced = type(ring.relations)((rule,)).reduce(numerator)
+        if reduced != numerator:
+            numerator = reduced
+            yield Link(_fraction(ring, numerator, value), "a relation", _shown(ring, rule))
+    if ring.relations.basis:
+        quotients, rest = numerator.div(list(ring.relations.basis))
+        if rest != numerator:
+            numerator = rest
+            pairs = zip(quotients, ring.relations.basis, strict=True)
+            cofactors = tuple((_plain(ring, q), _plain(ring, b)) for q, b in pairs if q)
+            yield Link(
+                _fraction(ring, numerator, value), "multiples of what the hypotheses put to zero", None, cofactors
+            )
+    yield Link(ring.expression(value), "common factors")
+
+
+def _angles(ring: FormulaRing, side: Expr) -> Iterator[tuple[Expr, Expr]]:
+    """Yield every sine, cosine, ... with its value in sines and cosines of base angles."""
+    base = {base_angle(atom, coefficient) for atom, coefficient in ring.bases.items()}
+    for node in sorted(side.atoms(*TRIGONOMETRIC), key=str):
+        if not (isinstance(node, (sin, cos)) and node.args[0] in base):
+            value = ring.ratio(node)
+            yield node, _fraction(ring, value.numerator, value)
+
+
+def _plain(ring: FormulaRing, poly: PolyElement) -> Expr:
+    found: Expr = poly.as_expr(*ring.generators)
+    return found
+
+
+def _fraction(ring: FormulaRing, numerator: PolyElement, value: Ratio) -> Expr:
+    """Return a numerator over the denominator of a fraction, factors of the denominator left as they are."""
+    below = [_plain(ring, ring.ratios.factors[number]) ** power for number, power in value.factors]
+    return Mul(_plain(ring, numerator), Mul(*below, Integer(value.constant)) ** -1)
+
+
+def _shown(ring: FormulaRing, rule: Rule) -> tuple[Expr, Expr]:
+    return ring.generators[rule.generator] ** rule.power, _plain(ring, rule.replacement)

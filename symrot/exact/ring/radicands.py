@@ -1,0 +1,124 @@
+"""What stands under a square root, taken apart: squares leave it, and roots of products are products of roots.
+
+``sqrt(x^2 y) = |x| sqrt(y)``. Of several square roots whose radicands multiply to a square, say ``a``, ``b`` and
+``a b``, one is expressed by the others, ``sqrt(a b) = sqrt(a) sqrt(b)``: true wherever all of them are real.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from sympy import Abs, Expr, Rational
+from sympy.polys.domains import ZZ
+from sympy.polys.rings import PolyElement
+
+from symrot.exact.ring.roots import Root, absolute, sign_of
+
+__all__ = ["Dependence", "dependences", "take_squares"]
+
+MOST_TERMS = 60
+"""Of a radicand that is still taken apart."""
+
+
+Outside = tuple[tuple[Root | Expr, int], ...]
+
+
+def take_squares(above: PolyElement, below: PolyElement, generators: Sequence[Expr]) -> tuple[Expr, Outside, bool]:
+    """Return (P, outside, loose) with ``above/below = P * product(factor^(2 n))``; P a polynomial, no factor negative.
+
+    It is loose if a factor may be zero where P is negative: the root of ``P f^2`` is real there, that of P is not.
+    """
+    whole = above.ring.clone(domain=ZZ)
+    above, below = above.set_ring(whole), below.set_ring(whole)
+    rest, squares = _square_part(above)
+    loose = any(rest.rem([factor]) for factor, _ in squares)
+    divisor, inverse = _square_part(below)
+    squares += [(factor, -times) for factor, times in inverse]
+    outside: list[tuple[Root | Expr, int]] = []
+    if not divisor.is_ground:
+        shown, sign = divisor.as_expr(*generators), sign_of(rest.as_expr(*generators))
+        if sign:  # rest/divisor is not negative
+            outside.append((sign * shown, -1))
+        else:
+            squares += [(factor, -times) for factor, times in _irreducible(divisor)]
+        rest = rest * divisor
+    outside += [(absolute(factor.as_expr(*generators)), times) for factor, times in squares]
+    return rest.as_expr(*generators), tuple(outside), loose
+
+
+def _square_part(poly: PolyElement) -> tuple[PolyElement, list[tuple[PolyElement, int]]]:
+    """Return (P, [(f, n), ..]) with ``poly = P * product(f^(2n))``, P without squares, the f irreducible."""
+    if poly.is_ground or len(poly) > MOST_TERMS or all(degree < 2 for degree in poly.degrees()):
+        return poly, []
+    rest, squares = poly, []
+    for part, times in poly.sqf_list()[1]:
+        if times > 1 and not part.is_ground:
+            rest = rest.exquo(part ** (times // 2 * 2))
+            squares += [(factor, n * (times // 2)) for factor, n in part.factor_list()[1]]
+    return rest, squares
+
+
+def _irreducible(poly: PolyElement) -> list[tuple[PolyElement, int]]:
+    if len(poly) > MOST_TERMS:
+        return [(poly, 1)]
+    return [(factor, n) for factor, n in poly.factor_list()[1]]
+
+
+@dataclass(frozen=True)
+class Dependence:
+    """A root that is ``sqrt(number) * product(roots) / product(factor^n)``, the factors as those outside a radical."""
+
+    number: Rational
+    roots: tuple[Root, ...]
+    divisors: tuple[tuple[Root | Expr, int], ...]
+
+
+def dependences(radicands: Mapping[Root, PolyElement], generators: Sequence[Expr]) -> dict[Root, Dependence]:
+    """Return the square roots that are products of others, by what they are.
+
+    Linear algebra over the field of two elements: a root is the set of irreducible factors that its radicand has an
+    odd number of times.
+
+    Parameters
+    ----------
+    radicands : mapping
+        What stands under each square root, in one ring.
+    generators : sequence of Expr
+        Of that ring.
+    """
+    factored = {root: _factored(poly) for root, poly in radicands.items()}
+    odd = {root: frozenset(f for f, n in powers.items() if n % 2) for root, (_, powers) in factored.items()}
+    candidates = [root for root in radicands if odd[root] or not isinstance(root.expression, Abs)]
+    candidates.sort(key=lambda root: (-isinstance(root.expression, Abs), len(odd[root]), str(root.expression)))
+    basis: list[tuple[frozenset[PolyElement], frozenset[Root]]] = []
+    found: dict[Root, Dependence] = {}
+    for root in candidates:
+        left, used = odd[root], frozenset([root])
+        for factors, members in basis:
+            if min(factors, key=str) in left:
+                left, used = left ^ factors, used ^ members
+        if left:
+            basis.append((left, used))
+            continue
+        others = sorted(used - {root}, key=lambda other: str(other.expression))
+        number, total = factored[root][0], {f: -n for f, n in factored[root][1].items()}
+        for other in others:
+            number /= factored[other][0]
+            for factor, n in factored[other][1].items():
+                total[factor] = total.get(factor, 0) + n
+        if number > 0:  # else they are real together at isolated points only
+            divisors = ((absolute(f.as_expr(*generators)), n // 2) for f, n in sorted(total.items(), key=str) if n)
+            found[root] = Dependence(number, tuple(others), tuple(divisors))
+    return found
+
+
+def _factored(poly: PolyElement) -> tuple[Rational, dict[PolyElement, int]]:
+    """Return a polynomial as a rational number times powers of irreducible factors; of itself where it is large."""
+    if poly.is_ground or len(poly) > MOST_TERMS:
+        return (_rational(poly.LC), {}) if poly.is_ground else (Rational(1), {poly: 1})
+    constant, pairs = poly.factor_list()
+    return _rational(constant), {factor: int(n) for factor, n in pairs}
+
+
+def _rational(value: Any) -> Rational:
+    return Rational(int(value.numerator), int(value.denominator))

@@ -1,0 +1,137 @@
+"""Relations between generators, and the normal form of a polynomial modulo them.
+
+A relation that leads with a power of one generator, ``g^n = P`` with ``P`` in lower generators only, is a rule: replace
+the power, highest generator first, one pass each. Leading powers of different generators are coprime, so rules alone
+are a Groebner basis. Any other hypothesis sends all relations through Buchberger's algorithm.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from sympy.polys.domains import ZZ
+from sympy.polys.rings import PolyElement
+
+from symrot.exact.ring.groebner import groebner_basis
+from symrot.exact.ring.ratio import TooLarge
+
+__all__ = ["Relations", "Rule", "relate"]
+
+MOST_TERMS = 500_000
+"""Terms that one relation may make of a polynomial, those of long monomials counted more."""
+
+
+@dataclass(frozen=True)
+class Rule:
+    """``generator^power = replacement``, the replacement free of all higher generators.
+
+    It is free of the generator too, except in the ``minimal`` polynomial of a number, which holds that one only.
+    """
+
+    generator: int
+    power: int
+    replacement: PolyElement
+    minimal: bool = False
+
+    @property
+    def polynomial(self) -> PolyElement:
+        """The polynomial that is zero."""
+        return self.replacement.ring.gens[self.generator] ** self.power - self.replacement
+
+
+@dataclass(frozen=True)
+class Relations:
+    """Rules, highest generator first, or a Groebner basis (then there are no rules)."""
+
+    rules: tuple[Rule, ...] = ()
+    basis: tuple[PolyElement, ...] = ()
+
+    def reduce(self, poly: PolyElement) -> PolyElement:
+        """Return the normal form of a polynomial: zero exactly when it follows from the relations."""
+        for rule in self.rules:
+            poly = (_divide if rule.minimal else _replace)(poly, rule)
+        return poly.rem(list(self.basis)) if self.basis and poly else poly
+
+    @property
+    def contradictory(self) -> bool:
+        """Whether 1 = 0 follows."""
+        return any(poly.is_ground for poly in self.basis)
+
+
+def relate(rules: Sequence[Rule], hypotheses: Sequence[PolyElement]) -> Relations | None:
+    """Return the relations that rules and further hypotheses make; None if the integers do not suffice."""
+    known = _ordered(rules)
+    for hypothesis in hypotheses:
+        poly = known.reduce(hypothesis)
+        if not poly:
+            continue
+        rule = _as_rule(poly, known)
+        if rule is not None:
+            known = _ordered([*known.rules, rule])
+        elif poly.ring.domain is ZZ:
+            return None
+        else:
+            everything = [*(rule.polynomial for rule in rules), *(p for p in hypotheses if p)]
+            return Relations(basis=groebner_basis(everything, poly.ring))
+    return known
+
+
+def _ordered(rules: Sequence[Rule]) -> Relations:
+    return Relations(tuple(sorted(rules, key=lambda rule: rule.generator)))
+
+
+def _as_rule(poly: PolyElement, known: Relations) -> Rule | None:
+    """Return ``poly = 0`` as a rule for a generator that has none yet, or None."""
+    lead = poly.leading_expv()
+    places = [number for number, power in enumerate(lead) if power]
+    if len(places) != 1 or any(rule.generator == places[0] for rule in known.rules):
+        return None
+    place, coefficient = places[0], poly[lead]
+    if any(mono[place] for mono in poly if mono != lead):
+        return None
+    if poly.ring.domain is ZZ and abs(coefficient) != 1:
+        return None
+    rest = poly - poly.ring.term_new(lead, coefficient)
+    return Rule(place, lead[place], (-rest).quo_ground(coefficient))
+
+
+def _replace(poly: PolyElement, rule: Rule) -> PolyElement:
+    """Replace every power >= rule.power of the generator, in one pass."""
+    place, power = rule.generator, rule.power
+    low: dict[tuple[int, ...], Any] = {}
+    high: dict[int, dict[tuple[int, ...], Any]] = {}
+    for mono, coefficient in poly.items():
+        times, left = divmod(mono[place], power)
+        if times:
+            high.setdefault(times, {})[(*mono[:place], left, *mono[place + 1 :])] = coefficient
+        else:
+            low[mono] = coefficient
+    if not high:
+        return poly
+    weight = 1 + poly.ring.ngens // 8
+    if weight * sum(len(terms) * len(rule.replacement) ** times for times, terms in high.items()) > MOST_TERMS:
+        raise TooLarge(f"reducing the formula makes more than {MOST_TERMS} terms at once")
+    total = poly.new(low)
+    for times in sorted(high):
+        total = total + poly.new(high[times]) * rule.replacement**times
+    return total
+
+
+def _divide(poly: PolyElement, rule: Rule) -> PolyElement:
+    """Return the remainder by a polynomial in one generator."""
+    place, power = rule.generator, rule.power
+    groups: dict[tuple[int, ...], dict[int, Any]] = {}
+    for mono, coefficient in poly.items():
+        groups.setdefault((*mono[:place], 0, *mono[place + 1 :]), {})[mono[place]] = coefficient
+    if all(max(column) < power for column in groups.values()):
+        return poly
+    replacement = [(mono[place], coefficient) for mono, coefficient in rule.replacement.items()]
+    zero = poly.ring.domain.zero
+    total: dict[tuple[int, ...], Any] = {}
+    for mono, column in groups.items():
+        for high in range(max(column), power - 1, -1):
+            lead = column.pop(high, zero)
+            for low, coefficient in replacement if lead else ():
+                column[high - power + low] = column.get(high - power + low, zero) + lead * coefficient
+        total |= {(*mono[:place], n, *mono[place + 1 :]): c for n, c in column.items() if c}
+    return poly.new(total)

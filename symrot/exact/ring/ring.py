@@ -1,0 +1,479 @@
+"""Expressions as fractions of polynomials, in one ring made for the problem at hand.
+
+Generators, highest first: roots (outer before inner), sines, then symbols and functions of time, exponentials of base
+exponents, then cosines. Inverse trigonometric functions are angles whose sine and cosine are known. The order is
+lexicographic, so each relation
+
+    root:    g^n = P           circle:    s^2 = 1 - c^2           hypothesis:    q0^2 = 1 - q1^2 - q2^2 - q3^2
+    number:  M(2 cos(pi/N)) = 0, its minimal polynomial
+
+leads with a power of its own generator, and replacing leading powers gives the unique normal form
+(:mod:`symrot.exact.ring.relations`; ``SOUNDNESS.md`` beside this module, sections 2 to 4).
+"""
+
+from collections.abc import Iterable, Iterator, Sequence
+from fractions import Fraction
+from typing import Any
+
+import sympy
+from sympy import Abs, Expr, I, Integer, Rational, S, cos, pi, preorder_traversal, sin
+from sympy.polys.domains import QQ, ZZ
+from sympy.polys.orderings import lex
+from sympy.polys.rings import PolyElement, PolyRing
+
+from symrot.errors import InputError
+from symrot.exact.angles import cyclotomic
+from symrot.exact.angles.angles import (
+    LinearForm,
+    base_angle,
+    base_coefficients,
+    chebyshev,
+    constant_cosine_sine,
+    linear_form,
+)
+from symrot.exact.angles.constants import Number, cosine_number, root_number, vanishes
+from symrot.exact.angles.inverse import INVERSE, cosine_sine
+from symrot.exact.angles.known_angles import halved, is_bound, parts_of, unbound
+from symrot.exact.budget import spend_ring
+from symrot.exact.functions import REWRITTEN, TRIGONOMETRIC, is_jet
+from symrot.exact.ring.radicands import Dependence, dependences, take_squares
+from symrot.exact.ring.ratio import Ratio, Ratios, TooLarge
+from symrot.exact.ring.relations import Relations, Rule, relate
+from symrot.exact.ring.roots import Radical, Radicand, Root, is_root, radical, square_root_of_number
+
+__all__ = ["FormulaRing", "as_zero"]
+
+MOST_MULTIPLES = 240
+"""Of a base angle."""
+
+MOST_NESTED_TERMS = 40
+"""Of a radicand that holds roots itself: each further nesting multiplies the work."""
+
+
+def as_zero(relation: Any) -> Expr:
+    """Return the expression that a hypothesis puts to zero: an expression itself, or left - right of an equation.
+
+    Raises
+    ------
+    InputError
+        If the hypothesis is false, or is neither an expression nor an equation of scalars.
+    """
+    relation = sympy.sympify(relation)
+    if relation is S.true:
+        return Integer(0)
+    if isinstance(relation, sympy.Eq):
+        relation = relation.lhs - relation.rhs
+    if not isinstance(relation, Expr):
+        raise InputError(f"a hypothesis is an equation, or an expression that is zero; got {relation}")
+    return relation
+
+
+class NeedsFractions(ArithmeticError):
+    """A relation has coefficients that are no integers."""
+
+
+class FormulaRing:
+    """The polynomial ring, its relations and its known denominators, for a fixed set of expressions.
+
+    Parameters
+    ----------
+    expressions : sequence of Expr
+        Everything that will be read into the ring.
+    relations : sequence of Expr
+        Hypotheses, each an expression that is zero.
+    domain : sequence of Expr
+        What is not negative wherever the formulas are defined, as far as they no longer show it themselves.
+
+    Raises
+    ------
+    InputError
+        If an expression holds a floating point number, an infinity, or something that is not a scalar formula, if it
+        divides by what is zero everywhere, or if the hypotheses contradict each other.
+    TooLarge
+        When the decision that asks for the ring has spent its budget (:mod:`symrot.exact.budget`).
+    """
+
+    def __init__(
+        self, expressions: Sequence[Expr], relations: Sequence[Expr] = (), domain: Sequence[Expr] = ()
+    ) -> None:
+        spend_ring()
+        self.hypotheses = tuple(relations)
+        self.domain = tuple(domain)
+        self.forms: dict[Expr, LinearForm] = {}  # argument of a sine or cosine -> its linear form
+        self.exponents: dict[Expr, LinearForm] = {}  # argument of an exponential -> its linear form
+        self.rewritten: dict[Expr, Expr] = {}  # node -> what it is read as
+        self.radicals: dict[Expr, Radical] = {}  # node with a fractional power -> what it is made of
+        self.leaves: dict[Expr, bool] = {}  # symbols, functions of time, other functions -> in scope?
+        self._collect([*expressions, *relations, *domain])
+
+        self.bases = base_coefficients(map(unbound, self.forms.values()))
+        self.fine = self._take_fine_constants()
+        self.exponent_bases = base_coefficients(self.exponents.values())
+        self.dependences: dict[Root, Dependence] = {}
+        roots = {root for found in self.radicals.values() for root in found.generators}
+        while True:
+            self._number_generators(sorted(roots - set(self.dependences), key=_depth))
+            relations_found = self._relate(ZZ) or self._relate(QQ)
+            assert relations_found is not None  # the rationals suffice for any polynomial
+            self.relations: Relations = relations_found
+            found = self._without_circles(self._dependences())
+            if not found:
+                break
+            self.dependences |= found
+            for dependence in found.values():
+                roots |= {factor for factor, _ in dependence.divisors if isinstance(factor, Root)}
+                roots |= set(square_root_of_number(dependence.number)[1])
+        if self.relations.contradictory:
+            raise InputError(f"the hypotheses contradict each other: {', '.join(map(str, self.hypotheses))}")
+
+    def _number_generators(self, roots: Sequence[Root]) -> None:
+        atoms = sorted(self.bases, key=_order)
+        exponents = sorted(self.exponent_bases, key=_order)
+        leaves = sorted(self.leaves, key=_order)
+        self.generators: list[Expr] = []
+        self.roots = self._number((root, root.expression) for root in roots)
+        self.sines = self._number((atom, sin(base_angle(atom, self.bases[atom]))) for atom in atoms)
+        self.symbols = self._number((leaf, leaf) for leaf in leaves)
+        self.exponentials = self._number(
+            (atom, sympy.exp(base_angle(atom, self.exponent_bases[atom]))) for atom in exponents
+        )
+        self.cosines = self._number((atom, cos(base_angle(atom, self.bases[atom]))) for atom in atoms)
+        if self.fine:
+            (self.fine_place,) = self._number([(pi, 2 * cos(pi / self.fine))]).values()
+
+    def _number(self, named: Iterable[tuple[Any, Expr]]) -> dict[Any, int]:
+        """Append generators; return their numbers by what they stand for."""
+        numbers = {}
+        for key, expression in named:
+            numbers[key] = len(self.generators)
+            self.generators.append(expression)
+        return numbers
+
+    # -- what occurs ------------------------------------------------------------------------------------------------
+
+    def _collect(self, expressions: Iterable[Expr]) -> None:
+        """Find angles, roots and leaves; constants of angles bring their own square roots."""
+        stack, seen = list(expressions), set()
+        while stack:
+            node = stack.pop()
+            if node in seen:
+                continue
+            seen.add(node)
+            if node.is_Symbol and node.is_commutative:
+                self.leaves[node] = True
+            elif node.is_Rational:
+                continue
+            elif node.is_Add or node.is_Mul:
+                stack.extend(node.args)
+            elif node.is_Pow and node.exp.is_Integer:
+                stack.append(node.base)
+            elif is_root(node):
+                found = self.radicals[node] = radical(node, self._radicand)
+                stack.extend(found.parts)
+            elif type(node) in TRIGONOMETRIC:
+                form = self.forms[node.args[0]] = linear_form(node.args[0])
+                if form.half_turns:
+                    stack.extend(constant_cosine_sine(form.half_turns))
+                for atom, coefficient in form.terms:
+                    if is_bound(atom, coefficient):
+                        stack.extend(parts_of(atom, coefficient))
+            elif isinstance(node, sympy.exp) and node.args[0].is_extended_real is not False:
+                self.exponents[node.args[0]] = linear_form(node.args[0], turns=False)
+            elif type(node) in REWRITTEN:
+                self.rewritten[node] = REWRITTEN[type(node)](*node.args)
+                stack.append(self.rewritten[node])
+            elif node is S.Exp1:
+                self.exponents[Integer(1)] = linear_form(Integer(1))
+            else:
+                self.leaves[node] = is_jet(node)
+
+    def _radicand(self, base: Expr, index: int) -> Radicand:
+        """Return a radicand in lowest terms, reduced by those hypotheses that hold no roots themselves."""
+        plain = [relation for relation in self.hypotheses if not any(map(is_root, preorder_traversal(relation)))]
+        inner = FormulaRing([base], plain)
+        content, above, below = inner.lowest_polynomials(inner.ratio(base))
+        if inner.roots and len(above) + len(below) > MOST_NESTED_TERMS:
+            raise TooLarge(f"a root of a formula with roots and more than {MOST_NESTED_TERMS} terms is not taken apart")
+        if index != 2:
+            return Radicand(content, above.as_expr(*inner.generators), below.as_expr(*inner.generators))
+        rest, outside, loose = take_squares(above, below, inner.generators)
+        return Radicand(content, rest, Integer(1), outside, loose)
+
+    def _dependences(self) -> dict[Root, Dependence]:
+        """Return the square roots that are products of other generators, if there are several."""
+        places = {root: n for root, n in self.roots.items() if root.index == 2 and not root.power_expression.is_number}
+        plain = [root for root in places if not isinstance(root.expression, Abs)]
+        if not plain or len(places) < 2:
+            return {}
+        return dependences({root: self._polynomial(root) for root in places}, self.generators)
+
+    def _without_circles(self, found: dict[Root, Dependence]) -> dict[Root, Dependence]:
+        """Return those dependences by which no root comes to be expressed by itself, through others."""
+        accepted: dict[Root, Dependence] = {}
+        for root, dependence in found.items():
+            stack, seen = _named(dependence), set()
+            while stack:
+                other = stack.pop()
+                if other not in seen:
+                    seen.add(other)
+                    stack.extend(_named((self.dependences | accepted).get(other)))
+            if root not in seen:
+                accepted[root] = dependence
+        return accepted
+
+    def _take_fine_constants(self) -> int:
+        """Return N of the generator 2 cos(pi/N) for constants of angles that are no multiples of pi/24; 0 for none."""
+        if pi not in self.bases or not cyclotomic.is_fine(self.bases[pi].denominator):
+            return 0
+        return cyclotomic.order(self.bases.pop(pi).denominator)
+
+    @property
+    def outside_scope(self) -> tuple[Expr, ...]:
+        """Functions about which the ring knows less than mathematics does: a nonzero normal form proves nothing."""
+        atoms = [atom for atom in self.bases if atom.is_number or atom.has(*INVERSE, sympy.log)]
+        return tuple(sorted([*atoms, *(leaf for leaf, known in self.leaves.items() if not known)], key=_order))
+
+    # -- the ring and its relations ---------------------------------------------------------------------------------
+
+    def _relate(self, domain: Any) -> Relations | None:
+        """Build the ring over a domain and return its relations; None if they need fractions that it lacks."""
+        self.ring = PolyRing([f"x{number}" for number in range(len(self.generators))], domain, lex)
+        self.relations = Relations()
+        self.numbers: dict[int, Number] = {}
+        self.ratios = Ratios(self.ring, self.generators, self.reduce)
+        self._read_already: dict[Expr, Ratio] = {}
+        self._angles_read: dict[Expr, tuple[Ratio, Ratio]] = {}
+        rules = [Rule(self.sines[atom], 2, 1 - self.ring.gens[self.cosines[atom]] ** 2) for atom in self.bases]
+        if self.fine:
+            *low, _ = cyclotomic.minimal_polynomial(self.fine)
+            rules.append(Rule(self.fine_place, len(low), -self._in_generator(self.fine_place, low), minimal=True))
+            self.relations = Relations(tuple(rules[-1:]))
+        try:
+            rules += [Rule(number, root.index, self._polynomial(root)) for root, number in self.roots.items()]
+        except NeedsFractions:
+            return None
+        self.relations = Relations(tuple(sorted(rules, key=lambda rule: rule.generator)))
+        self.hypothesis_numerators = [self.ratio(hypothesis).numerator for hypothesis in self.hypotheses]
+        self.numbers = self._tangled_numbers(rules)
+        return relate(rules, self.hypothesis_numerators)
+
+    def _polynomial(self, root: Root) -> PolyElement:
+        """Return the polynomial to which a power of a root is equal; ``NeedsFractions`` if the integers do not do."""
+        value = self.ratio(root.power_expression)
+        above, below = self.reduce(value.numerator).cancel(self.ratios.denominator(value))
+        if not below.is_ground:
+            raise InputError(f"the square root {root.expression} has a radicand that is no polynomial: {above}/{below}")
+        if abs(below.LC) == 1:
+            return above.mul_ground(below.LC)
+        if self.ring.domain is ZZ:
+            raise NeedsFractions
+        return above.quo_ground(below.LC)
+
+    def _tangled_numbers(self, rules: Sequence[Rule]) -> dict[int, Number]:
+        """Return the generators that are numbers if relations may hold between them; square roots of primes have none.
+
+        Empty when one of them is imaginary.
+        """
+        known: dict[int, Number] = {}
+        if self.fine:
+            known[self.fine_place] = cosine_number(self.fine_place, cyclotomic.degree(self.fine), self.fine)
+        inside = {rule.generator: rule.replacement for rule in rules}
+        for root, place in reversed(self.roots.items()):
+            if root.power_expression.is_number and all(n in known for n in _occurring(inside[place])):
+                known[place] = root_number(place, root.index, inside[place], known)
+        simple = all(number.index == 2 and not number.needs for number in known.values())
+        return {} if simple or len(known) < 2 or I in self.generators else known
+
+    def reduce(self, poly: PolyElement) -> PolyElement:
+        """Return the normal form of a polynomial: zero exactly when it follows from the relations."""
+        poly = self.relations.reduce(poly)
+        return self._without_zeros(poly) if self.numbers and poly else poly
+
+    def _without_zeros(self, poly: PolyElement) -> PolyElement:
+        """Return a polynomial without those coefficients, made of tangled numbers, that are zero."""
+        groups: dict[tuple[int, ...], dict[tuple[int, ...], Any]] = {}
+        for mono, coefficient in poly.items():
+            free = tuple(0 if n in self.numbers else power for n, power in enumerate(mono))
+            number = tuple(power if n in self.numbers else 0 for n, power in enumerate(mono))
+            groups.setdefault(free, {})[number] = coefficient
+        for free, terms in groups.items():
+            coefficient = poly.new(terms)
+            if vanishes(coefficient, self.numbers):
+                poly = poly - coefficient.mul_monom(free)
+        return poly
+
+    # -- reading ----------------------------------------------------------------------------------------------------
+
+    def ratio(self, expression: Expr) -> Ratio:
+        """Return the expression as a fraction; ``InputError`` if it divides by what is zero everywhere."""
+        known = self._read_already.get(expression)
+        if known is None:
+            known = self._read_already[expression] = self._read(expression)
+        return known
+
+    def difference(self, left: Expr, right: Expr) -> Ratio:
+        """Return left - right as a fraction."""
+        minus_right = self.ratios.multiply([self.ratios.number(-1), self.ratio(right)])
+        return self.ratios.add([self.ratio(left), minus_right])
+
+    def _read(self, node: Expr) -> Ratio:
+        ratios = self.ratios
+        if node in self.symbols:
+            return Ratio(self.ring.gens[self.symbols[node]])
+        if node.is_Rational:
+            return ratios.number(int(node.p), int(node.q))
+        if node in self.rewritten:
+            return self.ratio(self.rewritten[node])
+        if node is S.Exp1 or (isinstance(node, sympy.exp) and node.args[0] in self.exponents):
+            return self._read_exponential(self.exponents[node.args[0] if node.args else Integer(1)])
+        if node.is_Add:
+            return ratios.add([self.ratio(term) for term in node.args])
+        if node.is_Mul:
+            return ratios.multiply([self.ratio(factor) for factor in node.args])
+        if node in self.radicals:
+            return self._read_radical(self.radicals[node])
+        if node.is_Pow:
+            return self._power(self.ratio(node.base), int(node.exp), node.base)
+        above, below = TRIGONOMETRIC[type(node)]
+        cosine, sine = self._cosine_sine(node.args[0])
+        values = {"cos": cosine, "sin": sine, None: ratios.number(1)}
+        if below is None:
+            return values[above]
+        return ratios.multiply([values[above], ratios.invert(values[below], getattr(sympy, below)(node.args[0]))])
+
+    def _power(self, base: Ratio, exponent: int, source: Expr) -> Ratio:
+        return self.ratios.power(base if exponent >= 0 else self.ratios.invert(base, source), abs(exponent))
+
+    def _read_radical(self, found: Radical) -> Ratio:
+        factors = [self._root(root) for root in found.roots]
+        below = self.ratios.invert(self.ratio(found.below), found.below)
+        value = self.ratios.multiply([self.ratio(found.rational), below, *factors, *self._outside(found.outside)])
+        return self._power(value, found.power, found.base)
+
+    def _root(self, root: Root) -> Ratio:
+        dependence = self.dependences.get(root)
+        if dependence is None:
+            return Ratio(self.ring.gens[self.roots[root]])
+        divisors = self._outside((factor, -times) for factor, times in dependence.divisors)
+        rational, primes = square_root_of_number(dependence.number)
+        number = self.ratios.number(int(rational.p), int(rational.q))
+        return self.ratios.multiply([number, *map(self._root, (*primes, *dependence.roots)), *divisors])
+
+    def _outside(self, factors: Iterable[tuple[Root | Expr, int]]) -> Iterator[Ratio]:
+        """Yield the powers of absolute values, and of what is not negative, in front of roots."""
+        for factor, times in factors:
+            if isinstance(factor, Root):
+                yield self._power(self._root(factor), times, factor.expression)
+            else:
+                yield self._power(self.ratio(factor), times, factor)
+
+    def _read_exponential(self, form: LinearForm) -> Ratio:
+        factors = []
+        for atom, coefficient in form.terms:
+            base = self.exponent_bases[atom]
+            generator = Ratio(self.ring.gens[self.exponentials[atom]])
+            factors.append(self._power(generator, int(coefficient / base), self.generators[self.exponentials[atom]]))
+        return self.ratios.multiply(factors)
+
+    def _cosine_sine(self, argument: Expr) -> tuple[Ratio, Ratio]:
+        """Return the cosine and sine of an angle in those of the base angles (angle addition, Chebyshev)."""
+        known = self._angles_read.get(argument)
+        if known is not None:
+            return known
+        form = self.forms[argument]
+        cosine, sine = self.ring.one, self.ring.zero
+        c0, s0 = map(self.ratio, constant_cosine_sine(form.half_turns))
+        pairs = [(c0, s0)]
+        for atom, coefficient in form.terms:
+            if is_bound(atom, coefficient):
+                pairs += self._known_angle(atom, coefficient)
+                continue
+            if atom is pi and self.fine:
+                pairs.append(self._fine_constant(coefficient))
+                continue
+            multiple = int(coefficient / self.bases[atom])
+            if abs(multiple) > MOST_MULTIPLES // (1 + 7 * (atom is pi)):
+                raise TooLarge(f"an angle of more than {MOST_MULTIPLES} times another is not expanded: {argument}")
+            first, second = chebyshev(abs(multiple))
+            c = self._in_generator(self.cosines[atom], first)
+            s = self._in_generator(self.cosines[atom], second) * self.ring.gens[self.sines[atom]]
+            s = s if multiple > 0 else -s
+            cosine, sine = cosine * c - sine * s, sine * c + cosine * s
+        turned = Ratio(cosine), Ratio(sine)
+        for pair in pairs:
+            turned = self._turned(turned, pair)
+        self._angles_read[argument] = turned
+        return turned
+
+    def _turned(self, angle: tuple[Ratio, Ratio], by: tuple[Ratio, Ratio]) -> tuple[Ratio, Ratio]:
+        """Return the cosine and sine of a sum of two angles."""
+        (cosine, sine), (c0, s0) = angle, by
+        minus_s0 = self.ratios.multiply([self.ratios.number(-1), s0])
+        turn, add = self.ratios.multiply, self.ratios.add
+        return (
+            add([turn([cosine, c0]), turn([sine, minus_s0])]),
+            add([turn([sine, c0]), turn([cosine, s0])]),
+        )
+
+    def _known_angle(self, atom: Expr, coefficient: Fraction) -> Iterator[tuple[Ratio, Ratio]]:
+        """Yield the cosines and sines of angles that sum to a multiple of an inverse trigonometric function."""
+        for halvings, times in halved(coefficient):
+            c, s = map(self.ratio, cosine_sine(atom, halvings))
+            if times < 0:
+                s = self.ratios.multiply([self.ratios.number(-1), s])
+            for _ in range(abs(times)):
+                yield c, s
+
+    def _fine_constant(self, half_turns: Fraction) -> tuple[Ratio, Ratio]:
+        both = (cyclotomic.doubled_cosine(times, self.fine) for times in cyclotomic.multiples(half_turns, self.fine))
+        cosine, sine = (Ratio(self._in_generator(self.fine_place, coefficients), 2) for coefficients in both)
+        return cosine, sine
+
+    def _in_generator(self, place: int, coefficients: Sequence[int]) -> PolyElement:
+        """Return the polynomial in one generator with these integer coefficients, low to high."""
+        gen = self.ring.gens[place]
+        return sum((gen**power * number for power, number in enumerate(coefficients) if number), self.ring.zero)
+
+    # -- back to SymPy ----------------------------------------------------------------------------------------------
+
+    def expression(self, value: Ratio) -> Expr:
+        """Return the fraction in lowest terms as a SymPy expression; exactly 0 if its numerator reduces to zero."""
+        constant, above, below = self.lowest_terms(value)
+        return constant * above / below
+
+    def lowest_terms(self, value: Ratio) -> tuple[Rational, Expr, Expr]:
+        """Return (c, P, Q) with value = c*P/Q: c a rational >= 0, P and Q primitive over the integers."""
+        constant, above, below = self.lowest_polynomials(value)
+        return constant, above.as_expr(*self.generators), below.as_expr(*self.generators)
+
+    def lowest_polynomials(self, value: Ratio) -> tuple[Rational, PolyElement, PolyElement]:
+        """Return (c, P, Q) as :meth:`lowest_terms`, P and Q in the ring."""
+        numerator = self.reduce(value.numerator)
+        if not numerator:
+            return Integer(0), self.ring.zero, self.ring.one
+        pair = numerator.cancel(self.reduce(self.ratios.denominator(value)))
+        scales, parts = zip(*(poly.clear_denoms() for poly in pair), strict=True)
+        contents, (above, below) = zip(*(poly.primitive() for poly in parts), strict=True)
+        constant = Rational(int(contents[0]) * int(scales[1]), int(contents[1]) * int(scales[0]))
+        return constant, above, below
+
+
+def _named(dependence: Dependence | None) -> list[Root]:
+    """Return the roots by which a root is expressed."""
+    if dependence is None:
+        return []
+    return [*dependence.roots, *(factor for factor, _ in dependence.divisors if isinstance(factor, Root))]
+
+
+def _occurring(poly: PolyElement) -> set[int]:
+    return {number for mono in poly for number, power in enumerate(mono) if power}
+
+
+def _order(node: Expr) -> tuple[str, str]:
+    """Return a key that does not depend on hashing."""
+    return (str(node), type(node).__name__)
+
+
+def _depth(root: Root) -> tuple[int, str, str]:
+    """Return a key that puts outer roots before the roots inside them."""
+    return (-root.depth, str(root.expression), str(root.power_expression))

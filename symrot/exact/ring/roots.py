@@ -1,0 +1,173 @@
+"""Roots: every fractional power as a rational factor times generators ``g`` with a relation ``g^n = P``.
+
+``sqrt(P/Q)`` is written ``g/|Q|`` with ``g^2 = P*Q``, and positive rational numbers are taken out as square roots of
+primes: the generator of a square root is never negative. (Of another root, ``(P/Q)^(1/n) = g/Q``.) Squares leave a root
+as absolute values, ``sqrt(x^2 y) = |x| sqrt(y)``, and a radicand that is others' product is no generator of its own
+(:mod:`symrot.exact.ring.radicands`). Roots that depend on each other in other ways, nested ones say, keep a generator each:
+what follows from the relations is true, and what does not may still be true on one branch.
+:func:`symrot.exact.decide.decide` says "undecided" there unless it finds a witness.
+"""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from math import prod
+
+from sympy import Abs, Expr, I, Integer, Pow, Rational, Symbol, exp, factorint, sqrt
+from sympy.core.function import AppliedUndef
+
+from symrot.errors import InputError
+
+__all__ = ["Radical", "Radicand", "Root", "absolute", "is_root", "radical", "sign_of", "square_root_of_number"]
+
+
+@dataclass(frozen=True)
+class Root:
+    """A generator ``expression`` with ``expression^index = power_expression``; ``depth`` counts nested roots."""
+
+    expression: Expr
+    power_expression: Expr
+    index: int
+    depth: int
+
+
+@dataclass(frozen=True)
+class Radicand:
+    """``content * above / below * product(factor^(2 n) of outside)``, ``below`` being 1 under a square root.
+
+    ``content`` is a rational >= 0, ``above`` and ``below`` are primitive polynomials over the integers in canonical
+    form; no factor outside is negative. ``loose``: a factor may be zero where ``above`` is negative.
+    """
+
+    content: Rational
+    above: Expr
+    below: Expr
+    outside: tuple[tuple[Root | Expr, int], ...] = ()
+    loose: bool = False
+
+
+@dataclass(frozen=True)
+class Radical:
+    """``(rational * product(roots) * product(factor^n of outside) / below)^power``, a root of ``base``.
+
+    A factor outside is the absolute value of something, which is a root too, or an expression that is not negative.
+    Where the radical is ``loose`` it is real at some points where a root of its own is not, and the factor is zero.
+    """
+
+    base: Expr
+    rational: Rational
+    roots: tuple[Root, ...]
+    below: Expr
+    power: int
+    outside: tuple[tuple[Root | Expr, int], ...] = ()
+    loose: bool = False
+
+    @property
+    def generators(self) -> tuple[Root, ...]:
+        """All roots that occur, absolute values included."""
+        return (*self.roots, *(factor for factor, _ in self.outside if isinstance(factor, Root)))
+
+    @property
+    def parts(self) -> tuple[Expr, ...]:
+        """The expressions that must be readable before this one is."""
+        insides = [root.power_expression for root in self.generators]
+        return (self.rational, self.below, *insides, *(f for f, _ in self.outside if not isinstance(f, Root)))
+
+
+def radical(node: Expr, radicand: Callable[[Expr, int], Radicand]) -> Radical:
+    """Return what a fractional power, ``i`` or the absolute value of a real expression is made of.
+
+    Parameters
+    ----------
+    node : Expr
+    radicand : function
+        From an expression and the index of a root to its factors, squares apart for a square root.
+
+    Raises
+    ------
+    InputError
+        If a negative power of an expression is asked for which is zero everywhere, or a root that is no real number
+        of a negative one: ``(-8)^(1/3)`` is ``1 + sqrt(3) i`` on the principal branch. Square roots of negative
+        numbers are read as multiples of ``i``.
+    """
+    if node is I:
+        return Radical(Integer(-1), Integer(1), (_imaginary_unit(),), Integer(1), 1)
+    if isinstance(node, Abs):
+        base, power, index = node.args[0] ** 2, 1, 2
+    else:
+        assert isinstance(node, Pow)
+        base, power, index = node.base, int(node.exp.p), int(node.exp.q)
+    found = radicand(base, index)
+    content, above, below = found.content, found.above, found.below
+    if not content:
+        if power < 0:
+            raise InputError(f"the formula divides by a power of {base}, which is zero everywhere")
+        return Radical(base, Integer(0), (), Integer(1), 1)
+    roots: list[Root] = []
+    if index != 2:
+        above, below = content.p * above, content.q * below
+        rational = Integer(1)
+    else:
+        rational, roots = square_root_of_number(content)
+    if above == -1 and below == 1 and index == 2:
+        roots.append(_imaginary_unit())
+    elif above.is_Rational and above < 0 and index != 2:
+        raise InputError(f"a root of a negative number is no real number: {node}")
+    elif above != 1 or below != 1:
+        inside = (above * below ** (index - 1)).expand()
+        shown = below * (above / below) ** Rational(1, index)
+        roots.append(Root(shown, inside, index, 1 + _nesting([inside])))
+    return Radical(base, rational, tuple(roots), below, power, found.outside, found.loose)
+
+
+def absolute(value: Expr) -> Root | Expr:
+    """Return the absolute value of a real expression: itself or its negative where that is known, or a root."""
+    sign = sign_of(value)
+    return sign * value if sign else Root(Abs(value), (value**2).expand(), 2, 1 + _nesting([value]))
+
+
+def sign_of(value: Expr) -> int:
+    """Return 1 or -1 for a real expression that is never of the other sign, 0 where that is not known."""
+    if value.is_nonnegative or _is_positive_where_defined(value):
+        return 1
+    return -1 if value.is_nonpositive or _is_positive_where_defined(-value) else 0
+
+
+def _is_positive_where_defined(value: Expr) -> bool:
+    """Return whether a formula is made of exponentials and positive numbers: SymPy takes infinite exponents along."""
+    if isinstance(value, exp):
+        return True
+    if value.is_Add or value.is_Mul:
+        return all(map(_is_positive_where_defined, value.args))
+    return bool(value.is_Rational and value > 0) or bool(value.is_Pow and _is_positive_where_defined(value.base))
+
+
+def is_root(node: Expr) -> bool:
+    """Return whether the node is a fractional power, ``i``, or the absolute value of something real."""
+    if isinstance(node, Pow):
+        return bool(node.exp.is_Rational and not node.exp.is_Integer)
+    return node is I or (isinstance(node, Abs) and _is_real_where_defined(node.args[0]))
+
+
+def _is_real_where_defined(value: Expr) -> bool:
+    return bool(value.is_extended_real) or all(leaf.is_extended_real for leaf in value.atoms(Symbol, AppliedUndef))
+
+
+def _imaginary_unit() -> Root:
+    return Root(I, Integer(-1), 2, 1)
+
+
+def square_root_of_number(value: Rational) -> tuple[Rational, list[Root]]:
+    """Return the square root of a positive rational as rational * product of square roots of primes."""
+    powers = factorint(int(value.p) * int(value.q))
+    outside = prod(prime ** (power // 2) for prime, power in powers.items())
+    primes = sorted(prime for prime, power in powers.items() if power % 2)
+    return Rational(outside, value.q), [Root(sqrt(prime), Integer(prime), 2, 1) for prime in primes]
+
+
+def _nesting(expressions: Iterable[Expr]) -> int:
+    """Return how deep fractional powers are nested."""
+    deepest = 0
+    for node in expressions:
+        below = _nesting(node.args)
+        deepest = max(deepest, below + is_root(node))
+    return deepest

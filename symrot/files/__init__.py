@@ -1,0 +1,1 @@
+"""Read files that may be anything, and write files whole or not at all."""

@@ -1,0 +1,1 @@
+"""Formula trees, exact numbers, programs and switches: standard library only."""

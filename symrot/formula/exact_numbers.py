@@ -1,0 +1,394 @@
+"""Exact numbers from text: the scalars of a scene, as :class:`fractions.Fraction`.
+
+A rational value is exact: ``"1/3"``, ``"0.6375"`` (51/80), ``1e-3`` (1/1000). What is not rational (``sqrt``, ``pi``
+and the circular functions) is rounded once, to a relative error below 2^-300. Standard library only.
+"""
+
+__all__ = ["PI", "Angle", "cos", "equal", "read", "read_angle", "show", "sin", "sqrt", "tan", "unit", "without_turns"]
+
+from collections.abc import Callable, Sequence
+from decimal import Decimal
+from fractions import Fraction
+from functools import cache
+from math import isfinite, isqrt, lcm
+from typing import NamedTuple, NoReturn, SupportsFloat
+
+from symrot.errors import InputError
+from symrot.formula import tree as expression
+
+BITS = 320
+"""Working precision of what is not rational."""
+
+LARGEST_TEXT = 400
+"""Longest text of one number, in characters."""
+
+LARGEST_BITS = 1 << 15
+"""Largest numerator or denominator on the way to a number, so that powers of powers end quickly."""
+
+LARGEST = Fraction(2) ** 1024
+"""Every number must be a double in the end."""
+
+SMALLEST = 1 / Fraction(2) ** 1022
+
+EXPECTATION = 'a number, such as 2, 0.5, "1/3", "sqrt(2)" or "pi/6"'
+
+
+def show(value: object, limit: int = 60) -> str:
+    """Return ``value`` as an error message shows it: as the user wrote it, and never longer than a line."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, str):
+        text = repr(value[: limit + 1])
+    elif isinstance(value, Fraction) and abs(value) < LARGEST:
+        text = str(value) if value.denominator == 1 else f"{float(value):.15g}"
+    elif isinstance(value, Decimal):
+        text = str(value).lower().replace("infinity", "inf")
+    elif isinstance(value, list | tuple | dict) and limit < 2:  # deep inside: nobody reads on
+        text = ".."
+    elif isinstance(value, list | tuple):
+        text = "[" + ", ".join(show(item, limit // 2) for item in value[:12]) + (", ..]" if len(value) > 12 else "]")
+    elif isinstance(value, dict):
+        text = "{" + ", ".join(f"{key} = {show(item, limit // 2)}" for key, item in list(value.items())[:12]) + "}"
+    elif isinstance(value, int) and value.bit_length() > 4 * limit:
+        text = f"an integer of {value.bit_length()} bits"
+    elif hasattr(value, "isoformat"):
+        text = str(value)
+    else:
+        text = " ".join(repr(value).split())
+    return text if len(text) <= limit + 2 else text[:limit] + ".."
+
+
+def _round(value: Fraction, bits: int = BITS) -> Fraction:
+    """Return ``value`` with a relative error below 2^-bits, as an integer times a power of two."""
+    shift = bits + 2 - value.numerator.bit_length() + value.denominator.bit_length()
+    scaled = value.numerator << shift if shift > 0 else value.numerator >> -shift
+    quotient = scaled // value.denominator
+    return Fraction(quotient, 1 << shift) if shift > 0 else Fraction(quotient << -shift)
+
+
+@cache
+def _pi(bits: int) -> Fraction:
+    """Return pi to an absolute error below 2^-bits (Machin: pi = 16 arctan(1/5) - 4 arctan(1/239))."""
+    one = 1 << (bits + 16)
+
+    def arctan_of_inverse(n: int) -> int:
+        power, total, divisor, sign = one // n, 0, 1, 1
+        while power:
+            total += sign * (power // divisor)
+            power, divisor, sign = power // (n * n), divisor + 2, -sign
+        return total
+
+    return Fraction(16 * arctan_of_inverse(5) - 4 * arctan_of_inverse(239), one)
+
+
+PI: Fraction = _pi(BITS)
+"""pi, to 2^-320."""
+
+
+def sqrt(value: Fraction) -> Fraction:
+    """Return the square root of ``value`` >= 0: exact when it is rational, else to 2^-320 relative."""
+    if value < 0:
+        raise ValueError(f"the square root of a negative number ({show(value)})")
+    numerator, denominator = isqrt(value.numerator), isqrt(value.denominator)
+    if numerator * numerator == value.numerator and denominator * denominator == value.denominator:
+        return Fraction(numerator, denominator)
+    shift = max(0, BITS + 2 - value.numerator.bit_length() // 2 + value.denominator.bit_length() // 2)
+    return Fraction(isqrt((value.numerator << 2 * shift) // value.denominator), 1 << shift)
+
+
+def unit(vector: Sequence[Fraction | float]) -> tuple[Fraction, ...]:
+    """Return a vector divided by its norm, which must not be zero: exact where the norm is rational, else to 2^-320.
+
+    All in integers over one denominator: fractions would take a greatest common divisor for each sum and product.
+    """
+    ratios = [x.as_integer_ratio() for x in vector]
+    shared = lcm(*[bottom for _, bottom in ratios])
+    tops = [top * (shared // bottom) for top, bottom in ratios]
+    square = sum([x * x for x in tops])
+    norm, shift = isqrt(square), 0
+    if norm * norm != square:
+        shift = max(0, BITS + 2 - square.bit_length() // 2)
+        norm = isqrt(square << 2 * shift)
+    return tuple([Fraction(x << shift, norm) for x in tops])
+
+
+def _sin_first_quadrant(value: Fraction, bits: int) -> Fraction:
+    """Return sin of 0 <= value < 2 (rad) by its series in fixed point, absolute error below 2^-bits."""
+    one = 1 << (bits + 16)
+    term = value.numerator * one // value.denominator
+    square = term * term // one
+    total, sign, n = 0, 1, 1
+    while term:
+        total += sign * term
+        term = term * square // one // ((n + 1) * (n + 2))
+        sign, n = -sign, n + 2
+    return Fraction(total, one)
+
+
+_NIVEN = {Fraction(0): Fraction(0), Fraction(1, 6): Fraction(1, 2), Fraction(1, 2): Fraction(1)}
+"""The only rational sines of rational multiples of pi in the first quadrant (Niven)."""
+
+
+def _sin_half_turns(half_turns: Fraction) -> Fraction:
+    """Return sin(half_turns * pi), exact where it is rational."""
+    reduced = half_turns % 2
+    if reduced >= 1:
+        return -_sin_half_turns(reduced - 1)
+    reduced = min(reduced, 1 - reduced)
+    exact = _NIVEN.get(reduced)
+    return _sin_first_quadrant(reduced * PI, _bits_for(reduced)) if exact is None else exact
+
+
+def _bits_for(value: Fraction) -> int:
+    """Return the absolute precision that keeps a small ``value`` to BITS relative."""
+    return BITS + max(0, value.denominator.bit_length() - value.numerator.bit_length())
+
+
+def without_turns(value: Fraction) -> Fraction:
+    """Return ``value`` (rad) less the whole turns in it: between -pi and pi, error below 2^-300."""
+    magnitude = max(0, value.numerator.bit_length() - value.denominator.bit_length())
+    turn = 2 * (PI if magnitude < 8 else _pi(BITS + magnitude))
+    return value - round(value / turn) * turn
+
+
+def _sin_shifted(value: Fraction, quarter_turns: int) -> Fraction:
+    """Return sin(value + quarter_turns * pi/2), ``value`` in rad, error below 2^-300."""
+    if not value:
+        return Fraction((0, 1, 0, -1)[quarter_turns % 4])
+    magnitude = max(0, value.numerator.bit_length() - value.denominator.bit_length())
+    half_pi = (PI if magnitude < 8 else _pi(BITS + magnitude)) / 2
+    quarters = value // half_pi
+    rest, quadrant = value - quarters * half_pi, (quarters + quarter_turns) % 4
+    sign = -1 if quadrant >= 2 else 1
+    angle = half_pi - rest if quadrant % 2 else rest
+    return sign * _sin_first_quadrant(angle, _bits_for(angle) if angle > 0 else BITS)
+
+
+def sin(value: Fraction) -> Fraction:
+    """Return the sine of ``value`` (rad), error below 2^-250."""
+    return _sin_shifted(value, 0)
+
+
+def cos(value: Fraction) -> Fraction:
+    """Return the cosine of ``value`` (rad), error below 2^-250."""
+    return _sin_shifted(value, 1)
+
+
+def tan(value: Fraction) -> Fraction:
+    """Return the tangent of ``value`` (rad)."""
+    return sin(value) / cos(value)
+
+
+def equal(a: Fraction, b: Fraction) -> bool:
+    """Return whether two numbers agree to a relative difference below 2^-200: equal, for anything a scene means."""
+    return a == b or abs(a - b) * 2**200 < max(abs(a), abs(b))
+
+
+class Angle(NamedTuple):
+    """An angle ``rational + half_turns * pi``, in rad, so that a right angle has an exact sine and cosine."""
+
+    rational: Fraction
+    half_turns: Fraction
+
+    @property
+    def radians(self) -> Fraction:
+        """The angle in rad; rounded to 2^-300 when it holds a part of pi."""
+        return self.rational + self.half_turns * PI if self.half_turns else self.rational
+
+    @property
+    def sin(self) -> Fraction:
+        """The sine: exact for every rational value of it, else to 2^-250."""
+        return sin(self.radians) if self.rational else _sin_half_turns(self.half_turns)
+
+    @property
+    def cos(self) -> Fraction:
+        """The cosine: exact for every rational value of it, else to 2^-250."""
+        return cos(self.radians) if self.rational else _sin_half_turns(self.half_turns + Fraction(1, 2))
+
+    def scaled(self, factor: Fraction) -> "Angle":
+        """Return the angle times a rational number."""
+        return Angle(self.rational * factor, self.half_turns * factor)
+
+
+def _exactly(value: Fraction) -> Angle:
+    return Angle(value, Fraction(0))
+
+
+def _multiply(a: Angle, b: Angle) -> Angle:
+    if not b.half_turns:
+        return a.scaled(b.rational)
+    if not a.half_turns:
+        return b.scaled(a.rational)
+    return _exactly(_round(a.radians * b.radians))
+
+
+def _divide(a: Angle, b: Angle) -> Angle:
+    if not b.half_turns:
+        return a.scaled(1 / b.rational)
+    if not a.rational and not b.rational:
+        return _exactly(a.half_turns / b.half_turns)
+    return _exactly(_round(a.radians / b.radians))
+
+
+def _power(base: Fraction, exponent: int) -> Fraction:
+    bits = max(base.numerator.bit_length(), base.denominator.bit_length())
+    return (_round(base) if bits > BITS else base) ** exponent
+
+
+_OPERATORS: dict[str, Callable[[Angle, Angle], Angle]] = {
+    "+": lambda a, b: Angle(a.rational + b.rational, a.half_turns + b.half_turns),
+    "-": lambda a, b: Angle(a.rational - b.rational, a.half_turns - b.half_turns),
+    "*": _multiply,
+    "/": _divide,
+}
+
+_FUNCTIONS: dict[str, Callable[[Angle], Fraction]] = {
+    "sqrt": lambda a: sqrt(a.radians),
+    "sin": lambda a: a.sin,
+    "cos": lambda a: a.cos,
+    "tan": lambda a: a.sin / a.cos,
+    "abs": lambda a: abs(a.radians),
+}
+
+
+def _walk(node: expression.Node) -> Angle:
+    kind, *rest = node
+    match kind:
+        case "number":
+            value = _exactly(Fraction(rest[0]))
+        case "symbol":
+            if rest[0] != "pi":
+                raise ValueError(f"{rest[0]!r} is not a number")
+            value = Angle(Fraction(0), Fraction(1))
+        case "neg":
+            value = _walk(rest[0]).scaled(Fraction(-1))
+        case "**":
+            value = _exactly(_power(_walk(rest[0]).radians, rest[1]))
+        case "call":
+            name, arguments = rest
+            if name not in _FUNCTIONS or len(arguments) != 1:
+                raise ValueError(f"a number may use {', '.join(_FUNCTIONS)} of one argument, not {name}")
+            value = _exactly(_FUNCTIONS[name](_walk(arguments[0])))
+        case _:
+            value = _OPERATORS[kind](_walk(rest[0]), _walk(rest[1]))
+    for part in (value.rational, value.half_turns):
+        if max(part.numerator.bit_length(), part.denominator.bit_length()) > LARGEST_BITS:
+            raise ValueError("it is too large")
+    return value
+
+
+def _from_text(text: str) -> Angle:
+    if len(text) > LARGEST_TEXT:
+        raise ValueError(f"text of {len(text)} characters, at most {LARGEST_TEXT} are read")
+    try:
+        return _walk(expression.parse(text))
+    except ZeroDivisionError:
+        raise ValueError("a division by zero") from None
+
+
+def _from_decimal(value: Decimal) -> Angle:
+    if not value.is_finite():
+        raise ValueError("not finite")
+    if value and abs(value.adjusted()) > 400:
+        raise ValueError("outside the range of a double")
+    return _exactly(Fraction(value))
+
+
+def _from_float(value: float) -> Angle:
+    if not isfinite(value):
+        raise ValueError("not finite")
+    return _exactly(Fraction(value))
+
+
+def _from_scalar(value: SupportsFloat) -> Angle:
+    """NumPy scalars and SymPy numbers come as the double they hold."""
+    return _from_float(float(value))
+
+
+_READERS: dict[type, Callable[..., Angle]] = {
+    str: _from_text,
+    Decimal: _from_decimal,
+    float: _from_float,
+    int: lambda value: _exactly(Fraction(value)),
+    Fraction: _exactly,
+}
+
+
+def _in_range(value: Fraction) -> None:
+    if abs(value) >= LARGEST or 0 < abs(value) < SMALLEST:
+        raise ValueError("outside the range of a double")
+
+
+def _read(value: object, where: str, expect: str) -> Angle:
+    """Return ``value`` as rational + half_turns * pi, or raise the sentence of an InputError."""
+    kind = type(value)
+    if not isinstance(value, bool):
+        reader = _READERS.get(kind) or next((r for k, r in _READERS.items() if isinstance(value, k)), None)
+        if reader is None and hasattr(value, "__float__"):
+            reader = _from_scalar
+        if reader is not None:
+            try:
+                angle = reader(value)
+                _in_range(angle.radians)
+                return angle
+            except InputError:
+                _refuse(value, where, expect, _unit_hint(value))
+            except (ValueError, TypeError, OverflowError) as reason:
+                _refuse(value, where, expect, str(reason))
+    _refuse(value, where, expect, "")
+
+
+def _unit_hint(value: object) -> str:
+    text = str(value).strip()
+    if text[:1].isdigit() and text[-1:].isalpha():
+        return "write it without a unit: SI units are understood"
+    return ""
+
+
+def _refuse(value: object, where: str, expect: str, reason: str) -> NoReturn:
+    prefix = f"{where}: " if where else ""
+    raise InputError(f"{prefix}expected {expect}, got {show(value)}" + (f" ({reason})" if reason else ""))
+
+
+def read(value: object, where: str = "", expect: str = EXPECTATION) -> Fraction:
+    """Return the exact value of a number of a scene.
+
+    Parameters
+    ----------
+    value : int, float, Decimal, Fraction or str
+        A float stands for its exact binary value, text and Decimal for what they say: ``"0.1"`` is 1/10.
+        Text may use ``+ - * / **``, parentheses, ``pi``, ``sqrt``, ``sin``, ``cos``, ``tan``, ``abs``.
+    where : str
+        File and key, put in front of an error.
+    expect : str
+        What an error says was expected.
+
+    Returns
+    -------
+    Fraction
+        Exact when rational, else with a relative error below 2^-300.
+
+    Raises
+    ------
+    InputError
+        For NaN, infinities, what is outside the range of a double, booleans, units, anything but a number.
+
+    Examples
+    --------
+    >>> read("0.6375")
+    Fraction(51, 80)
+    """
+    return _read(value, where, expect).radians
+
+
+def read_angle(value: object, degrees: bool = False, where: str = "", expect: str = EXPECTATION) -> Angle:
+    """Return an angle given in rad, or in degrees; errors as :func:`read`.
+
+    Rational multiples of pi (and every rational number of degrees) are kept as such, so ``cos("pi/2")`` is 0 exactly.
+    """
+    angle = _read(value, where, expect)
+    if not degrees:
+        return angle
+    if not angle.half_turns:
+        return Angle(Fraction(0), angle.rational / 180)
+    return _exactly(_round(angle.radians * PI / 180))

@@ -1,0 +1,153 @@
+"""What a kernel is to those who call it, and as data: signature and straight-line program. Standard library only.
+
+This is the waist between the symbolic and the numeric half: codegen writes it, propagate reads it, and a saved kernel
+comes back from JSON without SymPy.
+"""
+
+from collections import Counter
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from symrot.formula.tree import Node, evaluate, names, operations
+
+__all__ = ["Argument", "Program", "Signature", "node_from_json", "node_to_json"]
+
+
+@dataclass(frozen=True)
+class Argument:
+    """One argument of a kernel.
+
+    ``components`` holds (name, unit, meaning) for each number in it; a scalar has one and ``is_scalar`` set.
+    """
+
+    name: str
+    role: str  # "in" or "out"
+    components: tuple[tuple[str, str, str], ...]
+    is_scalar: bool = False
+
+    @property
+    def size(self) -> int:
+        return len(self.components)
+
+
+@dataclass(frozen=True)
+class Signature:
+    """Name and arguments of a kernel, in order."""
+
+    name: str
+    arguments: tuple[Argument, ...]
+
+    def argument(self, name: str) -> Argument:
+        """Return the argument of that name; ``KeyError`` if there is none."""
+        for argument in self.arguments:
+            if argument.name == name:
+                return argument
+        raise KeyError(name)
+
+
+@dataclass(frozen=True)
+class Program:
+    """A straight-line program: each temporary once, in order, then the outputs.
+
+    Symbols in the formulas are component names of the input arguments and names of earlier temporaries.
+    """
+
+    signature: Signature
+    temporaries: tuple[tuple[str, Node], ...]
+    outputs: tuple[tuple[str, Node], ...]  # (component of an output argument, formula)
+
+    def __post_init__(self) -> None:
+        known = {name for a in self.signature.arguments if a.role == "in" for name, *_ in a.components}
+        for name, node in self.temporaries + self.outputs:
+            missing = names(node) - known
+            if missing:
+                raise ValueError(f"{self.signature.name}: {name} uses {sorted(missing)} before they exist")
+            known.add(name)
+
+    def operations(self) -> Counter[str]:
+        """Count the operations of one evaluation (see :func:`symrot.formula.tree.operations`)."""
+        return sum((operations(node) for _, node in self.temporaries + self.outputs), Counter())
+
+    def uses(self, symbol: str, only: Collection[str] | None = None) -> bool:
+        """Return whether a symbol stands in the program or, with ``only``, in what just those outputs need."""
+        needed = {name for name, _ in self.outputs} if only is None else set(only)
+        for name, node in reversed((*self.temporaries, *self.outputs)):
+            needed |= names(node) if name in needed else set()
+        return symbol in needed
+
+    def evaluate(
+        self,
+        values: Mapping[str, Any],
+        functions: Mapping[str, Callable[..., Any]] | None = None,
+        number: Callable[[Fraction], Any] = float,
+        only: Collection[str] | None = None,
+    ) -> dict[str, Any]:
+        """Return the outputs by name, for inputs by name: floats, arrays or Fractions (with ``number=Fraction``).
+
+        With ``only``, just those outputs and what they need are computed.
+        """
+        outputs = [(name, node) for name, node in self.outputs if only is None or name in only]
+        needed = set().union(*(names(node) for _, node in outputs))
+        kept = []
+        for name, node in reversed(self.temporaries):
+            if name in needed:
+                needed |= names(node)
+                kept.append((name, node))
+        known = dict(values)
+        for name, node in reversed(kept):
+            known[name] = evaluate(node, known, functions, number)
+        return {name: evaluate(node, known, functions, number) for name, node in outputs}
+
+    def to_json(self) -> dict[str, Any]:
+        """Return plain data from which :meth:`from_json` makes an equal program."""
+        return {
+            "name": self.signature.name,
+            "arguments": [
+                [a.name, a.role, [list(c) for c in a.components], a.is_scalar] for a in self.signature.arguments
+            ],
+            "temporaries": [[name, node_to_json(node)] for name, node in self.temporaries],
+            "outputs": [[name, node_to_json(node)] for name, node in self.outputs],
+        }
+
+    @classmethod
+    def from_json(cls, data: Mapping[str, Any]) -> "Program":
+        """Return the program that :meth:`to_json` saved."""
+        arguments = tuple(
+            Argument(name, role, tuple(tuple(c) for c in components), scalar)
+            for name, role, components, scalar in data["arguments"]
+        )
+        return cls(
+            Signature(data["name"], arguments),
+            tuple((name, node_from_json(node)) for name, node in data["temporaries"]),
+            tuple((name, node_from_json(node)) for name, node in data["outputs"]),
+        )
+
+
+def node_to_json(node: Node) -> list[Any]:
+    """Return a formula as nested lists, numbers as exact text."""
+    kind = node[0]
+    if kind == "number":
+        return [kind, str(node[1])]
+    if kind == "symbol":
+        return [kind, node[1]]
+    if kind == "call":
+        return [kind, node[1], [node_to_json(argument) for argument in node[2]]]
+    if kind == "**":
+        return [kind, node_to_json(node[1]), node[2]]
+    return [kind, *(node_to_json(child) for child in node[1:])]
+
+
+def node_from_json(data: list[Any]) -> Node:
+    """Return the formula that :func:`node_to_json` saved."""
+    kind = data[0]
+    if kind == "number":
+        return ("number", Fraction(data[1]))
+    if kind == "symbol":
+        return ("symbol", data[1])
+    if kind == "call":
+        return ("call", data[1], tuple(node_from_json(argument) for argument in data[2]))
+    if kind == "**":
+        return ("**", node_from_json(data[1]), data[2])
+    return (kind, *(node_from_json(child) for child in data[1:]))

@@ -1,0 +1,328 @@
+"""Formulas as text and as small trees: read safely, evaluated over any kind of number. Standard library only.
+
+A node is a nested tuple, the one form shared by scene texts, printed closed forms and kernels::
+
+    ("number", Fraction)   ("symbol", name)   ("neg", a)   ("call", function, (arguments,))
+    ("+", a, b)   ("-", a, b)   ("*", a, b)   ("/", a, b)   ("**", a, integer)
+
+Nothing here is ever given to Python's own evaluator.
+"""
+
+import re
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping
+from fractions import Fraction
+from functools import reduce
+from typing import Any
+
+from symrot.errors import InputError
+
+__all__ = [
+    "FUNCTIONS", "LOGIC", "SWITCHING", "Node", "children", "evaluate", "names", "operations", "parse", "rename", "text",
+]  # fmt: skip
+
+Node = tuple[Any, ...]
+
+FUNCTIONS: dict[str, int] = {  # name -> number of arguments
+    "sqrt": 1, "sin": 1, "cos": 1, "tan": 1, "exp": 1, "log": 1, "abs": 1, "sinh": 1, "cosh": 1, "tanh": 1,
+    "asin": 1, "acos": 1, "atan": 1, "atan2": 2,
+}  # fmt: skip
+SWITCHING: dict[str, int] = {  # functions that jump or bend, of formulas of torques; min and max take two or more
+    "step": 1, "sign": 1, "min": 2, "max": 2, "clip": 3, "floor": 1, "mod": 2, "where": 3,
+}  # fmt: skip
+COMPARISONS = {  # in the condition of where: whether the sides change, whether it is the opposite of less
+    "<": (False, False), "<=": (True, True), ">": (True, False), ">=": (False, True),
+}  # fmt: skip
+LOGIC = {"or": 2, "and": 4}  # how tightly they bind, below all operators
+LONGEST_TEXT = 10_000
+DEEPEST_NESTING = 100
+LONGEST_NUMBER = 1000
+LARGEST_POWER = 64
+LARGEST_EXPONENT = 400  # of ten, in a written number: beyond any double
+
+_TOKEN = re.compile(
+    r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[A-Za-z_]\w*)"
+    r"|(?P<mark>\*\*|<=|>=|[-+*/(),<>]))",
+    re.ASCII,
+)
+_BINDING = {**LOGIC, **dict.fromkeys(COMPARISONS, 6), "+": 10, "-": 10, "*": 20, "/": 20, "**": 40}
+_NOT = 5
+_UNARY = 30  # -x**2 is -(x**2), -x*y is (-x)*y
+
+
+class _Reader:
+    """Precedence climbing over the tokens of one formula."""
+
+    def __init__(self, source: str, where: str, switching: bool) -> None:
+        self.source, self.where, self.depth = source, f"{where}: " if where else "", 0
+        self.switching, self.functions = switching, FUNCTIONS | SWITCHING if switching else FUNCTIONS
+        self.tokens = list(self._split())
+        self.index = 0
+
+    def fail(self, expected: str, position: int) -> InputError:
+        shown = self.source if len(self.source) <= 60 else self.source[:57] + "..."
+        return InputError(f"{self.where}expected {expected} at position {position + 1} of {shown!r}")
+
+    def _split(self) -> Iterator[tuple[str, str, int]]:
+        position = 0
+        while position < len(self.source.rstrip()):
+            match = _TOKEN.match(self.source, position)
+            if match is None or (match["mark"] in COMPARISONS and not self.switching):
+                blank = len(self.source[position:]) - len(self.source[position:].lstrip())
+                raise self.fail("a number, a name, an operator or a bracket", position + blank)
+            kind = str(match.lastgroup)
+            yield kind, match[kind], match.start(kind)
+            position = match.end()
+        yield "end", "", len(self.source.rstrip())
+
+    def next(self) -> tuple[str, str, int]:
+        token = self.tokens[self.index]
+        self.index += token[0] != "end"
+        return token
+
+    def peek(self) -> str:
+        return self.tokens[self.index][1]
+
+    def expect(self, mark: str) -> None:
+        _, found, position = self.next()
+        if found != mark:
+            raise self.fail(f"'{mark}'", position)
+
+    def expression(self, binding: int = 0) -> Node:
+        self.depth += 1
+        if self.depth > DEEPEST_NESTING:
+            raise self.fail(f"at most {DEEPEST_NESTING} nested levels", self.tokens[self.index][2])
+        left = self.operand()
+        while _BINDING.get(self.peek(), 0) > binding:
+            _, mark, position = self.next()
+            if mark in COMPARISONS or mark in LOGIC:
+                left = self.condition(mark, left)
+            else:
+                left = (mark, left, self.power(position) if mark == "**" else self.expression(_BINDING[mark]))
+        self.depth -= 1
+        return left
+
+    def condition(self, mark: str, left: Node) -> Node:
+        right = self.expression(_BINDING[mark])
+        if mark in LOGIC:
+            return ("call", mark, (left, right))
+        turned, opposite = COMPARISONS[mark]
+        less: Node = ("call", "less", (right, left) if turned else (left, right))
+        return ("call", "not", (less,)) if opposite else less
+
+    def operand(self) -> Node:
+        kind, found, position = self.next()
+        if self.switching and found == "not":
+            return ("call", "not", (self.expression(_NOT),))
+        if kind == "number":
+            return ("number", self.number(found, position))
+        if found == "(":
+            inner = self.expression()
+            self.expect(")")
+            return inner
+        if found == "-":
+            return ("neg", self.expression(_UNARY))
+        if found == "+":
+            return self.expression(_UNARY)
+        if kind != "name":
+            raise self.fail("a number, a name or '('", position)
+        if self.peek() != "(":
+            return ("symbol", found)
+        if found not in self.functions:
+            raise self.fail(f"one of the functions {', '.join(self.functions)} instead of '{found}'", position)
+        self.next()
+        arguments = [self.expression()]
+        while self.peek() == ",":
+            self.next()
+            arguments.append(self.expression())
+        self.expect(")")
+        if found in ("min", "max") and len(arguments) > 2:
+            return reduce(lambda left, right: ("call", found, (left, right)), arguments)
+        if len(arguments) != self.functions[found]:
+            raise self.fail(f"{self.functions[found]} argument(s) for '{found}' instead of {len(arguments)}", position)
+        return ("call", found, tuple(arguments))
+
+    def number(self, found: str, position: int) -> Fraction:
+        exponent = re.split("[eE]", found)[1:]
+        if len(found) > LONGEST_NUMBER:
+            raise self.fail(f"a number of at most {LONGEST_NUMBER} characters", position)
+        if exponent and (len(exponent[0]) > 5 or abs(int(exponent[0])) > LARGEST_EXPONENT):
+            raise self.fail(f"a power of ten within {LARGEST_EXPONENT} instead of '{found[:20]}'", position)
+        return Fraction(found)
+
+    def power(self, position: int) -> int:
+        """Read the exponent: a whole number, with a sign or brackets if need be."""
+        brackets = self.peek() == "("
+        if brackets:
+            self.next()
+        sign = -1 if self.peek() == "-" else 1
+        if self.peek() in "+-" and self.peek():
+            self.next()
+        kind, found, at = self.next()
+        if kind != "number" or not found.isdigit() or len(found) > 3 or int(found) > LARGEST_POWER:
+            raise self.fail(f"a whole exponent up to {LARGEST_POWER} (write sqrt(x) for a root)", at)
+        if self.peek() == "**":
+            raise self.fail("brackets around a repeated power", self.tokens[self.index][2])
+        if brackets:
+            self.expect(")")
+        return sign * int(found)
+
+
+def parse(source: str, where: str = "", switching: bool = False) -> Node:
+    """Return the tree of a formula.
+
+    Parameters
+    ----------
+    source : str
+        Numbers, names, ``+ - * / **`` (whole exponents), brackets and the functions of :data:`FUNCTIONS`.
+    where : str
+        The place of the text (file and key), put in front of every complaint.
+    switching : bool
+        Whether the functions of :data:`SWITCHING` may stand in it too, and comparisons, ``and``, ``or`` and ``not`` in
+        the condition of ``where``: calls of ``less``, ``and``, ``or``, ``not``. See :mod:`symrot.formula.switches`.
+
+    Raises
+    ------
+    InputError
+        Naming the first position that is not understood. Nothing is dropped and nothing is evaluated.
+
+    Examples
+    --------
+    >>> parse("-k*omega_1**2")
+    ('*', ('neg', ('symbol', 'k')), ('**', ('symbol', 'omega_1'), 2))
+    """
+    if len(source) > LONGEST_TEXT:
+        place = f"{where}: " if where else ""
+        raise InputError(f"{place}expected a formula of at most {LONGEST_TEXT} characters, got {len(source)}")
+    reader = _Reader(source, where, switching)
+    node = reader.expression()
+    kind, _, position = reader.next()
+    if kind != "end":
+        raise reader.fail("an operator or the end", position)
+    return node
+
+
+def children(node: Node) -> tuple[Node, ...]:
+    """Return the operands of a node."""
+    kind = node[0]
+    if kind in ("number", "symbol"):
+        return ()
+    if kind == "call":
+        return tuple(node[2])
+    return (node[1],) if kind in ("**", "neg") else (node[1], node[2])
+
+
+def rename(node: Node, symbols: Mapping[str, str] | None = None, functions: Mapping[str, str] | None = None) -> Node:
+    """Return a formula with some symbols and functions called differently; names that are not listed stay."""
+    kind = node[0]
+    if kind == "number":
+        return node
+    if kind == "symbol":
+        return ("symbol", (symbols or {}).get(node[1], node[1]))
+    if kind == "call":
+        name = (functions or {}).get(node[1], node[1])
+        return ("call", name, tuple(rename(argument, symbols, functions) for argument in node[2]))
+    if kind == "**":
+        return ("**", rename(node[1], symbols, functions), node[2])
+    return (kind, *(rename(child, symbols, functions) for child in node[1:]))
+
+
+def names(node: Node) -> set[str]:
+    """Return the names of the symbols in a formula."""
+    if node[0] == "symbol":
+        return {node[1]}
+    return set().union(*(names(child) for child in children(node)))
+
+
+def operations(node: Node) -> Counter[str]:
+    """Count the operations of a formula: ``add`` (and subtract), ``mul``, ``div``, ``neg`` and the functions by name.
+
+    A whole power counts as the multiplications of its shortest left-to-right product.
+    """
+    count: Counter[str] = sum((operations(child) for child in children(node)), Counter())
+    kind = node[0]
+    if kind == "**":
+        count["mul"] += max(abs(node[2]) - 1, 0)
+        count["div"] += node[2] < 0
+    elif kind not in ("number", "symbol"):
+        count[{"+": "add", "-": "add", "*": "mul", "/": "div", "neg": "neg", "call": node[1]}[kind]] += 1
+    return +count
+
+
+def evaluate(
+    node: Node,
+    values: Mapping[str, Any],
+    functions: Mapping[str, Callable[..., Any]] | None = None,
+    number: Callable[[Fraction], Any] = lambda value: value,
+) -> Any:
+    """Return the value of a formula over the numbers of ``values``: Fractions, floats, arrays or SymPy expressions.
+
+    Parameters
+    ----------
+    node : Node
+        The formula.
+    values : mapping of str to number
+        A value for each symbol.
+    functions : mapping of str to callable, optional
+        The functions by name, for that kind of number.
+    number : callable
+        Turns the exact constants of the formula into that kind of number; ``float`` for arrays.
+
+    Raises
+    ------
+    KeyError
+        For a symbol or a function without a value.
+    """
+    kind = node[0]
+    if kind == "number":
+        return number(node[1])
+    if kind == "symbol":
+        return values[node[1]]
+    if kind == "call":
+        return (functions or {})[node[1]](*(evaluate(child, values, functions, number) for child in node[2]))
+    left = evaluate(node[1], values, functions, number)
+    if kind == "neg":
+        return -left
+    if kind == "**":
+        return left ** node[2]
+    right = evaluate(node[2], values, functions, number)
+    if kind == "+":
+        return left + right
+    if kind == "-":
+        return left - right
+    return left * right if kind == "*" else left / right
+
+
+_INFIX = {"+": (10, " + "), "-": (10, " - "), "*": (20, "*"), "/": (20, "/")}
+
+
+def text(node: Node, binding: int = 0, literal: Callable[[Fraction], str] = str) -> str:
+    """Return a formula as infix text with the fewest brackets that keep its order of evaluation.
+
+    :func:`parse` reads it back to the same tree (a fraction comes back as a quotient).
+    """
+    kind = node[0]
+    if kind == "number":
+        shown = literal(node[1])
+        loose = binding > 10 and ("/" in shown or shown.startswith("-"))
+        return f"({shown})" if loose else shown
+    if kind == "symbol":
+        return str(node[1])
+    if kind == "call" and node[1] in ("less", *LOGIC):
+        mark = "<" if node[1] == "less" else node[1]
+        inner = f" {mark} ".join(text(child, _BINDING[mark] + 1, literal) for child in node[2])
+        return f"({inner})" if binding > _BINDING[mark] else inner
+    if kind == "call" and node[1] == "not":
+        return f"not {text(node[2][0], _NOT, literal)}"
+    if kind == "call":
+        return f"{node[1]}({', '.join(text(child, 0, literal) for child in node[2])})"
+    if kind == "neg":
+        inner = "-" + text(node[1], _UNARY, literal)
+        return f"({inner})" if binding > 10 else inner
+    if kind == "**":
+        power = str(node[2]) if node[2] >= 0 else f"({node[2]})"
+        inner = f"{text(node[1], 41, literal)}**{power}"
+        return f"({inner})" if binding > 40 else inner
+    own, mark = _INFIX[kind]
+    inner = f"{text(node[1], own, literal)}{mark}{text(node[2], own + 1, literal)}"
+    return f"({inner})" if binding > own else inner

@@ -1,0 +1,1 @@
+"""From a scene to what has to be computed for it."""

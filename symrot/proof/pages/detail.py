@@ -1,0 +1,107 @@
+"""One step of a derivation, alone or with the way from its left side to its right side."""
+
+from sympy import MatrixBase, factor
+
+from symrot.errors import InputError
+from symrot.exact import normal_form
+from symrot.exact.rewriting_chain import Chain, Link, chains
+from symrot.proof.derivation import Derivation, Passage, Section, Step
+from symrot.proof.pages.printer import formula
+
+__all__ = ["excerpt"]
+
+LONGEST_IN_TEXT = 100  # letters of LaTeX
+
+
+def excerpt(derivation: Derivation, number: int, detail: bool = False) -> Derivation:
+    """Return a page with one step, and in detail every expression between its two sides.
+
+    Parameters
+    ----------
+    derivation : Derivation
+    number : int
+        Of the step, from 1.
+    detail : bool
+
+    Raises
+    ------
+    InputError
+        If there is no such step.
+    """
+    count = len(derivation.steps)
+    if not 1 <= number <= count:
+        raise InputError(f"{derivation.name} has steps 1 to {count}, got {number}")
+    step = derivation.steps[number - 1]
+    page = Derivation(derivation.name, f"{derivation.title}: step {number}", derivation.source, first=number)
+    place = next(n for n, item in enumerate(derivation.items) if item is step)
+    headings = [item for item in derivation.items[:place] if isinstance(item, Section)]
+    page.items += [*headings[-1:], step]
+    if detail:
+        page.items += [Section("In detail"), *(_detail(step) if step.relation == "=" else _signs(step))]
+    return page
+
+
+def _signs(step: Step) -> list[Passage]:
+    reduced = normal_form(step.left)
+    return [
+        Passage("As it was derived, brought to its normal form, and in factors:",
+                ((step.left, reduced), ("", factor(reduced)))),
+        Passage("Every factor is positive, by the signs of its symbols."),
+    ]  # fmt: skip
+
+
+def _detail(step: Step) -> list[Passage]:
+    found = chains(step.left, step.right, step.hypotheses)
+    passages = [Passage(words, ((left, right),)) for words, left, right in step.via]
+    if isinstance(step.left, MatrixBase) and (step.named or step.shown is not None):
+        passages.append(Passage("The two sides as they were derived:", ((formula(step.left), formula(step.right)),)))
+    if not found:
+        both = Passage("Written out, both sides are this one expression:", ((step.named or "", step.left),))
+        return [*passages, both]
+    total = 1 if found[0].entry is None else len(step.left)
+    if total > len(found):
+        passages.append(
+            Passage(f"Entries that are the same expression on both sides: {total - len(found)} of {total}.")
+        )
+    for chain in found:
+        passages += _chain(chain)
+    return passages
+
+
+def _chain(chain: Chain) -> list[Passage]:
+    start = (
+        "From the left side:" if chain.entry is None else f"Entry ({chain.entry[0]}, {chain.entry[1]}), from the left:"
+    )
+    first, second = chain.links[0].expression, chain.links[1]
+    passages = [Passage(f"{start} {_reason(second)}", ((first, second.expression),))]
+    for link in chain.links[2:]:
+        passages.append(Passage(_spoken(_reason(link)), (*_taken(link), ("", link.expression))))
+    return passages
+
+
+def _taken(link: Link) -> tuple[tuple[str, str], ...]:
+    """Return the multiples of hypotheses that a link takes away, where they are too long for a line of text."""
+    terms = _terms(link)
+    return () if _short(terms) else tuple((term, "0") for term in terms)
+
+
+def _terms(link: Link) -> list[str]:
+    return [rf"({formula(q)}) \cdot ({formula(b)})" for q, b in link.cofactors]
+
+
+def _short(terms: list[str]) -> bool:
+    return sum(map(len, terms)) <= LONGEST_IN_TEXT
+
+
+def _spoken(reason: str) -> str:
+    return f"{reason[0].upper()}{reason[1:]}" if reason[0] != "$" else reason
+
+
+def _reason(link: Link) -> str:
+    if link.rule:
+        return f"with ${formula(link.rule[0])} = {formula(link.rule[1])}$:"
+    if link.cofactors:
+        terms = _terms(link)
+        return f"{link.reason} are taken away" + (f", {', '.join(f'${term}$' for term in terms)}:" if _short(terms) else
+                                                  ", each of which is zero:")  # fmt: skip
+    return f"{link.reason}:"

@@ -1,0 +1,116 @@
+"""Derivations as HTML: one file, native MathML, no script, no network. Same derivation, same bytes."""
+
+import re
+from collections.abc import Iterator
+from html import escape
+
+from symrot.proof.derivation import Derivation, Section, Step
+from symrot.proof.pages.mathml import mathml
+from symrot.proof.pages.parts import equation, footer, passage_equations, remarks, units
+
+__all__ = ["html_document"]
+
+MANY_SECTIONS = 3
+
+STYLE = """
+:root { color-scheme: light dark; }
+body { max-width: 46rem; margin: 2rem auto; padding: 0 1rem; font: 1.05rem/1.55 Georgia, "Times New Roman", serif; }
+h1 { font-size: 1.9rem; line-height: 1.2; margin-bottom: 0.4rem; }
+h2 { font-size: 1.35rem; margin-top: 2.4rem; border-bottom: 1px solid #8886; padding-bottom: 0.2rem; }
+nav { font-size: 0.95rem; }
+math { font-size: 1.05em; }
+mover > mo { padding-bottom: 0.12em; }
+.display { overflow-x: auto; overflow-y: hidden; margin: 0.8rem 0; padding: 0.3rem 0; }
+.display math { margin: 0 auto; }
+.lines > mtr > mtd { text-align: left; padding-left: 0; padding-top: 0.25em; padding-bottom: 0.25em; }
+.step { margin: 1.6rem 0; }
+.number { font-weight: bold; margin-right: 0.4em; }
+.remarks { color: #555; color: color-mix(in srgb, currentColor 75%, transparent); font-size: 0.97rem; }
+.source { font-size: 0.97rem; }
+.whole { white-space: nowrap; }
+code { font-size: 0.9em; }
+footer { margin-top: 3rem; border-top: 1px solid #8886; padding-top: 0.6rem; font-size: 0.9rem; }
+a { color: inherit; }
+@media print { .display { overflow: visible; } .step { break-inside: avoid; } }
+"""
+
+
+def html_document(derivation: Derivation) -> str:
+    """Return a page that stands alone."""
+    parts = [f"<h1>{_prose(derivation.title)}</h1>"]
+    if derivation.about:
+        parts.append(f"<p>{_prose(derivation.about)}</p>")
+    if derivation.source:
+        parts.append(f'<p class="source"><em>Source:</em> {_prose(derivation.source)}.</p>')
+    parts += _contents(derivation)
+    number, section = derivation.first - 1, 0
+    for item in derivation.items:
+        if isinstance(item, Section):
+            section += 1
+            parts.append(f'<h2 id="section-{section}">{_prose(item.title)}</h2>')
+        elif isinstance(item, Step):
+            number += 1
+            parts.append(
+                f'<section class="step" id="step-{number}">\n'
+                f'<p><span class="number">{number}.</span>{_prose(item.claim)}</p>\n'
+                f"{_display(equation(item))}\n"
+                f'<p class="remarks">{_prose(" ".join(remarks(item)))}</p>\n</section>'
+            )
+        else:
+            parts.append(f"<p>{_prose(item.text)}</p>")
+            parts += [_display(text) for text in passage_equations(item)]
+    used = units(derivation)
+    if used:
+        parts.append(f"<p><strong>Units</strong> of the symbols in the proofs: {_raised(_prose(used))}.</p>")
+    parts.append(f"<footer>{_prose(footer(derivation))}</footer>")
+    title = escape(re.sub(r"[$*`]", "", derivation.title))
+    head = (
+        f'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        f'<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        f"<title>{title}</title>\n<style>{STYLE}</style>\n</head>\n<body>"
+    )
+    return "\n".join([head, *parts, "</body>", "</html>"]) + "\n"
+
+
+def _display(latex: str) -> str:
+    return f'<div class="display">{mathml(latex, display=True)}</div>'
+
+
+def _raised(prose: str) -> str:
+    """Return units with their powers raised."""
+    return re.sub(r"\^(\d)", r"<sup>\1</sup>", prose)
+
+
+def _contents(derivation: Derivation) -> Iterator[str]:
+    titles = [item.title for item in derivation.items if isinstance(item, Section)]
+    if len(titles) > MANY_SECTIONS:
+        links = (f'<a href="#section-{n}">{_prose(title)}</a>' for n, title in enumerate(titles, 1))
+        yield f"<nav>{' · '.join(links)}</nav>"
+
+
+PIECES = re.compile(r"\$`([^`]+)`\$|\$([^$]+)\$|`([^`]+)`|\[([^\]]+)\]\(([^)]+)\)|\*\*([^*]+)\*\*|\*([^*]+)\*")
+
+
+def _prose(text: str) -> str:
+    """Return Markdown prose as HTML: formulas, code, links to other derivations, emphasis."""
+    shown, place = "", 0
+    for found in PIECES.finditer(text):
+        shown += escape(text[place : found.start()], quote=False)
+        quoted, plain, code, label, target, strong, emphasis = found.groups()
+        if quoted or plain:
+            after = re.match(r"[.,;:)']*", text[found.end() :])
+            stop = after[0] if after else ""
+            formula = mathml(quoted or plain)
+            shown += f'<span class="whole">{formula}{escape(stop)}</span>' if stop else formula
+            place = found.end() + len(stop)
+            continue
+        elif code:
+            shown += f"<code>{escape(code, quote=False)}</code>"
+        elif label:
+            shown += f'<a href="{escape(target.removesuffix(".md"))}.html">{_prose(label)}</a>'
+        elif strong:
+            shown += f"<strong>{_prose(strong)}</strong>"
+        else:
+            shown += f"<em>{_prose(emphasis)}</em>"
+        place = found.end()
+    return shown + escape(text[place:], quote=False)

@@ -1,0 +1,81 @@
+"""Derivations as LaTeX documents that compile as they are. Same derivation, same bytes."""
+
+import re
+
+from symrot.proof.derivation import Derivation, Section, Step
+from symrot.proof.pages.mathml import rows
+from symrot.proof.pages.parts import equation, footer, passage_equations, remarks, units
+
+__all__ = ["latex_document"]
+
+WIDTH = 62  # letters to a line of a display
+
+LATEX_HEAD = r"""\documentclass[a4paper]{article}
+\usepackage[T1]{fontenc}
+\usepackage[utf8]{inputenc}
+\usepackage{amsmath}
+\usepackage{graphicx}
+\usepackage[margin=20mm]{geometry}
+\setcounter{MaxMatrixCols}{12}
+\setlength{\parindent}{0pt}
+\setlength{\emergencystretch}{3em}
+\newsavebox{\displayed}
+% a display that is wider than the page is scaled to it
+\newcommand{\fitted}[1]{\sbox{\displayed}{$\displaystyle #1$}\[\ifdim\wd\displayed>\linewidth
+  \resizebox{\linewidth}{!}{\usebox{\displayed}}\else\usebox{\displayed}\fi\]}
+"""
+
+
+def latex_document(derivation: Derivation) -> str:
+    """Return a LaTeX document."""
+    parts = [LATEX_HEAD + rf"\title{{{_prose(derivation.title)}}}" + "\n\\date{}\n\\begin{document}\n\\maketitle"]
+    if derivation.about:
+        parts.append(_prose(derivation.about))
+    if derivation.source:
+        parts.append(rf"\emph{{Source:}} {_prose(derivation.source)}.")
+    number = derivation.first - 1
+    for item in derivation.items:
+        if isinstance(item, Section):
+            parts.append(rf"\section*{{{_prose(item.title)}}}")
+        elif isinstance(item, Step):
+            number += 1
+            parts.append(
+                rf"\paragraph{{{number}.}} {_prose(item.claim)}" + f"\n{_display(equation(item))}\n"
+                + _prose(" ".join(remarks(item)))
+            )  # fmt: skip
+        else:
+            parts.append("\n".join([_prose(item.text), *map(_display, passage_equations(item))]))
+    used = units(derivation)
+    if used:
+        parts.append(rf"\paragraph{{Units}} of the symbols in the proofs: {_prose(used)}.")
+    parts += [r"\medskip\hrule\medskip", _prose(footer(derivation)), r"\end{document}"]
+    return "\n\n".join(parts) + "\n"
+
+
+def _display(latex: str) -> str:
+    """Return a display, broken into lines where it is long."""
+    lines = ["".join(item.latex for item in line) for line in rows(latex, WIDTH)]
+    if len(lines) == 1:
+        return f"\\fitted{{{latex}}}"
+    body = " \\\\\n".join(f"&{line}" if number == 0 else f"&\\quad{{}}{line}" for number, line in enumerate(lines))
+    return f"\\fitted{{\\begin{{aligned}}\n{body}\n\\end{{aligned}}}}"
+
+
+ESCAPES = {"&": r"\&", "%": r"\%", "#": r"\#", "_": r"\_", "^": r"\^{}", "~": r"\~{}"}
+
+
+def _prose(text: str) -> str:
+    """Return Markdown prose as LaTeX: formulas in ``$`` stay, code, links and emphasis are translated."""
+    linked = re.sub(r"\[([^\]$]+)\]\([^)]+\.md\)", r"\1", text)
+    pieces = re.split(r"(\$[^$]+\$|`[^`]+`)", linked)
+    return "".join(_piece(piece) for piece in pieces)
+
+
+def _piece(piece: str) -> str:
+    if piece.startswith("$"):
+        return piece
+    code = piece.startswith("`")
+    escaped = "".join(ESCAPES.get(letter, letter) for letter in piece.strip("`" if code else ""))
+    if code:
+        return rf"\texttt{{{escaped}}}"
+    return re.sub(r"\*([^*]+)\*", r"\\emph{\1}", escaped)

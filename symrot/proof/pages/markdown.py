@@ -1,0 +1,60 @@
+"""Derivations as Markdown, for a code-hosting site. Same derivation, same bytes."""
+
+import re
+from collections.abc import Iterator
+
+from symrot.proof.derivation import Derivation, Section, Step
+from symrot.proof.pages.parts import equation, footer, passage_equations, remarks, units
+
+__all__ = ["markdown"]
+
+MANY_SECTIONS = 8
+
+
+def markdown(derivation: Derivation) -> str:
+    """Return a Markdown page; display formulas stand between ``$$`` on lines of their own."""
+    parts = [f"# {derivation.title}"]
+    if derivation.about:
+        parts.append(derivation.about)
+    if derivation.source:
+        parts.append(f"*Source:* {derivation.source}.")
+    parts += _contents(derivation)
+    number = derivation.first - 1
+    for item in derivation.items:
+        if isinstance(item, Section):
+            parts.append(f"## {item.title}")
+        elif isinstance(item, Step):
+            number += 1
+            parts += [f"**{number}.** {item.claim}", _display(equation(item)), " ".join(remarks(item))]
+        else:
+            parts.append(item.text)
+            parts += [_display(text) for text in passage_equations(item)]
+    symbols_used = units(derivation)
+    if symbols_used:
+        parts.append(f"**Units** of the symbols in the proofs: {symbols_used}.")
+    parts += ["---", footer(derivation)]
+    return "\n\n".join(map(_host_safe, parts)) + "\n"
+
+
+MARKED = re.compile(r"\\[^A-Za-z]|[\])}]_|\*")
+"""What Markdown would read as its own inside a formula in a line of text."""
+
+
+def _host_safe(part: str) -> str:
+    """Return a paragraph with formulas in the line quoted as ``$`...`$`` where Markdown would spoil them."""
+    if part.startswith("$$"):
+        return part
+    return re.sub(r"\$([^$]+)\$", lambda m: f"$`{m[1]}`$" if MARKED.search(m[1]) else m[0], part)
+
+
+def _contents(derivation: Derivation) -> Iterator[str]:
+    """Yield one line of links to the sections of a long page."""
+    titles = [item.title for item in derivation.items if isinstance(item, Section)]
+    if len(titles) > MANY_SECTIONS:
+        anchors = (re.sub("[^a-z0-9 -]", "", title.lower()).replace(" ", "-") for title in titles)
+        links = (f"[{title.split(',')[0]}](#{anchor})" for title, anchor in zip(titles, anchors, strict=True))
+        yield f"Sections: {' · '.join(links)}"
+
+
+def _display(text: str) -> str:
+    return f"$$\n{text}\n$$"

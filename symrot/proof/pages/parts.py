@@ -1,0 +1,74 @@
+"""What all pages of a derivation share: equations, the remarks below them, units, and the last line."""
+
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+from sympy import Add, Expr
+
+from symrot.proof.derivation import Derivation, Passage, Step
+from symrot.proof.pages.printer import formula
+from symrot.symbols import UNIT
+
+__all__ = ["equation", "footer", "passage_equations", "remarks", "units"]
+
+
+def equation(step: Step) -> str:
+    left = step.named or formula(step.left)
+    right = formula(step.right if step.shown is None else step.shown)
+    return f"{left} = {right} > 0" if step.relation == ">" else f"{left} = {right}"
+
+
+def remarks(step: Step) -> Iterator[str]:
+    """Yield the reason, what is assumed, where it holds, and where it is printed, as sentences."""
+    yield f"*Why:* {step.reason}."
+    if step.hypotheses:
+        yield f"*Given:* {_list(map(_hypothesis, step.hypotheses))}."
+    if step.conditions:
+        yield f"*Where:* {_list(map(formula, step.conditions))}."
+    if step.source:
+        yield f"*Printed in:* {step.source}."
+
+
+def _hypothesis(zero: Expr) -> str:
+    """Return ``P - Q = 0`` as ``P = Q``, the terms with a minus sign on the right."""
+    terms = zero.expand().as_ordered_terms()
+    right = [-term for term in terms if term.could_extract_minus_sign()]
+    left = [term for term in terms if not term.could_extract_minus_sign()]
+    return f"{formula(Add(*left))} = {formula(Add(*right))}"
+
+
+def _list(formulas: Iterable[str]) -> str:
+    return ", ".join(f"${text}$" for text in formulas)
+
+
+def units(derivation: Derivation) -> str:
+    """Return one sentence with the unit of every symbol that occurs."""
+    sides: list[Any] = [side for step in derivation.steps for side in (step.left, step.right)]
+    passages = (item for item in derivation.items if isinstance(item, Passage))
+    sides += [side for passage in passages for pair in passage.equations for side in pair]
+    used = {symbol for side in sides for symbol in getattr(side, "free_symbols", ())}
+    groups: dict[str, list[str]] = {}
+    for symbol, unit in UNIT.items():
+        if symbol in used:
+            groups.setdefault(unit, []).append(f"${formula(symbol)}$")
+    shown = ((", ".join(names), "without unit" if unit == "1" else f"in {unit}") for unit, names in groups.items())
+    return "; ".join(f"{names} {unit}" for names, unit in shown)
+
+
+def footer(derivation: Derivation) -> str:
+    count = len(derivation.steps)
+    proven = f"{count} steps, each proven" if count != 1 else "One step, proven"
+    sides = [side for step in derivation.steps for side in step.printed]
+    rest = "" if all(sides) else "; the others are names, or words, for what was proven"
+    shown = f"Printed from the proof, or read back and decided: {sum(sides)} of {len(sides)} sides{rest}."
+    return (
+        f"{proven} when this page was printed: the normal form of left minus right is zero. {shown} "
+        f"Derived in `symrot/catalogue/{derivation.name}.py`, printed by `symrot derive "
+        f"{derivation.name}`; do not edit."
+    )
+
+
+def passage_equations(passage: Passage) -> Iterator[str]:
+    """Yield the equations of a passage; a pair without a left side goes on from the equation before."""
+    for left, right in passage.equations:
+        yield f"{formula(left)} = {formula(right)}".lstrip()

@@ -1,0 +1,217 @@
+"""The kernel of a plan: from the cache if it is there, else derived, emitted and compiled, and kept.
+
+The key is the structure of the plan and the version of symrot's own files; numbers are not part of it. While the
+compiler works on the rates, the invariants are proven.
+"""
+
+import json
+import os
+from collections.abc import Callable, Iterable, Sequence
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from symrot.build import cache as library
+from symrot.build.sources import PACKAGE
+from symrot.errors import InputError
+from symrot.formula.program import Program
+from symrot.formula.switches import CHANGING
+from symrot.formula.tree import Node, children, parse
+from symrot.planning.plan import Plan
+from symrot.planning.scene_kernel import SceneKernel
+from symrot.propagation.steppers import taylor
+from symrot.propagation.steppers.dop853 import DENSE_ORDER, translation_unit
+
+if TYPE_CHECKING:
+    from symrot.propagation.enclosures.step_limit import Deviations
+
+__all__ = [
+    "compiled",
+    "enclosure_text",
+    "error_blocks",
+    "formula_deviations",
+    "grows_late",
+    "has_formulas",
+    "kernel_key",
+    "library_source",
+    "missing_compiler",
+    "motion_library",
+    "scene_kernel",
+    "taylor_library",
+]
+
+FOLDERS = ("codegen", "dynamics", "exact", "formula", "kernels", "kinematics")
+FILES = (
+    "planning/scene_kernel.py", "symbols.py", "propagation/invariants.py", "propagation/steppers/taylor.py",
+    *taylor.FILES.values(),
+)  # fmt: skip  # kept together with the recurrences
+ATTITUDE_SCALE = 1.0  # a quaternion has unit norm; an error of an angle counts in rad
+RATE_SCALE = 0.0  # an error of omega counts relative to omega
+
+
+@cache
+def _version() -> str:
+    """Return what identifies the code that derives: names, sizes and times of its files."""
+    files = [str(PACKAGE / file) for file in FILES]
+    folders = [str(PACKAGE / folder) for folder in FOLDERS]
+    for folder in folders:  # grows while it is walked
+        with os.scandir(folder) as entries:
+            for entry in entries:
+                if entry.name.endswith(".py"):
+                    files.append(entry.path)
+                elif "." not in entry.name and entry.name != "__pycache__" and entry.is_dir():
+                    folders.append(entry.path)
+    states = ((file, os.stat(file)) for file in files)
+    return "\n".join(sorted(f"{file} {state.st_size} {state.st_mtime_ns}" for file, state in states))
+
+
+def kernel_key(plan: Plan) -> str:
+    """Return the key of a plan's kernel in the cache."""
+    return f"scene kernel\n{json.dumps(plan.structure, sort_keys=True)}\n{_version()}"
+
+
+def scene_kernel(plan: Plan, on_rates: Callable[[Program, str], object] = lambda rates, source: None) -> SceneKernel:
+    """Return the kernel of a plan, from the cache or derived.
+
+    ``on_rates`` gets the rates and their C text as soon as they are derived; not those of a kernel from the cache.
+    """
+    saved = library.fetch(kernel_key(plan))
+    if saved is not None:
+        return SceneKernel(json.loads(saved))
+    from symrot.codegen.scene_kernels import derive_scene_kernel
+
+    kernel = derive_scene_kernel(plan.structure, on_rates)
+    library.store(kernel_key(plan), json.dumps(kernel.data))
+    return kernel
+
+
+missing_compiler = library.missing
+
+
+def compiled(plan: Plan) -> tuple[SceneKernel, Path]:
+    """Return the kernel of a plan and the library with kernel and stepper.
+
+    Raises
+    ------
+    CompilerError
+        If the compiler refuses the source.
+    """
+    started: list[library.Building] = []
+
+    def start(rates: Program, source: str) -> None:
+        started.append(library.Building(_unit(plan, source, _parameter_count(rates), lambda: rates), "motion"))
+
+    try:
+        kernel = scene_kernel(plan, start)
+    except KeyboardInterrupt:
+        library.stop_compilers()
+        raise
+    finally:
+        for building in started:
+            building.wait()
+    return kernel, started[0].path() if started else motion_library(plan, kernel)
+
+
+def _parameter_count(rates: Program) -> int:
+    return sum(argument.size for argument in rates.signature.arguments if argument.name == "p")
+
+
+def motion_library(plan: Plan, kernel: SceneKernel) -> Path:
+    """Return the library that steps a plan by DOP853."""
+    return library.build(library_source(plan, kernel), "motion")
+
+
+def taylor_library(plan: Plan, kernel: SceneKernel, tolerance: float, projected: bool = True) -> Path:
+    """Return the library that steps a plan by Taylor series, of the order that suits the tolerance.
+
+    ``projected`` says whether it holds the motion on its invariants.
+
+    Raises
+    ------
+    InputError
+        If the rates have no Taylor series, as where they hold the absolute value of what changes.
+    """
+    from symrot.propagation.invariants import invariant_source
+    from symrot.propagation.steppers import taylor
+
+    order = taylor.order_for(tolerance, kernel.rates)
+    key = f"taylor {order}{'' if projected else ' not projected'}\n{kernel_key(plan)}"
+    source = library.fetch(key)
+    if source is None:
+        invariants = invariant_source(kernel, plan.states) if projected else ""
+        source = taylor.translation_unit(kernel.rates, *error_blocks(plan), order, invariants, has_formulas(plan))
+        library.store(key, source)
+    return library.build(source, "taylor", taylor.FLAGS)
+
+
+def error_blocks(plan: Plan) -> tuple[list[int], list[float]]:
+    """Return the edges and the scales of the blocks of states whose errors are judged apart: omega, attitude."""
+    rates = sum(name.startswith("omega") for name in plan.states)
+    count = len(plan.states)
+    edges = [0, *([rates] if 0 < rates < count else []), count]
+    return edges, [RATE_SCALE] * (rates > 0) + [ATTITUDE_SCALE] * (count > rates)
+
+
+def library_source(plan: Plan, kernel: SceneKernel) -> str:
+    """Return the C text of a library that steps a plan by DOP853: kernel and stepper."""
+    return _unit(plan, kernel.source, len(kernel.rate_parameters), lambda: kernel.rates)
+
+
+def _unit(plan: Plan, source: str, parameters: int, rates: Callable[[], Program]) -> str:
+    edges, scales = error_blocks(plan)
+    bounds = (enclosure_text(plan, rates, edges),) if has_formulas(plan) else ()
+    return translation_unit(source, "symrot_rates", len(plan.states), parameters, edges, scales, *bounds)
+
+
+def has_formulas(plan: Plan) -> bool:
+    """Return whether a torque is given by formulas, which may have features that no step sees."""
+    return any(torque["kind"] == "expression" for torque in plan.structure["torques"])
+
+
+def grows_late(plan: Plan) -> bool:
+    """Return whether a torque given by formulas may move a body from rest as a high power of time, of degree 3 or more.
+
+    Such a motion has no coefficient within the order of a series; steps of single motions are checked for it.
+    """
+    formulas = [text for torque in plan.structure["torques"] for text in torque.get("formulas", ())]
+    return any(_degree(parse(text)) >= 3 for text in formulas)
+
+
+def _degree(node: Node) -> int:
+    """Return the degree of a formula in time and states, functions and quotients counted as one."""
+    if node[0] == "symbol":
+        return int(node[1] in CHANGING)
+    degrees = [_degree(child) for child in children(node)]
+    if node[0] == "**":
+        return degrees[0] * abs(int(node[2]))
+    if node[0] == "call":
+        return min(1, max(degrees))
+    return sum(degrees) if node[0] == "*" else max(degrees, default=0)
+
+
+def formula_deviations(plan: Plan, kernel: SceneKernel, parameters: Iterable[float]) -> "Deviations | None":
+    """Return what steps in Python must be held to, or None where no torque is given by formulas that hide something."""
+    if not has_formulas(plan):
+        return None
+    from symrot.codegen.enclosure.terms import enclosure
+    from symrot.codegen.taylor.recurrences import recurrences
+    from symrot.propagation.enclosures.step_limit import Deviations
+
+    try:
+        terms = enclosure(recurrences(kernel.rates))
+    except InputError:  # no Taylor series, as of abs
+        return None
+    names = [name for name, _ in kernel.rate_parameters]
+    return None if terms is None else Deviations(terms, dict(zip(names, parameters, strict=True)))
+
+
+def enclosure_text(plan: Plan, rates: Callable[[], Program], edges: Sequence[int]) -> str:
+    """Return the C text of the enclosure of a plan's rates, from the cache or printed."""
+    key = f"enclosure {DENSE_ORDER}\n{kernel_key(plan)}"
+    text = library.fetch(key)
+    if text is None:
+        from symrot.codegen.enclosure.source import enclosure_source
+
+        text = enclosure_source(rates(), DENSE_ORDER, edges)
+        library.store(key, text)
+    return text

@@ -1,0 +1,255 @@
+"""How far a step may go, in Python: what :file:`disc.h` and :file:`enclosure.h` are for the steppers in C.
+
+For SciPy's steppers and for references. See :mod:`symrot.codegen.enclosure.terms` for what is enclosed and why.
+"""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from itertools import pairwise
+from typing import Any, NamedTuple
+
+from symrot.codegen.enclosure.terms import LOW_ORDER, REACHES, Enclosure, value_operands
+from symrot.codegen.taylor.recurrences import Series
+from symrot.formula.tree import evaluate
+
+__all__ = ["Deviations", "Disc", "longest_followed"]
+
+LARGEST_EXPONENT = 700.0  # of e, well within doubles
+SHRINK = 0.3  # least that a step is shortened to at once
+
+
+class Disc(NamedTuple):
+    """All complex numbers within ``radius`` of a real ``centre``.
+
+    Where numbers over- or underflow, the logarithm of their size, which is at most ``log_size``, says more.
+    """
+
+    centre: float
+    radius: float
+    log_size: float | None = None
+
+
+def _product(a: Disc, b: Disc) -> Disc:
+    centre = a.centre * b.centre
+    radius = abs(a.centre) * b.radius + abs(b.centre) * a.radius + a.radius * b.radius
+    if a.log_size is None and b.log_size is None:
+        return Disc(centre, radius)
+    size = _log_size(a) + _log_size(b)
+    return Disc(centre, radius, size) if radius < math.inf else Disc(0.0, _exp_of(size), size)
+
+
+def _log_size(a: Disc) -> float:
+    size = abs(a.centre) + a.radius
+    return a.log_size if a.log_size is not None else math.log(size) if size > 0.0 else -math.inf
+
+
+def _exp_of(x: float) -> float:
+    return math.exp(x) if x < LARGEST_EXPONENT else math.inf
+
+
+def _sinh_of(x: float) -> float:
+    return math.sinh(x) if abs(x) < LARGEST_EXPONENT else math.copysign(math.inf, x)
+
+
+def _inverse(a: Disc) -> Disc:
+    size = abs(a.centre)
+    power = (size - a.radius) * (size + a.radius)
+    return Disc(a.centre / power, a.radius / power) if size > a.radius else Disc(0.0, math.inf)
+
+
+def _sqrt(a: Disc) -> Disc:
+    root = math.sqrt(max(a.centre, 0.0))
+    if a.centre > a.radius:
+        return Disc(root, a.radius / (root + math.sqrt(a.centre - a.radius)))
+    return Disc(root, root + math.sqrt(abs(a.centre) + a.radius))  # a corner, which the control of errors sees
+
+
+def _exp(a: Disc) -> Disc:
+    value, size = math.exp(a.centre), a.centre + a.radius
+    return Disc(value, value * math.expm1(a.radius) if a.radius < 1.0 else _exp_of(size) - value, size)
+
+
+def _log(a: Disc) -> Disc:
+    if a.centre > a.radius:
+        return Disc(math.log(a.centre), -math.log1p(-a.radius / a.centre))
+    return Disc(0.0, math.inf)
+
+
+def _wave(
+    value: Callable[[float], float], slope: Callable[[float], float], grows: bool = False
+) -> Callable[[Disc], Disc]:
+    def rule(a: Disc) -> Disc:
+        own, half = value(a.centre), _sinh_of(0.5 * a.radius)
+        size = a.radius + abs(a.centre) * grows
+        return Disc(own, abs(slope(a.centre)) * _sinh_of(a.radius) + 2.0 * abs(own) * half * half, size)
+
+    return rule
+
+
+def _sech(a: Disc) -> Disc:
+    far = math.exp(min(a.radius - abs(a.centre), 1.0))
+    bound = 2.0 * far / (1.0 - far * far) if far < 1.0 else math.inf
+    if abs(a.centre) + a.radius > 350.0:
+        return Disc(0.0, bound)
+    near = _inverse(FUNCTIONS["cosh"](a))
+    return near if near.radius <= bound else Disc(0.0, bound)
+
+
+def _tan(a: Disc) -> Disc:
+    value = math.tan(a.centre)
+    most = math.tan(a.radius) if a.radius < 1.5 else math.inf
+    rest = 1.0 - abs(value) * most
+    return Disc(value, (1.0 + value * value) * most / rest if rest > 0.0 else math.inf)
+
+
+def _tanh(a: Disc) -> Disc:
+    value, tail = math.tanh(a.centre), math.exp(-2.0 * abs(a.centre))
+    most = math.tan(a.radius) if a.radius < 1.5 else math.inf
+    rest = 1.0 - abs(value) * most
+    near = 4.0 * tail / (1.0 + tail) ** 2 * most / rest if rest > 0.0 else math.inf
+    beyond = math.exp(-2.0 * (abs(a.centre) - a.radius))
+    far = 2.0 * beyond / (1.0 - beyond) if beyond < 1.0 else math.inf
+    return Disc(value, near) if near <= far else Disc(math.copysign(1.0, a.centre), far)
+
+
+def _arc(value: Callable[[float], float]) -> Callable[[Disc], Disc]:
+    def rule(a: Disc) -> Disc:
+        low, high = abs(a.centre), abs(a.centre) + a.radius
+        return Disc(value(a.centre), math.asin(high) - math.asin(low) if high < 1.0 else math.inf)
+
+    return rule
+
+
+def _atan(a: Disc) -> Disc:
+    rest = 1.0 + a.centre * a.centre - abs(a.centre) * a.radius
+    return Disc(math.atan(a.centre), math.atanh(a.radius / rest) if a.radius < rest else math.inf)
+
+
+def _atan2(y: Disc, x: Disc) -> Disc:
+    size, off = math.hypot(x.centre, y.centre), x.radius + y.radius
+    return Disc(math.atan2(y.centre, x.centre), -math.log1p(-off / size) if off < size else math.inf)
+
+
+FUNCTIONS: dict[str, Callable[..., Disc]] = {
+    "sqrt": _sqrt, "exp": _exp, "log": _log, "tan": _tan, "tanh": _tanh, "atan": _atan, "atan2": _atan2,
+    "sin": _wave(math.sin, math.cos), "cos": _wave(math.cos, math.sin),
+    "sinh": _wave(math.sinh, math.cosh, True), "cosh": _wave(math.cosh, math.sinh, True),
+    "asin": _arc(math.asin), "acos": _arc(math.acos), "sech": _sech,
+}  # fmt: skip
+
+
+class Deviations:
+    """How far the enclosed terms of each rate deviate from a constant on discs.
+
+    Parameters
+    ----------
+    enclosure : Enclosure
+    parameters : mapping of str to number
+        Of the right-hand side, by name.
+    """
+
+    def __init__(self, enclosure: Enclosure, parameters: Mapping[str, float]) -> None:
+        self.enclosure = enclosure
+
+        def number(node: Any) -> float:
+            return float(evaluate(node, parameters, _MATH, float))
+
+        series = enclosure.system.series
+        self._weights = {i: [0.0 if w is None else number(w) for w in series[i].weights] for i in enclosure.series}
+        self._terms = [[(abs(number(weight)), operand) for weight, operand in own] for own in enclosure.terms]
+
+    def __call__(self, t: float, reach: float, y: Sequence[float], radii: Sequence[float]) -> list[float]:
+        """Return the bounds for times within ``reach`` of t and states within ``radii`` of y: infinite at poles."""
+        discs: dict[int, Disc] = {}
+        try:
+            for number in self.enclosure.series:
+                discs[number] = self._disc(number, discs, t, reach, y, radii)
+            bounds = [sum(weight * discs[operand].radius for weight, operand in own) for own in self._terms]
+        except (OverflowError, ValueError, ZeroDivisionError):
+            return [math.inf if own else 0.0 for own in self._terms]
+        return [math.inf if math.isnan(bound) else bound for bound in bounds]
+
+    def _disc(
+        self, number: int, discs: Mapping[int, Disc], t: float, reach: float, y: Sequence[float], radii: Sequence[float]
+    ) -> Disc:
+        series: Series = self.enclosure.system.series[number]
+        own = [discs[operand] for operand in value_operands(series)]
+        if series.rule == "state":
+            return Disc(y[series.number], radii[series.number])
+        if series.rule == "time":
+            return Disc(t, reach)
+        if series.rule == "clock":
+            rate, offset = self._weights[number]
+            return FUNCTIONS[series.function](Disc(rate * t + offset, abs(rate) * reach))
+        if series.rule == "sum":
+            *weights, constant = self._weights[number]
+            centre = constant + sum(w * disc.centre for w, disc in zip(weights, own, strict=True))
+            return Disc(centre, sum(abs(w) * disc.radius for w, disc in zip(weights, own, strict=True)))
+        if series.rule == "product":
+            return _product(*own)
+        if series.rule == "quotient":
+            inverse = _inverse(own[-1])
+            return _product(own[0], inverse) if len(own) > 1 else inverse
+        return FUNCTIONS[series.function](*own)
+
+
+_MATH: dict[str, Callable[..., float]] = {name: getattr(math, name) for name in FUNCTIONS if name != "sech"} | {
+    "abs": abs
+}
+
+
+def longest_followed(
+    deviations: Deviations,
+    t: float,
+    y: Sequence[float],
+    path: Sequence[Sequence[float]],
+    h: float,
+    allowed: Sequence[float],
+    edges: Sequence[int],
+    order: int,
+) -> float:
+    """Return the longest step of at most h that is proven to miss no more than is allowed; see :file:`enclosure.h`.
+
+    Parameters
+    ----------
+    y : N numbers
+        States at t.
+    path : N sequences
+        Sizes of the coefficients 1, 2, .. of the polynomial that each state follows, in units of h.
+    allowed : one number per block
+        Error allowed in the step.
+    edges : sequence of int
+        Edges of the blocks.
+    order : int
+        To which the states are followed.
+    """
+    length = h
+    while abs(length) > 1e-300:
+        least = min(
+            _excess(deviations, t, y, path, abs(length), abs(h), radius, allowed, edges, order)
+            for radius in REACHES[order < LOW_ORDER]
+        )
+        if least <= 1.0:
+            break
+        length *= min(max(0.9 * least ** (-1.0 / (order + 1)), SHRINK), 0.9)
+    return length
+
+
+def _excess(
+    deviations: Deviations, t: float, y: Sequence[float], path: Sequence[Sequence[float]], size: float, unit: float,
+    reach: float, allowed: Sequence[float], edges: Sequence[int], order: int,
+) -> float:  # fmt: skip
+    part, share = reach * size / unit, size * reach**-order / ((order + 1) * (1.0 - 1.0 / reach))
+    radii = []
+    for coefficients in path:
+        total = 0.0
+        for coefficient in reversed(coefficients):
+            total = (total + coefficient) * part
+        radii.append(total)
+    bounds, worst = deviations(t, reach * size, y, radii), 0.0
+    for block, (low, high) in enumerate(pairwise(edges)):
+        lack = share * max(bounds[low:high], default=0.0)
+        worst = max(worst, lack / allowed[block])
+        if block + 1 < len(allowed):
+            worst = max(worst, size * lack / allowed[block + 1])
+    return worst

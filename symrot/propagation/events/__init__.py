@@ -1,0 +1,1 @@
+"""Events: the times at which a formula of the motion is zero."""

@@ -1,0 +1,179 @@
+"""Follow a motion with events: their times, the states there, and the samples up to and at a terminal one."""
+
+from collections.abc import Callable, Generator, Sequence
+from time import perf_counter
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symrot.build import cache as library
+from symrot.errors import InputError, PropagationError
+from symrot.planning.scene_kernel import bind
+from symrot.propagation.compiled_models import error_blocks
+from symrot.propagation.events.events import Event, Found, event_library_source, search, stepped, timed, uses_attitude
+from symrot.propagation.events.polynomials import Piece, fitted, fitted_pieces
+from symrot.propagation.steppers.cut_off import CutOff
+from symrot.propagation.steppers.stepping import Stats, both_sides
+
+if TYPE_CHECKING:
+    from symrot.propagation.motion import Motion
+    from symrot.propagation.switched.motion import SwitchedMotion
+
+__all__ = ["Eventful", "follow"]
+
+Floats = NDArray[np.float64]
+
+TURN_PER_PIECE = 2.0  # rad: how far a motion without steps rotates in the first pieces that are fitted
+SAMPLES_OF_RATE = 257  # by which the largest rate of such a motion is judged
+
+
+class Eventful(NamedTuple):
+    """A motion with events.
+
+    Attributes
+    ----------
+    t, states : arrays, shapes (n,) and (n, N)
+        Samples as they were asked for; in place of those beyond a terminal event, one at the event.
+    t_events, y_events : lists of arrays, shapes (k,) and (k, N)
+        Per event, in rising order of time: when it happened, and the states there.
+    kinds : list of lists of str
+        Per event: ``"rising"``, ``"falling"`` or ``"touching"``, as the motion goes away from its start.
+    ended : bool
+        Whether a terminal event ended the motion, on either side.
+    """
+
+    t: Floats
+    states: Floats
+    stats: Stats
+    t_events: list[Floats]
+    y_events: list[Floats]
+    kinds: list[list[str]]
+    ended: bool
+
+
+class _Side(NamedTuple):
+    """A motion to one side of its start: how to take it piece by piece, and its states at times on the way."""
+
+    pieces: Generator[Piece, None, None]
+    states: Callable[[Floats], Floats]
+    broken: list[PropagationError]
+    cost: Callable[[], tuple[int, int, int]]
+
+
+def follow(motion: "Motion", times: Floats, events: Sequence[Event]) -> Eventful:
+    """Return a motion at its sample times with the events on the way from the start to the first and last of them.
+
+    Raises
+    ------
+    InputError
+        If an event needs the attitude and the plan leaves it out, or if nothing of the motion changes.
+    CompilerError
+        If there is no C compiler.
+    PropagationError
+        If the motion cannot be followed to the last time and no terminal event comes before.
+    """
+    began, plan = perf_counter(), motion.plan
+    if uses_attitude(events) and not plan.structure["attitude"]:
+        raise InputError(
+            "events: the attitude is not computed, since neither a torque nor the output of the scene asks for it: "
+            'expected "quaternion" among output.quantities'
+        )
+    if not plan.states:
+        raise InputError(f"events: expected a motion with states that change, got the scene {plan.scene.name!r}")
+    quantities = motion.kernel.quantities
+    motion = motion if timed(quantities, events) else motion.on_clock(times)
+    zero, asked = motion.epoch, times.copy()
+    times = times - zero if zero else times
+    source = event_library_source(quantities, events, plan.states, *error_blocks(plan))
+    path, p = library.build(source, "events"), bind(motion.kernel.quantity_parameters, plan.constants)
+    states, kept = np.empty((len(times), len(plan.states))), np.zeros(len(times), dtype=bool)
+    found: list[tuple[Found, Floats]] = []
+    counts, ended = np.zeros(3, dtype=int), False
+    for part in both_sides(times, motion.start):
+        end = float(times[part[-1]])
+        side = _side(motion, end)
+        listed, stop = search(path, events, p, side.pieces, motion.start) if end != motion.start else ([], None)
+        if side.broken and stop is None:
+            error = side.broken[0]
+            raise error.later(zero) if isinstance(error, CutOff) else error
+        ended |= stop is not None
+        inside = part if stop is None else part[np.abs(times[part] - motion.start) <= abs(stop - motion.start)]
+        kept[inside] = True
+        states[inside] = side.states(times[inside])
+        rows = side.states(np.array([each.t for each in listed]))
+        if stop is not None and times[inside[-1:]].tolist() != [stop]:
+            last = part[len(inside)]  # the first sample beyond becomes the one at the event
+            kept[last], asked[last], states[last] = True, stop + zero, rows[-1]
+        found = _joined(found, list(zip(listed, rows, strict=True)), motion.start)
+        side.pieces.close()
+        counts += side.cost()
+    found.sort(key=lambda each: each[0].t)
+    own = [[each for each in found if each[0].event == number] for number in range(len(events))]
+    return Eventful(
+        asked[kept],
+        states[kept],
+        Stats(int(counts[0]), int(counts[1]), int(counts[2]), perf_counter() - began),
+        [np.array([each.t + zero for each, _ in group]) for group in own],
+        [np.array([row for _, row in group]).reshape(-1, len(plan.states)) for group in own],
+        [[each.kind for each, _ in group] for group in own],
+        ended,
+    )
+
+
+def _joined(
+    before: list[tuple[Found, Floats]], after: list[tuple[Found, Floats]], t0: float
+) -> list[tuple[Found, Floats]]:
+    """Put the two sides of a motion together: a zero at the start is one, a touch if both sides leave it alike."""
+    at_start = {each.event: each for each, _ in before if each.t == t0}
+    joined = [
+        pair for pair in before if pair[0].t != t0 or pair[0].event not in {e.event for e, _ in after if e.t == t0}
+    ]
+    for each, row in after:
+        other = at_start.get(each.event) if each.t == t0 else None
+        joined.append((each._replace(kind="touching") if other and other.kind == each.kind else each, row))
+    return joined
+
+
+def _side(motion: "Motion", end: float) -> _Side:
+    """Return the motion from its start to an end."""
+    method, plan = motion.choice.method.partition(":")[0], motion.plan
+    start, y0 = motion.start, np.array(plan.initial_state, dtype=np.float64)
+    broken: list[PropagationError] = []
+    if motion.switched:
+        pieces, path = cast("SwitchedMotion", motion).parts(end, broken)
+        return _Side((piece for piece in pieces), path, broken, lambda: path.stats[:3])
+    if method in ("taylor", "dop853"):
+        task = motion.stepping.again()
+        rows: list[Floats] = []
+
+        def states(times: Floats) -> Floats:
+            found = task.stepper.dense(np.concatenate(rows), times) if rows else np.empty((len(times), len(y0)))
+            found[times == start] = y0
+            return found
+
+        return _Side(stepped(task, end, broken, rows), states, broken, lambda: _cost(task))
+    blocks = error_blocks(plan)
+    if method == "scipy":
+        from symrot.propagation.steppers import fallback
+
+        recording = fallback.record(
+            motion.rates, motion.rate_parameters, y0, start, (start, end), motion.tolerance, **motion.scipy_options
+        )
+
+        def steps() -> Generator[Piece, None, None]:
+            for edges in recording.edges(start, end):
+                yield fitted(recording, edges, *blocks)
+
+        return _Side(steps(), recording, broken, lambda: recording.stats[:3])
+
+    def anywhere(times: Floats) -> Floats:
+        return motion.integrate(times)[0]
+
+    rates = anywhere(np.linspace(start, end, SAMPLES_OF_RATE))[:, : blocks[0][1]]
+    longest = min(TURN_PER_PIECE / max(float(np.abs(rates).max()), 1e-300), abs(end - start))
+    return _Side(fitted_pieces(anywhere, start, end, longest, *blocks), anywhere, broken, lambda: (0, 0, 0))
+
+
+def _cost(task: Any) -> tuple[int, int, int]:
+    return task.accepted, task.rejected, task.evaluations

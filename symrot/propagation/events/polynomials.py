@@ -1,0 +1,182 @@
+"""Motions as polynomials in time, piece by piece: what searches along a motion read, whatever made the motion.
+
+A row holds the states over one piece, in the layout of the steps of :file:`taylor.c`: t, h, the low part of t, a unit
+of time, then coefficient 0 of all N states, coefficient 1, and so on; powers of ``(time - t)/unit``. Taylor's steps are
+such rows; those of Dormand and Prince's dense output become such rows exactly, up to rounding; any other function of
+time is interpolated at Chebyshev points, on pieces that are halved until the polynomial has converged to rounding.
+"""
+
+import math
+from collections.abc import Callable, Generator, Sequence
+from functools import cache
+from itertools import pairwise
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symrot.errors import PropagationError
+
+__all__ = ["HEAD", "Piece", "fitted", "fitted_pieces", "rows_of"]
+
+Floats = NDArray[np.float64]
+
+HEAD = 4  # numbers before the coefficients of a row
+POINTS = 21  # of a fit, whose degree is one less
+EPS = float(np.finfo(float).eps)
+NOISE = 16.0  # units in the last place by which samples of a motion are taken to be off
+ROUGH = 1e-9  # relative: a fit that is off by more does not follow the motion
+SURE, HALVINGS = 6, 40  # of a piece: after the first number, ROUGH is enough; the second is the most
+MOST_PIECES = 20_000  # that one call may cut the motion into, beyond those asked for
+FEWEST, MOST = 16, 1024  # pieces fitted at a time
+
+
+class Piece(NamedTuple):
+    """Consecutive rows: row i holds from edge i to edge i + 1, s, in the order of the motion."""
+
+    edges: Floats
+    rows: Floats
+
+
+def rows_of(stepper: Any, record: Floats) -> Floats:
+    """Return the recorded steps of a stepper, of Taylor or DOP853, as rows."""
+    if stepper.name == "taylor":
+        return record
+    count = len(record)
+    terms = record[:, 2:].reshape(count, -1, stepper.states)
+    rows = np.empty((count, HEAD + terms[0].size if count else HEAD))
+    rows[:, 0], rows[:, 1], rows[:, 2], rows[:, 3] = record[:, 0], record[:, 1], 0.0, record[:, 1]
+    if count:
+        rows[:, HEAD:] = np.einsum("mk,nki->nmi", _nested(terms.shape[1]), terms).reshape(count, -1)
+    return rows
+
+
+@cache
+def _nested(terms: int) -> Floats:
+    """Return the matrix from coefficients of s, s r, s^2 r, s^2 r^2, ... with r = 1 - s to those of powers of s."""
+    matrix = np.zeros((terms, terms))
+    power = np.zeros(terms)
+    power[0] = 1.0
+    for k in range(terms):
+        matrix[:, k] = power
+        shifted = np.roll(power, 1)
+        shifted[0] = 0.0
+        power = shifted if k % 2 == 0 else power - shifted
+    return matrix
+
+
+@cache
+def _chebyshev() -> tuple[Floats, Floats, Floats]:
+    """Return points on [-1, 1], the matrix from values there to Chebyshev coefficients, and from these to powers."""
+    from numpy.polynomial import chebyshev
+
+    angles = (np.arange(POINTS) + 0.5) * (math.pi / POINTS)
+    to_series = np.cos(np.outer(np.arange(POINTS), angles)) * (2.0 / POINTS)
+    to_series[0] *= 0.5
+    to_powers = np.zeros((POINTS, POINTS))
+    for k, unit in enumerate(np.eye(POINTS)):
+        to_powers[: k + 1, k] = chebyshev.cheb2poly(unit[: k + 1])
+    return np.cos(angles), to_series, to_powers
+
+
+CHECKS = np.array([-1.0, -0.9037, -0.1618, 0.6543, 1.0])  # on [-1, 1]: where a fit is compared with the motion
+
+
+def fitted(
+    states: Callable[[Floats], Floats], edges: Floats, blocks: Sequence[int], scales: Sequence[float], depth: int = 0,
+    left: list[int] | None = None,
+) -> Piece:  # fmt: skip
+    """Return polynomials that follow a motion to rounding, between edges or, where they do not, between more of them.
+
+    Parameters
+    ----------
+    states : function
+        From times, shape (n,), to states, shape (n, N).
+    edges : array, shape (k + 1,)
+        Rising or falling.
+    blocks, scales
+        As :func:`symrot.propagation.steppers.dop853.translation_unit` takes them: what states are compared with.
+    depth, left : int, list of int
+        How often a piece was halved, and how many more pieces there may be: of the function itself.
+
+    Raises
+    ------
+    PropagationError
+        If some piece cannot be followed however short it is.
+    """
+    left = [MOST_PIECES + len(edges)] if left is None else left
+    left[0] -= len(edges) - 1
+    if left[0] < 0:
+        raise PropagationError(
+            f"expected a motion that polynomials can follow, but {MOST_PIECES} were not enough near "
+            f"t = {float(edges[0])!r} s"
+        )
+    points, to_series, to_powers = _chebyshev()
+    half, centre = 0.5 * np.diff(edges), edges[:-1] + 0.5 * np.diff(edges)
+    at = np.concatenate([points, CHECKS])
+    times = centre[:, None] + half[:, None] * at
+    times[:, POINTS], times[:, -1] = edges[:-1], edges[1:]
+    values = states(times.ravel()).reshape(len(half), len(at), -1)
+    count = values.shape[2]
+    series = np.einsum("kp,npi->nki", to_series, values[:, :POINTS])
+    size = np.empty((len(half), count))
+    for (low, high), scale in zip(pairwise(blocks), scales, strict=True):
+        largest = np.abs(values[:, :, low:high]).max(axis=(1, 2))
+        size[:, low:high] = np.maximum(largest, scale)[:, None]
+    rate = np.abs(values[:, :, : blocks[1]]).max(axis=(1, 2)) if scales[0] == 0.0 else np.zeros(len(half))
+    doubt = EPS * (NOISE + rate * np.abs(times).max(axis=1))[:, None] * size  # a phase is as good as the time
+    series[np.abs(series) < 0.25 * EPS * size[:, None, :]] = 0.0  # what is left of rounding would grow outside
+    powers = np.einsum("mk,nki->nmi", to_powers, series)
+    slope = np.abs(powers[:, 1]) / np.abs(half)[:, None]
+    doubt = doubt + EPS * np.abs(times).max(axis=1)[:, None] * slope  # the time itself is rounded
+    check = np.einsum("cm,nmi->nci", CHECKS[:, None] ** np.arange(POINTS), powers)
+    off = np.maximum(np.abs(check - values[:, POINTS:]).max(axis=1), np.abs(series[:, -3:]).max(axis=1))
+    bad = ~(off <= 4.0 * doubt).all(axis=1)
+    rows = np.empty((len(half), HEAD + POINTS * count))
+    rows[:, 0], rows[:, 1], rows[:, 2], rows[:, 3] = centre, 2.0 * half, 0.0, half
+    rows[:, HEAD:] = powers.reshape(len(half), -1)
+    if not bad.any():
+        return Piece(edges, rows)
+    if depth == HALVINGS:
+        if not (off <= ROUGH * size).all():
+            t = float(edges[int(bad.argmax())])
+            raise PropagationError(
+                f"events: expected a motion that polynomials can follow, but it is rough near t = {t!r} s"
+            )
+        return Piece(edges, rows)
+    parts, ends = [], [edges[:1]]
+    for i in range(len(half)):
+        piece = Piece(edges[i : i + 2], rows[i : i + 1])
+        middle = float(centre[i])
+        if bad[i] and (depth < SURE or (off[i] > ROUGH * size[i]).any()) and middle not in (edges[i], edges[i + 1]):
+            piece = fitted(states, np.array([edges[i], middle, edges[i + 1]]), blocks, scales, depth + 1, left)
+        parts.append(piece.rows)
+        ends.append(piece.edges[1:])
+    return Piece(np.concatenate(ends), np.concatenate(parts))
+
+
+def fitted_pieces(
+    states: Callable[[Floats], Floats],
+    start: float,
+    end: float,
+    longest: float,
+    blocks: Sequence[int],
+    scales: Sequence[float],
+) -> Generator[Piece, None, None]:
+    """Yield a motion that has no steps as polynomials, see :func:`fitted`; pieces as long as they can be.
+
+    ``longest``, s, is a first guess of the length.
+    """
+    side, t, most, count = math.copysign(1.0, end - start), start, 8.0 * longest, FEWEST
+    while t != end:
+        edges = t + side * longest * np.arange(count + 1)
+        if (end - edges[-1]) * side <= 0.01 * longest:
+            edges = np.append(edges[(end - edges) * side > 0.01 * longest], end)
+        edges = edges[np.concatenate([[True], np.diff(edges) != 0.0])]
+        piece = fitted(states, edges, blocks, scales)
+        yield piece
+        if len(piece.rows) > 1.5 * (len(edges) - 1):
+            longest *= 0.5
+        elif len(piece.rows) == len(edges) - 1 and not piece.rows[:, -5 * len(states(edges[:1])[0]) :].any():
+            longest = min(1.25 * longest, most)
+        t, count = float(edges[-1]), min(2 * count, MOST)

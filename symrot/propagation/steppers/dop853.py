@@ -1,0 +1,259 @@
+"""Dormand-Prince 8(5,3) around an emitted kernel: the C of :file:`dop853.c` driven from Python, one call per span.
+
+A library holds one kernel and the stepper compiled together (:func:`translation_unit`); :func:`integrate` follows a
+motion through sample times, :func:`record` keeps every step so that the motion can be asked for at any time later.
+
+Tolerance: the promise is about the trajectory, not about one step, see :func:`step_tolerance`.
+
+Time: a double keeps 53 bits of ``a*t``, so that phases of a torque lose digits as the time grows, which costs accuracy
+and, since errors look rough to the step control, steps. A kernel whose clock can be moved (a :data:`Clock`) is
+therefore given the time since an epoch that follows the motion, every :data:`WINDOW` steps.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+from functools import cache
+from typing import Any, ClassVar
+
+from numpy.typing import ArrayLike
+
+from symrot.build.sources import c_text
+from symrot.errors import InputError
+from symrot.propagation.steppers.stepping import (
+    MAX_STEPS,
+    NOT_FINITE,
+    NOT_FINITE_SENTENCE,
+    PAUSED,
+    UNDERFLOW,
+    Floats,
+    PathLike,
+    Recording,
+    Stats,
+    Stepper,
+    Stretch,
+    Task,
+    check_tolerance,
+)
+
+__all__ = ["MAX_STEPS", "Recording", "Stats", "integrate", "record", "step_tolerance", "translation_unit"]
+
+STEP_SHARE, NATURAL_TIMES = 0.14, 0.16  # of the tolerance; of the span, see step_tolerance
+TERMS = 8  # of the dense output
+DENSE_ORDER = 7  # to which it follows the states
+NO_ENCLOSURE = "#define SYMROT_ENCLOSED 0\n#define SYMROT_DEPENDS 0\n"
+ENCLOSURE = "/* ENCLOSURE */\n"  # where dop853.c takes enclosure.h
+ROUGH = "#define SYMROT_ROUGH\n"  # corners, as of a root at zero, are left to the control of errors: see disc.h
+MIDDLE_REACH = 3  # of the discs of symrot.codegen.enclosure.terms.REACHES: the one to begin with
+
+Clock = Callable[[float], tuple[PathLike, Sequence[float]]]
+"""From an epoch, s, to the library of a kernel that counts its time from there, and the parameters of that kernel."""
+
+WINDOW = 2048
+"""Steps after which the clock of a kernel is moved: phases on it stay below some 1e3 rad, and setting it costs a few
+per cent of the steps. Their errors are alike in all windows, and add up: with 8192 they were five times as large."""
+
+
+def step_tolerance(tolerance: float) -> tuple[float, float]:
+    """Return the error allowed in one step, and the fraction of the span that earns a step all of it.
+
+    A shorter step is allowed its share. Steps are about ``tolerance^(1/8)`` times as long as the motion's natural time,
+    so the second number makes the allowance a matter of natural times in the span, not of steps: the error at the end
+    then hardly depends on tolerance or span, except where the motion itself amplifies errors.
+
+    Both constants are calibrated on free asymmetric bodies, through flips about the intermediate axis too, and on heavy
+    tops, against 40-digit references (``tests/test_dop853.py``): errors stay below 5 times the tolerance.
+    """
+    check_tolerance(tolerance)
+    return tolerance * STEP_SHARE, tolerance**0.125 * NATURAL_TIMES
+
+
+def translation_unit(
+    kernel: str,
+    name: str,
+    states: int,
+    parameters: int,
+    blocks: Sequence[int] = (0, 3, 7),
+    scales: Sequence[float] = (0.0, 1.0),
+    enclosure: str = NO_ENCLOSURE,
+) -> str:
+    """Return the C source of a library: the kernel and the stepper around it.
+
+    Parameters
+    ----------
+    kernel : str
+        C source that defines ``static inline void name(double t, const double y[], const double p[], double dy[])``.
+    name : str
+        The kernel's name in C.
+    states, parameters : int
+        Lengths of y and p.
+    blocks : sequence of int
+        Edges of the blocks of states whose errors are judged apart, from 0 to ``states``: omega, then quaternion.
+    scales : sequence of float
+        One per block: 0 judges its error against the block's own size (a rate), a positive number against that number
+        (1 for a unit quaternion, or for an angle in rad).
+    enclosure : str
+        What :func:`symrot.codegen.enclosure.terms.enclosure_source` prints of the kernel for order :data:`DENSE_ORDER`:
+        steps are held to what it proves.
+    """
+    edges = list(blocks)
+    if edges[:1] != [0] or edges[-1] != states or edges != sorted(set(edges)) or len(scales) != len(edges) - 1:
+        raise InputError(
+            f"blocks of {states} states rise from 0 to {states} and have one scale each; got blocks {edges} and "
+            f"scales {list(scales)}"
+        )
+    bounds = c_text("propagation/enclosures/enclosure.h")
+    return "\n".join(
+        (
+            kernel,
+            f"#define SYMROT_STATES {states}",
+            f"#define SYMROT_PARAMETERS {parameters}",
+            f"#define SYMROT_RHS {name}",
+            f"#define SYMROT_BLOCKS {{{', '.join(map(str, edges))}}}",
+            f"#define SYMROT_SCALES {{{', '.join(map(repr, map(float, scales)))}}}",
+            c_text("propagation/steppers/dop853_tableau.h"),
+            ROUGH,
+            c_text("propagation/enclosures/disc.h"),
+            enclosure,
+            c_text("propagation/steppers/dop853.c").replace(ENCLOSURE, bounds),
+        )
+    )
+
+
+def integrate(
+    library: PathLike,
+    p: ArrayLike,
+    y0: ArrayLike,
+    t0: float,
+    times: ArrayLike,
+    tolerance: float,
+    *,
+    breaks: Sequence[float] = (),
+    max_step: float = math.inf,
+    max_steps: int = MAX_STEPS,
+) -> tuple[Floats, Stats]:
+    """Return the states at the sample times, and what it cost.
+
+    Parameters
+    ----------
+    library : path
+        Built from :func:`translation_unit`.
+    p, y0 : arrays, shapes (parameters,) and (N,)
+        Parameters of the kernel; state at ``t0``.
+    t0 : float
+        Initial time, s.
+    times : array, shape (n,)
+        Sample times, s, in any order, before or after ``t0``, repeated or not. The steps depend on the first and last
+        of them only.
+    tolerance : float
+        Aim for the error of the whole trajectory, see :func:`step_tolerance`.
+    breaks : sequence of float
+        Times at which the kernel jumps; the motion is stepped exactly to each and started anew behind it.
+    max_step : float
+        Longest step, s, where the kernel has features that a longer one could pass over.
+    max_steps : int
+        Most steps to try before giving up.
+
+    Returns
+    -------
+    states : array, shape (n, N), C layout
+    stats : Stats
+
+    Raises
+    ------
+    InputError
+        If a shape, a time or the tolerance cannot be used.
+    PropagationError
+        If the motion cannot be followed to the end; the sentence says how far it came.
+    """
+    return task(library, p, y0, t0, tolerance, max_step, max_steps, breaks).sample(times)
+
+
+def record(
+    library: PathLike,
+    p: ArrayLike,
+    y0: ArrayLike,
+    t0: float,
+    span: tuple[float, float],
+    tolerance: float,
+    *,
+    breaks: Sequence[float] = (),
+    max_step: float = math.inf,
+    max_steps: int = MAX_STEPS,
+) -> Recording:
+    """Return the motion over ``span`` as a function of time; arguments as :func:`integrate`.
+
+    The same steps are taken as by :func:`integrate` to the ends of the span, so the two agree where they overlap. One
+    step takes 8 N + 2 numbers of memory.
+    """
+    return task(library, p, y0, t0, tolerance, max_step, max_steps, breaks).record(span)
+
+
+def task(
+    library: PathLike,
+    p: ArrayLike,
+    y0: ArrayLike,
+    t0: float,
+    tolerance: float,
+    max_step: float = math.inf,
+    max_steps: int = MAX_STEPS,
+    breaks: Sequence[float] = (),
+    clock: Clock | None = None,
+) -> Task:
+    """Return a motion to follow; arguments as :func:`integrate`, and the clock of its kernel if it can be moved."""
+    found = _Clocked if clock else Task
+    task = found(_stepper, library, p, y0, t0, tolerance, max_step, max_steps, breaks)
+    if isinstance(task, _Clocked):
+        task.clock = clock
+    return task
+
+
+class _Clocked(Task):
+    """A motion whose kernel counts its time from an epoch that follows it."""
+
+    clock: Any
+
+    def hand(self, run: Any) -> tuple[Callable[..., Any], Any, int]:
+        """Return what steps a run further, after moving the clock where it shows too much."""
+        tried = self.stepper.tried(run)
+        if not hasattr(run, "moved"):
+            run.held, run.moved = (self.stepper.run, self.p), -WINDOW if run.t else 0
+        if tried - run.moved >= WINDOW:
+            path, p = self.clock(run.t)
+            stepper = _stepper(str(path))
+            run.held, run.moved, run.epoch = (stepper.run, stepper.new_parameters(*p)), max(tried, 0), run.t
+        return *run.held, WINDOW - (tried - run.moved)
+
+
+class _Stepper(Stepper):
+    """A library of :func:`translation_unit`."""
+
+    name = "dop853"
+    reals = ("t", "h", "growth", "stop", "first", "last", "tolerance", "pace", "max_step", "proven", "epoch")
+    integers = ("reach", "next", "accepted", "rejected", "evaluations", "recorded")
+    vectors = ("y", "carry", "dy")
+    steps_per_call, rows_per_call = 100_000, 256
+    reasons: ClassVar = {
+        NOT_FINITE: NOT_FINITE_SENTENCE,
+        UNDERFLOW: "the step shrank to nothing, as it does before a singularity or a jump",
+        PAUSED: "{steps} steps were not enough; the next would be {run.h!r} s",
+    }
+    allowance = staticmethod(step_tolerance)
+
+    def row_length(self) -> int:
+        return 2 + TERMS * self.states
+
+    def enter(self, run: Any, stretch: Stretch, allowed: float) -> None:
+        run.h, run.first, run.last, run.tolerance = 0.0, stretch.first, stretch.last, allowed
+        run.proven, run.reach = 0.0, MIDDLE_REACH
+
+    @staticmethod
+    def tried(run: Any) -> int:
+        found: int = run.accepted + run.rejected
+        return found
+
+    @staticmethod
+    def cost(run: Any) -> tuple[int, int, int]:
+        return run.accepted, run.rejected, run.evaluations
+
+
+_stepper = cache(_Stepper)

@@ -1,0 +1,340 @@
+"""The SciPy fallback: any method of ``scipy.integrate.solve_ivp``, called as :mod:`symrot.propagation.steppers.dop853` is.
+
+For where there is no C compiler, and for those who want LSODA. The tolerance means the same as far as SciPy allows: the
+error of every block of states against the largest size the block has on the way, found by a first coarse pass, and
+shared out over the length of the motion. SciPy is imported when a motion is first followed.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+from itertools import pairwise
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from symrot.errors import InputError
+from symrot.propagation import progress
+from symrot.propagation.enclosures.step_limit import Deviations, longest_followed
+from symrot.propagation.steppers.cut_off import CutOff, add_samples, why_hopeless
+from symrot.propagation.steppers.stepping import (
+    NOT_FINITE_SENTENCE,
+    Floats,
+    Recording,
+    Stats,
+    Stretch,
+    both_sides,
+    check_longest_step,
+    check_tolerance,
+    stretches,
+)
+
+__all__ = ["METHODS", "FallbackRecording", "integrate", "method_name", "record"]
+
+Rhs = Callable[[float, Floats, Floats], ArrayLike]
+Piece = tuple[float, float, Any]  # from, to, SciPy's solution between
+
+METHODS = {"DOP853": 0.1, "RK45": 0.1, "RK23": 0.1, "Radau": 1.0, "BDF": 0.01, "LSODA": 0.05}
+"""SciPy's methods, and the share of the tolerance that one step of each is given; calibrated as in dop853.py."""
+
+DEFAULT = "DOP853"
+FIT_ORDER = 7  # of the polynomial that tells how the states move in a step
+SLACK = 1e4  # as in dop853.c
+HELD, REGAIN = 0.5, 1.5  # a step of that part of the longest allowed was held back; the next may be so much longer
+STUCK = "the step shrank to nothing, as it does before a singularity"
+PILOT_TURN = 1e-3  # rad over the whole span
+PILOT_TOLERANCE = 1e-3  # of the coarse pass
+PILOT_STEPS = 10  # a motion of so many coarse steps may spend the whole share in every step
+MAX_EVALUATIONS = 1_000_000  # unless another limit is given: half a minute
+PATIENCE = 50_000  # evaluations after each of which the pace is judged
+MAX_BROKEN = 1000  # derivatives that are not finite, before the motion is given up
+_NODES = 0.5 - 0.5 * np.cos(np.pi * np.arange(1, FIT_ORDER + 1) / FIT_ORDER)  # Chebyshev's, without the start
+_FIT = np.linalg.inv(_NODES[:, None] ** np.arange(1, FIT_ORDER + 1))  # from rises there to coefficients
+SMALLEST_RTOL = 100 * float(np.finfo(float).eps)  # SciPy takes no smaller one
+
+
+def method_name(text: str) -> str:
+    """Return SciPy's name of a method given as ``"scipy"``, ``"scipy:LSODA"`` or ``"LSODA"``.
+
+    Raises
+    ------
+    InputError
+        If SciPy has no such method; the sentence lists those it has.
+    """
+    name = text.removeprefix("scipy").removeprefix(":") or DEFAULT
+    if name not in METHODS:
+        raise InputError(f"SciPy's methods are {', '.join('scipy:' + known for known in METHODS)}; got {text!r}")
+    return name
+
+
+def integrate(
+    rhs: Rhs,
+    p: ArrayLike,
+    y0: ArrayLike,
+    t0: float,
+    times: ArrayLike,
+    tolerance: float,
+    *,
+    method: str = DEFAULT,
+    blocks: Sequence[int] = (0, 3, 7),
+    scales: Sequence[float] = (0.0, 1.0),
+    breaks: Sequence[float] = (),
+    max_step: float = math.inf,
+    max_steps: int = MAX_EVALUATIONS,
+    deviations: Deviations | None = None,
+) -> tuple[Floats, Stats]:
+    """Return the states at the sample times, shape (n, N), and what it cost.
+
+    As :func:`symrot.propagation.steppers.dop853.integrate`, but for these:
+
+    Parameters
+    ----------
+    rhs : callable
+        ``rhs(t, y, p)`` returns dy, shape (N,).
+    method : str
+        As :func:`method_name` takes it.
+    blocks, scales
+        As :func:`symrot.propagation.steppers.dop853.translation_unit` takes them; the last edge may lie beyond N.
+    max_steps : int
+        Most evaluations of ``rhs``.
+    deviations : Deviations, optional
+        Of the terms of ``rhs`` that may hide a feature: steps are held to what they prove.
+    """
+    times = np.asarray(times, dtype=np.float64)
+    if times.ndim != 1 or not np.isfinite(times).all():
+        raise InputError(f"sample times are a sequence of finite numbers, got {times!r}")
+    task = _Task(rhs, p, y0, t0, tolerance, method, blocks, scales, breaks, max_step, max_steps, deviations)
+    states = np.empty((len(times), len(task.y0)))
+    done = np.empty(0, dtype=np.intp)
+    for part in both_sides(times, task.t0):
+        try:
+            states[part] = task.follow(times[part])
+        except (CutOff, KeyboardInterrupt) as error:
+            inside, own = task.partial(times[part])
+            add_samples(error, part[inside], own)
+            add_samples(error, done, states[done])
+            raise
+        done = np.concatenate([done, part])
+    return states, task.stats()
+
+
+def record(
+    rhs: Rhs,
+    p: ArrayLike,
+    y0: ArrayLike,
+    t0: float,
+    span: tuple[float, float],
+    tolerance: float,
+    *,
+    method: str = DEFAULT,
+    blocks: Sequence[int] = (0, 3, 7),
+    scales: Sequence[float] = (0.0, 1.0),
+    breaks: Sequence[float] = (),
+    max_step: float = math.inf,
+    max_steps: int = MAX_EVALUATIONS,
+    deviations: Deviations | None = None,
+) -> "FallbackRecording":
+    """Return the motion over ``span`` as a function of time; see :func:`symrot.propagation.steppers.dop853.record`."""
+    task = _Task(rhs, p, y0, t0, tolerance, method, blocks, scales, breaks, max_step, max_steps, deviations)
+    return FallbackRecording(task, min(*span, task.t0), max(*span, task.t0))
+
+
+class FallbackRecording(Recording):
+    """A motion that SciPy has followed; see :class:`symrot.propagation.steppers.stepping.Recording`."""
+
+    def __init__(self, task: "_Task", low: float, high: float) -> None:
+        self._pieces = [*task.solutions(low), *task.solutions(high)]
+        super().__init__(task.t0, task.y0, (low, high), task.stats())
+
+    def edges(self, start: float, end: float) -> list[Floats]:
+        """Return the ends of SciPy's steps from a start to an end, one array for each stretch, in that order."""
+        side = 1.0 if end >= start else -1.0
+        chosen = [
+            np.sort(np.asarray(solution.ts, dtype=np.float64) * side) * side
+            for low, high, solution in self._pieces
+            if low >= min(start, end) and high <= max(start, end)
+        ]
+        return sorted(chosen, key=lambda edges: side * float(edges[0]))
+
+    def _fill(self, times: Floats, states: Floats) -> None:
+        _evaluate(self._pieces, times, states)
+
+
+def _evaluate(pieces: list[Piece], times: Floats, states: Floats) -> None:
+    """Write the states at the times that lie in the pieces."""
+    for low, high, solution in pieces:
+        chosen = (times >= low) & (times <= high)
+        if chosen.any():
+            states[chosen] = solution(times[chosen]).T
+
+
+class _Task:
+    """One motion to follow with SciPy."""
+
+    def __init__(
+        self,
+        rhs: Rhs,
+        p: ArrayLike,
+        y0: ArrayLike,
+        t0: float,
+        tolerance: float,
+        method: str,
+        blocks: Sequence[int],
+        scales: Sequence[float],
+        breaks: Sequence[float],
+        max_step: float,
+        max_steps: int,
+        deviations: Deviations | None,
+    ) -> None:
+        self.began = perf_counter()
+        self.method = method_name(method)
+        self.rhs, self.p = rhs, np.array(p, dtype=np.float64)
+        self.y0, self.t0 = np.array(y0, dtype=np.float64), float(t0)
+        if self.y0.ndim != 1 or not all(np.isfinite(given).all() for given in (self.t0, self.y0, self.p)):
+            raise InputError(f"initial time, state and parameters are finite numbers, got {t0!r}, {y0!r}, {p!r}")
+        check_tolerance(tolerance)
+        check_longest_step(max_step)
+        self.tolerance, self.breaks, self.deviations = tolerance, sorted(map(float, breaks)), deviations
+        self.max_step, self.max_evaluations = max_step, max_steps
+        self.blocks = [
+            (slice(low, min(high, len(self.y0))), scale)
+            for (low, high), scale in zip(pairwise(blocks), scales, strict=True)
+            if low < len(self.y0)
+        ]
+        self.steps = self.evaluations = self.broken = 0
+        self.pieces: list[Piece] = []  # of the pass that runs
+        self.final = False  # whether that is the pass that counts
+        self.mark = (0, self.t0)  # evaluations and time when the pace was judged last
+        if not np.isfinite(self._derivative(self.t0, self.y0)).all():
+            raise CutOff(self.t0, NOT_FINITE_SENTENCE)
+
+    def stats(self) -> Stats:
+        return Stats(self.steps, 0, self.evaluations, perf_counter() - self.began)
+
+    def follow(self, times: Floats) -> Floats:
+        """Return the states at times sorted away from t0, all on one side of it."""
+        found = np.empty((len(times), len(self.y0)))
+        _evaluate(self.solutions(float(times[-1])), times, found)
+        found[times == self.t0] = self.y0
+        return found
+
+    def partial(self, times: Floats) -> tuple[NDArray[np.intp], Floats]:
+        """Return numbers and states of the times, sorted away from t0, that lie before the motion was cut off."""
+        pieces = self.pieces if self.final else []  # the coarse pass is no result
+        way = max((max(abs(low - self.t0), abs(high - self.t0)) for low, high, _ in pieces), default=0.0)
+        inside = np.flatnonzero(np.abs(times - self.t0) <= way)
+        states = np.empty((len(inside), len(self.y0)))
+        _evaluate(pieces, times[inside], states)
+        states[times[inside] == self.t0] = self.y0
+        return inside, states
+
+    def solutions(self, end: float) -> list[Piece]:
+        """Return (low, high, solution) for each stretch between switching times, from t0 to the end."""
+        if end == self.t0:
+            return []
+        slowest = PILOT_TURN / abs(end - self.t0)  # rad/s: nothing turns the body that turns it less
+        bars = [
+            SLACK * PILOT_TOLERANCE * (scale if scale > 0.0 else max(float(np.linalg.norm(self.y0[block])), slowest))
+            for block, scale in self.blocks
+        ]
+        self.final = False
+        pilot = self._stretches(end, PILOT_TOLERANCE, np.full(len(self.y0), PILOT_TOLERANCE), bars)
+        coarse = sum(len(solution.ts) - 1 for _, _, solution in pilot)
+        path = np.concatenate([np.abs(solution(solution.ts)) for _, _, solution in pilot], axis=1)
+        share = self.tolerance * METHODS[self.method] * min(1.0, PILOT_STEPS / coarse)
+        allowed, bars = np.empty(len(self.y0)), []
+        for block, scale in self.blocks:
+            size = scale if scale > 0.0 else float(np.sqrt((path[block] ** 2).sum(axis=0).max()))
+            bars.append(SLACK * share * max(size, slowest))
+            # SciPy takes the mean over all states, we the sum over a block
+            allowed[block] = share * max(size, slowest) / math.sqrt(len(self.y0))
+        self.final = True
+        return self._stretches(end, SMALLEST_RTOL, allowed, bars)
+
+    def _stretches(self, end: float, rtol: float, atol: Floats, bars: list[float]) -> list[Piece]:
+        y, self.pieces, self.mark = self.y0, [], (self.evaluations, self.t0)
+        for stretch in stretches(self.t0, end, self.breaks):
+            with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+                self._follow_stretch(stretch, y, rtol, atol, bars)
+            y = self.pieces[-1][2](stretch.stop)
+        return self.pieces
+
+    def _follow_stretch(self, stretch: Stretch, y: Floats, rtol: float, atol: Floats, bars: list[float]) -> None:
+        """Add SciPy's solution over a stretch to the pieces, as far as it comes; no step longer than is proven."""
+        import scipy.integrate
+
+        earliest, latest = min(stretch.first, stretch.last), max(stretch.first, stretch.last)
+        new_solver: Any = getattr(scipy.integrate, self.method)
+
+        def begin(t: float, y: Floats, longest: float) -> Any:
+            def rate(t: float, y: Floats) -> Floats:
+                return self._derivative(min(max(t, earliest), latest), y)
+
+            return new_solver(rate, t, y, stretch.stop, rtol=rtol, atol=atol, max_step=longest)
+
+        times: list[float] = [stretch.start]
+        interpolants: list[Any] = []
+        try:
+            self._steps(begin, y, stretch, bars, times, interpolants)
+        finally:
+            if interpolants:
+                lagging = self.method in ("BDF", "LSODA")  # their steps hold the end that they begin at
+                solution = scipy.integrate.OdeSolution(times, interpolants, alt_segment=lagging)
+                self.pieces.append((min(times[0], times[-1]), max(times[0], times[-1]), solution))
+
+    def _steps(
+        self, begin: Any, y: Floats, stretch: Stretch, bars: list[float], times: list[float], interpolants: list[Any]
+    ) -> None:
+        longest = self.max_step
+        solver = begin(stretch.start, y, longest)
+        while solver.status == "running":
+            progress.report(float(solver.t), self.t0, stretch.stop)
+            before, y = float(solver.t), solver.y.copy()
+            self._judge_pace(before, stretch.stop)
+            message = solver.step()
+            if solver.status == "failed" or not np.isfinite(solver.y).all():
+                raise CutOff(float(solver.t), message or NOT_FINITE_SENTENCE, stretch.stop)
+            dense, step = solver.dense_output(), float(solver.t - before)
+            proven = step if self.deviations is None else self._proven(before, y, dense, step, bars)
+            if proven != step:
+                if abs(proven) <= 4.0 * math.ulp(before):
+                    raise CutOff(before, STUCK, stretch.stop)
+                longest = abs(proven)
+                solver = begin(before, y, longest)
+                continue
+            times.append(solver.t)
+            interpolants.append(dense)
+            self.steps += 1
+            if longest < self.max_step and abs(step) > HELD * longest and solver.status == "running":
+                longest = min(REGAIN * longest, self.max_step)
+                solver = begin(solver.t, solver.y.copy(), longest)
+
+    def _judge_pace(self, t: float, stop: float) -> None:
+        """Give the motion up if the rest would take far more evaluations than the limit."""
+        spent = self.evaluations - self.mark[0]
+        if spent >= PATIENCE:
+            reason = why_hopeless(spent, abs(t - self.mark[1]), abs(stop - t), self.max_evaluations)
+            if reason:
+                raise CutOff(t, reason, stop)
+            self.mark = (self.evaluations, t)
+
+    def _proven(self, t: float, y: Floats, dense: Any, step: float, bars: list[float]) -> float:
+        """Return the longest part of a step that is proven to miss nothing."""
+        assert self.deviations is not None
+        path = np.abs(_FIT @ (dense(t + _NODES * step).T - y)).T.tolist()
+        edges = [0, *(block.stop for block, _ in self.blocks)]
+        return longest_followed(self.deviations, t, y.tolist(), path, step, bars, edges, FIT_ORDER)
+
+    def _derivative(self, t: float, y: Floats) -> Floats:
+        self.evaluations += 1
+        if self.evaluations > self.max_evaluations:
+            raise CutOff(float(t), f"{self.max_evaluations} evaluations were not enough")
+        dy = np.asarray(self.rhs(t, y, self.p), dtype=np.float64)
+        if dy.shape != self.y0.shape:
+            raise InputError(f"the right-hand side returns {len(self.y0)} numbers, got an array of shape {dy.shape}")
+        if not math.isfinite(dy.sum()):
+            self.broken += 1
+            if self.broken > MAX_BROKEN:
+                raise CutOff(float(t), NOT_FINITE_SENTENCE)
+        return dy

@@ -1,0 +1,484 @@
+"""What the steppers share: a loaded library, a motion followed through sample times or recorded, and the sentences.
+
+:mod:`symrot.propagation.steppers.dop853` and :mod:`symrot.propagation.steppers.taylor` each say what is their own in a :class:`Stepper`;
+:mod:`symrot.propagation.steppers.fallback` takes the order of times, the switching times and the sentences from here.
+"""
+
+import ctypes
+import math
+import os
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator, Sequence
+from functools import cached_property
+from itertools import pairwise
+from operator import le
+from time import perf_counter
+from typing import Any, ClassVar, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from symrot.build.address import address
+from symrot.errors import CompilerError, InputError
+from symrot.propagation import progress
+from symrot.propagation.steppers.cut_off import CutOff, Samples, add_samples, why_hopeless, why_stuck
+
+__all__ = [
+    "DONE",
+    "MAX_STEPS",
+    "NOT_FINITE",
+    "NOT_FINITE_SENTENCE",
+    "PAUSED",
+    "UNDERFLOW",
+    "Floats",
+    "PathLike",
+    "Recording",
+    "Stats",
+    "SteppedRecording",
+    "Stepper",
+    "Stretch",
+    "Task",
+    "both_sides",
+    "check_longest_step",
+    "check_tolerance",
+    "rising",
+    "stretches",
+]
+
+MAX_STEPS = 100_000_000  # of a motion, unless another limit is given: a minute or two
+MOST_RECORDED = 2 << 30  # bytes, of the steps of a dense output
+PATIENCE = 200_000  # steps after each of which the pace is judged
+FEW = 40  # sample times
+SLIVER = 2.0**-100  # of a stretch: a time that no formula tells from its end
+
+Floats = NDArray[np.float64]
+PathLike = str | os.PathLike[str]
+
+DONE, PAUSED, FULL, NOT_FINITE, UNDERFLOW = range(5)  # what a stepper in C returns
+NOT_FINITE_SENTENCE = "its rate of change is not finite there"
+
+
+class Stats(NamedTuple):
+    """What a propagation cost: steps kept and tried again, evaluations of the kernel, seconds in all.
+
+    ``switches`` counts changes of the sequence of Euler angles, where angles are the state, and those of torques with
+    switches, whose times, s, are ``switching_times``.
+    """
+
+    accepted: int
+    rejected: int
+    evaluations: int
+    seconds: float
+    switches: int = 0
+    switching_times: tuple[float, ...] = ()
+
+
+# ------------------------------------------------------------------------------------------------ checks and sentences
+
+
+def check_tolerance(tolerance: float) -> None:
+    """Refuse a tolerance that is not between 0 and 1."""
+    if not 0.0 < tolerance < 1.0:
+        raise InputError(f"the tolerance lies between 0 and 1, got {tolerance}")
+
+
+def check_longest_step(max_step: float) -> None:
+    """Refuse a longest step, s, that is not positive; infinity is none."""
+    if not max_step > 0.0:
+        raise InputError(f"the longest step is a positive number of seconds, got {max_step}")
+
+
+def _numbers(what: str, values: ArrayLike, length: int) -> list[float]:
+    array = np.asarray(values, dtype=np.float64)
+    if array.shape != (length,):
+        raise InputError(f"this kernel takes {length} {what}, got an array of shape {array.shape}")
+    numbers: list[float] = array.tolist()
+    if not math.isfinite(sum(numbers)) and not all(map(math.isfinite, numbers)):
+        raise InputError(f"the {what} must be finite numbers, got {numbers}")
+    return numbers
+
+
+# ------------------------------------------------------------------------------------------------ times
+
+
+class Stretch(NamedTuple):
+    """A part of a span without switching times inside, from start to stop, s.
+
+    ``first`` and ``last`` are the times given to the kernel at the two ends: just inside where it switches there.
+    """
+
+    start: float
+    stop: float
+    first: float
+    last: float
+
+
+def stretches(t0: float, end: float, breaks: Sequence[float]) -> list[Stretch]:
+    """Cut the span from t0 to an end on either side of it at the switching times, which are sorted."""
+    if not breaks:
+        return [Stretch(t0, end, t0, end)]
+    low, high = min(t0, end), max(t0, end)
+    inside, known = [time for time in breaks if low < time < high], set(breaks)
+    edges = [t0, *(inside if end >= t0 else reversed(inside)), end]
+    return [
+        Stretch(
+            start,
+            stop,
+            _inside(start, stop) if start in known else start,
+            _inside(stop, start) if stop in known else stop,
+        )
+        for start, stop in pairwise(edges)
+    ]
+
+
+def _inside(edge: float, other: float) -> float:
+    """Return a time just inside an end of a stretch; near 0 a sliver, since rates there choose the first step."""
+    time = edge + SLIVER * (other - edge)
+    return time if time != edge else math.nextafter(edge, other)
+
+
+def both_sides(times: Floats, t0: float) -> Iterator[NDArray[np.intp]]:
+    """Yield the indices of the times from t0 on, then of those before it, each sorted away from t0; none empty."""
+    order = np.argsort(times, kind="stable")
+    first_after = int(np.searchsorted(times[order], t0))
+    for part in (order[first_after:], order[:first_after][::-1]):
+        if len(part):
+            yield part
+
+
+# ------------------------------------------------------------------------------------------------ a motion at any time
+
+
+class Recording(ABC):
+    """A motion that can be evaluated at any time of its span: ``recording(t)``.
+
+    ``recording(t)`` returns the states at a time or an array of times, shape (N,) or (n, N); a time outside ``span`` is
+    an InputError. ``stats`` says what the recording cost; ``epoch`` is what other clocks show where its own shows 0.
+    """
+
+    epoch = 0.0
+
+    def __init__(self, t0: float, y0: Sequence[float] | Floats, span: tuple[float, float], stats: Stats) -> None:
+        self._t0, self._y0, self.span, self.stats = t0, y0, span, stats
+
+    @abstractmethod
+    def _fill(self, times: Floats, states: Floats) -> None:
+        """Write the states at times of the span other than t0."""
+
+    def __call__(self, t: ArrayLike) -> Floats:
+        times = np.asarray(t, dtype=np.float64)
+        flat = np.ascontiguousarray(times).reshape(-1)
+        outside = ~((flat >= self.span[0]) & (flat <= self.span[1]))
+        if outside.any():
+            low, high, asked = (time + self.epoch for time in (*self.span, float(flat[outside][0])))
+            raise InputError(f"the motion is known from {low} to {high} s, asked for {asked} s")
+        states = np.empty((len(flat), len(self._y0)))
+        self._fill(flat, states)
+        states[flat == self._t0] = self._y0
+        return states.reshape(*times.shape, len(self._y0))
+
+
+class SteppedRecording(Recording):
+    """A recording made of the steps of a stepper in C."""
+
+    def __init__(self, task: "Task", backward: Floats, forward: Floats) -> None:
+        ends = [float(rows[-1, 0] + rows[-1, 1]) if len(rows) else task.t0 for rows in (backward, forward)]
+        super().__init__(task.t0, task.y0, (ends[0], ends[1]), task.stats())
+        self._dense, self._backward, self._forward = task.stepper.dense, backward, forward
+
+    def _fill(self, times: Floats, states: Floats) -> None:
+        for rows, chosen in ((self._backward, times < self._t0), (self._forward, times > self._t0)):
+            if chosen.any():
+                states[chosen] = self._dense(rows, times[chosen])
+
+
+# ------------------------------------------------------------------------------------------------ the steppers in C
+
+
+class Stepper(ABC):
+    """The functions of one loaded library; what is its method's own stands in a subclass.
+
+    The library exports ``symrot_NAME``, ``symrot_NAME_dense`` and ``symrot_NAME_sizes``.
+    """
+
+    name: ClassVar[str]
+    # The fields of symrot_run in C: numbers, integers, and vectors of one number per state.
+    reals: ClassVar[tuple[str, ...]]
+    integers: ClassVar[tuple[str, ...]]
+    vectors: ClassVar[tuple[str, ...]]
+    tail: ClassVar[tuple[str, ...]] = ()  # a vector at the end, of a length that the library says
+    steps_per_call: ClassVar[int]  # some 20 ms in C, after which Python can see an interrupt
+    rows_per_call: ClassVar[int]  # steps recorded per call
+    reasons: ClassVar[dict[int, str]]  # why a motion cannot be followed, per status; PAUSED: not in so many steps
+
+    def __init__(self, path: str) -> None:
+        try:
+            self._library = ctypes.CDLL(path)
+        except OSError as error:
+            raise _no_stepper(path, error) from error
+        self.path = path
+        pointer, integer = ctypes.c_void_p, ctypes.c_int64
+        self.run = self._function(
+            "", ctypes.c_int, pointer, pointer, pointer, integer, pointer, pointer, integer, integer
+        )
+        self._dense = self._function("_dense", None, pointer, integer, pointer, integer, pointer)
+        sizes = (integer * 4)()
+        self._function("_sizes", None, pointer)(sizes)
+        self.states, self.parameters, self.order, rest = sizes
+        self.row = self.row_length()
+        real = ctypes.c_double
+        kinds = (
+            (self.reals, real), (self.integers, integer), (self.vectors, real * self.states), (self.tail, real * rest)
+        )  # fmt: skip
+        fields = [(name, kind) for names, kind in kinds for name in names]
+        self.new_run: Any = type("Run", (ctypes.Structure,), {"_fields_": fields})
+        self.new_parameters: Any = ctypes.c_double * self.parameters
+
+    def _function(self, ending: str, result: Any, *arguments: Any) -> Callable[..., Any]:
+        """Return a function of the library by the end of its name."""
+        try:
+            function = getattr(self._library, f"symrot_{self.name}{ending}")
+        except AttributeError as error:
+            raise _no_stepper(self.path, error) from error
+        function.restype, function.argtypes = result, arguments
+        found: Callable[..., Any] = function
+        return found
+
+    @abstractmethod
+    def row_length(self) -> int:
+        """Return how many numbers record one step."""
+
+    @staticmethod
+    @abstractmethod
+    def allowance(tolerance: float) -> tuple[float, float]:
+        """Return what one step is allowed for a tolerance, and the fraction of the span that earns a step all of it."""
+
+    @abstractmethod
+    def enter(self, run: Any, stretch: Stretch, allowed: float) -> None:
+        """Set the fields of a run that are the method's own for a stretch ahead."""
+
+    @staticmethod
+    @abstractmethod
+    def tried(run: Any) -> int:
+        """Return the steps of a run that count against the most allowed."""
+
+    @staticmethod
+    @abstractmethod
+    def cost(run: Any) -> tuple[int, int, int]:
+        """Return steps accepted, steps rejected and evaluations of a run."""
+
+    @property
+    def dense_address(self) -> Any:
+        """The dense output as a function in C, for other libraries to call."""
+        function: Any = self._dense
+        return ctypes.cast(function, ctypes.c_void_p)
+
+    def dense(self, rows: Floats, times: Floats) -> Floats:
+        """Return the states at times inside recorded steps, all on one side of t0."""
+        states = np.empty((len(times), self.states))
+        self._dense(rows.ctypes.data, len(rows), times.ctypes.data, len(times), states.ctypes.data)
+        return states
+
+
+def _no_stepper(path: str, error: Exception) -> CompilerError:
+    return CompilerError(f"the compiled kernel {path} cannot be loaded: {error}")
+
+
+def rising(times: Floats) -> bool:
+    """Return whether times never fall, which a nan among two does; a few are sooner compared one by one."""
+    if len(times) > FEW:
+        return b"\0" not in (times[1:] >= times[:-1]).tobytes()
+    listed = times.tolist()
+    return all(map(le, listed, listed[1:]))
+
+
+class Task:
+    """One motion to follow: checked input, and the counts of all calls made for it.
+
+    ``load`` returns the stepper of a library's path; the rest as :func:`symrot.propagation.steppers.dop853.integrate` takes it.
+    """
+
+    def __init__(
+        self,
+        load: Callable[[str], Stepper],
+        library: PathLike,
+        p: ArrayLike,
+        y0: ArrayLike,
+        t0: float,
+        tolerance: float,
+        max_step: float = math.inf,
+        max_steps: int = MAX_STEPS,
+        breaks: Sequence[float] = (),
+    ) -> None:
+        self.began = perf_counter()
+        self.stepper = stepper = load(os.fspath(library))
+        self.p = stepper.new_parameters(*_numbers("parameters", p, stepper.parameters))
+        self.y0 = _numbers("states", y0, stepper.states)
+        self.t0, self.max_step, self.max_steps = float(t0), float(max_step), max_steps
+        self.breaks = sorted(map(float, breaks)) if len(breaks) else ()
+        if not math.isfinite(self.t0):
+            raise InputError(f"the initial time must be finite, got {t0}")
+        check_longest_step(self.max_step)
+        self.allowed, self.pace = stepper.allowance(tolerance)
+        self.accepted = self.rejected = self.evaluations = 0
+        self.mark = (0, self.t0)  # steps and time when the pace was judged last
+        self.way = 0.0  # the whole of which this is a part, s; 0: this is all
+        self.fields: dict[str, int] = {}  # of the run in C: what a method sets beside the rest
+
+    def again(self) -> "Task":
+        """Return the same motion with nothing spent yet; what was checked is not checked again."""
+        other: Task = object.__new__(type(self))
+        other.__dict__.update(self.__dict__)
+        other.began = perf_counter()
+        other.accepted = other.rejected = other.evaluations = 0
+        other.mark = (0, self.t0)
+        return other
+
+    def stats(self) -> Stats:
+        """Return what all was spent since the task was set."""
+        return Stats(self.accepted, self.rejected, self.evaluations, perf_counter() - self.began)
+
+    def sample(self, times: ArrayLike) -> tuple[Floats, Stats]:
+        """Return the states at sample times in any order, shape (n, N), and what they cost."""
+        times = np.asarray(times, dtype=np.float64, order="C")
+        if times.ndim != 1:
+            raise InputError(f"sample times are a sequence of numbers, got an array of shape {times.shape}")
+        count = len(times)
+        states = np.empty((count, self.stepper.states))
+        if count == 0:
+            return states, self.stats()
+        low, high = float(times[0]), float(times[-1])
+        if low >= self.t0 and rising(times):
+            if not math.isfinite(high):
+                raise InputError(f"sample times must be finite, got {high}")
+            self.follow(times, states)
+            return states, self.stats()
+        if not bool(np.isfinite(times).all()):
+            raise InputError(f"sample times must be finite, got {times[~np.isfinite(times)][0]}")
+        done = np.empty(0, dtype=np.intp)
+        for part in both_sides(times, self.t0):
+            found = np.empty((len(part), self.stepper.states))
+            try:
+                self.follow(times[part], found)
+            except (CutOff, KeyboardInterrupt) as error:
+                own = getattr(error, "samples", None)
+                if own is not None:
+                    error.samples = Samples(part[own.numbers], own.states)  # type: ignore[union-attr]
+                add_samples(error, done, states[done])
+                raise
+            states[part] = found
+            done = np.concatenate([done, part])
+        return states, self.stats()
+
+    def once(self, times: Floats, rise: bool) -> tuple[Floats, Stats]:
+        """Return what ``again().sample(times)`` returns, by a short way where the times rise from t0 on.
+
+        ``rise`` says whether they do rise, and are finite.
+        """
+        if self.breaks or not rise or not len(times) or times.item(0) < self.t0:
+            return self.again().sample(times)
+        began, stepper, count, end = perf_counter(), self.stepper, len(times), times.item(-1)
+        states = np.empty((count, stepper.states))
+        run = stepper.new_run.from_buffer_copy(self._ready)
+        run.pace, run.stop = (end - self.t0) * self.pace, end
+        stepper.enter(run, Stretch(self.t0, end, self.t0, end), self.allowed)
+        first, out = address(times), address(states)
+        self.mark = (0, self.t0)
+        try:
+            while self.advance(run, first, count, out, None, 0) != DONE:
+                pass
+        except (CutOff, KeyboardInterrupt) as error:
+            add_samples(error, np.arange(run.next), states[: run.next])
+            raise
+        return states, Stats(*stepper.cost(run), perf_counter() - began)
+
+    @cached_property
+    def _ready(self) -> Any:
+        """A run at its start, to be copied."""
+        run = self.stepper.new_run(t=self.t0, max_step=self.max_step, **self.fields)
+        run.y[:] = self.y0
+        return run
+
+    def record(self, span: tuple[float, float]) -> SteppedRecording:
+        """Return the motion over a span, and over all between it and t0."""
+        low, high = min(span), max(span)
+        if not (math.isfinite(low) and math.isfinite(high)):
+            raise InputError(f"a span runs between two finite times, got {span}")
+        backward, forward = (np.concatenate(self.keep(end)) for end in (min(low, self.t0), max(high, self.t0)))
+        return SteppedRecording(self, backward, forward)
+
+    def follow(self, times: Floats, states: Floats) -> None:
+        """Write the states at times sorted away from t0, all on one side of it."""
+        count, done, first, out = len(times), 0, address(times), address(states)
+        row = 8 * self.stepper.states
+        for run in self.runs(float(times[-1])):
+            try:
+                while self.advance(run, first + 8 * done, count - done, out + row * done, None, 0) != DONE:
+                    pass
+            except (CutOff, KeyboardInterrupt) as error:
+                done += run.next
+                add_samples(error, np.arange(done), states[:done])
+                raise
+            done += run.next
+
+    def keep(self, end: float) -> list[Floats]:
+        """Return the recorded steps from t0 to an end, in pieces."""
+        room = self.stepper.rows_per_call
+        pieces = [np.empty((0, self.stepper.row))]
+        for run in self.runs(end):
+            while run.t != run.stop:
+                rows = np.empty((room, self.stepper.row))
+                self.advance(run, None, 0, None, rows.ctypes.data, room)
+                pieces.append(rows[: run.recorded])
+                if len(pieces) * rows.nbytes > MOST_RECORDED:
+                    reason = f"recording its steps takes more than {MOST_RECORDED >> 30} GiB; ask for samples instead"
+                    raise CutOff(run.t, reason, run.stop)
+        return pieces
+
+    def runs(self, end: float) -> Iterator[Any]:
+        """Yield the C side's run, set up for each stretch between switching times, and count what it cost."""
+        stepper = self.stepper
+        pace = (self.way or abs(end - self.t0)) * self.pace
+        run = stepper.new_run(t=self.t0, pace=pace, max_step=self.max_step, **self.fields)
+        run.y[:] = self.y0
+        try:
+            for stretch in stretches(self.t0, end, self.breaks):
+                run.stop, run.next = stretch.stop, 0
+                stepper.enter(run, stretch, self.allowed)
+                yield run
+        finally:  # a caller may need no more
+            accepted, rejected, evaluations = stepper.cost(run)
+            self.accepted += accepted
+            self.rejected += rejected
+            self.evaluations += evaluations
+
+    def hand(self, run: Any) -> tuple[Callable[..., Any], Any, int]:
+        """Return what steps a run further: the function in C, its kernel's parameters, the most steps in one call."""
+        return self.stepper.run, self.p, self.stepper.steps_per_call
+
+    def advance(self, run: Any, times: int | None, count: int, states: int | None, rows: int | None, room: int) -> int:
+        """Call the stepper once; raise where it cannot go on."""
+        stepper, (function, p, most) = self.stepper, self.hand(run)
+        attempts = min(most, self.max_steps - stepper.tried(run))
+        given = (ctypes.addressof(run), ctypes.addressof(p), times, count, states, rows, room, attempts)
+        status: int = function(*given)
+        if status == DONE:
+            return status
+        if status in (NOT_FINITE, UNDERFLOW):
+            reason = stepper.reasons[status]
+            reason = why_stuck(reason, run.t, self.t0, run.stop) if status == UNDERFLOW else reason
+            raise CutOff(run.t, reason, run.stop)
+        tried = stepper.tried(run)
+        if tried >= self.max_steps:
+            raise CutOff(run.t, stepper.reasons[PAUSED].format(steps=self.max_steps, run=run), run.stop)
+        progress.report(run.t, self.t0, run.stop)
+        if tried - self.mark[0] >= PATIENCE:
+            self.judge_pace(tried, run)
+        return status
+
+    def judge_pace(self, tried: int, run: Any) -> None:
+        """Give the motion up if its steps have become so short that the rest would take far more than the limit."""
+        reason = why_hopeless(tried - self.mark[0], abs(run.t - self.mark[1]), abs(run.stop - run.t), self.max_steps)
+        if reason:
+            raise CutOff(run.t, reason, run.stop)
+        self.mark = (tried, run.t)

@@ -1,0 +1,258 @@
+"""Taylor series of order 20 around an emitted jet: the C of :file:`taylor.c` driven from Python, one call per span.
+
+The counterpart of :mod:`symrot.propagation.steppers.dop853` for right-hand sides that are known as formulas and smooth: a few
+long steps, each good to round-off if asked, at any time inside a step from the same coefficients. A library holds one
+system and the stepper compiled together (:func:`translation_unit`).
+
+Tolerance: the promise is about the trajectory, not about one step, see :func:`step_tail`.
+"""
+
+import ctypes
+import math
+from collections.abc import Sequence
+from functools import cache
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from symrot.build import cache as compiled
+from symrot.build.sources import c_text
+from symrot.errors import CompilerError, InputError
+from symrot.formula.program import Program
+from symrot.formula.tree import operations
+from symrot.propagation.steppers.stepping import (
+    MAX_STEPS,
+    NOT_FINITE,
+    PAUSED,
+    UNDERFLOW,
+    Floats,
+    PathLike,
+    Recording,
+    Stats,
+    Stepper,
+    Stretch,
+    Task,
+    check_tolerance,
+)
+
+__all__ = ["FLAGS", "integrate", "order_for", "record", "refusal", "step_tail", "translation_unit"]
+
+FLAGS = (*compiled.FLAGS, *compiled.SCHEDULED)
+STEPS_OF_ALL = 4.0  # a span of so many steps allows each of them the whole tolerance, see step_tail
+FILES = {
+    **{
+        name: f"propagation/steppers/{name}" for name in ("taylor.h", "series.h", "pairs.h", "projection.c", "taylor.c")
+    },
+    **{name: f"propagation/enclosures/{name}" for name in ("disc.h", "enclosure.h")},
+}
+PROJECTION = "/* PROJECTION */\n"  # where taylor.c takes projection.c
+ENCLOSURE = "/* ENCLOSURE */\n"  # and enclosure.h
+NO_INVARIANTS = "#define SYMROT_INVARIANTS 0\n#define SYMROT_INVARIANT_PARAMETERS 0\n"
+NO_ENCLOSURE = "#define SYMROT_ENCLOSED 0\n"
+MIDDLE_REACH = 3  # of the discs of symrot.codegen.enclosure.terms.REACHES: the one to begin with
+PROJECTED_EVERY = 16  # steps: by measurement, seldom enough to cost a few percent and often enough to lose nothing
+MANY_PRODUCTS = 40  # of a right-hand side: from there on the work of a step is in its sums, which grow as order squared
+ORDERS = {  # by whether there are many: from which tolerance on which order is fastest, see order_for
+    False: ((1e-3, 14), (1e-6, 16), (0.0, 20)),
+    True: ((3e-2, 8), (1e-3, 10), (1e-5, 12), (1e-7, 16), (0.0, 20)),
+}
+
+
+def step_tail(tolerance: float) -> tuple[float, float]:
+    """Return the size allowed to the last terms of a step's series, and the fraction of the span that earns all of it.
+
+    A step shorter than that is allowed its share of the span to the power 7/4, as errors grow with the number of steps
+    when nothing but a turning body amplifies them: the error at the end then hardly depends on the span.
+
+    The constant is calibrated on free asymmetric bodies, through flips about the intermediate axis too, and on heavy
+    tops, against references of 50 digits (``tests/test_taylor.py``): errors stay below 5 times the tolerance.
+    """
+    check_tolerance(tolerance)
+    return tolerance, 1.0 / STEPS_OF_ALL
+
+
+def order_for(tolerance: float, program: Program | None = None) -> int:
+    """Return the order that is fastest for a tolerance and the products of a right-hand side; any keeps its promise.
+
+    Measured by ``python -m symrot.bench.taylor --orders``: below 1e-6 orders 16 to 24 lie within a tenth of each other.
+    """
+    formulas = (*program.temporaries, *program.outputs) if program else ()
+    products = sum(operations(formula)["mul"] for _, formula in formulas)
+    return next(order for least, order in ORDERS[products >= MANY_PRODUCTS] if tolerance >= least)
+
+
+def refusal(program: Program) -> str:
+    """Return an empty text, or the sentence that says why a right-hand side has no Taylor series."""
+    from symrot.codegen.taylor.recurrences import recurrences
+
+    try:
+        recurrences(program)
+    except InputError as error:
+        return str(error)
+    return ""
+
+
+def translation_unit(
+    program: Program,
+    blocks: Sequence[int] = (0, 3, 7),
+    scales: Sequence[float] = (0.0, 1.0),
+    order: int | None = None,
+    invariants: str = "",
+    enclosed: bool = True,
+) -> str:
+    """Return the C source of a library: the jet of a right-hand side and the stepper around it.
+
+    Parameters
+    ----------
+    program : Program
+        The right-hand side ``dy = f(t, y, p)``.
+    blocks, scales
+        As :func:`symrot.propagation.steppers.dop853.translation_unit` takes them.
+    order : int, optional
+        Of the series, even; default: 20. See :func:`order_for`.
+    invariants : str
+        What :func:`symrot.codegen.taylor.invariant_source.invariant_definitions` prints: the motion is projected onto them.
+        Their parameters follow those of the program.
+    enclosed : bool
+        Whether steps are held to what an enclosure of the rates proves, see :mod:`symrot.codegen.enclosure.terms`.
+
+    Raises
+    ------
+    InputError
+        For a right-hand side that is not smooth (abs).
+    """
+    from symrot.codegen.enclosure.source import enclosure_source
+    from symrot.codegen.taylor.source import ORDER, taylor_definitions
+
+    order = ORDER if order is None else order
+    own = {name: c_text(path) for name, path in FILES.items()}
+    definitions = taylor_definitions(program, blocks, scales, order)
+    if not invariants:
+        invariants, projection = NO_INVARIANTS, ""
+    else:
+        projection = own["projection.c"]
+    stepper = own["taylor.c"].replace(PROJECTION, projection)
+    bounds = enclosure_source(program, order, blocks) if enclosed else NO_ENCLOSURE
+    stepper = stepper.replace(ENCLOSURE, own["enclosure.h"])
+    parts = (own["taylor.h"], own["pairs.h"], definitions, own["series.h"], invariants, own["disc.h"], bounds, stepper)
+    return "\n".join(parts)
+
+
+def integrate(
+    library: PathLike,
+    p: ArrayLike,
+    y0: ArrayLike,
+    t0: float,
+    times: ArrayLike,
+    tolerance: float,
+    *,
+    max_step: float = math.inf,
+    max_steps: int = MAX_STEPS,
+    project: bool = True,
+) -> tuple[Floats, Stats]:
+    """Return the states at the sample times, shape (n, N), and what it cost.
+
+    As :func:`symrot.propagation.steppers.dop853.integrate`, but for these:
+
+    Parameters
+    ----------
+    library : path
+        Built from :func:`translation_unit`.
+    tolerance : float
+        Aim for the error of the whole trajectory, see :func:`step_tail`.
+    max_steps : int
+        Most steps to take before giving up.
+    project : bool
+        Whether to hold the motion on its invariants, where the library knows some.
+
+    Returns
+    -------
+    stats : Stats
+        ``evaluations`` counts jets: all coefficients of one step.
+    """
+    return task(library, p, y0, t0, tolerance, max_step, max_steps, project).sample(times)
+
+
+def record(
+    library: PathLike,
+    p: ArrayLike,
+    y0: ArrayLike,
+    t0: float,
+    span: tuple[float, float],
+    tolerance: float,
+    *,
+    max_step: float = math.inf,
+    max_steps: int = MAX_STEPS,
+    project: bool = True,
+) -> Recording:
+    """Return the motion over ``span`` as a function of time; see :func:`symrot.propagation.steppers.dop853.record`.
+
+    One step takes 21 N + 4 numbers of memory.
+    """
+    return task(library, p, y0, t0, tolerance, max_step, max_steps, project).record(span)
+
+
+def task(
+    library: PathLike,
+    p: ArrayLike,
+    y0: ArrayLike,
+    t0: float,
+    tolerance: float,
+    max_step: float = math.inf,
+    max_steps: int = MAX_STEPS,
+    project: bool = True,
+) -> Task:
+    """Return a motion to follow; arguments as :func:`integrate`."""
+    found = Task(_stepper, library, p, y0, t0, tolerance, max_step, max_steps)
+    found.fields["every"] = PROJECTED_EVERY if project else 0
+    return found
+
+
+class _Stepper(Stepper):
+    """A library of :func:`translation_unit`."""
+
+    name = "taylor"
+    reals = ("t", "t_low", "unit", "stop", "tail", "pace", "max_step", "proven")
+    integers = ("next", "accepted", "jets", "recorded", "reach", "every", "since", "projected")
+    vectors = ("y", "carry")
+    tail = ("kept",)
+    steps_per_call, rows_per_call = 50_000, 64
+    reasons: ClassVar = {
+        NOT_FINITE: "its derivatives are not finite there",
+        UNDERFLOW: "the step shrank to nothing, as it does before a singularity",
+        PAUSED: "{steps} steps were not enough",
+    }
+    allowance = staticmethod(step_tail)
+
+    def __init__(self, path: str) -> None:
+        super().__init__(path)
+        pointer, integer, real = ctypes.c_void_p, ctypes.c_int64, ctypes.c_double
+        self._jet = self._function("_jet", None, real, pointer, pointer, real, integer, pointer)
+        if self._function("_carry", real, real, real)(1.0, 2.0**-60) != 2.0**-60:
+            raise CompilerError(f"the compiled kernel {path} loses the carry of its sums: compile without -ffast-math")
+
+    def row_length(self) -> int:
+        return 4 + (self.order + 1) * self.states
+
+    def enter(self, run: Any, stretch: Stretch, allowed: float) -> None:
+        run.unit, run.proven, run.tail, run.reach = 0.0, 0.0, allowed, MIDDLE_REACH
+
+    @staticmethod
+    def tried(run: Any) -> int:
+        found: int = run.accepted
+        return found
+
+    @staticmethod
+    def cost(run: Any) -> tuple[int, int, int]:
+        return run.accepted, run.jets - run.accepted, run.jets
+
+    def jet(self, t: float, y: ArrayLike, p: ArrayLike, unit: float = 1.0) -> Floats:
+        """Return the Taylor coefficients of the states at t, shape (order + 1, N), in powers of ``unit``."""
+        state, values = np.array(y, dtype=np.float64), np.array(p, dtype=np.float64)
+        found = np.empty((self.order + 1, self.states))
+        self._jet(t, state.ctypes.data, values.ctypes.data, unit, self.order, found.ctypes.data)
+        return found
+
+
+_stepper = cache(_Stepper)

@@ -1,0 +1,1 @@
+"""Motions under torques that jump or bend."""

@@ -1,0 +1,92 @@
+"""The pieces of a smooth motion on its way to the next switch, by each stepper: polynomials, and states at any time."""
+
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from symrot.propagation.compiled_models import error_blocks, formula_deviations
+from symrot.propagation.events.polynomials import Piece, fitted, rows_of
+from symrot.propagation.steppers import dop853, taylor
+from symrot.propagation.steppers.cut_off import CutOff
+from symrot.propagation.steppers.stepping import Floats
+from symrot.propagation.switched.regimes import Regime
+
+if TYPE_CHECKING:
+    from symrot.propagation.switched.run import SwitchedRun
+
+__all__ = ["SOURCES"]
+
+ROOM = 4  # steps in the first piece after a switch; twice as many in each piece after it
+WINDOWS = 64  # pieces of the span that SciPy follows at a time, at first
+
+
+class SteppedPieces:
+    """Pieces of a motion by a stepper in C."""
+
+    def __init__(self, run: "SwitchedRun", regime: Regime, rates: list[float]) -> None:
+        motion = regime.motion
+        assert motion.library is not None
+        if not np.isfinite(run.y).all():
+            raise CutOff(run.t, "its states are not finite there", run.end)
+        stepping = taylor if motion.choice.method == "taylor" else dop853
+        self.task = stepping.task(motion.library, rates, run.y, run.t, motion.tolerance)
+        self.task.way, self.end = run.span, run.end
+
+    def pieces(self) -> Iterator[tuple[Piece, Callable[[Floats], Floats]]]:
+        task, room = self.task, ROOM
+        for run in task.runs(self.end):
+            while run.t != run.stop:
+                rows = np.empty((room, task.stepper.row))
+                try:
+                    task.advance(run, None, 0, None, rows.ctypes.data, room)
+                except CutOff as error:
+                    stuck: CutOff | None = error
+                else:
+                    stuck = None
+                rows = rows[: run.recorded]
+                if len(rows):
+
+                    def states(times: Floats, rows: Floats = rows) -> Floats:
+                        inside: Floats = task.stepper.dense(rows, times)
+                        return inside
+
+                    yield Piece(np.append(rows[:, 0], run.t), rows_of(task.stepper, rows)), states
+                if stuck is not None:
+                    raise stuck
+                room = min(2 * room, task.stepper.rows_per_call)
+
+    def cost(self) -> Any:
+        return np.array([self.task.accepted, self.task.rejected, self.task.evaluations])
+
+
+class SciPyPieces:
+    """Pieces of a motion by SciPy: a window of time after the other."""
+
+    def __init__(self, run: "SwitchedRun", regime: Regime, rates: list[float]) -> None:
+        self.run, self.motion, self.rates, self.counts = run, regime.motion, rates, np.zeros(3, dtype=np.int64)
+
+    def pieces(self) -> Iterator[tuple[Piece, Callable[[Floats], Floats]]]:
+        from symrot.propagation.steppers import fallback
+
+        run, t, y = self.run, self.run.t, self.run.y
+        side = 1.0 if run.end >= t else -1.0
+        length = run.span / WINDOWS
+        while t != run.end:
+            stop = run.end if abs(run.end - t) <= 1.01 * length else t + side * length
+            share = max(abs(stop - t) / run.span, 1e-3)
+            options = self.motion.scipy_options
+            options["deviations"] = formula_deviations(self.motion.plan, self.motion.kernel, self.rates)
+            recording = fallback.record(
+                self.motion.rates, self.rates, y, t, (t, stop), run.motion.tolerance * share, **options
+            )
+            self.counts += recording.stats[:3]
+            for edges in recording.edges(t, stop):
+                yield fitted(recording, edges, *error_blocks(self.motion.plan)), recording
+            y, t, length = recording(stop), stop, 2.0 * length
+
+    def cost(self) -> Any:
+        return self.counts
+
+
+SOURCES: dict[str, Any] = {"taylor": SteppedPieces, "dop853": SteppedPieces, "scipy": SciPyPieces}

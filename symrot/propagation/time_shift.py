@@ -1,0 +1,115 @@
+"""Motions on a clock that shows 0 where they start, for those that start far from t = 0.
+
+Steppers then never see the large numbers: neither phases such as ``a*t + b`` nor the ends of short steps lose digits to
+them. The clock is moved only where all differences of times are exact, for times between half the start and twice the
+start; a motion that goes farther loses no more than one that starts at 0 and goes as far. Such a one keeps its phases
+too: Taylor steps have the time in two parts, and under those of DOP853 the clock of the rates alone is moved again and
+again (:mod:`symrot.propagation.steppers.dop853`). Those of SciPy lose ``1e-16*|a*t|`` rad, as below.
+
+Motions under a torque that is no formula, which is asked for at the times of the scene, and those in Euler angles keep
+the clock of the scene: there a phase ``a*t`` is off by up to ``1e-16*|a*t|`` rad.
+"""
+
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from fractions import Fraction
+from functools import cache
+from pathlib import Path
+
+from symrot.build import cache as library
+from symrot.formula import exact_numbers as number
+from symrot.formula.tree import Node, children, evaluate, names
+from symrot.planning.plan import Plan
+from symrot.planning.scene_kernel import EPOCH, EXACT_FUNCTIONS, SceneKernel
+from symrot.propagation.compiled_models import kernel_key, motion_library
+from symrot.propagation.steppers.cut_off import CutOff
+from symrot.propagation.steppers.dop853 import Clock
+from symrot.propagation.steppers.stepping import NOT_FINITE_SENTENCE
+
+__all__ = ["Following", "clock", "compiled", "far", "moved", "moved_parameters"]
+
+
+def far(start: float, low: float, high: float) -> bool:
+    """Return whether a motion starts so far from t = 0 that its clock is moved, for times from low to high, s."""
+    nearest, farthest = sorted((0.5 * start, 2.0 * start))
+    return start != 0.0 and nearest <= low and high <= farthest  # time - start is exact there (Sterbenz)
+
+
+def moved(plan: Plan, kernel: SceneKernel) -> tuple[Plan, SceneKernel]:
+    """Return a plan and its kernel for a clock that shows 0 at an epoch; the same where no time stands in the rates."""
+    if not kernel.rates.uses("t"):
+        return plan, kernel
+    plan = replace(plan, structure=plan.structure | {"clock": EPOCH})
+    saved = library.fetch(kernel_key(plan))
+    if saved is not None:
+        return plan, SceneKernel(json.loads(saved))
+    from symrot.codegen.taylor.time_shift import from_epoch
+
+    kernel = from_epoch(kernel)
+    library.store(kernel_key(plan), json.dumps(kernel.data))
+    return plan, kernel
+
+
+def moved_parameters(kernel: SceneKernel, constants: Mapping[str, Fraction], epoch: float) -> list[float]:
+    """Return the parameters of moved rates for the constants of a scene: exact arithmetic, one rounding each."""
+    return Following(kernel, constants).parameters(epoch)
+
+
+class Following:
+    """The parameters of moved rates for one epoch after another; what does not depend on it is found once.
+
+    Parameters
+    ----------
+    kernel : SceneKernel
+        Of :func:`moved`.
+    constants : mapping
+        Of the scene.
+    start : float
+        What the clock of the scene shows, s, where that of the motion shows 0.
+    """
+
+    def __init__(self, kernel: SceneKernel, constants: Mapping[str, Fraction], start: float = 0.0) -> None:
+        known = {"pi": number.PI, **constants}
+        self._start = Fraction(start)
+        self._formulas = [_folded(node, known) for _, node in kernel.rate_parameters]
+
+    def parameters(self, epoch: float) -> list[float]:
+        """Return them for an epoch, s, on the clock of the motion: exact arithmetic, one rounding each."""
+        values = {EPOCH: self._start + Fraction(epoch)}
+        try:
+            return [float(evaluate(node, values, EXACT_FUNCTIONS)) for node in self._formulas]
+        except OverflowError:
+            raise CutOff(epoch, NOT_FINITE_SENTENCE) from None
+
+
+def clock(
+    moving: Callable[[], tuple[Plan, SceneKernel]], constants: Mapping[str, Fraction], start: float = 0.0
+) -> Clock:
+    """Return the clock of what ``moving`` returns as :func:`moved` does; it is compiled when it is first moved.
+
+    ``constants`` and ``start`` are those of :class:`Following`.
+    """
+
+    @cache
+    def following() -> tuple[Path, Following]:
+        plan, kernel = moving()
+        return compiled(plan, kernel), Following(kernel, constants, start)
+
+    return lambda since: (following()[0], following()[1].parameters(since))
+
+
+def _folded(node: Node, known: Mapping[str, Fraction]) -> Node:
+    """Return a formula with every part that the epoch does not stand in as a number."""
+    if node == ("symbol", EPOCH):
+        return node
+    if EPOCH not in names(node):
+        return ("number", evaluate(node, known, EXACT_FUNCTIONS))
+    if node[0] == "call":
+        return ("call", node[1], tuple(_folded(child, known) for child in node[2]))
+    return (node[0], *(_folded(child, known) for child in children(node)), *(node[2:] if node[0] == "**" else ()))
+
+
+def compiled(plan: Plan, kernel: SceneKernel) -> Path:
+    """Return the library of a moved plan: kernel and stepper of DOP853."""
+    return motion_library(plan, kernel)

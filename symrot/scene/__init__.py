@@ -1,0 +1,1 @@
+"""Scenes: read, checked and kept as exact numbers."""

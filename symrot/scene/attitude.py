@@ -1,0 +1,237 @@
+"""An attitude of a scene: quaternion, Euler sequence, axis and angle, or direction cosine matrix, read exactly.
+
+Everything is in Fractions, so a right angle turns a part of a body by exactly a right angle, and the quaternion of an
+initial attitude is a unit one to 2^-200 whatever was typed. Conventions: :mod:`symrot.conventions`.
+"""
+
+from collections.abc import Callable, Mapping
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+from symrot.conventions import parse_sequence
+from symrot.errors import InputError
+from symrot.formula.exact_numbers import Angle, equal, read_angle, sqrt
+from symrot.scene.reader import Entry, Reader, expected, flag, number, read_table, table, vector
+
+__all__ = ["ORTHOGONAL", "Attitude", "read_attitude", "read_sequence", "to_body", "to_space"]
+
+ORTHOGONAL = Fraction(1, 10**9)
+"""Largest difference from the identity of R R^T for a typed matrix R; what is nearer is made a rotation exactly."""
+
+FORMS = '{quaternion = [..]}, {sequence = "ZXZ", angles = [..]}, {axis = [..], angle = ..} or {dcm = [[..], ..]}'
+
+Quaternion = tuple[Fraction, Fraction, Fraction, Fraction]
+Vector = tuple[Fraction, Fraction, Fraction]
+Matrix = tuple[Vector, Vector, Vector]
+
+
+class Attitude(NamedTuple):
+    """An attitude in both forms: the unit quaternion, and ``dcm_sb``, exact where the angles are."""
+
+    quaternion: Quaternion
+    dcm: Matrix
+
+
+def _product(p: Quaternion, q: Quaternion) -> Quaternion:
+    """Return the Hamilton product p q."""
+    a, b, c, d = p
+    w, x, y, z = q
+    return (
+        a * w - b * x - c * y - d * z,
+        a * x + b * w + c * z - d * y,
+        a * y - b * z + c * w + d * x,
+        a * z + b * y - c * x + d * w,
+    )
+
+
+def _matrix_product(left: Matrix, right: Matrix) -> Matrix:
+    columns = tuple(zip(*right, strict=True))
+    rows = tuple(tuple(sum(map(Fraction.__mul__, row, column)) for column in columns) for row in left)
+    return rows  # type: ignore[return-value]
+
+
+def to_space(dcm: Matrix, vector_b: Vector) -> Vector:
+    """Return the space components of a vector."""
+    x, y, z = (sum(map(Fraction.__mul__, row, vector_b), Fraction(0)) for row in dcm)
+    return x, y, z
+
+
+def to_body(dcm: Matrix, vector_s: Vector) -> Vector:
+    """Return the body components of a vector."""
+    return to_space(tuple(zip(*dcm, strict=True)), vector_s)  # type: ignore[arg-type]
+
+
+def _unit(q: Quaternion) -> Quaternion:
+    length_squared = sum(map(Fraction.__mul__, q, q), Fraction(0))
+    if equal(length_squared, Fraction(1)):
+        return q
+    length = sqrt(length_squared)
+    w, x, y, z = (item / length for item in q)
+    return w, x, y, z
+
+
+def _dcm(q: Quaternion) -> Matrix:
+    """Return ``dcm_sb`` of a quaternion of any length, rational when it is."""
+    w, x, y, z = q
+    s = 2 / sum(map(Fraction.__mul__, q, q), Fraction(0))
+    return (
+        (1 - s * (y * y + z * z), s * (x * y - w * z), s * (x * z + w * y)),
+        (s * (x * y + w * z), 1 - s * (x * x + z * z), s * (y * z - w * x)),
+        (s * (x * z - w * y), s * (y * z + w * x), 1 - s * (x * x + y * y)),
+    )
+
+
+def _about(axis: Vector, angle: Angle) -> Attitude:
+    """Return the rotation about an axis of any length (Rodrigues)."""
+    x, y, z = axis
+    square = x * x + y * y + z * z
+    length = sqrt(square)
+    half, cosine = angle.scaled(Fraction(1, 2)), angle.cos
+    along, sine, versine = half.sin / length, angle.sin / length, (1 - cosine) / square
+    dcm = (
+        (cosine + versine * x * x, versine * x * y - sine * z, versine * x * z + sine * y),
+        (versine * x * y + sine * z, cosine + versine * y * y, versine * y * z - sine * x),
+        (versine * x * z - sine * y, versine * y * z + sine * x, cosine + versine * z * z),
+    )
+    return Attitude(_unit((half.cos, along * x, along * y, along * z)), dcm)
+
+
+def _axis(index: int) -> Vector:
+    x, y, z = (Fraction(index == i) for i in range(3))
+    return x, y, z
+
+
+def _of_sequence(name: str, angles: tuple[Angle, ...]) -> Attitude:
+    axes, intrinsic = parse_sequence(name)
+    turns = [_about(_axis(index), angle) for index, angle in zip(axes, angles, strict=True)]
+    first, second, third = turns if intrinsic else reversed(turns)
+    return Attitude(
+        _unit(_product(_product(first.quaternion, second.quaternion), third.quaternion)),
+        _matrix_product(_matrix_product(first.dcm, second.dcm), third.dcm),
+    )
+
+
+def _of_dcm(rows: Matrix, value: object, where: str) -> Attitude:
+    """Return the attitude of a typed matrix, through its quaternion (Shepperd: from the largest component)."""
+    product = _matrix_product(rows, tuple(zip(*rows, strict=True)))  # type: ignore[arg-type]
+    worst = max(abs(product[i][j] - (i == j)) for i in range(3) for j in range(3))
+    if worst > ORTHOGONAL:
+        expected(where, "a rotation: orthonormal rows, to 1e-9", value, f"its rows miss that by {float(worst):.2g}")
+    (a, b, c), (d, e, f), (g, h, i) = rows
+    if a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g) < 0:
+        expected(where, "a rotation, of determinant +1", value, "this is a reflection, of determinant -1")
+    candidates = {
+        1 + a + e + i: (1 + a + e + i, h - f, c - g, d - b),
+        1 + a - e - i: (h - f, 1 + a - e - i, b + d, c + g),
+        1 - a + e - i: (c - g, b + d, 1 - a + e - i, f + h),
+        1 - a - e + i: (d - b, c + g, f + h, 1 - a - e + i),
+    }
+    q = candidates[max(candidates)]
+    return Attitude(_unit(q), _dcm(q))
+
+
+def _angle(degrees: bool) -> Reader:
+    unit = "degrees" if degrees else "rad"
+
+    def reader(value: Any, where: str) -> Angle:
+        number(f"an angle in {unit}")(value, where)
+        return read_angle(value, degrees, where)
+
+    return reader
+
+
+def _four(value: Any, where: str) -> Quaternion:
+    if not isinstance(value, list | tuple) or len(value) != 4:
+        expected(where, "four numbers (q0, q1, q2, q3), scalar first", value)
+    component = number()
+    w, x, y, z = (component(item, f"{where}[{index}]") for index, item in enumerate(value))
+    if not (w or x or y or z):
+        expected(where, "a quaternion that is not zero", value)
+    return w, x, y, z
+
+
+def _read_quaternion(value: Any, where: str) -> Attitude:
+    """Read a quaternion (q0, q1, q2, q3), scalar first, of any length but zero."""
+    q = _four(value, where)
+    return Attitude(_unit(q), _dcm(q))
+
+
+def _rows(value: Any, where: str) -> Matrix:
+    if not isinstance(value, list | tuple) or len(value) != 3:
+        expected(where, "three rows of three numbers", value)
+    row = vector("1")
+    first, second, third = (row(item, f"{where}[{index}]") for index, item in enumerate(value))
+    return first, second, third
+
+
+def read_sequence(value: Any, where: str) -> str:
+    """Read the name of an Euler sequence."""
+    try:
+        parse_sequence(value)
+    except InputError:
+        expected(where, "an Euler sequence: three axis letters, neighbours different, all upper case (intrinsic) or "
+                 "all lower case (extrinsic), such as \"ZXZ\" or \"zyx\"", value)  # fmt: skip
+    return str(value)
+
+
+def _three_angles(degrees: bool) -> Reader:
+    one = _angle(degrees)
+
+    def reader(value: Any, where: str) -> tuple[Angle, ...]:
+        if not isinstance(value, list | tuple) or len(value) != 3:
+            expected(where, f"three angles in {'degrees' if degrees else 'rad'}, in the order of the sequence", value)
+        return tuple(one(item, f"{where}[{index}]") for index, item in enumerate(value))
+
+    return reader
+
+
+def _read_quaternion_form(value: Mapping[str, Any], where: str) -> Attitude:
+    found = read_table(value, where, {"quaternion": Entry(_read_quaternion, required=True)}, "an attitude")
+    attitude: Attitude = found["quaternion"]
+    return attitude
+
+
+def _degrees(value: Mapping[str, Any], where: str) -> bool:
+    return flag(value.get("degrees", False), f"{where}.degrees")
+
+
+def _read_sequence_form(value: Mapping[str, Any], where: str) -> Attitude:
+    found = read_table(value, where, {
+        "sequence": Entry(read_sequence, required=True),
+        "angles": Entry(_three_angles(_degrees(value, where)), required=True),
+        "degrees": Entry(flag),
+    }, "an attitude by a sequence")  # fmt: skip
+    return _of_sequence(found["sequence"], found["angles"])
+
+
+def _read_axis_form(value: Mapping[str, Any], where: str) -> Attitude:
+    found = read_table(value, where, {
+        "axis": Entry(vector("1", "nonzero"), required=True),
+        "angle": Entry(_angle(_degrees(value, where)), required=True),
+        "degrees": Entry(flag),
+    }, "an attitude by axis and angle")  # fmt: skip
+    return _about(found["axis"], found["angle"])
+
+
+def _read_dcm_form(value: Mapping[str, Any], where: str) -> Attitude:
+    found = read_table(value, where, {"dcm": Entry(_rows, required=True)}, "an attitude")
+    return _of_dcm(found["dcm"], value["dcm"], f"{where}.dcm")
+
+
+_FORMS: dict[str, Callable[[Mapping[str, Any], str], Attitude]] = {
+    "quaternion": _read_quaternion_form,
+    "sequence": _read_sequence_form,
+    "angles": _read_sequence_form,
+    "axis": _read_axis_form,
+    "angle": _read_axis_form,
+    "dcm": _read_dcm_form,
+}
+
+
+def read_attitude(value: Any, where: str) -> Attitude:
+    """Read an attitude in any of its forms; exactly one of them."""
+    found = table(value, where, f"an attitude: {FORMS}")
+    form = next((reader for key, reader in _FORMS.items() if key in found), None)
+    if form is None:
+        expected(where, f"an attitude: {FORMS}", value)
+    return form(found, where)

@@ -1,0 +1,290 @@
+"""The body of a scene: exactly one way of giving its inertia, the point it turns about, and whether it can turn.
+
+Ways: ``shape`` with its dimensions and mass or density; ``[[body.part]]``, a composite; ``principal`` moments;
+``inertia``, the tensor. The result is exact (Fractions) and in the axes in which the body was given.
+"""
+
+from collections.abc import Callable, Mapping
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+from symrot.formula import tree as expression
+from symrot.inertia.composite import MassProperties, Part, mass_properties
+from symrot.inertia.principal import Principal, principal_axes, require_admissible, why_not_propagable
+from symrot.inertia.shapes import SHAPES, Shape, check_dimensions
+from symrot.inertia.tensor import about_point
+from symrot.scene.attitude import Matrix, Vector, read_attitude
+from symrot.scene.reader import Entry, Reader, choice, expected, flag, nearest, number, read_table, table, text, vector
+
+__all__ = ["Body", "read_body"]
+
+ABOUT = ("center_of_mass", "fixed_point")
+WAYS = ("shape", "part", "principal", "inertia")
+WAYS_SPOKEN = "exactly one of shape, [[body.part]], principal, inertia"
+LARGEST_MOMENT = Fraction(10) ** 120
+MOST_PARTS = 1000
+LONGEST_DENSITY = 400
+
+_POSITION = {"x", "y", "z"}
+
+_ZERO: Vector = (Fraction(0), Fraction(0), Fraction(0))
+_UNTURNED: Matrix = (
+    (Fraction(1), Fraction(0), Fraction(0)),
+    (Fraction(0), Fraction(1), Fraction(0)),
+    (Fraction(0), Fraction(0), Fraction(1)),
+)
+_NEGLIGIBLE = Fraction(1, 2**200)  # as symrot.formula.exact_numbers.equal
+
+
+class Body(NamedTuple):
+    """A rigid body about the point it turns about, in the axes in which it was given.
+
+    ``inertia`` (kg m^2) is about that point; ``center_of_mass`` (m) is relative to it, None when it is unknown;
+    ``mass`` (kg) is None when it is unknown. ``principal`` holds the class of the body, its moments and axes.
+    """
+
+    mass: Fraction | None
+    inertia: Matrix
+    center_of_mass: Vector | None
+    about: str
+    description: str
+    principal: Principal
+
+
+def read_body(value: Any, where: str) -> Body:
+    """Read the ``[body]`` of a scene.
+
+    Raises
+    ------
+    InputError
+        Naming file, key, value and expectation: none or several ways of giving the inertia, unknown shapes and keys,
+        dimensions out of range, an inertia that no body has, a body that cannot turn freely (a needle, a point).
+    """
+    found = table(value, where, f"a table with {WAYS_SPOKEN}")
+    ways = [way for way in WAYS if way in found]
+    if len(ways) != 1:
+        if not ways:
+            expected(where, WAYS_SPOKEN, found, _nearest_way(found) or "none of them is given")
+        expected(where, WAYS_SPOKEN, found, f"{' and '.join(ways)} are given")
+    body = _WAYS[ways[0]](found, where)
+    _require_turnable(body, found.get(ways[0]), f"{where}.{ways[0]}")
+    return body
+
+
+def _nearest_way(found: Mapping[str, Any]) -> str:
+    return next((hint for hint in (nearest(key, WAYS) for key in found) if hint), "")
+
+
+def _settled(inertia: Matrix) -> Matrix:
+    """Return a tensor without the rounding of irrational rotations: negligible products are zero."""
+    limit = max(abs(inertia[i][i]) for i in range(3)) * _NEGLIGIBLE
+    first, second, third = (tuple(Fraction(0) if abs(x) <= limit else x for x in row) for row in inertia)
+    return first, second, third  # type: ignore[return-value]
+
+
+def _require_turnable(body: Body, value: object, where: str) -> None:
+    require_admissible(body.principal, where)
+    reason = why_not_propagable(body.principal)
+    if reason:
+        expected(where, "a body with three positive moments of inertia", value, reason)
+    if not 1 / LARGEST_MOMENT <= min(body.principal.moments) <= max(body.principal.moments) <= LARGEST_MOMENT:
+        moments = [float(moment) for moment in body.principal.moments]
+        expected(where, "moments of inertia between 1e-120 and 1e120 kg m^2", moments)
+
+
+# --- given moments ----------------------------------------------------------------------------------------------------
+
+_ABOUT = {"about": Entry(choice(*ABOUT), default="center_of_mass")}
+_GIVEN = {
+    **_ABOUT,
+    "mass": Entry(number("a mass in kg", "positive")),
+    "center_of_mass": Entry(vector("m")),
+    "name": Entry(text, default=""),
+}
+
+_moment = number("a moment of inertia in kg m^2", "nonnegative")
+_product = number("a product of inertia in kg m^2 (I_xy = -integral of x y dm)")
+
+
+def _three_moments(value: Any, where: str) -> tuple[Fraction, ...]:
+    if not isinstance(value, list | tuple) or len(value) != 3:
+        expected(where, "three principal moments [A, B, C] in kg m^2", value)
+    return tuple(_moment(item, f"{where}[{index}]") for index, item in enumerate(value))
+
+
+def _tensor(value: Any, where: str) -> Matrix:
+    zero = Fraction(0)
+    i = read_table(value, where, {
+        **{key: Entry(_moment, required=True) for key in ("xx", "yy", "zz")},
+        **{key: Entry(_product, default=zero) for key in ("xy", "xz", "yz")},
+    }, "an inertia tensor in kg m^2")  # fmt: skip
+    return (i["xx"], i["xy"], i["xz"]), (i["xy"], i["yy"], i["yz"]), (i["xz"], i["yz"], i["zz"])
+
+
+def _given(inertia: Matrix, found: Mapping[str, Any], where: str, spoken: str) -> Body:
+    """Return a body whose moments, about the point it turns about, were typed."""
+    about, center = found["about"], found["center_of_mass"]
+    if about == "center_of_mass":
+        if center is not None and any(center):
+            expected(f"{where}.center_of_mass", 'about = "fixed_point", which it is measured from', center)
+        center = _ZERO
+    description = f"{found['name'] or 'body'} with {spoken}"
+    return Body(found["mass"], inertia, center, about, description, principal_axes(inertia, where))
+
+
+def _read_principal(value: Mapping[str, Any], where: str) -> Body:
+    _no_fixed_point(value, where)
+    found = read_table(value, where, {"principal": Entry(_three_moments, required=True), **_GIVEN}, "a body")
+    a, b, c = found["principal"]
+    zero = Fraction(0)
+    return _given(((a, zero, zero), (zero, b, zero), (zero, zero, c)), found, where, "given principal moments")
+
+
+def _read_tensor(value: Mapping[str, Any], where: str) -> Body:
+    _no_fixed_point(value, where)
+    found = read_table(value, where, {"inertia": Entry(_tensor, required=True), **_GIVEN}, "a body")
+    return _given(found["inertia"], found, where, "a given inertia tensor")
+
+
+def _no_fixed_point(value: Mapping[str, Any], where: str) -> None:
+    if "fixed_point" in value:
+        expected(f"{where}.fixed_point", 'a body given by shapes; typed moments are about the fixed point itself '
+                 'already, say only about = "fixed_point"', value["fixed_point"])  # fmt: skip
+
+
+# --- shapes -----------------------------------------------------------------------------------------------------------
+
+_PLACED = {**_ABOUT, "fixed_point": Entry(vector("m")), "name": Entry(text, default="")}
+
+
+def _shape_name(value: Any, where: str) -> Shape:
+    if not isinstance(value, str) or value not in SHAPES:
+        expected(where, f"one of the shapes {', '.join(SHAPES)}", value, nearest(value, SHAPES))
+    return SHAPES[value]
+
+
+def _any_value(value: Any, where: str) -> Any:
+    return value
+
+
+def _amount(shape: Shape) -> dict[str, Entry]:
+    """Return the entries of mass and density; separate points carry their masses among their dimensions."""
+    if shape.kind == "points":
+        return {}
+    return {
+        "mass": Entry(number("a mass in kg", "positive")),
+        "density": Entry(_density(shape.density_unit)),
+    }
+
+
+def _density(unit: str) -> Reader:
+    """Return a reader of a positive number, or of a polynomial in x, y, z, which stays text."""
+    uniform = number(f"a density in {unit}", "positive")
+
+    def reader(value: Any, where: str) -> Any:
+        if isinstance(value, str) and len(value) <= LONGEST_DENSITY and _POSITION & set(value):
+            names = expression.names(expression.parse(value, where))
+            if names <= _POSITION:
+                return value
+            expected(where, f"a density in {unit}, a number or a polynomial in x, y, z", value)
+        return uniform(value, where)
+
+    return reader
+
+
+def _read_shape_table(value: Mapping[str, Any], where: str, others: Mapping[str, Entry]) -> tuple[Part, dict[str, Any]]:
+    """Return the part that a table with ``shape`` describes, and the table's other values."""
+    if "shape" not in value:
+        expected(f"{where}.shape", f"one of the shapes {', '.join(SHAPES)}, the key is missing")
+    shape = _shape_name(value["shape"], f"{where}.shape")
+    dimensions = [dimension.name for dimension in shape.dimensions]
+    found = read_table(value, where, {
+        "shape": Entry(_shape_name, required=True),
+        **{name: Entry(_any_value, required=True) for name in dimensions},
+        **_amount(shape),
+        **others,
+    }, f"a {shape.name}")  # fmt: skip
+    amounts = [key for key in ("mass", "density") if found.get(key) is not None]
+    if shape.kind != "points" and len(amounts) != 1:
+        spoken = f"exactly one of mass (kg) and density ({shape.density_unit}) of a {shape.name}"
+        given = {key: value[key] for key in amounts}
+        expected(f"{where}.mass", spoken if given else f"{spoken}, got neither", given or ...)
+    for name in dimensions:
+        _bounded(found[name], f"{where}.{name}")
+    part = Part(
+        shape.name,
+        check_dimensions(shape, {name: found[name] for name in dimensions}, where),
+        mass=found.get("mass"),
+        density=found.get("density"),
+        at=found.get("at") or _ZERO,
+        rotation=found["rotate"].dcm if found.get("rotate") else _UNTURNED,
+        subtract=bool(found.get("subtract")),
+    )
+    return part, found
+
+
+_length = number("a number in m")
+
+
+def _bounded(value: Any, where: str) -> None:
+    """Refuse a dimension that is no number or out of range, before anything is computed with it."""
+    if isinstance(value, list | tuple):
+        for index, item in enumerate(value):
+            _bounded(item, f"{where}[{index}]")
+    else:
+        _length(value, where)
+
+
+def _placed(properties: MassProperties, found: Mapping[str, Any], where: str, spoken: str) -> Body:
+    """Return a composed body about its centre of mass, or about a fixed point given in its axes."""
+    about, point = found["about"], found["fixed_point"]
+    if about == "center_of_mass" and point is not None:
+        expected(f"{where}.fixed_point", 'about = "fixed_point" beside it, for the body to turn about it', point)
+    if about == "fixed_point" and point is None:
+        expected(f"{where}.fixed_point", "three numbers [x, y, z] in m, in the axes of the body: it turns "
+                 "about a fixed point, the key is missing")  # fmt: skip
+    inertia, center = properties.inertia, _ZERO
+    if about == "fixed_point":
+        x, y, z = (c - p for c, p in zip(properties.center_of_mass, point, strict=True))
+        size = max(map(abs, (*properties.center_of_mass, *point)))
+        x, y, z = (Fraction(0) if abs(item) <= size * _NEGLIGIBLE else item for item in (x, y, z))
+        center = (x, y, z)
+        inertia = about_point(inertia, properties.mass, center)
+    inertia = _settled(inertia)
+    description = found["name"] or spoken
+    return Body(properties.mass, inertia, center, about, description, principal_axes(inertia, where))
+
+
+def _read_shape(value: Mapping[str, Any], where: str) -> Body:
+    part, found = _read_shape_table(value, where, _PLACED)
+    return _placed(mass_properties([part], where), found, where, part.shape.replace("_", " "))
+
+
+_PART = {
+    "at": Entry(vector("m")),
+    "rotate": Entry(read_attitude),
+    "subtract": Entry(flag, default=False),
+    "name": Entry(text, default=""),
+}
+
+
+def _parts(value: Any, where: str) -> list[Part]:
+    if not isinstance(value, list) or not all(isinstance(item, Mapping) for item in value):
+        expected(where, "a list of parts, each written as [[body.part]]", value)
+    if not 1 <= len(value) <= MOST_PARTS:
+        expected(where, f"1 to {MOST_PARTS} parts", len(value))
+    return [_read_shape_table(item, f"{where}[{index}]", _PART)[0] for index, item in enumerate(value)]
+
+
+def _read_parts(value: Mapping[str, Any], where: str) -> Body:
+    found = read_table(value, where, {"part": Entry(_parts, required=True), **_PLACED}, "a body of parts")
+    parts: list[Part] = found["part"]
+    return _placed(mass_properties(parts, f"{where}.part"), found, where, f"body of {len(parts)} parts")
+
+
+_WAYS: dict[str, Callable[[Mapping[str, Any], str], Body]] = {
+    "shape": _read_shape,
+    "part": _read_parts,
+    "principal": _read_principal,
+    "inertia": _read_tensor,
+}

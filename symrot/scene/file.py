@@ -1,0 +1,122 @@
+"""From a name or a path to the table of a scene file: which file, is it text, is it TOML."""
+
+import re
+from decimal import Decimal
+from pathlib import Path
+from typing import Any
+
+from symrot.dynamics.torque_kinds import TABLE_KIND
+from symrot.errors import InputError
+from symrot.files.reading import read_input
+from symrot.scene.reader import nearest
+
+__all__ = ["LARGEST_FILE", "SHIPPED", "find_scene", "names_with_kernels", "read_toml", "shipped_names"]
+
+SHIPPED = Path(__file__).parent / "shipped"
+LARGEST_FILE = 1_000_000
+"""Bytes of the largest scene file that is read."""
+
+MOST_PARTS = 100
+_KEY = re.compile(r"[A-Za-z0-9_-]+|\"[^\"\n]*\"|'[^'\n]*'")
+
+
+def shipped_names() -> list[str]:
+    """Return the names of the scenes that come with symrot, sorted."""
+    return sorted(path.stem for path in SHIPPED.iterdir() if path.suffix == ".toml")
+
+
+def names_with_kernels() -> list[str]:
+    """Return those whose torques are all formulas: a table of samples has no kernel to emit or certify."""
+
+    def kinds(name: str) -> list[str]:
+        return [torque["kind"] for torque in read_toml(SHIPPED / f"{name}.toml", name).get("torque", [])]
+
+    return [name for name in shipped_names() if TABLE_KIND.kind not in kinds(name)]
+
+
+def find_scene(source: str | Path) -> Path:
+    """Return the file of a shipped scene, by name, or of a path.
+
+    Text without a suffix and without a folder is a shipped name first, and a file in the current folder second.
+
+    Raises
+    ------
+    InputError
+        When there is no such scene (with the shipped ones and the nearest name), or it is a folder.
+    """
+    if not isinstance(source, str | Path) or not str(source).strip() or "\0" in str(source):
+        raise InputError(f"expected the name of a scene or the path of a scene file, got {str(source)[:60]!r}")
+    path = Path(source)
+    names = shipped_names()
+    is_name = isinstance(source, str) and path.name == source and not path.suffix
+    if is_name and source in names:
+        return SHIPPED / f"{source}.toml"
+    try:
+        if path.is_dir():
+            raise InputError(f"{source}: expected a scene file, got a folder")
+        if path.exists():
+            return path
+    except OSError as reason:
+        raise InputError(f"{str(source)[:80]}: expected a scene file, got {reason.strerror}") from None
+    label = str(source) if str(source).isprintable() else repr(str(source))
+    said = " ".join(filter(None, (nearest(path.stem, names), f"the shipped scenes are {', '.join(names)}")))
+    raise InputError(f"{label}: expected a scene or a scene file, there is none ({said})")
+
+
+def read_toml(path: Path, label: str, what: str = "scene") -> dict[str, Any]:
+    """Return the table of a TOML file, of a scene or whatever it holds; numbers with a point are Decimal, as written.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    label : str
+        The file as an error names it.
+    what : str
+        What the file should hold, for errors.
+
+    Raises
+    ------
+    InputError
+        For a file that cannot be read, is no regular file, larger than 1 MB, empty, not UTF-8 text or not TOML (with
+        the line).
+    """
+    try:
+        content = read_input(path, LARGEST_FILE)
+    except OSError as reason:
+        said = f"a readable {what} file of at most {LARGEST_FILE // 1_000_000} MB"
+        raise InputError(f"{label}: expected {said}, got {reason.strerror or reason}") from None
+    try:
+        text = content.decode("utf-8-sig")
+    except UnicodeDecodeError as reason:
+        raise InputError(f"{label}: expected UTF-8 text, got byte 0x{content[reason.start]:02x} at position "
+                         f"{reason.start}") from None  # fmt: skip
+    if not text.strip():
+        raise InputError(f"{label}: expected a {what}, got an empty file")
+    return _parse(text, label)
+
+
+def _longest_key(text: str) -> int:
+    """Return the number of parts of the longest dotted key; tomllib needs the square of that, in time and memory."""
+    longest = run = 0
+    for part in text.split("."):
+        run = run + 1 if _KEY.fullmatch(part.strip(" \t")) else 1
+        longest = max(longest, run)
+    return longest
+
+
+def _parse(text: str, label: str) -> dict[str, Any]:
+    import tomllib  # compiles its patterns when imported
+
+    if _longest_key(text) > MOST_PARTS:
+        raise InputError(f"{label}: expected keys of at most {MOST_PARTS} parts, got a longer one")
+    try:
+        return tomllib.loads(text, parse_float=Decimal)
+    except tomllib.TOMLDecodeError as reason:
+        said = str(reason).splitlines()[0][:200]
+        raise InputError(f"{label}: expected a TOML document, got a fault: {said[:1].lower()}{said[1:]}") from None
+    except RecursionError:
+        raise InputError(f"{label}: expected a TOML document, got one nested too deeply") from None
+    except (ValueError, ArithmeticError) as reason:  # an integer of more than 4300 digits, an impossible date
+        said = str(reason).partition(":")[0][:200]
+        raise InputError(f"{label}: expected a TOML document, got a fault: {said[:1].lower()}{said[1:]}") from None

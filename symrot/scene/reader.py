@@ -1,0 +1,134 @@
+"""Readers of one value of a scene, and of a table of them, with the place of it in every complaint.
+
+A reader is a function ``(value, where) -> result`` that raises :class:`symrot.errors.InputError` with one sentence:
+file, key, expectation, value. ``where`` reads ``"tumbling.toml: body.mass"``. Standard library only.
+"""
+
+from collections.abc import Callable, Iterable, Mapping
+from fractions import Fraction
+from typing import Any, NamedTuple, NoReturn
+
+from symrot.errors import InputError
+from symrot.formula.exact_numbers import read, show
+
+__all__ = [
+    "LARGEST", "Entry", "Reader", "choice", "expected", "flag", "nearest", "number", "read_table", "text",
+    "under", "vector",
+]  # fmt: skip
+
+Reader = Callable[[Any, str], Any]
+
+LARGEST = Fraction(10) ** 100
+"""Largest magnitude of a quantity of a scene, and the inverse of the smallest: so that their products stay doubles."""
+
+
+class Entry(NamedTuple):
+    """One key of a table: its reader, whether it must be there, what it is when left out."""
+
+    read: Reader
+    required: bool = False
+    default: Any = None
+
+
+def under(where: str, key: str) -> str:
+    """Return the place of a key in the table at ``where``: mass in ``"f.toml: body"`` is ``"f.toml: body.mass"``."""
+    shown = str(key)[:80] if str(key).isprintable() else repr(key)[:80]
+    return f"{where}{shown}" if where.endswith(": ") or not where else f"{where}.{shown}"
+
+
+def expected(where: str, expectation: str, value: object = ..., reason: str = "") -> NoReturn:
+    """Raise the InputError of one value: where, what was expected, what arrived, and why that is not it."""
+    place = where.removesuffix(": ")
+    got = "" if value is ... else f", got {show(value)}"
+    raise InputError(f"{place}: expected {expectation}{got}" + (f" ({reason})" if reason else ""))
+
+
+def nearest(word: object, known: Iterable[str]) -> str:
+    """Return ``"did you mean 'x'?"`` for the known word nearest to a mistyped one, or nothing."""
+    from difflib import get_close_matches  # only on the way to an error
+
+    found = get_close_matches(str(word)[:80], list(known), 1, 0.5)
+    return f"did you mean '{found[0]}'?" if found else ""
+
+
+def table(value: object, where: str, expectation: str = "a table") -> Mapping[str, Any]:
+    """Return a value that is a table."""
+    if not isinstance(value, Mapping):
+        expected(where, expectation, value)
+    return value
+
+
+def read_table(value: object, where: str, entries: Mapping[str, Entry], what: str = "a table") -> dict[str, Any]:
+    """Return the values of a table by key: every key known, every required one there, defaults filled in."""
+    found = table(value, where, f"{what} with the keys {', '.join(entries)}")
+    for key in found:
+        if key not in entries:
+            reason = ", ".join(filter(None, ("unknown key", nearest(key, entries))))
+            expected(under(where, key), f"one of the keys {', '.join(entries)} of {what}", found[key], reason)
+    for key, entry in entries.items():
+        if entry.required and key not in found:
+            expected(under(where, key), f"a value, the key is missing ({what} needs it)")
+    return {
+        key: entry.read(found[key], under(where, key)) if key in found else entry.default
+        for key, entry in entries.items()
+    }
+
+
+def number(expectation: str = "a number", sign: str = "any") -> Reader:
+    """Return a reader of one number; ``sign`` is any, positive or nonnegative; the expectation begins with "a "."""
+    spoken = {
+        "any": expectation,
+        "positive": f"a positive {expectation.removeprefix('a ')}",
+        "nonnegative": f"{expectation}, zero or more",
+    }[sign]
+
+    def reader(value: Any, where: str) -> Fraction:
+        found = read(value, where, spoken)
+        if found and not 1 / LARGEST <= abs(found) <= LARGEST:
+            expected(where, f"{expectation} of a magnitude between 1e-100 and 1e100", value)
+        if (sign == "positive" and found <= 0) or (sign == "nonnegative" and found < 0):
+            expected(where, spoken, value)
+        return found
+
+    return reader
+
+
+def vector(unit: str, sign: str = "any") -> Reader:
+    """Return a reader of three numbers; ``sign`` is any, nonzero (not all three) or nonnegative (each)."""
+    expectation = f"three numbers [x, y, z] in {unit}" if unit != "1" else "three numbers [x, y, z]"
+    component = number(f"a number in {unit}" if unit != "1" else "a number", "any" if sign == "nonzero" else sign)
+
+    def reader(value: Any, where: str) -> tuple[Fraction, Fraction, Fraction]:
+        if not isinstance(value, list | tuple) or len(value) != 3:
+            expected(where, expectation, value)
+        x, y, z = (component(item, f"{where}[{index}]") for index, item in enumerate(value))
+        if sign == "nonzero" and not (x or y or z):
+            expected(where, f"{expectation}, not all zero", value)
+        return x, y, z
+
+    return reader
+
+
+def text(value: Any, where: str) -> str:
+    """Read a line of text: at most 1000 characters, none of which could disturb a terminal."""
+    if not isinstance(value, str) or len(value) > 1000 or not value.isprintable():
+        expected(where, "a line of text of at most 1000 characters", value)
+    return value
+
+
+def flag(value: Any, where: str) -> bool:
+    """Read true or false."""
+    if not isinstance(value, bool):
+        expected(where, "true or false", value)
+    return value
+
+
+def choice(*options: str) -> Reader:
+    """Return a reader of one of several words."""
+
+    def reader(value: Any, where: str) -> str:
+        if not isinstance(value, str) or value not in options:
+            expected(where, "one of " + ", ".join(f'"{option}"' for option in options), value, nearest(value, options))
+        return value
+
+    return reader

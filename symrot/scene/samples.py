@@ -1,0 +1,219 @@
+"""A torque of a scene that is a table of samples: written in the scene, or in a CSV file beside it."""
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from itertools import pairwise
+from math import isfinite
+from pathlib import Path
+from typing import Any, NamedTuple, NoReturn
+
+from symrot.dynamics.torque_kinds import TABLE_KIND
+from symrot.errors import InputError
+from symrot.files.reading import read_input
+from symrot.scene.reader import Entry, choice, expected, number, read_table, text, vector
+
+__all__ = ["COLUMNS", "LARGEST_FILE", "MOST_SAMPLES", "Table", "read_samples"]
+
+COLUMNS = ("t", "M1", "M2", "M3")
+"""The first line of a file of samples: time in s, components of the torque in N m."""
+
+LARGEST_FILE = 20_000_000
+"""Bytes of the largest file of samples that is read."""
+
+MOST_SAMPLES = 200_000
+
+_STEEPEST = 1e100
+
+
+class Table(NamedTuple):
+    """Samples of a torque: ``times`` (s, rising; twice the same at a switching time) and ``moments`` (N m).
+
+    Between switching times a cubic spline goes through the samples; outside of them the torque is not known.
+    """
+
+    times: tuple[float, ...]
+    moments: tuple[tuple[float, float, float], ...]
+    frame: str  # "body" or "space": whose components
+    switching_times: tuple[float, ...]
+
+    @property
+    def kind(self) -> str:
+        """As of the torques that are formulas."""
+        return TABLE_KIND.kind
+
+
+_time = number("a time in s")
+_moment = vector("N m")
+
+
+def _plain(value: Any) -> bool:
+    """Return whether a number is a double that needs no reading, as of many samples nearly all do not."""
+    return type(value) is float and (1e-99 < abs(value) < 1e99 or value == 0.0)
+
+
+def _times(value: Any, where: str) -> tuple[float, ...]:
+    if not isinstance(value, list | tuple):
+        expected(where, "a list of times in s", value)
+    return tuple(item if _plain(item) else float(_time(item, f"{where}[{index}]")) for index, item in enumerate(value))
+
+
+def _moments(value: Any, where: str) -> tuple[tuple[float, ...], ...]:
+    if not isinstance(value, list | tuple):
+        expected(where, "a list of torques, each three numbers [x, y, z] in N m", value)
+    return tuple(
+        tuple(item)
+        if isinstance(item, list | tuple) and len(item) == 3 and all(map(_plain, item))
+        else tuple(map(float, _moment(item, f"{where}[{index}]")))
+        for index, item in enumerate(value)
+    )
+
+
+_ENTRIES = {
+    "kind": Entry(choice(TABLE_KIND.kind), required=True),
+    "t": Entry(_times),
+    "moment": Entry(_moments),
+    "file": Entry(text),
+    "interpolation": Entry(choice("cubic_spline")),
+    "frame": Entry(choice("body", "space"), default="body"),
+    "switching_times": Entry(_times, default=()),
+}
+
+
+def read_samples(
+    value: Mapping[str, Any],
+    folder: Path,
+    where: str,
+    span: tuple[Fraction, Fraction],
+    table_folders: str | Path | Sequence[str | Path] = (),
+) -> Table:
+    """Read a ``[[torque]]`` of kind table, which must cover the span of its scene.
+
+    Parameters
+    ----------
+    value : mapping
+        The table of the scene.
+    folder : Path
+        Where a file of samples is looked for; it may lie there or in a folder below, links followed.
+    where : str
+        The place in the scene, for complaints.
+    span : 2 Fractions
+        First and last time that the scene asks for, s.
+    table_folders : str, Path or sequence of them
+        Further folders whose files a scene may name.
+
+    Raises
+    ------
+    InputError
+        For an unknown key, a file elsewhere, a file that cannot be read, samples that are no numbers, too few, not in
+        order, or do not cover the span.
+    """
+    found = read_table(value, where, _ENTRIES, "a torque of kind table")
+    written = [key for key in ("t", "moment") if found[key] is not None]
+    if (found["file"] is None) == (not written) or len(written) == 1:
+        given = [key for key in ("t", "moment", "file") if found[key] is not None]
+        expected(where, f"t and moment, or file, got {' and '.join(given) or 'none of them'}")
+    if written:
+        times, moments, place, rows = found["t"], found["moment"], f"{where}.t", 0
+        if len(times) != len(moments):
+            expected(f"{where}.moment", f"one torque for each of the {len(times)} times, got {len(moments)}")
+        if len(times) > MOST_SAMPLES:
+            expected(place, f"at most {MOST_SAMPLES} samples", len(times))
+    else:
+        place, rows = f"{where}.file: {found['file']}", 2
+        times, moments = _read_file(_allowed_file(found["file"], folder, table_folders, f"{where}.file"), place)
+    _check(times, found["switching_times"], place, rows)
+    _check_slopes(times, moments, place)
+    twice = {after for before, after in pairwise(times) if after == before}
+    for switch in found["switching_times"]:
+        if switch not in twice:
+            expected(f"{where}.switching_times", "times that the samples have twice, before and after the jump, got "
+                     f"{switch!r} s")  # fmt: skip
+    first, last = map(float, span)
+    if times[0] > first or times[-1] < last:
+        expected(place, f"samples that cover the span of the scene, {first!r} to {last!r} s, got {times[0]!r} to "
+                 f"{times[-1]!r} s")  # fmt: skip
+    return Table(times, moments, found["frame"], tuple(sorted(set(found["switching_times"]))))
+
+
+def _check(times: tuple[float, ...], switching: tuple[float, ...], place: str, rows: int) -> None:
+    """Check that times rise, twice the same at switching times alone, with two samples or more in every piece."""
+    if len(times) < 2:
+        expected(place, f"two samples or more, got {len(times)}")
+    length = 1
+    for index, (before, after) in enumerate(pairwise(times), start=1):
+        at = f"{place}, line {index + rows}" if rows else f"{place}[{index}]"
+        if after < before:
+            expected(at, f"rising times, got {after!r} s after {before!r} s")
+        if after == before and after not in switching:
+            expected(at, "rising times, twice the same only where it is one of switching_times (the samples before and "
+                     f"after the jump), got {after!r} s twice")  # fmt: skip
+        if after == before and length < 2:
+            expected(at, f"two samples or more between switching times, got one at {after!r} s")
+        length = 1 if after == before else length + 1
+    if length < 2:
+        expected(place, f"two samples or more between switching times, got one at {times[-1]!r} s")
+
+
+def _check_slopes(times: tuple[float, ...], moments: tuple[tuple[float, ...], ...], place: str) -> None:
+    """Check that the coefficients of a spline are doubles."""
+    for (before, here), (after, there) in pairwise(zip(times, moments, strict=True)):
+        gap, change = after - before, max(abs(y - x) for x, y in zip(here, there, strict=True))
+        if gap and not (gap >= 1 / _STEEPEST and change <= gap * _STEEPEST):
+            expected(place, f"a torque that changes by at most {_STEEPEST:g} N m/s between samples at least "
+                     f"{1 / _STEEPEST:g} s apart, got {change!r} N m within {gap!r} s after {before!r} s")  # fmt: skip
+
+
+def _allowed_file(file: str, folder: Path, table_folders: str | Path | Sequence[str | Path], where: str) -> Path:
+    """Return the file of samples that a scene names, links followed; refuse one outside the folders for it.
+
+    A scene may come from a stranger: it must not make symrot open, and quote, another file of the user.
+    """
+    if isinstance(table_folders, str | Path):
+        table_folders = (table_folders,)
+    if not file.strip() or "\\" in file:
+        expected(where, "the name of a CSV file, with / between folders", file)
+    try:
+        path = (folder / file).resolve()
+        inside = any(path.is_relative_to(Path(each).resolve()) for each in (folder, *table_folders))
+    except (OSError, RuntimeError, ValueError) as reason:  # RuntimeError: links that lead in a circle
+        expected(where, f"the name of a CSV file, got {getattr(reason, 'strerror', None) or reason}")
+    if not inside:
+        expected(where, "a file in the folder of the scene or below it", file, "`--table-folder DIR`, in Python "
+                 "load_scene(.., table_folders=[DIR]), allows those of a folder elsewhere")  # fmt: skip
+    return path
+
+
+def _read_file(path: Path, place: str) -> tuple[tuple[float, ...], tuple[tuple[float, float, float], ...]]:
+    """Return times and moments of a CSV file whose first line is ``t, M1, M2, M3``."""
+    said = f"a CSV file with the columns {', '.join(COLUMNS)}"
+    try:
+        content = read_input(path, LARGEST_FILE)
+    except OSError as reason:
+        expected(place, f"{said}, at most {LARGEST_FILE // 1_000_000} MB, got {reason.strerror or reason}")
+    try:
+        lines = content.decode("utf-8-sig").splitlines()
+    except UnicodeDecodeError as reason:
+        expected(place, f"UTF-8 text, got another byte at position {reason.start}")
+    if not any(line.strip() for line in lines):
+        expected(place, f"{said}, got an empty file")
+    if tuple(cell.strip() for cell in lines[0].split(",")) != COLUMNS:
+        expected(f"{place}, line 1", f"the columns {', '.join(COLUMNS)}, got another line")
+    rows = [_row(line, f"{place}, line {index}") for index, line in enumerate(lines[1:], start=2) if line.strip()]
+    if len(rows) > MOST_SAMPLES:
+        expected(place, f"at most {MOST_SAMPLES} samples, got {len(rows)}")
+    return tuple(row[0] for row in rows), tuple((row[1], row[2], row[3]) for row in rows)
+
+
+def _row(line: str, place: str) -> list[float]:
+    def refuse() -> NoReturn:
+        raise InputError(f"{place}: expected four finite numbers {', '.join(COLUMNS)}, got {line[:80]!r}")
+
+    if not line.isascii() or "_" in line:  # which float() would read
+        refuse()
+    try:
+        found = [float(cell) for cell in line.split(",")]
+    except ValueError:
+        refuse()
+    if len(found) != len(COLUMNS) or not all(map(isfinite, found)) or max(map(abs, found)) > 1e100:
+        refuse()
+    return found

@@ -1,0 +1,303 @@
+"""A scene: the problem as data. A TOML file (or a dict) in, exact numbers out; no SymPy.
+
+The format is the table :data:`TOP` and the readers it names. Everything that a scene says is checked here, and every
+complaint is one sentence with file, key, expectation and value (:class:`symrot.errors.InputError`).
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from symrot.dynamics.torque_kinds import TABLE_KIND
+from symrot.scene.attitude import Vector, read_attitude, read_sequence, to_body
+from symrot.scene.body import Body, read_body
+from symrot.scene.file import SHIPPED, find_scene, read_toml, shipped_names
+from symrot.scene.reader import Entry, choice, expected, flag, number, read_table, table, text, vector
+from symrot.scene.samples import Table, read_samples
+from symrot.scene.torque import Torque, read_torque
+
+__all__ = [
+    "QUANTITIES", "SCHEMA", "Body", "Initial", "Output", "Scene", "Span", "Table", "Torque", "load_scene",
+    "shipped_scenes",
+]  # fmt: skip
+
+SCHEMA = 1
+MOST_SAMPLES = 10_000_000
+MOST_TORQUES = 100
+TOLERANCES = (Fraction(1, 10**15), Fraction(1, 100))
+
+QUANTITIES: dict[str, tuple[str, str]] = {
+    "omega": ("rad/s", "angular velocity, body components"),
+    "omega_space": ("rad/s", "angular velocity, space components"),
+    "quaternion": ("1", "attitude (q0, q1, q2, q3), scalar first, body to space"),
+    "euler": ("rad", "Euler angles of the given sequence"),
+    "dcm": ("1", "direction cosine matrix dcm_sb, row by row"),
+    "energy": ("J", "energy: kinetic, and potential where the torques have one"),
+    "kinetic_energy": ("J", "kinetic energy"),
+    "angular_momentum_body": ("kg m^2/s", "angular momentum, body components"),
+    "angular_momentum_space": ("kg m^2/s", "angular momentum, space components"),
+    "polhode": ("rad/s", "path of the angular velocity in the body, on the energy ellipsoid"),
+    "herpolhode": ("rad/s", "path of the angular velocity in space, on the invariable plane"),
+    "axis": ("1", "symmetry axis of the body (its third axis when it has none), space components"),
+}
+"""What a scene may ask for: name -> (unit, meaning)."""
+
+
+class Initial(NamedTuple):
+    """The state at the start: ``omega_b`` (rad/s, body components) and a unit ``quaternion`` (to 2^-200)."""
+
+    omega_b: Vector
+    quaternion: tuple[Fraction, Fraction, Fraction, Fraction]
+
+
+class Span(NamedTuple):
+    """Sample times: ``samples`` of them, evenly from ``start`` to ``stop`` (s), both included."""
+
+    start: Fraction
+    stop: Fraction
+    samples: int
+
+
+class Output(NamedTuple):
+    """The quantities asked for; ``sequence`` is the Euler sequence of ``euler``, ``degrees`` the unit of its angles."""
+
+    quantities: tuple[str, ...]
+    sequence: str | None
+    degrees: bool
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A rigid body, how it starts, what acts on it, and what is asked of its motion. All numbers are exact."""
+
+    name: str
+    path: str | None
+    title: str
+    source: str
+    body: Body
+    initial: Initial
+    torques: tuple[Torque, ...]
+    span: Span
+    output: Output
+    tolerance: Fraction
+    table: Table | None = None  # a torque by samples, besides the torques that are formulas
+
+    @property
+    def torque_kinds(self) -> tuple[str, ...]:
+        """The kinds of all that acts: the formulas, then the table."""
+        table = () if self.table is None else (self.table.kind,)
+        return (*(torque.kind for torque in self.torques), *table)
+
+    @classmethod
+    def from_dict(
+        cls, content: Mapping[str, Any], where: str = "scene", *, table_folders: str | Path | Sequence[str | Path] = ()
+    ) -> "Scene":
+        """Return the scene of a dict with the keys of a scene file.
+
+        Parameters
+        ----------
+        content : mapping
+            As DESIGN.md section 5; numbers may be int, Fraction, Decimal, text, or float (its exact binary value).
+        where : str
+            Name of the scene, put in front of every complaint.
+        table_folders : str, Path or sequence of them
+            Folders, beside the current one, whose files a torque of kind table may name.
+
+        Raises
+        ------
+        InputError
+            One sentence: key, expectation, value.
+        """
+        return _read_scene(content, where, where, None, table_folders)
+
+
+def load_scene(source: str | Path, *, table_folders: str | Path | Sequence[str | Path] = ()) -> Scene:
+    """Return a scene by the name of a shipped one, or from the path of a TOML file.
+
+    Parameters
+    ----------
+    source : str or Path
+        The name, or the path.
+    table_folders : str, Path or sequence of them
+        Folders, beside that of the scene, whose files a torque of kind table may name.
+
+    Raises
+    ------
+    InputError
+        One sentence with file, key, expectation and value.
+
+    Examples
+    --------
+    >>> load_scene("tumbling_prism").body.principal.moments
+    (Fraction(5, 1), Fraction(20, 1), Fraction(17, 1))
+    """
+    path = find_scene(source)
+    label = path.name if path.parent == SHIPPED else str(source)
+    return _read_scene(read_toml(path, label), label, path.stem, str(path), table_folders)
+
+
+def shipped_scenes() -> list[tuple[str, str, str]]:
+    """Return (name, title, source) of every scene that comes with symrot, without reading their bodies."""
+    contents = [(name, read_toml(SHIPPED / f"{name}.toml", name)) for name in shipped_names()]
+    return [(name, content.get("title", ""), content.get("source", "")) for name, content in contents]
+
+
+# --- the readers of each table ----------------------------------------------------------------------------------------
+
+
+def _schema(value: Any, where: str) -> int:
+    if isinstance(value, bool) or not isinstance(value, int) or value != SCHEMA:
+        expected(where, f"{SCHEMA}, the format this symrot reads", value)
+    return SCHEMA
+
+
+def _read_initial(value: Any, where: str) -> Initial:
+    entries = {"omega": Entry(vector("rad/s")), "omega_space": Entry(vector("rad/s")), "attitude": Entry(read_attitude)}
+    found = read_table(value, where, entries, "the initial state")
+    given = [key for key in ("omega", "omega_space") if found[key] is not None]
+    if len(given) != 1:
+        spoken = "exactly one of omega (body axes) and omega_space, three numbers in rad/s"
+        both = {key: value[key] for key in given}
+        expected(f"{where}.omega", spoken if both else f"{spoken}, got neither", both or ...)
+    attitude = found["attitude"] or read_attitude({"quaternion": [1, 0, 0, 0]}, where)
+    omega_b = found["omega"] if given == ["omega"] else to_body(attitude.dcm, found["omega_space"])
+    return Initial(omega_b, attitude.quaternion)
+
+
+def _samples(value: Any, where: str) -> int:
+    spoken = f"a whole number of samples from 2 to {MOST_SAMPLES}"
+    found = number(spoken)(value, where)
+    if found.denominator != 1 or not 2 <= found <= MOST_SAMPLES:
+        expected(where, spoken, value)
+    return int(found)
+
+
+_time = number("a time in s")
+
+
+def _times(value: Any, where: str) -> tuple[Fraction, Fraction]:
+    if not isinstance(value, list | tuple) or len(value) != 2:
+        expected(where, "the first and the last time, [start, stop] in s", value)
+    start, stop = (_time(item, f"{where}[{index}]") for index, item in enumerate(value))
+    if float(start) == float(stop):
+        expected(where, "a span of positive length, [start, stop] in s", value)
+    if start > stop:
+        expected(where, "start before stop", value, "a scene runs forward; in Python, a propagator takes times in any "
+                 "order")  # fmt: skip
+    return start, stop
+
+
+def _read_span(value: Any, where: str) -> Span:
+    entries = {"t": Entry(_times, required=True), "samples": Entry(_samples, default=1001)}
+    found = read_table(value, where, entries, "a span")
+    start, stop = found["t"]
+    return Span(start, stop, found["samples"])
+
+
+_quantity = choice(*QUANTITIES)
+
+
+def _quantities(value: Any, where: str) -> tuple[str, ...]:
+    if not isinstance(value, list | tuple) or not value:
+        expected(where, f"a list of quantities among {', '.join(QUANTITIES)}", value)
+    found = tuple(_quantity(item, f"{where}[{index}]") for index, item in enumerate(value))
+    for index, name in enumerate(found):
+        if name in found[:index]:
+            expected(f"{where}[{index}]", "each quantity once", name)
+    return found
+
+
+def _read_output(value: Any, where: str) -> Output:
+    found = read_table(value, where, {
+        "quantities": Entry(_quantities, default=("omega", "quaternion")),
+        "sequence": Entry(read_sequence),
+        "degrees": Entry(flag, default=False),
+    }, "the output")  # fmt: skip
+    if "euler" in found["quantities"] and found["sequence"] is None:
+        expected(f"{where}.sequence", 'an Euler sequence for the quantity euler, such as "ZXZ", the key is missing')
+    for key in ("sequence", "degrees"):
+        if "euler" not in found["quantities"] and key in value:
+            expected(f"{where}.{key}", "euler among the quantities, which alone uses it", value[key])
+    return Output(found["quantities"], found["sequence"], found["degrees"])
+
+
+def _read_tolerance(value: Any, where: str) -> Fraction:
+    tolerance: Fraction = number("a tolerance")(value, where)
+    smallest, largest = TOLERANCES
+    if not smallest <= tolerance <= largest:
+        reason = "it is a relative error" if tolerance <= 0 else "a double carries no more digits"
+        reason = "a motion with such errors means nothing" if tolerance > largest else reason
+        expected(where, "a tolerance from 1e-15 to 1e-2", value, reason)
+    return tolerance
+
+
+def _read_accuracy(value: Any, where: str) -> Fraction:
+    found = read_table(value, where, {"tolerance": Entry(_read_tolerance, required=True)}, "the accuracy")
+    tolerance: Fraction = found["tolerance"]
+    return tolerance
+
+
+def _kept(value: Any, where: str) -> Any:
+    return value
+
+
+TOP: dict[str, Entry] = {
+    "schema": Entry(_schema, required=True),
+    "title": Entry(text, default=""),
+    "source": Entry(text, default=""),
+    "body": Entry(read_body, required=True),
+    "initial": Entry(_read_initial, required=True),
+    "torque": Entry(_kept, default=()),
+    "span": Entry(_read_span, required=True),
+    "output": Entry(_read_output, default=Output(("omega", "quaternion"), None, False)),
+    "accuracy": Entry(_read_accuracy, default=Fraction(1, 10**12)),
+}
+"""The tables and keys of a scene file; torques are read last, since they are fitted to the body."""
+
+
+def _read_torques(
+    value: Any, body: Body, span: Span, folder: Path, where: str, table_folders: str | Path | Sequence[str | Path]
+) -> tuple[tuple[Torque, ...], Table | None]:
+    if not isinstance(value, list | tuple):
+        expected(where, "a list of torques, each written as [[torque]]", value)
+    if len(value) > MOST_TORQUES:
+        expected(where, f"at most {MOST_TORQUES} torques", len(value))
+    word = TABLE_KIND.kind
+    tables = [index for index, item in enumerate(value) if isinstance(item, Mapping) and item.get("kind") == word]
+    if len(tables) > 1:
+        expected(f"{where}[{tables[1]}].kind", "at most one torque of kind table: add their samples up", word)
+    formulas = [read_torque(value[i], body, f"{where}[{i}]") for i in range(len(value)) if i not in tables]
+    times = span.start, span.stop
+    samples = [read_samples(value[i], folder, f"{where}[{i}]", times, table_folders) for i in tables]
+    return tuple(formulas), next(iter(samples), None)
+
+
+def _read_scene(
+    content: Mapping[str, Any],
+    label: str,
+    name: str,
+    path: str | None,
+    table_folders: str | Path | Sequence[str | Path],
+) -> Scene:
+    where = f"{label}: "
+    table(content, where, "a table with schema, body, initial, span")
+    found = read_table(content, where, TOP, "a scene")
+    folder = Path() if path is None else Path(path).parent
+    torques, samples = _read_torques(
+        found["torque"], found["body"], found["span"], folder, f"{where}torque", table_folders
+    )
+    return Scene(
+        name=name,
+        path=path,
+        title=found["title"] or name.replace("_", " "),
+        source=found["source"],
+        body=found["body"],
+        initial=found["initial"],
+        torques=torques,
+        span=found["span"],
+        output=found["output"],
+        tolerance=found["accuracy"],
+        table=samples,
+    )

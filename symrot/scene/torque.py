@@ -1,0 +1,225 @@
+"""The torques of a scene: read by the table of :mod:`symrot.dynamics.torque_kinds`, and fitted to the body."""
+
+from collections.abc import Callable, Mapping
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+from symrot.dynamics.torque_kinds import EXPRESSION_NAMES, TABLE_KIND, TORQUE_KINDS, Field, TorqueKind
+from symrot.errors import InputError
+from symrot.formula import tree as expression
+from symrot.formula.exact_numbers import PI, read, show, sqrt
+from symrot.formula.switches import condition_error
+from symrot.scene.attitude import Vector, read_attitude
+from symrot.scene.body import Body
+from symrot.scene.reader import Entry, Reader, choice, expected, nearest, number, read_table, table, under, vector
+
+__all__ = ["Torque", "read_torque"]
+
+DEEPEST_FORMULA = 150
+LONGEST_FORMULA = 2000
+MOST_PARAMETERS = 100
+
+
+class Torque(NamedTuple):
+    """One torque: its kind and the values of its fields, all there, by the names of the table of torques.
+
+    Vectors are tuples of three Fractions, an attitude a unit quaternion, ``linear`` of a damping three numbers. Gravity
+    holds ``weight``, ``center_of_mass`` and a unit ``direction``. An expression holds ``torque`` as three texts that
+    :func:`symrot.formula.tree.parse` reads, switches allowed, ``parameters`` by name (with pi, if a formula uses it) and
+    ``frame``.
+    """
+
+    kind: str
+    values: Mapping[str, Any]
+
+
+# --- fields -----------------------------------------------------------------------------------------------------------
+
+
+def _scalar_or_vector(field: Field) -> Reader:
+    one = number(f"a number in {field.unit}, or three of them", field.sign)
+    three = vector(field.unit, field.sign)
+
+    def reader(value: Any, where: str) -> Vector:
+        if isinstance(value, list | tuple):
+            found: Vector = three(value, where)
+            return found
+        x = one(value, where)
+        return x, x, x
+
+    return reader
+
+
+def _rest(value: Any, where: str) -> tuple[Fraction, ...]:
+    return read_attitude(value, where).quaternion
+
+
+def _depth(node: expression.Node) -> int:
+    """Return the number of levels of a formula, without recursion: a long sum is deep."""
+    depth, level = 0, [node]
+    while level:
+        depth, level = depth + 1, [child for parent in level for child in expression.children(parent)]
+    return depth
+
+
+def _formula(value: Any, where: str) -> str:
+    """Read one component: a formula as text, or a plain number."""
+    if not isinstance(value, str):
+        return str(read(value, where, 'a formula as text, such as "-k*omega_1", or a number'))
+    if len(value) > LONGEST_FORMULA:
+        expected(where, f"a formula of at most {LONGEST_FORMULA} characters", value, f"it has {len(value)}")
+    node = expression.parse(value, where, switching=True)
+    if _depth(node) > DEEPEST_FORMULA:
+        expected(where, f"a formula of at most {DEEPEST_FORMULA} levels", value, "put brackets around groups of terms")
+    if error := condition_error(node):
+        expected(where, error, value)
+    if _divides_by_zero(node):
+        expected(where, "a formula with finite values", value, "it divides by zero")
+    return value.strip()
+
+
+def _divides_by_zero(node: expression.Node) -> bool:
+    """Whether a formula divides by a number that is zero."""
+    if any(map(_divides_by_zero, expression.children(node))):
+        return True
+    divisor = node[2] if node[0] == "/" else node[1] if node[0] == "**" and node[2] < 0 else None
+    if divisor is None or expression.names(divisor):
+        return False
+    try:
+        return bool(expression.evaluate(divisor, {}) == 0)
+    except KeyError:  # a function of a number
+        return False
+
+
+def _formulas(value: Any, where: str) -> tuple[str, ...]:
+    if not isinstance(value, list | tuple) or len(value) != 3:
+        expected(where, "three formulas, one for each component", value)
+    return tuple(_formula(item, f"{where}[{index}]") for index, item in enumerate(value))
+
+
+_parameter = number("a number")
+
+
+def _parameters(value: Any, where: str) -> dict[str, Fraction]:
+    found = table(value, where, "a table of numbers by name, such as {k = 0.1}")
+    if len(found) > MOST_PARAMETERS:
+        expected(where, f"at most {MOST_PARAMETERS} parameters", len(found))
+    taken = {*EXPRESSION_NAMES, *expression.FUNCTIONS, *expression.SWITCHING, *expression.LOGIC, "not", "pi"}
+    for name in found:
+        if not isinstance(name, str) or not (name.isascii() and name.isidentifier()) or len(name) > 40 or name in taken:
+            expected(under(where, name), "a parameter named by letters, digits and underscores, and not as what a "
+                     f"formula knows already ({', '.join(sorted(taken))})", name)  # fmt: skip
+    return {name: _parameter(item, f"{where}.{name}") for name, item in found.items()}
+
+
+_FIELD_READERS: dict[str, Callable[[Field], Reader]] = {
+    "scalar": lambda field: number(f"a number in {field.unit}", field.sign),
+    "vector": lambda field: vector(field.unit, field.sign),
+    "scalar or vector": _scalar_or_vector,
+    "attitude": lambda field: _rest,
+    "formulas": lambda field: _formulas,
+    "parameters": lambda field: _parameters,
+    "body|space": lambda field: choice("body", "space"),
+}
+
+
+def _entries(kind: TorqueKind) -> dict[str, Entry]:
+    return {
+        "kind": Entry(choice(kind.kind), required=True),
+        **{field.name: Entry(_FIELD_READERS[field.shape](field), field.required, field.default)
+           for field in kind.fields},
+    }  # fmt: skip
+
+
+# --- what needs the body ----------------------------------------------------------------------------------------------
+
+
+def _fit_gravity(values: dict[str, Any], body: Body, where: str) -> dict[str, Any]:
+    """Return weight, centre of mass and unit direction, from the body where the scene leaves them to it."""
+    weight, acceleration, center = values["weight"], values["gravity"], values["center_of_mass"]
+    if weight is not None and acceleration is not None:
+        expected(f"{where}.gravity", "weight or gravity, not both", acceleration)
+    if weight is None and acceleration is None:
+        expected(f"{where}.weight", "the weight in N, or gravity in m/s^2 for a body with a mass, both are missing")
+    if weight is None and body.mass is None:
+        expected(f"{where}.gravity", "the weight in N: the mass of the body is unknown", acceleration)
+    if center is not None and body.center_of_mass is not None and center != body.center_of_mass:
+        known = [float(item) for item in body.center_of_mass]
+        expected(f"{where}.center_of_mass", f"no value, or that of the body, {show(known)} m from the fixed point",
+                 [float(item) for item in center])  # fmt: skip
+    if center is None:
+        center = body.center_of_mass
+    if center is None:
+        expected(f"{where}.center_of_mass", "three numbers [x, y, z] in m from the fixed point: the moments of the "
+                 "body were typed, its centre of mass is unknown")  # fmt: skip
+    if not any(center):
+        expected(where, "a fixed point away from the centre of mass, where alone the weight has a torque",
+                 [float(item) for item in center])  # fmt: skip
+    x, y, z = values["direction"]
+    length = sqrt(x * x + y * y + z * z)
+    return {
+        "weight": weight if weight is not None else acceleration * body.mass,
+        "center_of_mass": center,
+        "direction": (x / length, y / length, z / length),
+    }
+
+
+def _fit_damping(values: dict[str, Any], body: Body, where: str) -> dict[str, Any]:
+    if not any(values["linear"]) and not values["quadratic"]:
+        expected(where, "a damping with linear or quadratic > 0, got neither")
+    return values
+
+
+def _fit_expression(values: dict[str, Any], body: Body, where: str) -> dict[str, Any]:
+    """Check that every name is known; pi becomes a parameter, so that a formula needs no other numbers."""
+    parameters = dict(values["parameters"])
+    known = {*EXPRESSION_NAMES, *parameters, "pi"}
+    for index, formula in enumerate(values["torque"]):
+        node = expression.parse(formula, switching=True)
+        if "atan2" in expression.operations(node):  # which is continued where it is cut
+            parameters["pi"] = PI
+        for name in sorted(expression.names(node)):
+            if name not in known:
+                allowed = ", ".join([*EXPRESSION_NAMES, *parameters])
+                reason = ", ".join(filter(None, (f"'{name}' has no number in parameters", nearest(name, known))))
+                expected(f"{where}.torque[{index}]", f"a formula in {allowed}", formula, reason)
+            if name == "pi":
+                parameters["pi"] = PI
+    return {**values, "parameters": parameters}
+
+
+_FITS: dict[str, Callable[[dict[str, Any], Body, str], dict[str, Any]]] = {
+    "gravity": _fit_gravity,
+    "damping": _fit_damping,
+    "expression": _fit_expression,
+}
+
+_ABOUT_ADVICE = {
+    "fixed_point": 'about = "fixed_point" in [body]: a weight has no torque about the centre of mass',
+    "center_of_mass": 'about = "center_of_mass" in [body]: a satellite turns about its centre of mass',
+}
+
+
+def read_torque(value: Any, body: Body, where: str) -> Torque:
+    """Read one ``[[torque]]`` that is a formula, fitted to the body.
+
+    Raises
+    ------
+    InputError
+        For an unknown kind, key or name in a formula, a value out of range, or a torque that the body cannot feel.
+    """
+    kinds = (*TORQUE_KINDS, TABLE_KIND.kind)
+    found = table(value, where, f"a table with a kind, one of {', '.join(kinds)}")
+    if "kind" not in found:
+        expected(f"{where}.kind", f"one of {', '.join(kinds)}, the key is missing")
+    name = choice(*kinds)(found["kind"], f"{where}.kind")
+    kind = TORQUE_KINDS[name]
+    values = read_table(found, where, _entries(kind), f"a torque of kind {name}")
+    del values["kind"]
+    if kind.about not in ("any", body.about):
+        expected(f"{where}.kind", _ABOUT_ADVICE[kind.about], name)
+    fit = _FITS.get(name)
+    try:
+        return Torque(name, fit(values, body, where) if fit else values)
+    except RecursionError:
+        raise InputError(f"{where}: expected a formula of fewer levels, got {show(found)}") from None

@@ -1,0 +1,194 @@
+"""Emitted kernels as files: one, or the library and those of all shipped scenes, and whether the files are stale."""
+
+import json
+import os
+from collections.abc import Callable, Mapping, Sequence
+from difflib import unified_diff
+from itertools import repeat
+from pathlib import Path
+from typing import Any
+
+from symrot.certificates import recheck
+from symrot.certificates.audit import LARGEST
+from symrot.certificates.certificate import with_slots
+from symrot.certificates.readback.readback import read_kernel
+from symrot.certificates.rounding.bounds import check_bounds, check_section
+from symrot.certificates.selftest import selftest_files
+from symrot.codegen.printing.build_files import build_files
+from symrot.errors import CertificateError, InputError
+from symrot.files.reading import read_input
+from symrot.kernels.library import definition, kernel_names
+from symrot.scene.file import names_with_kernels
+from symrot.workshop.emit import emit
+from symrot.files.writing import write
+from symrot.workshop.workers import workers
+
+__all__ = ["certificate_files", "kept_bounds", "kernel_files", "kernel_lines", "stale", "write_all", "write_files"]
+
+SUFFIXES = {"c": (".c", ".h", ".json", ".txt", ".in"), "numpy": (".py",)}
+RECHECK = "recheck.py"  # re-checks certificates without symrot
+SCENES = "scenes"  # under the folder of each target: the kernels of shipped scenes; those of the library beside it
+
+
+def kernel_lines() -> list[str]:
+    """Return a line for each kernel of the library: its name and what it computes."""
+    width = max(map(len, kernel_names()))
+    return [f"{name:<{width}}  {definition(name).title}" for name in kernel_names()]
+
+
+def kernel_files(kernel: str | Path, target: str, bounds: Mapping[str, Any] | None = None) -> dict[str, str]:
+    """Return file name -> text of a kernel of the library or of a scene; in C the header comes first.
+
+    ``bounds`` are those that the head of a scene's C says (:func:`symrot.emit`).
+    """
+    found = emit(kernel, target, bounds)
+    if target == "numpy":
+        return {f"{found.name}.py": found.source}
+    from symrot.codegen.printing.c_source import MATH_HEADER
+    from symrot.codegen.printing.math_header import math_header
+
+    shared = {MATH_HEADER: math_header()} if f'"{MATH_HEADER}"' in found.source else {}
+    return {f"{found.name}.h": found.header, f"{found.name}.c": found.source} | shared
+
+
+def certificate_files(
+    kernel: str | Path, directory: Path, bounds: Mapping[str, Any] | None = None
+) -> dict[str, str]:  # fmt: skip
+    """Return file name -> text of the certificate of a kernel; verdicts on object code that still hold are kept.
+
+    Bounds of rounding errors are those of the kernel's own box; of a scene, those that it is emitted with.
+    """
+    found = emit(kernel, "c", bounds)
+    name = f"{found.name}.cert.json"
+    own = json.loads(found.certificate).get("rounding")
+    return {name: with_slots(found.certificate, _slots(directory / name) | {"rounding": own})}
+
+
+def kept_bounds(kernel: str | Path, directory: Path | None) -> Mapping[str, Any] | None:
+    """Return the bounds of rounding errors that a folder's certificate holds of a scene's kernel, as it is emitted now.
+
+    They are those that bounding again finds, as in an audit. None for a kernel of the library, which has its own, and
+    where there are none, or they are of other operations or not what is found.
+    """
+    if directory is None or kernel in kernel_names():
+        return None
+    name, source, _ = emit(kernel)
+    section = _slots(directory / f"{name}.cert.json").get("rounding")
+    if not isinstance(section, dict):
+        return None
+    operations = read_kernel(source, name, f"{name}.c")
+    try:
+        check_section(section, operations, None)
+        check_bounds(section, operations, None)
+    except CertificateError:
+        return None
+    return section
+
+
+def _slots(path: Path) -> dict[str, Any]:
+    """Return the certificate that is there, of which bounds and verdicts are kept; nothing for none."""
+    try:
+        found = json.loads(read_input(path, LARGEST))
+    except (OSError, ValueError, RecursionError):
+        return {}
+    return found if isinstance(found, dict) else {}
+
+
+def _files_of(name: str, room: str, targets: Sequence[str], directory: Path) -> dict[str, str]:
+    """Return path -> text of one kernel, its certificate included."""
+    files: dict[str, str] = {}
+    for target in targets:
+        bounds = kept_bounds(name, directory / target / room) if target == "c" else None
+        found = kernel_files(name, target, bounds)
+        if target == "c":
+            found |= certificate_files(name, directory / target / room, bounds)
+        files |= {f"{target}/{room}{file}": text for file, text in found.items()}
+    return files
+
+
+def _all_files(targets: Sequence[str], directory: Path, progress: Callable[[str], object]) -> dict[str, str]:
+    """Return path -> text of the library and of the kernels of all shipped scenes; several processes print them."""
+    work = [
+        (name, room) for room, names in (("", kernel_names()), (f"{SCENES}/", names_with_kernels())) for name in names
+    ]
+    files: dict[str, str] = {}
+    with workers() as pool:
+        names, rooms = zip(*work, strict=True)
+        for name, found in zip(
+            names, pool.map(_files_of, names, rooms, repeat(targets), repeat(directory), chunksize=8), strict=True
+        ):
+            progress(f"emitting {name} ..")
+            files |= found
+    if "c" in targets:
+        files |= {f"c/{file}": text for file, text in (build_files() | selftest_files()).items()}
+        files[RECHECK] = Path(recheck.__file__).read_text(encoding="utf-8")
+    return files
+
+
+def _printed_before(directory: Path, targets: Sequence[str]) -> list[str]:
+    """Return the paths of the kernels that are there, those that are no longer printed among them."""
+    return [
+        path.relative_to(directory).as_posix()
+        for target in targets
+        for room in (directory / target, directory / target / SCENES)
+        for path in sorted(room.glob("*"))
+        if path.suffix in SUFFIXES[target]
+    ]
+
+
+def write_files(directory: Path, files: Mapping[str, str]) -> list[Path]:
+    """Write texts into a folder, made if it is not there, and return the paths that changed.
+
+    Raises
+    ------
+    InputError
+        If the folder or a file cannot be written.
+    """
+    changed = []
+    for name, text in files.items():  # all that can be known to fail fails before anything is written
+        path, content = directory / name, text.encode()
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            if path.is_dir() or not os.access(path.parent, os.W_OK):
+                raise InputError(f"{str(path)!r} cannot be written: it, or the folder it is in, is not to be changed")
+            if not path.is_file() or path.read_bytes() != content:
+                changed.append((path, content))
+        except OSError as reason:
+            raise InputError(f"{str(path)!r} cannot be written: {reason.strerror or reason}") from None
+    for path, content in changed:
+        write(path, lambda stream, content=content: stream.write(content))  # type: ignore[misc]
+    return [path for path, _ in changed]
+
+
+def write_all(directory: Path, targets: Sequence[str], progress: Callable[[str], object]) -> list[Path]:
+    """Write the library and the kernels of all shipped scenes, remove others, return the paths that changed."""
+    files = _all_files(targets, directory, progress)
+    changed = write_files(directory, files)
+    for name in _printed_before(directory, targets):
+        if name not in files:
+            (directory / name).unlink()
+            changed.append(directory / name)
+    return changed
+
+
+def stale(directory: Path, targets: Sequence[str], progress: Callable[[str], object]) -> list[str]:
+    """Return a unified diff from the kernels that are there to those that would be printed now; nothing if equal.
+
+    Raises
+    ------
+    InputError
+        If the folder is not there.
+    """
+    if not directory.is_dir():
+        raise InputError(f"{str(directory)!r}: expected the folder that `symrot emit --all` writes, there is none")
+    files = _all_files(targets, directory, progress)
+    lines: list[str] = []
+    for name in sorted({*files, *_printed_before(directory, targets)}):
+        path = directory / name
+        old = path.read_bytes().decode(errors="replace") if path.is_file() else ""
+        new = files.get(name, "")
+        if old != new or name not in files:
+            before, after = f"{path} (on disk)", f"{path} (emitted)"
+            diff = list(unified_diff(old.splitlines(), new.splitlines(), before, after, lineterm=""))
+            lines += diff or [f"{path}: {'line ends differ' if name in files else 'a kernel that is not printed'}"]
+    return lines

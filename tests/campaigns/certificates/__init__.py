@@ -1,0 +1,1 @@
+"""Campaigns against certificates: corrupted files and object code, measured rounding errors."""

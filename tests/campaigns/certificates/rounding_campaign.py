@@ -1,0 +1,244 @@
+"""Measured rounding errors against their bounds, for all kernels: ``python -m tests.campaigns.certificates.rounding_campaign``.
+
+Prints for each kernel and precision the output with the largest ratio of bound and measured error, then for each class
+of kernels the bar, the largest ratio and what misses it; exit code 1 if an error is larger than its bound, a bound
+looser than its class allows, or a kernel without a bound. A computation that several kernels have in common on equal
+boxes is measured once.
+"""
+
+import sys
+from argparse import ArgumentParser
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, replace
+from functools import partial
+from math import inf
+from pathlib import Path
+
+from symrot.certificates.readback.operations import Operations
+from symrot.certificates.rounding.bounds import BUDGET, OutputBound, bound_outputs, tasks
+from symrot.certificates.rounding.intervals import DIGITS
+from symrot.certificates.rounding.library import operations_of, prepare, problem
+from symrot.errors import InputError
+from symrot.kernels.library import definition, kernel_names
+from tests.campaigns.certificates.rounding_measured import Measured, measure
+
+__all__ = ["CLASSES", "Class", "Row", "class_of", "compare", "loosest", "rows", "table"]
+
+
+@dataclass(frozen=True)
+class Class:
+    """Kernels that share a bar: the largest ratio of bound and measured error, infinite for none.
+
+    A kernel belongs to the first class whose beginnings and endings its name has.
+    """
+
+    title: str
+    loosest: float
+    starts: tuple[str, ...]
+    ends: tuple[str, ...] = ("",)
+
+
+CLASSES = (
+    Class("angles of a quaternion", 4.0, ("euler_",), ("_of_quaternion",)),
+    Class("other parameters of a quaternion", 4.0, ("rotation_vector_", "rodrigues_", "mrp_"), ("_of_quaternion",)),
+    Class("angular acceleration, full tensor", 12.0, ("euler_equations_tensor", "rigid_body_tensor")),
+    Class("angular acceleration, other bodies", 4.0, ("euler_equations_",)),
+    Class("quaternion kernels", 1.5, ("quaternion_",)),
+    Class("Euler rates", 4.0, ("euler_",), ("_rates",)),
+    Class("Euler sequences: matrix, Jacobian, quaternion", 4.0, ("euler_",)),
+    Class("all others", inf, ("",)),
+)  # fmt: skip
+LONGER = 10  # times as many points where a bound looks loose
+POINTS = 100_000
+
+
+@dataclass(frozen=True)
+class Row:
+    """One output: measured error, bound, both in units of 2^-53 or 2^-24."""
+
+    kernel: str
+    precision: str
+    output: str
+    measured: float
+    bound: float
+    at: tuple[tuple[str, float], ...]
+
+    @property
+    def ratio(self) -> float:
+        """The bound over the measured error; 1 where both are zero."""
+        return self.bound / self.measured if self.measured else 1.0
+
+    @property
+    def holds(self) -> bool:
+        """Whether the error is within the bound."""
+        return self.measured <= self.bound
+
+    @property
+    def tight(self) -> bool:
+        """Whether the bound is as near to the error as its family has to be."""
+        return self.ratio <= loosest(self.kernel)
+
+
+def class_of(kernel: str) -> Class:
+    """Return the class of a kernel."""
+    return next(each for each in CLASSES if kernel.startswith(each.starts) and kernel.endswith(each.ends))
+
+
+def loosest(kernel: str) -> float:
+    """Return the largest ratio of bound and measured error of a kernel."""
+    return class_of(kernel).loosest
+
+
+def compare(
+    operations: Operations, bounds: Sequence[OutputBound], measured: Sequence[Measured], kernel: str
+) -> list[Row]:
+    """Return a row for each output."""
+    unit = 2.0 ** -DIGITS[operations.precision]
+    return [
+        Row(kernel, operations.precision, each.output, found.error / unit, each.bound / unit, found.at)
+        for each, found in zip(bounds, measured, strict=True)
+    ]
+
+
+def rows(name: str, text: str, points: int, seed: int = 1, budget: int = BUDGET, suffixes: str = "df") -> list[Row]:
+    """Return the rows of a kernel's double ("d") and float ("f") functions."""
+    return [
+        row
+        for suffix, operations in zip("df", operations_of(name, text), strict=True)
+        if suffix in suffixes
+        for row in _rows(name, operations, points, seed, budget)
+    ]
+
+
+def _rows(name: str, operations: Operations, points: int, seed: int, budget: int) -> list[Row]:
+    given = problem(definition(name), operations)
+    bounds = bound_outputs(operations, given.box, given.region, budget)
+    found = compare(operations, bounds, measure(operations, given.box, bounds, given.region, points, seed), name)
+    if not all(row.tight for row in found):  # a larger error may only be rare: look for it longer
+        loose = [each for each, row in zip(bounds, found, strict=True) if not row.tight]
+        more = measure(operations, given.box, loose, given.region, LONGER * points, seed + 1)
+        again = {row.output: row for row in compare(operations, loose, more, name)}
+        found = [max(row, again.get(row.output, row), key=lambda each: each.measured) for row in found]
+    return found
+
+
+def _keys(name: str, text: str) -> dict[tuple[str, str], str]:
+    """Return (precision, output) of a kernel -> what its computation has in common with equal ones."""
+    found = {}
+    for operations in operations_of(name, text):
+        given = problem(definition(name), operations)
+        for output, task in tasks(operations, given.box, given.region).items():
+            found[operations.precision, output] = task.key
+    return found
+
+
+@dataclass(frozen=True)
+class _Work:
+    name: str
+    text: str
+    suffixes: str
+
+
+def _measured(work: _Work, points: int) -> list[Row] | str:
+    try:
+        return rows(work.name, work.text, points, suffixes=work.suffixes)
+    except InputError as error:
+        return str(error)
+
+
+def table(texts: Mapping[str, str], points: int = POINTS, workers: int = 2) -> Iterator[tuple[str, list[Row] | str]]:
+    """Yield the rows of each kernel, or why it has no bound; equal computations of several kernels are measured once.
+
+    Parameters
+    ----------
+    texts : mapping
+        Kernel -> C text.
+    points : int
+        Per kernel and precision; ``LONGER`` times as many for outputs whose bound looks loose.
+    workers : int
+        Processes.
+    """
+    keys = {name: _keys(name, text) for name, text in texts.items()}
+    seen: set[str] = set()
+    work = []
+    for name, text in texts.items():
+        suffixes = ""
+        for suffix, precision in zip("df", DIGITS, strict=True):
+            own = {key for (kind, _), key in keys[name].items() if kind == precision}
+            suffixes += suffix if own - seen else ""
+            seen |= own
+        work.append(_Work(name, text, suffixes))
+    known: dict[str, Row] = {}
+    with ProcessPoolExecutor(workers) as pool:
+        for each, found in zip(work, pool.map(partial(_measured, points=points), work), strict=True):
+            if isinstance(found, str):
+                yield each.name, found
+                continue
+            for row in found:
+                key = keys[each.name][row.precision, row.output]
+                known[key] = max(row, known.get(key, row), key=lambda row: row.measured)
+            yield (
+                each.name,
+                [replace(known[key], kernel=each.name, output=output) for (_, output), key in keys[each.name].items()],
+            )
+
+
+def _line(found: Sequence[Row]) -> str:
+    loose = max(found, key=lambda row: (not row.holds, row.ratio))
+    verdict = "BROKEN" if not loose.holds else "" if all(row.tight for row in found) else "LOOSE"
+    said = f"{loose.output:16s} measured {loose.measured:10.4g}  bound {loose.bound:10.4g}"
+    return f"{loose.kernel:34s} {loose.precision} {said}  ratio {loose.ratio:6.3g} {verdict}".rstrip()
+
+
+def class_lines(found: Iterable[Row]) -> list[str]:
+    """Return a line for each class: bar, kernels, largest ratio and where it is; and those that miss it."""
+    rows = list(found)
+    lines = []
+    for each in CLASSES:
+        own = [row for row in rows if class_of(row.kernel) is each]
+        if not own:
+            continue
+        worst = max(own, key=lambda row: row.ratio)
+        missing = sorted({row.kernel for row in own if not row.tight})
+        count = len({row.kernel for row in own})
+        bar = f"{each.loosest:4.3g}" if each.loosest < inf else "none"
+        lines.append(
+            f"{each.title:48s} bar {bar}  {count:3d} kernels  largest ratio {worst.ratio:7.4g} "
+            f"({worst.kernel}, {worst.output}, {worst.precision})"
+        )
+        lines += [f"  misses: {', '.join(missing)}"] if missing else []
+    return lines
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Print a line for each kernel and precision, then one for each class."""
+    parser = ArgumentParser(description="Measured rounding errors against their bounds.")
+    parser.add_argument("kernels", nargs="*", help="names (default: all)")
+    parser.add_argument("--points", type=int, default=POINTS, help=f"points per kernel ({POINTS})")
+    parser.add_argument("--workers", type=int, default=2, help="processes (2)")
+    parser.add_argument("--generated", type=Path, default=Path("generated"), help="folder of kernels (./generated)")
+    options = parser.parse_args(arguments)
+    texts = {
+        name: (options.generated / "c" / f"{name}.c").read_text(encoding="utf-8")
+        for name in options.kernels or kernel_names()
+    }
+    prepare(texts.items(), options.workers)
+    every: list[Row] = []
+    failed = 0
+    for name, found in table(texts, options.points, options.workers):
+        if isinstance(found, str):
+            failed += 1
+            print(f"{name:34s} no bound: {found}", flush=True)
+            continue
+        for precision in DIGITS:
+            print(_line([row for row in found if row.precision == precision]), flush=True)
+        every += found
+    print("\n".join(class_lines(every)))
+    broken = sum(not row.holds for row in every)
+    print(f"{len(every)} outputs, {broken} errors above their bounds, {failed} kernels without bounds")
+    return 1 if failed or not all(row.holds and row.tight for row in every) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,249 @@
+"""Values of trees at real points in 60 digits, and where there is none: judge of the campaign over real functions.
+
+Arithmetic of mpmath's floating point numbers alone, which shares nothing with the engine: it proves nothing, but tells
+two values apart, and a value from none. The rules are those of real functions: a power ``u^(p/q)``, q > 1, of u >= 0
+only; logarithms of positive numbers; ``asin`` and ``acos`` between -1 and 1; no division by zero. A piece that is
+multiplied by zero must have a value too. Near the edge of a domain, and beyond e^100, the judge does not know.
+"""
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from random import Random
+from typing import Any
+
+from mpmath import MPContext
+
+from symrot.checker.claim.tree import Node
+
+__all__ = ["NAMES", "Edge", "NoValue", "Unclear", "compare", "drawn_point", "generic_point", "real_value"]
+
+NAMES = ("x", "y", "z")
+
+DIGITS, MORE_DIGITS = 60, 200
+EDGE = 25
+"""Digits: a number below 10^-25 that is not exactly zero may be one that is."""
+
+_MOST = 100
+"""Of an exponent of e: larger numbers may cancel beyond the digits."""
+
+Point = Mapping[str, Fraction]
+
+
+class NoValue(Exception):
+    """The formula is no real number at this point."""
+
+
+class Unclear(Exception):
+    """The judge cannot tell."""
+
+
+class Edge(Unclear):
+    """The judge cannot tell since the point is on the edge of the domain, or close to it."""
+
+
+def _context(digits: int) -> Any:
+    made = MPContext()
+    made.dps = digits
+    return made
+
+
+_CONTEXTS = {digits: _context(digits) for digits in (DIGITS, MORE_DIGITS)}
+
+
+class _Judge:
+    """Values at one point, in one precision."""
+
+    def __init__(self, point: Point, digits: int) -> None:
+        self.mp = _CONTEXTS[digits]
+        self.values = {name: self.mp.mpf(value.numerator) / value.denominator for name, value in point.items()}
+        self.edge = self.mp.mpf(10) ** -EDGE
+
+    def value(self, node: Node) -> Any:
+        kind, args = node.kind, node.args
+        if kind == "number":
+            return self.mp.mpf(node.value.numerator) / node.value.denominator
+        if kind == "name":
+            return +self.mp.pi if node.value == "pi" else self.values[node.value]
+        if kind == "power":
+            return self.power(self.value(args[0]), _rational(args[1]))
+        parts = [self.value(argument) for argument in args]
+        if kind == "sum":
+            return sum(parts[1:], parts[0])
+        if kind == "product":
+            total = parts[0]
+            for part in parts[1:]:
+                total = total * part
+            return total
+        if kind == "neg":
+            return -parts[0]
+        if kind == "inv":
+            return 1 / self.nonzero(parts[0])
+        if kind == "call":
+            return getattr(self, f"of_{node.value}")(*parts)
+        raise Unclear
+
+    # -- edges --------------------------------------------------------------------------------------------------------
+
+    def nonzero(self, value: Any) -> Any:
+        if value == 0:
+            raise NoValue
+        if abs(value) < self.edge:
+            raise Edge
+        return value
+
+    def nonnegative(self, value: Any) -> Any:
+        if value == 0:
+            return value
+        if abs(value) < self.edge:
+            raise Edge
+        if value < 0:
+            raise NoValue
+        return value
+
+    def power(self, base: Any, exponent: Fraction) -> Any:
+        if exponent.denominator > 1:
+            base = self.nonnegative(base)
+        if exponent < 0:
+            base = self.nonzero(base)
+        if base == 0:
+            return self.mp.mpf(0 if exponent else 1)
+        if abs(self.mp.log(abs(base)) * exponent.numerator / exponent.denominator) > _MOST:
+            raise Unclear
+        if exponent.denominator == 1:
+            return base**exponent.numerator
+        return self.mp.exp(self.mp.log(base) * exponent.numerator / exponent.denominator)
+
+    # -- functions ----------------------------------------------------------------------------------------------------
+
+    def of_sqrt(self, u: Any) -> Any:
+        return self.mp.sqrt(self.nonnegative(u))
+
+    def of_abs(self, u: Any) -> Any:
+        return abs(u)
+
+    def of_log(self, u: Any) -> Any:
+        return self.mp.log(self.nonzero(self.nonnegative(u)))
+
+    def of_exp(self, u: Any) -> Any:
+        if abs(u) > _MOST:
+            raise Unclear
+        return self.mp.exp(u)
+
+    def of_sinh(self, u: Any) -> Any:
+        return (self.of_exp(u) - self.of_exp(-u)) / 2
+
+    def of_cosh(self, u: Any) -> Any:
+        return (self.of_exp(u) + self.of_exp(-u)) / 2
+
+    def of_tanh(self, u: Any) -> Any:
+        return self.of_sinh(u) / self.of_cosh(u)
+
+    def of_sin(self, u: Any) -> Any:
+        return self.mp.sin(self.angle(u))
+
+    def of_cos(self, u: Any) -> Any:
+        return self.mp.cos(self.angle(u))
+
+    def of_tan(self, u: Any) -> Any:
+        return self.of_sin(u) / self.nonzero(self.of_cos(u))
+
+    def angle(self, u: Any) -> Any:
+        if abs(u) > self.mp.mpf(10) ** 20:
+            raise Unclear
+        return u
+
+    def of_asin(self, u: Any) -> Any:
+        self.nonnegative(1 - u)
+        self.nonnegative(1 + u)
+        return self.mp.atan2(u, self.mp.sqrt((1 - u) * (1 + u)))
+
+    def of_acos(self, u: Any) -> Any:
+        return self.mp.pi / 2 - self.of_asin(u)
+
+    def of_atan(self, u: Any) -> Any:
+        return self.mp.atan(u)
+
+    def of_atan2(self, y: Any, x: Any) -> Any:
+        if x == 0 and y == 0:
+            raise NoValue
+        if max(abs(x), abs(y)) < self.edge or (x < 0 and 0 < abs(y) < self.edge):
+            raise Edge
+        return self.mp.pi if x < 0 and y == 0 else self.mp.atan2(y, x)
+
+
+def _rational(node: Node) -> Fraction:
+    """Return an exponent: a number, perhaps with a sign or divided by another."""
+    if node.kind == "neg":
+        return -_rational(node.args[0])
+    if node.kind == "inv":
+        return 1 / _rational(node.args[0])
+    if node.kind == "product":
+        total = Fraction(1)
+        for factor in node.args:
+            total *= _rational(factor)
+        return total
+    if node.kind != "number":
+        raise Unclear
+    return Fraction(node.value)
+
+
+def real_value(node: Node, point: Point, digits: int = DIGITS) -> Any:
+    """Return the value of a tree at a point.
+
+    Raises
+    ------
+    NoValue
+        Where it is no real number.
+    Unclear
+        Where the judge cannot tell, or does not know a function.
+    """
+    try:
+        return _Judge(point, digits).value(node)
+    except (AttributeError, KeyError, TypeError, OverflowError, MemoryError):
+        raise Unclear from None
+
+
+def compare(left: Node, right: Node, point: Point) -> bool:
+    """Return whether two sides have one value at a point, twice as many digits asked where they seem to differ.
+
+    Raises
+    ------
+    NoValue
+        Where one of them is no real number.
+    Unclear
+    """
+    gaps = []
+    for digits in (DIGITS, MORE_DIGITS):
+        a, b = (real_value(side, point, digits) for side in (left, right))
+        gap = abs(a - b) / (1 + abs(a) + abs(b))
+        if gap == 0:
+            return True
+        gaps.append(gap)
+    return bool(gaps[1] < 1e-20 and gaps[1] < gaps[0] * 1e-20) or bool(gaps[1] < 1e-100)
+
+
+def drawn_point(source: Random, names: Sequence[str] = NAMES) -> dict[str, Fraction]:
+    """Return a random point: small whole numbers, small fractions, and numbers of any size."""
+    return _drawn(source, names, 0)
+
+
+def generic_point(source: Random, names: Sequence[str] = NAMES) -> dict[str, Fraction]:
+    """Return a random point on no edge that is likely to matter: no whole numbers."""
+    return _drawn(source, names, 3)  # never zero
+
+
+def _drawn(source: Random, names: Sequence[str], least: int) -> dict[str, Fraction]:
+    def value() -> Fraction:
+        kind = source.randint(least, 4)
+        if kind == 0:
+            return Fraction(source.randint(-3, 3))
+        if kind == 1:
+            return Fraction(source.randint(-20, 20), source.randint(1, 20))
+        if kind == 2:
+            return Fraction(source.randint(-99, 99), 100)
+        if kind == 3:
+            size = Fraction(10) ** source.choice((-5, -4, -3, -2, -1, 0, 1, 2, 6, 12, 20))
+            return source.choice((-1, 1)) * source.randint(1, 999) * size
+        return Fraction(2 * source.randint(-5000, 5000) + 1, 997)
+
+    return {name: value() for name in names}

@@ -1,0 +1,1 @@
+"""Random torques against the truth."""
