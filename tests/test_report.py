@@ -9,8 +9,8 @@ import pytest
 import symrot
 from symrot.cli import main as cli
 from symrot.errors import InputError
-from symrot.report import layout
 from symrot.files.writing import write
+from symrot.report import layout
 
 LOCKED = """
 schema = 1

@@ -1,11 +1,11 @@
 """Audit a certificate: whether everything it says still holds, for the files beside it and for what symrot derives.
 
-:mod:`symrot.certificates.exact_check` decides what can be decided from the files alone. Beyond it: the header says nothing
-but prototypes, the operations are those that were certified, and what the certificate says of the kernel (formulas,
-laws and their proofs, domain, units, assumptions) is what symrot derives for a kernel of that name and proves exactly,
-as identities of fractions of polynomials (:mod:`symrot.certificates.laws.laws`, :mod:`symrot.certificates.laws.equality`), so that no
-certificate of something else, however well proven, passes for it. Bounds of rounding errors are those that symrot
-finds on the box of the certificate.
+:mod:`symrot.certificates.exact_check` decides what can be decided from the files alone. Beyond it: the header says
+nothing but prototypes, the operations are those that were certified, and what the certificate says of the kernel
+(formulas, laws and their proofs, domain, units, assumptions) is what symrot derives for a kernel of that name and
+proves exactly, as identities of fractions of polynomials (:mod:`symrot.certificates.laws.laws`,
+:mod:`symrot.certificates.laws.equality`), so that no certificate of something else, however well proven, passes for it.
+Bounds of rounding errors are those that symrot finds on the box of the certificate.
 """
 
 import json

@@ -111,8 +111,10 @@ def certificate_text(subject: Subject) -> str:
     return printed(stated | json.loads(kept))
 
 
-PROVERS = ("certificate", "laws/equality", "laws/law_proof", "laws/laws", "readback/c_functions",
-           "readback/intended_constants", "readback/operations", "readback/readback", "../kernels/removable")  # fmt: skip
+PROVERS = (
+    "certificate", "laws/equality", "laws/law_proof", "laws/laws", "readback/c_functions",
+    "readback/intended_constants", "readback/operations", "readback/readback", "../kernels/removable",
+)  # fmt: skip
 """The programs that find proofs: another one of them, other proofs."""
 
 

@@ -3,10 +3,10 @@
 Every hash; link 3, that the C text is its formulas; link 1, that the formulas obey their laws. Both are evaluated in
 exact arithmetic at random integers, functions of equal arguments being one random integer more: a wrong equation passes
 one run with a chance of about its degree in 2^128. Laws are proven by the cases, steps and cofactors that the
-certificate holds (:mod:`symrot.certificates.laws.laws`). ``recheck.py``, which looks at no proof but at numbers, shares with this
-the seal and the hashes alone. Headers are known by hash alone. Whatever else a certificate says (titles and units,
-counts and digests of operations, flags, theorems, bounds of rounding errors, object code) is a statement that is not
-looked at.
+certificate holds (:mod:`symrot.certificates.laws.laws`). ``recheck.py``, which looks at no proof but at numbers, shares
+with this the seal and the hashes alone. Headers are known by hash alone. Whatever else a certificate says (titles and
+units, counts and digests of operations, flags, theorems, bounds of rounding errors, object code) is a statement that is
+not looked at.
 """
 
 import ast

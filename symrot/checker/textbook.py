@@ -4,9 +4,9 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from symrot.checker.interface import check_readings
 from symrot.checker.claim.claims import Claim, read_claims
 from symrot.checker.claim.tree import text
+from symrot.checker.interface import check_readings
 from symrot.checker.verdict import Verdict
 from symrot.textbook import Document
 

@@ -1,4 +1,4 @@
-"""Commands of certification: prove, certify, audit, bound, selftest. Parse, call, print, as in :mod:`symrot.cli.main`."""
+"""Commands of certification, as in :mod:`symrot.cli.main`: prove, certify, audit, bound, selftest."""
 
 import sys
 from argparse import ArgumentParser, Namespace

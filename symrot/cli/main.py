@@ -60,8 +60,8 @@ class _Parser(ArgumentParser):
 
 
 def _run(options: Namespace) -> int:
-    from symrot.report.summary import facts, summary
     from symrot.files.writing import check_target
+    from symrot.report.summary import facts, summary
 
     if options.out:
         from symrot.report import output
@@ -239,9 +239,9 @@ def _check(options: Namespace) -> int:
 
 
 def _check_textbook(options: Namespace) -> int:
+    from symrot.files import writing as files
     from symrot.report import errata
     from symrot.textbook import DOCUMENTS
-    from symrot.files import writing as files
 
     names = DOCUMENTS if options.textbook == "all" else (options.textbook,)
     target = Path(options.output) / "errata.md"

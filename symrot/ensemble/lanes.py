@@ -1,9 +1,9 @@
 """Taylor series with one trajectory in each SIMD lane: the C of :file:`lanes.c` driven from Python.
 
-The counterpart of :mod:`symrot.propagation.steppers.taylor` for many motions: the same series, step rule and compensated states,
-four or eight motions to one instruction, each with a step of its own. A lane whose motion ends takes the next. Lanes
-do not touch each other: a motion comes out bit by bit the same whatever its neighbours, its lane and the number of
-threads, and one that breaks off leaves the rest alone.
+The counterpart of :mod:`symrot.propagation.steppers.taylor` for many motions: the same series, step rule and
+compensated states, four or eight motions to one instruction, each with a step of its own. A lane whose motion ends
+takes the next. Lanes do not touch each other: a motion comes out bit by bit the same whatever its neighbours, its lane
+and the number of threads, and one that breaks off leaves the rest alone.
 """
 
 import ctypes

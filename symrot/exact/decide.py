@@ -5,9 +5,9 @@ cosines of Q-linear combinations of angles (rational multiples of pi included), 
 rates, and of unit-norm groups, the normal form is zero if and only if the identity holds at all real points where both
 sides are defined: circles and spheres are rational, irreducible over the complex numbers, and their real points are
 dense. The same holds when an angle or an exponent also occurs outside (Ax-Schanuel). Numbers made of roots and cosines
-of rational angles are zero or not by proof (:mod:`symrot.exact.angles.constants`). With square roots, inverse functions or
-other hypotheses a zero normal form still proves the identity where all of them are real; a nonzero one proves nothing,
-and "false" is said only with a witness. Nothing is true of sides that are real numbers nowhere.
+of rational angles are zero or not by proof (:mod:`symrot.exact.angles.constants`). With square roots, inverse functions
+or other hypotheses a zero normal form still proves the identity where all of them are real; a nonzero one proves
+nothing, and "false" is said only with a witness. Nothing is true of sides that are real numbers nowhere.
 """
 
 from collections.abc import Sequence

@@ -52,16 +52,15 @@ RATE_SCALE = 0.0  # an error of omega counts relative to omega
 @cache
 def _version() -> str:
     """Return what identifies the code that derives: names, sizes and times of its files."""
-    files = [str(PACKAGE / file) for file in FILES]
+    states = [(file, (PACKAGE / file).stat()) for file in FILES]
     folders = [str(PACKAGE / folder) for folder in FOLDERS]
     for folder in folders:  # grows while it is walked
         with os.scandir(folder) as entries:
             for entry in entries:
                 if entry.name.endswith(".py"):
-                    files.append(entry.path)
+                    states.append((entry.path.removeprefix(str(PACKAGE)), entry.stat()))
                 elif "." not in entry.name and entry.name != "__pycache__" and entry.is_dir():
                     folders.append(entry.path)
-    states = ((file, os.stat(file)) for file in files)
     return "\n".join(sorted(f"{file} {state.st_size} {state.st_mtime_ns}" for file, state in states))
 
 

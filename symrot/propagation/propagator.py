@@ -111,8 +111,8 @@ class Propagator:
         quaternion : array, shape (4,), optional
             Another initial attitude, scalar first; it is normalised.
         events : sequence, optional
-            Formulas whose zeros are sought: text, :class:`symrot.propagation.events.events.Event` or mappings with its fields;
-            see ``t_events`` of the trajectory. Samples end with one at a terminal event.
+            Formulas whose zeros are sought: text, :class:`symrot.propagation.events.events.Event` or mappings with its
+            fields; see ``t_events`` of the trajectory. Samples end with one at a terminal event.
 
         Raises
         ------

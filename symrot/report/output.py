@@ -8,9 +8,9 @@ from typing import Any, BinaryIO
 import numpy as np
 
 from symrot import __version__, conventions
+from symrot.files.writing import write
 from symrot.report.labels import LOCK, Labelled, labelled
 from symrot.report.layout import columns, exact, one_line
-from symrot.files.writing import write
 
 __all__ = ["FORMATS", "metadata", "save"]
 

@@ -4,8 +4,8 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from symrot.report.plot import UNDATED
 from symrot.files.writing import write
+from symrot.report.plot import UNDATED
 
 __all__ = ["save_page"]
 

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from symrot import __version__
 from symrot.errors import InputError
+from symrot.files.writing import write
 from symrot.report.layout import one_line
 from symrot.report.sphere import FAINT, draw_directions, prefixed
-from symrot.files.writing import write
 
 __all__ = ["SUFFIXES", "figure", "require_matplotlib", "save"]
 

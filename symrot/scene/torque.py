@@ -25,8 +25,8 @@ class Torque(NamedTuple):
 
     Vectors are tuples of three Fractions, an attitude a unit quaternion, ``linear`` of a damping three numbers. Gravity
     holds ``weight``, ``center_of_mass`` and a unit ``direction``. An expression holds ``torque`` as three texts that
-    :func:`symrot.formula.tree.parse` reads, switches allowed, ``parameters`` by name (with pi, if a formula uses it) and
-    ``frame``.
+    :func:`symrot.formula.tree.parse` reads, switches allowed, ``parameters`` by name (with pi, if a formula uses it)
+    and ``frame``.
     """
 
     kind: str

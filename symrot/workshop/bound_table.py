@@ -17,8 +17,8 @@ from symrot.certificates.rounding.library import operations_of, prepare, problem
 from symrot.certificates.rounding.store import TABLE, method, printed_table, table
 from symrot.codegen.library_kernels import kernel_description, kernel_program
 from symrot.codegen.printing.c_source import DOUBLE, FLOAT, c_source
-from symrot.kernels.library import definition, kernel_names
 from symrot.files.writing import write
+from symrot.kernels.library import definition, kernel_names
 
 __all__ = ["library_tasks", "missing", "understated"]
 

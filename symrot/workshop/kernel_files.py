@@ -17,10 +17,10 @@ from symrot.certificates.selftest import selftest_files
 from symrot.codegen.printing.build_files import build_files
 from symrot.errors import CertificateError, InputError
 from symrot.files.reading import read_input
+from symrot.files.writing import write
 from symrot.kernels.library import definition, kernel_names
 from symrot.scene.file import names_with_kernels
 from symrot.workshop.emit import emit
-from symrot.files.writing import write
 from symrot.workshop.workers import workers
 
 __all__ = ["certificate_files", "kept_bounds", "kernel_files", "kernel_lines", "stale", "write_all", "write_files"]

@@ -21,11 +21,11 @@ from symrot.bench.comparison.problem import Problem
 from symrot.bench.comparison.work_precision import digest, machine, study
 from symrot.errors import InputError
 from symrot.files.reading import read_input
+from symrot.files.writing import check_target, write
 from symrot.report.layout import columns, one_line
 from symrot.report.work_precision import LARGEST_FILE, ROUNDING
 from symrot.scene.file import read_toml
 from symrot.scene.scene import Scene, load_scene
-from symrot.files.writing import check_target, write
 
 __all__ = ["SUITE", "lines", "motions", "page", "run", "summary"]
 

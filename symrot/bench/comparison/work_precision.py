@@ -1,9 +1,9 @@
 """The work-precision study of a scene: seconds against the error reached, for every method there is.
 
 Each contestant runs over a range of tolerances. The error is the largest at four times of the span, each reached by a
-run of its own, against a reference of higher precision (:mod:`symrot.bench.comparison.reference`); runs to the end are timed in
-turns (:mod:`symrot.bench.comparison.race`). At each decade of the error the fastest run counts that is at least as good: no curve
-is smoothed or extended. Decades that the references cannot tell apart are left out.
+run of its own, against a reference of higher precision (:mod:`symrot.bench.comparison.reference`); runs to the end are
+timed in turns (:mod:`symrot.bench.comparison.race`). At each decade of the error the fastest run counts that is at
+least as good: no curve is smoothed or extended. Decades that the references cannot tell apart are left out.
 """
 
 import hashlib

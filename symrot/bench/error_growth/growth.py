@@ -1,8 +1,8 @@
 """How the error of each method grows along one motion, and what becomes of its invariants.
 
-The truth is :class:`symrot.bench.comparison.exact_path.ExactPath`, 30 digits and more at any time. Every method is asked for its
-best: symrot's at the tightest tolerance, SciPy's at the least rtol it takes, RK4 as a textbook writes it with 200 steps
-to a turn.
+The truth is :class:`symrot.bench.comparison.exact_path.ExactPath`, 30 digits and more at any time. Every method is
+asked for its best: symrot's at the tightest tolerance, SciPy's at the least rtol it takes, RK4 as a textbook writes it
+with 200 steps to a turn.
 """
 
 import ctypes

@@ -4,8 +4,9 @@
 
 Without a scene a free plate (moments 1, 3, 4) is followed for 1e5 revolutions (``--long``: 1e6), medians over three
 starts; with one, the scene over its span. The truth has 30 digits and shares nothing with any method
-(:mod:`symrot.bench.comparison.exact_path`). Then the textbooks' claims: Euler angles as state against the quaternion as state,
-near gimbal lock and through it; the quaternion renormalised or left alone; points carried along tangents or secants.
+(:mod:`symrot.bench.comparison.exact_path`). Then the textbooks' claims: Euler angles as state against the quaternion as
+state, near gimbal lock and through it; the quaternion renormalised or left alone; points carried along tangents or
+secants.
 """
 
 import math

@@ -1,4 +1,4 @@
-"""The report of :mod:`symrot.bench.error_growth.stability` on one page: errors and drift, singularities, the growth of a body."""
+"""The report of :mod:`~symrot.bench.error_growth.stability` on one page: errors, singularities, growth of a body."""
 
 from pathlib import Path
 from typing import Any

@@ -4,8 +4,8 @@ The outputs in a law are replaced by their formulas; what is left is a fraction 
 generators: cosine and sine of base angles, roots, signs, arc tangents. Times its denominator it is a sum of cofactors
 times relations: the hypotheses of the law, ``s^2 + c^2 - 1`` of a base angle, ``r^2 - P`` of a root, ``g^2 - 1`` of a
 sign. How functions become generators is written down as steps, each an instance of a fact about functions (the tables
-FACTS and RELATIONS of :mod:`symrot.certificates.exact_check`), so that a second program can follow. Choices are followed
-one branch at a time; a law holds where no denominator that occurs vanishes.
+FACTS and RELATIONS of :mod:`symrot.certificates.exact_check`), so that a second program can follow. Choices are
+followed one branch at a time; a law holds where no denominator that occurs vanishes.
 """
 
 from collections.abc import Mapping, Sequence

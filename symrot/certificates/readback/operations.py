@@ -1,7 +1,8 @@
 """What a compiled kernel computes, rounding for rounding: a graph of operations, each node one rounded operation.
 
-The readers of C text (:mod:`symrot.certificates.readback.readback`) and of object code make such graphs; the certificates compare
-and analyse them. Standard library only, and nothing from the emitter: a checker that shares code checks nothing.
+The readers of C text (:mod:`symrot.certificates.readback.readback`) and of object code make such graphs; the
+certificates compare and analyse them. Standard library only, and nothing from the emitter: a checker that shares code
+checks nothing.
 
 A node is a tuple; operands are indices of earlier nodes::
 

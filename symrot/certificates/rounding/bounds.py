@@ -233,7 +233,8 @@ def rounding_section(
     operations_double, operations_float : Operations
         The one-sample functions NAME and NAMEf as read back; the second may be left out (None).
     box, region, budget, libm_ulp, fresh
-        As for :func:`bound_outputs`; :func:`symrot.certificates.rounding.library.problem` gives those of a library kernel.
+        As for :func:`bound_outputs`; :func:`symrot.certificates.rounding.library.problem` gives those of a library
+        kernel.
 
     Returns
     -------

@@ -1,8 +1,8 @@
 """The dimensional check: do terms that are added, and sides that are compared, have one unit?
 
-Units come from a claim's own table, then from custom (:data:`symrot.checker.units.units.CUSTOM`); what is left is inferred:
-only a contradiction is an error. A matrix may mix units: it is followed entry by entry. The outcome stands beside the
-verdict and never changes it.
+Units come from a claim's own table, then from custom (:data:`symrot.checker.units.units.CUSTOM`); what is left is
+inferred: only a contradiction is an error. A matrix may mix units: it is followed entry by entry. The outcome stands
+beside the verdict and never changes it.
 """
 
 from collections.abc import Mapping, Sequence

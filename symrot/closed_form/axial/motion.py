@@ -2,8 +2,8 @@
 
 About a principal axis that nothing else disturbs this is the whole motion. In a symmetric body that also turns across
 its axis, the transverse angular velocity follows by a turn through ``(C - A)/A`` of the angle about the axis, and
-decays by its own damping. Its attitude then takes parabolic cylinder functions, see :mod:`symrot.closed_form.spin_up.motion`; with damping it
-has no closed form here.
+decays by its own damping. Its attitude then takes parabolic cylinder functions, see
+:mod:`symrot.closed_form.spin_up.motion`; with damping it has no closed form here.
 
 Angles are carried in turns, as pairs of doubles: errors of the attitude stay at a few 1e-16 however many turns have
 passed, with damping or without. C does it where there is a compiler (:file:`axial_at.c`), and hands back the samples

@@ -1,8 +1,9 @@
 """A symmetric body under a constant torque about its axis, in integers: any number of turns, any machine.
 
-Rotations far from resonance by :mod:`~symrot.closed_form.spin_up.off_resonance`, near it by :mod:`~symrot.closed_form.spin_up.resonance`, joined at its edge. What pairs
-of doubles cannot count is written from here sample by sample; where there is no C compiler, NumPy takes its constants
-from here. The formulas are in :file:`spin_up.h`. Proof: ``derivations/driven_rotation.md``.
+Rotations far from resonance by :mod:`~symrot.closed_form.spin_up.off_resonance`, near it by
+:mod:`~symrot.closed_form.spin_up.resonance`, joined at its edge. What pairs of doubles cannot count is written from
+here sample by sample; where there is no C compiler, NumPy takes its constants from here. The formulas are in
+:file:`spin_up.h`. Proof: ``derivations/driven_rotation.md``.
 """
 
 import math

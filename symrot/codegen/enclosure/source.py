@@ -1,6 +1,7 @@
 """Print the enclosure of a right-hand side as C: how far its enclosed terms deviate from a constant on discs.
 
-The text stands between :file:`propagation/enclosures/disc.h`, which has the rules, and a stepper. Standard library only.
+The text stands between :file:`propagation/enclosures/disc.h`, which has the rules, and a stepper. Standard library
+only.
 """
 
 from collections.abc import Mapping, Sequence

@@ -1,8 +1,8 @@
 """What a step of a right-hand side may miss: the parts of it whose size must be enclosed.
 
 A stepper sees a right-hand side where it evaluates it. A pulse, a switch or a pole between two such places leaves no
-trace there, but the formula tells: evaluated over complex discs (:file:`propagation/enclosures/disc.h`), it bounds all Taylor
-coefficients that a step leaves out.
+trace there, but the formula tells: evaluated over complex discs (:file:`propagation/enclosures/disc.h`), it bounds all
+Taylor coefficients that a step leaves out.
 
 Polynomials of low degree in the states, in time and in sine and cosine of ``a*t + b`` need no enclosure: they have no
 feature narrower than their coefficients show. So a rate is split as its terms stand, and only the others are enclosed;

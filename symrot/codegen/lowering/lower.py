@@ -2,8 +2,8 @@
 
 Three steps, each exact: constants are gathered and hoisted (whatever does not depend on time or state is computed
 once, when parameters are bound: :mod:`symrot.codegen.lowering.constants`), common factors and sums are shared
-(:mod:`symrot.codegen.lowering.common_factors`), and names are given. The result depends on the expressions alone, never on the order of
-a hash table.
+(:mod:`symrot.codegen.lowering.common_factors`), and names are given. The result depends on the expressions alone, never
+on the order of a hash table.
 """
 
 from collections import Counter

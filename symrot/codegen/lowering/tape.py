@@ -1,7 +1,8 @@
 """A straight-line program as a tape: one operation after the other, equal ones once. Standard library only.
 
 What is printed operation by operation starts here: values in pairs of doubles and their gradients
-(:mod:`symrot.codegen.taylor.invariant_source`), values with what rounding may do to them (:mod:`symrot.codegen.printing.event_source`).
+(:mod:`symrot.codegen.taylor.invariant_source`), values with what rounding may do to them
+(:mod:`symrot.codegen.printing.event_source`).
 """
 
 from collections.abc import Sequence

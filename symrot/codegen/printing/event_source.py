@@ -44,8 +44,8 @@ def event_definitions(
     states : sequence of str
         Names of the states, in order.
     edges, scales
-        Blocks of states, as :func:`symrot.propagation.steppers.dop853.translation_unit` takes them: a state is known to a few
-        units in the last place of the largest of its block, or of the scale.
+        Blocks of states, as :func:`symrot.propagation.steppers.dop853.translation_unit` takes them: a state is known to
+        a few units in the last place of the largest of its block, or of the scale.
     """
     places = {"t": "t", **{name: f"y[{i}]" for i, name in enumerate(states)}}
     for argument in program.signature.arguments:

@@ -1,7 +1,7 @@
 """Functions for the jets of ensembles, each lane for itself: phases ``a t + b`` in two parts, sine and cosine at once.
 
-The same reduction and polynomials as :mod:`symrot.codegen.printing.math_header` prints for batches. A lane beyond its range asks
-the C library, so that its bits depend on nothing but its own angle.
+The same reduction and polynomials as :mod:`symrot.codegen.printing.math_header` prints for batches. A lane beyond its
+range asks the C library, so that its bits depend on nothing but its own angle.
 """
 
 from fractions import Fraction

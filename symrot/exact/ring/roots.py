@@ -3,8 +3,8 @@
 ``sqrt(P/Q)`` is written ``g/|Q|`` with ``g^2 = P*Q``, and positive rational numbers are taken out as square roots of
 primes: the generator of a square root is never negative. (Of another root, ``(P/Q)^(1/n) = g/Q``.) Squares leave a root
 as absolute values, ``sqrt(x^2 y) = |x| sqrt(y)``, and a radicand that is others' product is no generator of its own
-(:mod:`symrot.exact.ring.radicands`). Roots that depend on each other in other ways, nested ones say, keep a generator each:
-what follows from the relations is true, and what does not may still be true on one branch.
+(:mod:`symrot.exact.ring.radicands`). Roots that depend on each other in other ways, nested ones say, keep a generator
+each: what follows from the relations is true, and what does not may still be true on one branch.
 :func:`symrot.exact.decide.decide` says "undecided" there unless it finds a witness.
 """
 

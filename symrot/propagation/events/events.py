@@ -265,8 +265,8 @@ def search(
     p : sequence of float
         The parameters of its quantities.
     pieces : iterable of Piece
-        The motion from t0 on as polynomials (:mod:`symrot.propagation.events.polynomials`), in its order, one Piece going on
-        where the one before ends. They are asked for one after the other, until a terminal event.
+        The motion from t0 on as polynomials (:mod:`symrot.propagation.events.polynomials`), in its order, one Piece
+        going on where the one before ends. They are asked for one after the other, until a terminal event.
 
     Raises
     ------

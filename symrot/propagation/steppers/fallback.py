@@ -1,4 +1,5 @@
-"""The SciPy fallback: any method of ``scipy.integrate.solve_ivp``, called as :mod:`symrot.propagation.steppers.dop853` is.
+"""The SciPy fallback: any method of ``scipy.integrate.solve_ivp``, called as :mod:`symrot.propagation.steppers.dop853`
+is.
 
 For where there is no C compiler, and for those who want LSODA. The tolerance means the same as far as SciPy allows: the
 error of every block of states against the largest size the block has on the way, found by a first coarse pass, and

@@ -1,6 +1,7 @@
 """What the steppers share: a loaded library, a motion followed through sample times or recorded, and the sentences.
 
-:mod:`symrot.propagation.steppers.dop853` and :mod:`symrot.propagation.steppers.taylor` each say what is their own in a :class:`Stepper`;
+:mod:`symrot.propagation.steppers.dop853` and :mod:`symrot.propagation.steppers.taylor` each say what is their own in a
+:class:`Stepper`;
 :mod:`symrot.propagation.steppers.fallback` takes the order of times, the switching times and the sentences from here.
 """
 
@@ -295,7 +296,8 @@ def rising(times: Floats) -> bool:
 class Task:
     """One motion to follow: checked input, and the counts of all calls made for it.
 
-    ``load`` returns the stepper of a library's path; the rest as :func:`symrot.propagation.steppers.dop853.integrate` takes it.
+    ``load`` returns the stepper of a library's path; the rest as :func:`symrot.propagation.steppers.dop853.integrate`
+    takes it.
     """
 
     def __init__(

@@ -1,8 +1,8 @@
 """Taylor series of order 20 around an emitted jet: the C of :file:`taylor.c` driven from Python, one call per span.
 
-The counterpart of :mod:`symrot.propagation.steppers.dop853` for right-hand sides that are known as formulas and smooth: a few
-long steps, each good to round-off if asked, at any time inside a step from the same coefficients. A library holds one
-system and the stepper compiled together (:func:`translation_unit`).
+The counterpart of :mod:`symrot.propagation.steppers.dop853` for right-hand sides that are known as formulas and smooth:
+a few long steps, each good to round-off if asked, at any time inside a step from the same coefficients. A library holds
+one system and the stepper compiled together (:func:`translation_unit`).
 
 Tolerance: the promise is about the trajectory, not about one step, see :func:`step_tail`.
 """
@@ -112,8 +112,8 @@ def translation_unit(
     order : int, optional
         Of the series, even; default: 20. See :func:`order_for`.
     invariants : str
-        What :func:`symrot.codegen.taylor.invariant_source.invariant_definitions` prints: the motion is projected onto them.
-        Their parameters follow those of the program.
+        What :func:`symrot.codegen.taylor.invariant_source.invariant_definitions` prints: the motion is projected onto
+        them. Their parameters follow those of the program.
     enclosed : bool
         Whether steps are held to what an enclosure of the rates proves, see :mod:`symrot.codegen.enclosure.terms`.
 

@@ -1,7 +1,7 @@
 """Motions under torques that jump or bend: from one switch to the next, each located to the last bits.
 
-Between switches the modes of :mod:`symrot.formula.switches` are constants and the motion is smooth: any stepper follows it,
-while the guards are searched as events are. Where a guard would leave the side of its mode, the motion is stepped
+Between switches the modes of :mod:`symrot.formula.switches` are constants and the motion is smooth: any stepper follows
+it, while the guards are searched as events are. Where a guard would leave the side of its mode, the motion is stepped
 exactly to that time and goes on with the mode of the other side. If both sides send it back (dry friction at rest,
 relay control) the guard stays at zero: the motion slides, and the mode takes the value that holds it there, until that
 value leaves the range of the switch.

@@ -15,9 +15,9 @@ from dataclasses import dataclass
 from random import Random
 from time import perf_counter
 
-from symrot.checker.interface import check
 from symrot.checker.claim.reader import read_expression
 from symrot.checker.claim.tree import Node, number, product, replaced, sum_of, text, walk
+from symrot.checker.interface import check
 from symrot.checker.repair.edits import single_edits
 from symrot.errors import InputError
 from tests.campaigns.checker.judge import ANGLES, FUNCTIONS, QUATERNIONS, SYMBOLS

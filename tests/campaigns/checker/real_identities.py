@@ -12,9 +12,9 @@ from fractions import Fraction
 from random import Random
 from time import perf_counter
 
-from symrot.checker.interface import check
 from symrot.checker.claim.reader import read_expression, read_relation
 from symrot.checker.claim.tree import Node, replaced, text, walk
+from symrot.checker.interface import check
 from symrot.checker.verdict import Verdict
 from symrot.errors import InputError
 from tests.campaigns.checker.judge_real import (
