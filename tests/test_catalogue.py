@@ -111,7 +111,7 @@ def test_a_tampered_page_cannot_be_derived(monkeypatch):
     monkeypatch.setattr(Derivation, "step", tampered)
     for name in ("kinetic_energy", "relative_motion", "free_body_attitude", "rodrigues", "tensor_rotation"):
         with pytest.raises(ProofError, match="as it is shown"):
-            import_module(module_of(name)).derive()
+            import_module(catalogue.module_of(name)).derive()
 
 
 def test_every_sequence_has_its_rates(derived):

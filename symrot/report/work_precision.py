@@ -73,8 +73,8 @@ def _against(found: Mapping[str, Any]) -> list[str]:
 
 
 def lines(found: Mapping[str, Any]) -> list[str]:
-    """Return the lines for people that say what :func:`symrot.bench.comparison.work_precision.study` found; first the
-    title.""" scene, reference, machine = found["scene"], found["reference"], found["machine"]
+    """Return the lines about a study (:func:`symrot.bench.comparison.work_precision.study`) for people, title first."""
+    scene, reference, machine = found["scene"], found["reference"], found["machine"]
     others = [f"{other['name']} within {max(other['difference'], ROUNDING):.0e}" for other in reference["others"]]
     versions = [f"{name} {machine[name]}" for name in ("python", "numpy", "scipy", "heyoka") if machine[name]]
     title = f"{one_line(scene['title'])} [{one_line(scene['name'])}]: time against error"

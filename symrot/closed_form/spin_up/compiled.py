@@ -1,4 +1,4 @@
-"""Compiled constants and loops of :mod:`~symrot.closed_form.spin_up.motion`: :file:`spin_up.c`, :file:`spin_up_at.c`."""
+"""Constants and loops of :mod:`~symrot.closed_form.spin_up.motion` (:file:`spin_up.c`, :file:`spin_up_at.c`)."""
 
 import ctypes
 from typing import Any, NamedTuple

@@ -1,6 +1,7 @@
 /*
  * Coefficients of Dormand and Prince's 8(5,3) pair and its dense output, as sums over k(stage).
- * Printed by `python -m symrot.propagation.steppers.tableau` from tableau.py, which names the sources; do not edit.
+ * Printed by `python -m symrot.propagation.steppers.tableau` from tableau.py.
+ * That file names the sources; do not edit this one.
  */
 #define DOP853_OLD_2(k) (0.0)
 #define DOP853_NEW_2 (5.26001519587677318785587544488e-2)

@@ -246,8 +246,9 @@ def c_header() -> str:
     lines = [
         "/*",
         " * Coefficients of Dormand and Prince's 8(5,3) pair and its dense output, as sums over k(stage).",
-        " * Printed by `python -m symrot.propagation.steppers.tableau` from tableau.py, which names the sources; do not
-        edit.", " */",
+        " * Printed by `python -m symrot.propagation.steppers.tableau` from tableau.py.",
+        " * That file names the sources; do not edit this one.",
+        " */",
     ]
     for stage, row in STAGE_WEIGHTS.items():
         newest = stage - 1
