@@ -52,9 +52,10 @@ def printed():
 
 
 def test_the_reading_order_names_every_file_once():
-    files = {path.stem for path in (ROOT / "symrot" / "catalogue").glob("*.py") if not path.stem.startswith("_")}
+    files = [path.relative_to(ROOT).with_suffix("") for path in (ROOT / "symrot" / "catalogue").glob("*/*.py")]
+    modules = {".".join(file.parts) for file in files if file.name != "__init__" and file.parent.name != "tools"}
     assert len(catalogue.names()) == len(set(catalogue.names()))
-    assert set(catalogue.names()) == files
+    assert set(map(catalogue.module_of, catalogue.names())) == modules
 
 
 def test_an_unknown_derivation_is_refused():

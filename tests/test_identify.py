@@ -6,9 +6,9 @@ import pytest
 from sympy import Matrix, Rational, Symbol, cos, pi, sin, symbols
 
 import symrot
-from symrot.checker.identify import known_formulas
-from symrot.checker.identify.fingerprint import PRIME, Outside, fingerprint, values_at
-from symrot.checker.identify.identification import identify
+from symrot.checker.recognition import known_formulas
+from symrot.checker.recognition.fingerprint import PRIME, Outside, fingerprint, values_at
+from symrot.checker.recognition.identification import identify
 from symrot.cli.main import main
 from symrot.conventions import SEQUENCES
 from symrot.errors import InputError

@@ -3,7 +3,12 @@
 from importlib import import_module
 from typing import Any
 
-_HOME = {"check": "interface", "check_file": "interface", "Verdict": "verdict", "identify": "identify.identification"}
+_HOME = {
+    "check": "interface",
+    "check_file": "interface",
+    "Verdict": "verdict",
+    "identify": "recognition.identification",
+}
 
 
 def __getattr__(name: str) -> Any:

@@ -172,8 +172,8 @@ def _decide(claim: Claim) -> tuple[Decision, Verdict]:
 
 
 def _diagnosed(claim: Claim, decision: Decision, verdict: Verdict) -> Verdict:
-    from symrot.checker.identify.identification import named_parts
-    from symrot.checker.identify.nearest import nearby
+    from symrot.checker.recognition.identification import named_parts
+    from symrot.checker.recognition.nearest import nearby
     from symrot.checker.repair.diagnose import diagnose
 
     diagnosis, repairs = diagnose(claim, decision)

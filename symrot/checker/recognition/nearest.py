@@ -14,7 +14,7 @@ from symrot.checker.claim.claims import Claim, named_formula
 from symrot.checker.claim.interpreter import time
 from symrot.checker.claim.scope import is_matrix
 from symrot.checker.claim.tree import Node, text, walk
-from symrot.checker.identify.identification import Identification, identified
+from symrot.checker.recognition.identification import Identification, identified
 from symrot.checker.repair.edits import TEXTS, single_edits
 from symrot.checker.repair.filter import Sieve
 from symrot.errors import InputError

@@ -18,9 +18,9 @@ from symrot.checker.claim.interpreter import Meaning, time
 from symrot.checker.claim.reader import complaint, read_expression
 from symrot.checker.claim.tree import walk
 from symrot.checker.decide.decision import shown
-from symrot.checker.identify.fingerprint import PRIME, Outside, Print, Values, fingerprint, values_at
-from symrot.checker.identify.known_formulas import Known, by_fingerprint
 from symrot.checker.latex.reader import read_latex_formula
+from symrot.checker.recognition.fingerprint import PRIME, Outside, Print, Values, fingerprint, values_at
+from symrot.checker.recognition.known_formulas import Known, by_fingerprint
 from symrot.errors import InputError
 from symrot.exact.decide import decide, flatten
 from symrot.exact.ring.ratio import TooLarge

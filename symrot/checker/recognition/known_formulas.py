@@ -1,6 +1,6 @@
 """The formulas that symrot derives, by name, with their fingerprints: printed to ``known_formulas.toml``.
 
-``python -m symrot.checker.identify.known_formulas`` prints the file anew; nothing in it is typed.
+``python -m symrot.checker.recognition.known_formulas`` prints the file anew; nothing in it is typed.
 """
 
 import tomllib
@@ -14,7 +14,7 @@ from sympy import Expr, ImmutableMatrix, Matrix, diag
 
 from symrot import catalogue, symbols
 from symrot.checker.decide.decision import shown
-from symrot.checker.identify.fingerprint import Outside, fingerprint
+from symrot.checker.recognition.fingerprint import Outside, fingerprint
 from symrot.conventions import SEQUENCES
 from symrot.dynamics.equations import euler_equations
 from symrot.dynamics.torques import Motion, torque_law
@@ -251,8 +251,8 @@ def _is_general(entries: Sequence[Expr]) -> bool:
 def page(*groups: Iterator[Named]) -> str:
     """Return ``known_formulas.toml``, or its beginning: of some groups of formulas."""
     lines = [
-        "# What symrot derives, by fingerprint (symrot/checker/identify/fingerprint.py), up to the names of symbols.",
-        "# Printed by `python -m symrot.checker.identify.known_formulas`; do not edit.",
+        "# What symrot derives, by fingerprint (symrot/checker/recognition/fingerprint.py), up to the names of symbols.",
+        "# Printed by `python -m symrot.checker.recognition.known_formulas`; do not edit.",
     ]
     texts: set[str] = set()
     kept = ((1, LONGEST), (3, LONGEST_DERIVED))
