@@ -24,7 +24,7 @@ _HOMES = {
     "scene.scene": ("Scene", "load_scene", "shipped_scenes"),
     "planning.plan": ("Plan",),
     "ensemble.ensemble": ("Ensemble", "propagate_ensemble"),
-    "workshop.emit": ("emit", "kernel_names", "plan"),
+    "workshop.emit": ("emit", "explain", "kernel_names", "plan"),
     "propagation.events.events": ("Event",),
     "propagation.propagator": ("Propagator", "propagate", "propagator"),
     "propagation.trajectory": ("Trajectory",),

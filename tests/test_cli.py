@@ -158,7 +158,7 @@ def test_explain_is_a_table_and_that_of_the_plan(capsys):
     for said in ("products of inertia", "skipped", "kept", "euler_equations", "mul", "not asked for: omega_space"):
         assert said in out
     kept = "deriving the kernel"  # depends on the cache
-    assert out.partition(kept)[0] == symrot.plan(symrot.load_scene("tumbling_prism")).explain().partition(kept)[0]
+    assert out.partition(kept)[0] == symrot.explain("tumbling_prism").partition(kept)[0]
 
 
 def test_emit_prints_what_the_library_emits(capsys):

@@ -9,8 +9,8 @@ from symrot.errors import InputError
 from symrot.exact.decide import decide, is_zero
 from symrot.exact.rewriting_chain import chains
 from symrot.proof.derivation import Derivation, Passage, ProofError, Section, Step
-from symrot.proof.pages.latex_reader import Unread, read
-from symrot.proof.pages.mathml import mathml, rows
+from symrot.proof.notation.latex_reader import Unread, read
+from symrot.proof.notation.mathml import mathml, rows
 from symrot.symbols import A, B, C, delta_1, dphi, omega_1, omega_b, phi, q0, q1, q2, q3, theta, x
 
 UNIT = q0**2 + q1**2 + q2**2 + q3**2 - 1

@@ -108,7 +108,9 @@ def derivation(name: str) -> "Derivation":
     """
     if name not in names():
         raise InputError(f"no derivation is called {name!r}; there are {', '.join(names())}")
-    page: Derivation = import_module(module_of(name)).derive()
+    module = module_of(name)
+    page: Derivation = import_module(module).derive()
+    page.file = f"{module.replace('.', '/')}.py"
     return page
 
 

@@ -209,10 +209,9 @@ def _derive(options: Namespace) -> int:
     if options.all:
         say(str(path) for path in catalogue.derive_all(directory))
     elif options.name:
-        found = catalogue.derivation(options.name)
-        if options.step is not None:
-            found = found.part(options.step, options.detail)
-        sys.stdout.write(PAGES[options.format](found))
+        whole = catalogue.derivation(options.name)
+        page = whole if options.step is None else whole.part(options.step, options.detail)
+        sys.stdout.write(PAGES[options.format](page))
     else:
         say(catalogue.names())
     return GOOD

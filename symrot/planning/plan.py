@@ -112,12 +112,6 @@ class Plan:
         plan.__dict__.update(shared, scene=scene)
         return plan
 
-    def explain(self) -> str:
-        """Return the plan as a table for people: item, kept or skipped, rule, derivation, operations saved."""
-        from symrot.report.explain import explanation
-
-        return explanation(self)
-
 
 def make_plan(scene: Scene, initial: Initial | None = None, driven: bool = False, switched: bool = False) -> Plan:
     """Return the plan of a scene, perhaps with another initial state.

@@ -5,7 +5,7 @@ A :class:`Derivation` is built step by step. A step whose two sides are not equa
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from typing import Any
 
 from sympy import (
@@ -27,107 +27,63 @@ from sympy import (
 from symrot.errors import SymrotError
 from symrot.exact.decide import Verdict, decide, is_zero, normal_form
 from symrot.exact.ring.ring import as_zero
+from symrot.proof.notation.latex_reader import Unread, key, parts, read
+from symrot.proof.notation.printer import formula
+from symrot.proof.page import Page, Passage, Section, Step
+from symrot.proof.pages import excerpt, html_document, latex_document, markdown
 
-__all__ = ["Derivation", "Passage", "ProofError", "Section", "Step"]
+__all__ = ["Derivation", "Passage", "PrintedPage", "ProofError", "Section", "Step"]
 
 
 class ProofError(SymrotError):
     """A step of a derivation that does not hold."""
 
 
-@dataclass(frozen=True)
-class Section:
-    """A heading."""
+@dataclass
+class PrintedPage(Page):
+    """A page that prints itself; its fields are those of :class:`symrot.proof.page.Page`."""
 
-    title: str
+    def markdown(self) -> str:
+        """Return the page as Markdown, with the formulas in ``$$``."""
+        return markdown(self)
 
+    def latex(self) -> str:
+        """Return the page as a LaTeX document."""
+        return latex_document(self)
 
-@dataclass(frozen=True)
-class Passage:
-    """What is given or defined, in words, perhaps with equations (left, right); nothing in it is proven."""
+    def html(self) -> str:
+        """Return the page as one HTML file with native MathML; it needs no network."""
+        return html_document(self)
 
-    text: str
-    equations: tuple[tuple[Any, Any], ...] = ()
+    def part(self, number: int, detail: bool = False) -> "PrintedPage":
+        """Return a page with one step, from 1; in detail with every expression between its two sides.
 
-
-@dataclass(frozen=True)
-class Step:
-    """A proven relation ``left = right``, or ``left > 0``.
-
-    Attributes
-    ----------
-    claim : str
-        What it says, a sentence.
-    left, right : Expr or Matrix
-        As the derivation built them, not simplified.
-    reason : str
-        Why, the end of a sentence that begins with "because".
-    relation : str
-        ``"="`` or ``">"``.
-    hypotheses : tuple of Expr
-        Each is zero where the step holds.
-    conditions : tuple
-        Denominators that must not vanish, radicands that must not be negative.
-    named : str
-        LaTeX of what the left side is, shown in its place where its formula is long; empty otherwise.
-    shown : Any
-        The right side as a reader wants it (LaTeX, or a product left as it is), where that differs; None otherwise.
-    source : str
-        Book and page, where the step is printed elsewhere.
-    via : tuple of (str, Expr, Expr)
-        Proven equations on the way, (words, left, right), for a reader who asks for detail.
-    printed : (bool, bool)
-        Of each side: whether the page shows what was proven, printed from it or read back and decided; otherwise it
-        shows a name, or words in LaTeX, that stand for it.
-    """
-
-    claim: str
-    left: Any
-    right: Any
-    reason: str
-    relation: str = "="
-    hypotheses: tuple[Expr, ...] = ()
-    conditions: tuple[Any, ...] = ()
-    named: str = ""
-    shown: Any = None
-    source: str = ""
-    via: tuple[tuple[str, Any, Any], ...] = ()
-    printed: tuple[bool, bool] = (True, True)
+        Raises
+        ------
+        InputError
+            If there is no such step.
+        """
+        page = excerpt(self, number, detail)
+        return PrintedPage(**{each.name: getattr(page, each.name) for each in fields(page)})
 
 
 @dataclass
-class Derivation:
-    """A page of a textbook in code: what is given, and what follows from it, step by step.
+class Derivation(PrintedPage):
+    """A page of a textbook in code, proven while it is built.
 
     Parameters
     ----------
-    name : str
-        Of the catalogue file, e.g. ``"symmetric_top"``.
-    title : str
-    source : str
-        Where it is treated in print.
-    about : str
-        What it shows and what it is for, one paragraph.
-    first : int
-        The number of the first step; not 1 on a page that shows a part of a derivation.
+    assumed : list of Expr
+        Expressions that are stated once not to be zero (:meth:`nonzero`).
     names, rates : dict
         What names on the page mean, and how fast variables change (:meth:`notation`).
+
+    The others are those of :class:`symrot.proof.page.Page`.
     """
 
-    name: str
-    title: str
-    source: str = ""
-    about: str = ""
-    items: list[Section | Passage | Step] = field(default_factory=list)
     assumed: list[Expr] = field(default_factory=list)
-    first: int = 1
     names: dict[str, Any] = field(default_factory=dict)
     rates: dict[Expr, Expr] = field(default_factory=dict)
-
-    @property
-    def steps(self) -> tuple[Step, ...]:
-        """The proven steps, in order."""
-        return tuple(item for item in self.items if isinstance(item, Step))
 
     def notation(self, names: Mapping[str, Any], rates: Mapping[Expr, Expr] | None = None) -> None:
         """Say what names on the page mean, so that the LaTeX of the steps after it is read back and decided.
@@ -139,8 +95,6 @@ class Derivation:
         rates : mapping, optional
             Variable -> its rate, for dots and time derivatives.
         """
-        from symrot.proof.pages.latex_reader import key
-
         self.names |= {key(name): meaning for name, meaning in names.items()}
         self.rates |= rates or {}
 
@@ -244,8 +198,6 @@ class Derivation:
 
     def _is_shown(self, claim: str, shown: Any, side: Any, sides: tuple[Any, Any], relations: Sequence[Any]) -> bool:
         """Return whether what is shown for a side is read back; ``ProofError`` where it is and is something else."""
-        from symrot.proof.pages.latex_reader import Unread
-
         if shown is None:
             return True
         try:
@@ -265,9 +217,6 @@ class Derivation:
 
         The equations beside it, ``, \\quad a = b``, say what a name means, or must hold themselves.
         """
-        from symrot.proof.pages.latex_reader import Unread, key, parts, read
-        from symrot.proof.pages.printer import formula
-
         used = {symbol for side in sides for symbol in side.free_symbols}
         names = {key(formula(symbol)): symbol for symbol in used} | self.names
         chains = parts(text)
@@ -291,9 +240,6 @@ class Derivation:
 
     def _note(self, left: Any, right: Any) -> None:
         """Remember what a name stands for, if the right side says it in a formula, or in LaTeX that can be read."""
-        from symrot.proof.pages.latex_reader import Unread, key
-        from symrot.proof.pages.printer import formula
-
         if isinstance(right, str):
             try:
                 right = self._read(right)[-1]
@@ -314,36 +260,6 @@ class Derivation:
     def _add(self, step: Step) -> Step:
         self.items.append(step)
         return step
-
-    def markdown(self) -> str:
-        """Return the derivation as a Markdown page, with the formulas in ``$$``."""
-        from symrot.proof.pages import markdown
-
-        return markdown(self)
-
-    def latex(self) -> str:
-        """Return the derivation as a LaTeX document."""
-        from symrot.proof.pages import latex_document
-
-        return latex_document(self)
-
-    def html(self) -> str:
-        """Return the derivation as one HTML file with native MathML; it needs no network."""
-        from symrot.proof.pages import html_document
-
-        return html_document(self)
-
-    def part(self, number: int, detail: bool = False) -> "Derivation":
-        """Return a page with one step, from 1; in detail with every expression between its two sides.
-
-        Raises
-        ------
-        InputError
-            If there is no such step.
-        """
-        from symrot.proof.pages import excerpt
-
-        return excerpt(self, number, detail)
 
 
 def _tidied(conditions: Sequence[Any]) -> list[Any]:

@@ -14,7 +14,17 @@ if TYPE_CHECKING:
     from symrot.certificates.certificate import Subject
     from symrot.certificates.rounding.scenes import SceneInputs
 
-__all__ = ["TARGETS", "Emitted", "emit", "kernel_names", "plan", "scene_inputs", "scene_kernel_name", "subject"]
+__all__ = [
+    "TARGETS",
+    "Emitted",
+    "emit",
+    "explain",
+    "kernel_names",
+    "plan",
+    "scene_inputs",
+    "scene_kernel_name",
+    "subject",
+]
 
 TARGETS = ("c", "numpy")
 
@@ -51,7 +61,7 @@ def _scene(source: Scene | str | Path) -> Scene:
 
 
 def plan(scene: Scene | str | Path) -> Plan:
-    """Return what is computed for a scene, what is skipped and why; ``plan(scene).explain()`` is a table of it.
+    """Return what is computed for a scene, what is skipped and why; :func:`explain` is a table of it.
 
     Parameters
     ----------
@@ -60,6 +70,19 @@ def plan(scene: Scene | str | Path) -> Plan:
     """
     found = _scene(scene)
     return make_plan(found, driven=found.table is not None, switched=switched(found))
+
+
+def explain(scene: Scene | str | Path) -> str:
+    """Return the plan of a scene as a table for people: item, kept or skipped, rule, derivation, operations saved.
+
+    Parameters
+    ----------
+    scene : Scene, str or Path
+        As for :func:`plan`.
+    """
+    from symrot.report.explain import explanation
+
+    return explanation(plan(scene))
 
 
 def _formulas(scene: Scene | str | Path) -> Plan:

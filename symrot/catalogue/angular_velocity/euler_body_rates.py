@@ -76,7 +76,7 @@ def _sequence(d: Derivation, sequence: str) -> None:
 
 
 def _latex(expression: object) -> str:
-    from symrot.proof.pages import formula
+    from symrot.proof.notation.printer import formula
 
     return formula(expression)
 

@@ -105,6 +105,6 @@ def _sign(strength: object) -> str:
 
 
 def _latex(value: object) -> str:
-    from symrot.proof.pages import formula
+    from symrot.proof.notation.printer import formula
 
     return formula(value)

@@ -244,6 +244,6 @@ def _theta(d: Derivation) -> None:
 
 
 def _latex(value: object) -> str:
-    from symrot.proof.pages import formula
+    from symrot.proof.notation.printer import formula
 
     return formula(value)

@@ -211,6 +211,6 @@ def _attitude(d: Derivation) -> None:
 
 
 def _latex(value: object) -> str:
-    from symrot.proof.pages import formula
+    from symrot.proof.notation.printer import formula
 
     return formula(value)

@@ -200,6 +200,6 @@ def _quantity(axes: Sequence[int]) -> str:
 
 
 def _latex(value: object) -> str:
-    from symrot.proof.pages import formula
+    from symrot.proof.notation.printer import formula
 
     return formula(value)

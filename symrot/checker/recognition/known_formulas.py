@@ -251,7 +251,7 @@ def _is_general(entries: Sequence[Expr]) -> bool:
 def page(*groups: Iterator[Named]) -> str:
     """Return ``known_formulas.toml``, or its beginning: of some groups of formulas."""
     lines = [
-        "# What symrot derives, by fingerprint (symrot/checker/recognition/fingerprint.py), up to the names of symbols.",
+        "# What symrot derives, by fingerprint (checker/recognition/fingerprint.py), up to the names of symbols.",
         "# Printed by `python -m symrot.checker.recognition.known_formulas`; do not edit.",
     ]
     texts: set[str] = set()

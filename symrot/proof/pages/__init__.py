@@ -4,6 +4,5 @@ from symrot.proof.pages.detail import excerpt
 from symrot.proof.pages.html import html_document
 from symrot.proof.pages.latex import latex_document
 from symrot.proof.pages.markdown import markdown
-from symrot.proof.pages.printer import formula
 
-__all__ = ["excerpt", "formula", "html_document", "latex_document", "markdown"]
+__all__ = ["excerpt", "html_document", "latex_document", "markdown"]

@@ -5,20 +5,20 @@ from sympy import MatrixBase, factor
 from symrot.errors import InputError
 from symrot.exact import normal_form
 from symrot.exact.rewriting_chain import Chain, Link, chains
-from symrot.proof.derivation import Derivation, Passage, Section, Step
-from symrot.proof.pages.printer import formula
+from symrot.proof.notation.printer import formula
+from symrot.proof.page import Page, Passage, Section, Step
 
 __all__ = ["excerpt"]
 
 LONGEST_IN_TEXT = 100  # letters of LaTeX
 
 
-def excerpt(derivation: Derivation, number: int, detail: bool = False) -> Derivation:
+def excerpt(whole: Page, number: int, detail: bool = False) -> Page:
     """Return a page with one step, and in detail every expression between its two sides.
 
     Parameters
     ----------
-    derivation : Derivation
+    whole : Page
     number : int
         Of the step, from 1.
     detail : bool
@@ -28,13 +28,13 @@ def excerpt(derivation: Derivation, number: int, detail: bool = False) -> Deriva
     InputError
         If there is no such step.
     """
-    count = len(derivation.steps)
+    count = len(whole.steps)
     if not 1 <= number <= count:
-        raise InputError(f"{derivation.name} has steps 1 to {count}, got {number}")
-    step = derivation.steps[number - 1]
-    page = Derivation(derivation.name, f"{derivation.title}: step {number}", derivation.source, first=number)
-    place = next(n for n, item in enumerate(derivation.items) if item is step)
-    headings = [item for item in derivation.items[:place] if isinstance(item, Section)]
+        raise InputError(f"{whole.name} has steps 1 to {count}, got {number}")
+    step = whole.steps[number - 1]
+    page = Page(whole.name, f"{whole.title}: step {number}", whole.source, first=number, file=whole.file)
+    place = next(n for n, item in enumerate(whole.items) if item is step)
+    headings = [item for item in whole.items[:place] if isinstance(item, Section)]
     page.items += [*headings[-1:], step]
     if detail:
         page.items += [Section("In detail"), *(_detail(step) if step.relation == "=" else _signs(step))]

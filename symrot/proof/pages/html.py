@@ -4,8 +4,8 @@ import re
 from collections.abc import Iterator
 from html import escape
 
-from symrot.proof.derivation import Derivation, Section, Step
-from symrot.proof.pages.mathml import mathml
+from symrot.proof.notation.mathml import mathml
+from symrot.proof.page import Page, Section, Step
 from symrot.proof.pages.parts import equation, footer, passage_equations, remarks, units
 
 __all__ = ["html_document"]
@@ -35,16 +35,16 @@ a { color: inherit; }
 """
 
 
-def html_document(derivation: Derivation) -> str:
+def html_document(page: Page) -> str:
     """Return a page that stands alone."""
-    parts = [f"<h1>{_prose(derivation.title)}</h1>"]
-    if derivation.about:
-        parts.append(f"<p>{_prose(derivation.about)}</p>")
-    if derivation.source:
-        parts.append(f'<p class="source"><em>Source:</em> {_prose(derivation.source)}.</p>')
-    parts += _contents(derivation)
-    number, section = derivation.first - 1, 0
-    for item in derivation.items:
+    parts = [f"<h1>{_prose(page.title)}</h1>"]
+    if page.about:
+        parts.append(f"<p>{_prose(page.about)}</p>")
+    if page.source:
+        parts.append(f'<p class="source"><em>Source:</em> {_prose(page.source)}.</p>')
+    parts += _contents(page)
+    number, section = page.first - 1, 0
+    for item in page.items:
         if isinstance(item, Section):
             section += 1
             parts.append(f'<h2 id="section-{section}">{_prose(item.title)}</h2>')
@@ -59,11 +59,11 @@ def html_document(derivation: Derivation) -> str:
         else:
             parts.append(f"<p>{_prose(item.text)}</p>")
             parts += [_display(text) for text in passage_equations(item)]
-    used = units(derivation)
+    used = units(page)
     if used:
         parts.append(f"<p><strong>Units</strong> of the symbols in the proofs: {_raised(_prose(used))}.</p>")
-    parts.append(f"<footer>{_prose(footer(derivation))}</footer>")
-    title = escape(re.sub(r"[$*`]", "", derivation.title))
+    parts.append(f"<footer>{_prose(footer(page))}</footer>")
+    title = escape(re.sub(r"[$*`]", "", page.title))
     head = (
         f'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         f'<meta name="viewport" content="width=device-width, initial-scale=1">\n'
@@ -81,8 +81,8 @@ def _raised(prose: str) -> str:
     return re.sub(r"\^(\d)", r"<sup>\1</sup>", prose)
 
 
-def _contents(derivation: Derivation) -> Iterator[str]:
-    titles = [item.title for item in derivation.items if isinstance(item, Section)]
+def _contents(page: Page) -> Iterator[str]:
+    titles = [item.title for item in page.items if isinstance(item, Section)]
     if len(titles) > MANY_SECTIONS:
         links = (f'<a href="#section-{n}">{_prose(title)}</a>' for n, title in enumerate(titles, 1))
         yield f"<nav>{' · '.join(links)}</nav>"

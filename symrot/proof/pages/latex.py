@@ -2,8 +2,8 @@
 
 import re
 
-from symrot.proof.derivation import Derivation, Section, Step
-from symrot.proof.pages.mathml import rows
+from symrot.proof.notation.mathml import rows
+from symrot.proof.page import Page, Section, Step
 from symrot.proof.pages.parts import equation, footer, passage_equations, remarks, units
 
 __all__ = ["latex_document"]
@@ -26,15 +26,15 @@ LATEX_HEAD = r"""\documentclass[a4paper]{article}
 """
 
 
-def latex_document(derivation: Derivation) -> str:
+def latex_document(page: Page) -> str:
     """Return a LaTeX document."""
-    parts = [LATEX_HEAD + rf"\title{{{_prose(derivation.title)}}}" + "\n\\date{}\n\\begin{document}\n\\maketitle"]
-    if derivation.about:
-        parts.append(_prose(derivation.about))
-    if derivation.source:
-        parts.append(rf"\emph{{Source:}} {_prose(derivation.source)}.")
-    number = derivation.first - 1
-    for item in derivation.items:
+    parts = [LATEX_HEAD + rf"\title{{{_prose(page.title)}}}" + "\n\\date{}\n\\begin{document}\n\\maketitle"]
+    if page.about:
+        parts.append(_prose(page.about))
+    if page.source:
+        parts.append(rf"\emph{{Source:}} {_prose(page.source)}.")
+    number = page.first - 1
+    for item in page.items:
         if isinstance(item, Section):
             parts.append(rf"\section*{{{_prose(item.title)}}}")
         elif isinstance(item, Step):
@@ -45,10 +45,10 @@ def latex_document(derivation: Derivation) -> str:
             )  # fmt: skip
         else:
             parts.append("\n".join([_prose(item.text), *map(_display, passage_equations(item))]))
-    used = units(derivation)
+    used = units(page)
     if used:
         parts.append(rf"\paragraph{{Units}} of the symbols in the proofs: {_prose(used)}.")
-    parts += [r"\medskip\hrule\medskip", _prose(footer(derivation)), r"\end{document}"]
+    parts += [r"\medskip\hrule\medskip", _prose(footer(page)), r"\end{document}"]
     return "\n\n".join(parts) + "\n"
 
 

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterator
 
-from symrot.proof.derivation import Derivation, Section, Step
+from symrot.proof.page import Page, Section, Step
 from symrot.proof.pages.parts import equation, footer, passage_equations, remarks, units
 
 __all__ = ["markdown"]
@@ -11,16 +11,16 @@ __all__ = ["markdown"]
 MANY_SECTIONS = 8
 
 
-def markdown(derivation: Derivation) -> str:
+def markdown(page: Page) -> str:
     """Return a Markdown page; display formulas stand between ``$$`` on lines of their own."""
-    parts = [f"# {derivation.title}"]
-    if derivation.about:
-        parts.append(derivation.about)
-    if derivation.source:
-        parts.append(f"*Source:* {derivation.source}.")
-    parts += _contents(derivation)
-    number = derivation.first - 1
-    for item in derivation.items:
+    parts = [f"# {page.title}"]
+    if page.about:
+        parts.append(page.about)
+    if page.source:
+        parts.append(f"*Source:* {page.source}.")
+    parts += _contents(page)
+    number = page.first - 1
+    for item in page.items:
         if isinstance(item, Section):
             parts.append(f"## {item.title}")
         elif isinstance(item, Step):
@@ -29,10 +29,10 @@ def markdown(derivation: Derivation) -> str:
         else:
             parts.append(item.text)
             parts += [_display(text) for text in passage_equations(item)]
-    symbols_used = units(derivation)
+    symbols_used = units(page)
     if symbols_used:
         parts.append(f"**Units** of the symbols in the proofs: {symbols_used}.")
-    parts += ["---", footer(derivation)]
+    parts += ["---", footer(page)]
     return "\n\n".join(map(_host_safe, parts)) + "\n"
 
 
@@ -47,9 +47,9 @@ def _host_safe(part: str) -> str:
     return re.sub(r"\$([^$]+)\$", lambda m: f"$`{m[1]}`$" if MARKED.search(m[1]) else m[0], part)
 
 
-def _contents(derivation: Derivation) -> Iterator[str]:
+def _contents(page: Page) -> Iterator[str]:
     """Yield one line of links to the sections of a long page."""
-    titles = [item.title for item in derivation.items if isinstance(item, Section)]
+    titles = [item.title for item in page.items if isinstance(item, Section)]
     if len(titles) > MANY_SECTIONS:
         anchors = (re.sub("[^a-z0-9 -]", "", title.lower()).replace(" ", "-") for title in titles)
         links = (f"[{title.split(',')[0]}](#{anchor})" for title, anchor in zip(titles, anchors, strict=True))

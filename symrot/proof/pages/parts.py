@@ -5,8 +5,8 @@ from typing import Any
 
 from sympy import Add, Expr
 
-from symrot.proof.derivation import Derivation, Passage, Step
-from symrot.proof.pages.printer import formula
+from symrot.proof.notation.printer import formula
+from symrot.proof.page import Page, Passage, Step
 from symrot.symbols import UNIT
 
 __all__ = ["equation", "footer", "passage_equations", "remarks", "units"]
@@ -41,10 +41,10 @@ def _list(formulas: Iterable[str]) -> str:
     return ", ".join(f"${text}$" for text in formulas)
 
 
-def units(derivation: Derivation) -> str:
+def units(page: Page) -> str:
     """Return one sentence with the unit of every symbol that occurs."""
-    sides: list[Any] = [side for step in derivation.steps for side in (step.left, step.right)]
-    passages = (item for item in derivation.items if isinstance(item, Passage))
+    sides: list[Any] = [side for step in page.steps for side in (step.left, step.right)]
+    passages = (item for item in page.items if isinstance(item, Passage))
     sides += [side for passage in passages for pair in passage.equations for side in pair]
     used = {symbol for side in sides for symbol in getattr(side, "free_symbols", ())}
     groups: dict[str, list[str]] = {}
@@ -55,16 +55,16 @@ def units(derivation: Derivation) -> str:
     return "; ".join(f"{names} {unit}" for names, unit in shown)
 
 
-def footer(derivation: Derivation) -> str:
-    count = len(derivation.steps)
+def footer(page: Page) -> str:
+    count = len(page.steps)
     proven = f"{count} steps, each proven" if count != 1 else "One step, proven"
-    sides = [side for step in derivation.steps for side in step.printed]
+    sides = [side for step in page.steps for side in step.printed]
     rest = "" if all(sides) else "; the others are names, or words, for what was proven"
     shown = f"Printed from the proof, or read back and decided: {sum(sides)} of {len(sides)} sides{rest}."
     return (
         f"{proven} when this page was printed: the normal form of left minus right is zero. {shown} "
-        f"Derived in `symrot/catalogue/{derivation.name}.py`, printed by `symrot derive "
-        f"{derivation.name}`; do not edit."
+        f"Derived in `{page.file or page.name}`, printed by `symrot derive "
+        f"{page.name}`; do not edit."
     )
 
 

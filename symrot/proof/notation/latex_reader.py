@@ -11,7 +11,7 @@ from typing import Any
 import sympy
 from sympy import Expr, Integer, Matrix, MatrixBase, diff, eye, sqrt
 
-from symrot.proof.pages.mathml import ACCENTS, FENCES, FONTS, SPACES, TOKEN
+from symrot.proof.notation.mathml import ACCENTS, FENCES, FONTS, SPACES, TOKEN
 
 __all__ = ["Unread", "key", "parts", "read"]
 
