@@ -12,6 +12,7 @@ import pytest
 
 import symrot
 from symrot.build import cache as library
+from symrot.build.sources import c_text
 from symrot.codegen.enclosure.source import enclosure_source
 from symrot.codegen.enclosure.terms import BEYOND, enclosure
 from symrot.codegen.taylor.coefficients import coefficients
@@ -22,6 +23,7 @@ from symrot.planning.plan import make_plan
 from symrot.planning.scene_kernel import bind
 from symrot.propagation.compiled_models import error_blocks, scene_kernel
 from symrot.propagation.enclosures.step_limit import FUNCTIONS, Deviations, Disc, longest_followed
+from symrot.propagation.enclosures.step_limit import _product as product
 from symrot.propagation.steppers import cut_off, dop853, stepping, taylor
 from symrot.scene.scene import Scene
 from tests.needs import needs_compiler
@@ -63,6 +65,64 @@ def test_the_image_of_a_disc_lies_in_the_disc_of_its_image(name):
     assert bounded > 100
 
 
+FACTORS = ("exp", "sech", "cosh", "sinh", "sin", "cos", "tanh", "atan")
+
+
+def factor(name, power, inner):
+    own = FUNCTIONS[name](product(inner, Disc(-inner.centre, inner.radius)) if name == "exp" else inner)
+    return product(own, own) if power == 2 else own
+
+
+def test_no_product_of_three_functions_leaves_its_disc():
+    """Over discs so large that bounds over- and underflow: nothing is known there, or the product lies within."""
+    import mpmath
+
+    known = {name: getattr(mpmath, name) for name in FACTORS}
+    bounded = 0
+    for _ in range(1500):
+        factors = [
+            (str(RANDOM.choice(FACTORS)), int(RANDOM.choice([1, 1, 2])), float(10 ** RANDOM.uniform(0, 6)),
+             float(RANDOM.uniform(-1, 1))) for _ in range(3)
+        ]  # fmt: skip
+        disc = Disc(float(RANDOM.uniform(-1, 1)), float(10 ** RANDOM.uniform(-7, 1)))
+        image = Disc(1.0, 0.0)
+        try:
+            for name, power, slope, offset in factors:
+                inner = Disc(slope * (disc.centre - offset), slope * disc.radius)
+                image = product(factor(name, power, inner), image)
+        except OverflowError:  # which :class:`Deviations` takes for an infinite bound
+            continue
+        assert not math.isnan(image.radius)
+        if image.radius == math.inf:
+            continue
+        bounded += 1
+        for z in circle(disc, 8):
+            value = mpmath.mpf(1)
+            for name, power, slope, offset in factors:
+                inner = slope * (mpmath.mpc(z) - offset)
+                value *= known[name](-inner * inner if name == "exp" else inner) ** power
+            assert abs(value - image.centre) <= image.radius * (1 + 1e-6) + 1e-300, (factors, disc)
+    assert bounded > 300
+
+
+def test_an_unbounded_factor_is_not_taken_for_zero():
+    """A bump in the angle of unknown size, squared, times a pulse far away whose bound overflows."""
+    bump = FUNCTIONS["sech"](Disc(-19.7, math.inf))
+    pulse = FUNCTIONS["exp"](Disc(-6e7, 1.2e10))
+    assert product(product(bump, bump), pulse).radius == math.inf == product(pulse, product(bump, bump)).radius
+
+
+@needs_compiler
+@pytest.mark.parametrize("method", ["taylor", "dop853", "scipy:RK45", "scipy:DOP853", "scipy:LSODA"])
+def test_a_pulse_that_meets_a_bump_of_the_angle_is_seen(method):
+    """Both are narrow, and act where they meet alone: while the body passes the middle of the bump."""
+    rate, w = 40.0, 5e-7
+    torque = "m*((1/cosh((2*atan2(q3, q0)-c)/v)**2)*exp(-((t-d)/w)**2))"
+    made = scene(torque, (0, 0, rate), 0.1, 1e-7, m=1e6, c=43.0 * rate / 1000, d=0.043, v=0.008, w=w)
+    gained = symrot.propagator(made, method)([0.1]).omega[-1, 2] - rate
+    assert gained == pytest.approx(1e6 * w * math.sqrt(math.pi) / 3, rel=1e-4)  # the bump is wider than the way by far
+
+
 def test_the_angle_of_two_discs_is_enclosed():
     for _ in range(400):
         y, x = (Disc(RANDOM.uniform(-2, 2), 10 ** RANDOM.uniform(-5, 0)) for _ in range(2))
@@ -82,7 +142,7 @@ def test_the_rules_in_c_are_those_in_python():
     cases = "\n".join(f"case {k}: d = symrot_disc_{called.get(n, n)}(a); break;" for k, n in enumerate(names))
     text = f"""#include <stdint.h>
 #define SYMROT_ROUGH
-{taylor.Path(taylor.__file__).with_name("disc.h").read_text()}
+{c_text("propagation/enclosures/disc.h")}
 void image(int which, double c, double r, double *out)
 {{ symrot_disc a = symrot_disc_of(c, r), d = a; switch (which) {{ {cases} }} out[0] = d.c; out[1] = d.r; }}
 """

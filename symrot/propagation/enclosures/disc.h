@@ -27,7 +27,12 @@ static inline symrot_disc symrot_disc_up_to(double c, double r, double g)
     return d;
 }
 
-static inline double symrot_disc_log(symrot_disc a) { return a.g == a.g ? a.g : log(fabs(a.c) + a.r); }
+/* What underflowed to zero need not be zero. */
+static inline double symrot_disc_log(symrot_disc a)
+{
+    const double size = fabs(a.c) + a.r;
+    return a.g == a.g ? a.g : size == 0.0 ? -745.0 : log(size);
+}
 
 /* A vanishing pulse times a wave whose bound overflows is as small as their logarithms say. */
 static inline symrot_disc symrot_disc_product(symrot_disc a, symrot_disc b)
@@ -45,8 +50,8 @@ static inline symrot_disc symrot_disc_square(symrot_disc a) { return symrot_disc
 /* The image of a disc under 1/z is a disc again. */
 static inline symrot_disc symrot_disc_inverse(symrot_disc a)
 {
-    const double inner = fabs(a.c) - a.r, power = inner*(fabs(a.c) + a.r);
-    return inner > 0.0 ? symrot_disc_of(a.c/power, a.r/power) : symrot_disc_of(0.0, INFINITY);
+    const double inner = 1.0/(fabs(a.c) - a.r), outer = 1.0/(fabs(a.c) + a.r); /* their product may underflow */
+    return fabs(a.c) > a.r ? symrot_disc_of(a.c*inner*outer, a.r*inner*outer) : symrot_disc_of(0.0, INFINITY);
 }
 
 /* Where a disc meets the branch point the root has a corner: no series goes past it, a bound of its size may. */
@@ -98,7 +103,8 @@ static inline symrot_disc symrot_disc_sech(symrot_disc a)
     const double far = exp(a.r - fabs(a.c));
     const symrot_disc near = fabs(a.c) < 350.0 ? symrot_disc_inverse(symrot_disc_cosh(a)) : symrot_disc_of(0.0, INFINITY);
     const double bound = far < 1.0 ? 2.0*far/(1.0 - far*far) : INFINITY;
-    return near.r <= bound ? near : symrot_disc_of(0.0, bound);
+    if (near.r <= bound) return near;
+    return far < 1.0 ? symrot_disc_up_to(0.0, bound, a.r - fabs(a.c) + log(2.0/(1.0 - far*far))) : near;
 }
 
 /* tan(c + z) - tan(c) = sec(c)^2 tan(z)/(1 - tan(c) tan(z)), |tan(z)| <= tan(r). */

@@ -15,6 +15,7 @@ from symrot.formula.tree import evaluate
 __all__ = ["Deviations", "Disc", "longest_followed"]
 
 LARGEST_EXPONENT = 700.0  # of e, well within doubles
+LEAST_EXPONENT = -745.0  # what is smaller underflows, and need not be zero
 SHRINK = 0.3  # least that a step is shortened to at once
 
 
@@ -31,16 +32,21 @@ class Disc(NamedTuple):
 
 def _product(a: Disc, b: Disc) -> Disc:
     centre = a.centre * b.centre
-    radius = abs(a.centre) * b.radius + abs(b.centre) * a.radius + a.radius * b.radius
+    radius = _or_infinite(abs(a.centre) * b.radius + abs(b.centre) * a.radius + a.radius * b.radius)
     if a.log_size is None and b.log_size is None:
         return Disc(centre, radius)
-    size = _log_size(a) + _log_size(b)
+    size = _or_infinite(_log_size(a) + _log_size(b))
     return Disc(centre, radius, size) if radius < math.inf else Disc(0.0, _exp_of(size), size)
 
 
+def _or_infinite(bound: float) -> float:
+    """Return a bound, which is infinite where nothing is known: zero times an infinite bound is not a number."""
+    return math.inf if math.isnan(bound) else bound
+
+
 def _log_size(a: Disc) -> float:
-    size = abs(a.centre) + a.radius
-    return a.log_size if a.log_size is not None else math.log(size) if size > 0.0 else -math.inf
+    size = _or_infinite(abs(a.centre) + a.radius)
+    return a.log_size if a.log_size is not None else math.log(size) if size > 0.0 else LEAST_EXPONENT
 
 
 def _exp_of(x: float) -> float:
@@ -53,8 +59,10 @@ def _sinh_of(x: float) -> float:
 
 def _inverse(a: Disc) -> Disc:
     size = abs(a.centre)
-    power = (size - a.radius) * (size + a.radius)
-    return Disc(a.centre / power, a.radius / power) if size > a.radius else Disc(0.0, math.inf)
+    if not size > a.radius:
+        return Disc(0.0, math.inf)
+    inner, outer = 1.0 / (size - a.radius), 1.0 / (size + a.radius)  # their product may underflow
+    return Disc(a.centre * inner * outer, a.radius * inner * outer)
 
 
 def _sqrt(a: Disc) -> Disc:
@@ -87,12 +95,15 @@ def _wave(
 
 
 def _sech(a: Disc) -> Disc:
-    far = math.exp(min(a.radius - abs(a.centre), 1.0))
-    bound = 2.0 * far / (1.0 - far * far) if far < 1.0 else math.inf
+    exponent = min(a.radius - abs(a.centre), 1.0)
+    far = math.exp(exponent)
+    bound, size = math.inf, math.inf
+    if far < 1.0:
+        bound, size = 2.0 * far / (1.0 - far * far), exponent + math.log(2.0 / (1.0 - far * far))
     if abs(a.centre) + a.radius > 350.0:
-        return Disc(0.0, bound)
+        return Disc(0.0, bound, size)
     near = _inverse(FUNCTIONS["cosh"](a))
-    return near if near.radius <= bound else Disc(0.0, bound)
+    return near if near.radius <= bound else Disc(0.0, bound, size)
 
 
 def _tan(a: Disc) -> Disc:
@@ -167,7 +178,7 @@ class Deviations:
             bounds = [sum(weight * discs[operand].radius for weight, operand in own) for own in self._terms]
         except (OverflowError, ValueError, ZeroDivisionError):
             return [math.inf if own else 0.0 for own in self._terms]
-        return [math.inf if math.isnan(bound) else bound for bound in bounds]
+        return [_or_infinite(bound) for bound in bounds]
 
     def _disc(
         self, number: int, discs: Mapping[int, Disc], t: float, reach: float, y: Sequence[float], radii: Sequence[float]

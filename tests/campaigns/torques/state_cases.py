@@ -214,7 +214,8 @@ def switch_state(draw: Draw, family: str, index: int, seed: int) -> Case:
     of_angle = kind in ("drive", "brake", "stop")
     if of_angle:
         edge = random.uniform(0.2, 0.8)
-        after = {"drive": 0.5, "brake": -0.1, "stop": -random.uniform(2, 300)}[kind] * c * omega**2
+        # a drive stays below a full rotation, where the angle of the formula jumps by 4 pi: 4 + 16/8 rad
+        after = {"drive": 0.25, "brake": -0.1, "stop": -random.uniform(2, 300)}[kind] * c * omega**2
         before, variable = 0.0, ANGLE
     else:
         edge = omega * 1.5

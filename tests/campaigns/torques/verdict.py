@@ -65,7 +65,10 @@ def run(case: Case) -> list[Answer]:
 
     method, _, way = case.method.partition(" ")
     no_formula = method in ("function", "table")
-    scene = symrot.Scene.from_dict(scene_of(case.problem, case.tolerance, torque=not no_formula))
+    try:
+        scene = symrot.Scene.from_dict(scene_of(case.problem, case.tolerance, torque=not no_formula))
+    except symrot.InputError as error:  # a number beyond those that scenes may have
+        return [Answer(np.empty(0), np.empty((0, 7)), str(error), False) for _ in range(1 + len(case.others))]
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         if way == "ensemble":
