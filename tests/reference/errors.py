@@ -1,6 +1,6 @@
 """Print the errors of shipped scenes in units of their tolerance: ``python -m tests.reference.errors``."""
 
-from tests.test_propagation import (
+from tests.propagation.test_propagator import (
     REFERENCE,
     TOLERANCES,
     attitude_error,

@@ -1,4 +1,4 @@
-/* Largest error of symrot_sin and symrot_cos in units in the last place: tests/test_kernels_in_c.py compiles this. */
+/* Largest error of symrot_sin and symrot_cos in units in the last place: tests/kernels/test_in_c.py compiles this. */
 #include "symrot_math.h"
 
 static double error_of(double x)

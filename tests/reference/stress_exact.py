@@ -9,8 +9,8 @@ import numpy as np
 
 from symrot.closed_form.free_body import motion as free_body
 from symrot.closed_form.heavy_top import motion as heavy_top
-from tests import test_closed_form_free_body as free
-from tests import test_closed_form_heavy_top as top
+from tests.closed_form import test_free_body as free
+from tests.closed_form import test_heavy_top as top
 from tests.reference import free_body as reference
 from tests.reference.figures import Figure, body, largest, propagated
 

@@ -14,8 +14,8 @@ from symrot.propagation.compiled_models import error_blocks, scene_kernel
 from symrot.propagation.invariants import invariant_parameters, invariant_source
 from symrot.propagation.propagator import propagator
 from symrot.propagation.steppers import taylor
+from tests.closed_form.test_heavy_top import S18, tilted
 from tests.reference.figures import Figure, apart, body, largest, propagated
-from tests.test_closed_form_heavy_top import S18, tilted
 
 TILT = {"quaternion": [str(x) for x in tilted(F(1, 2))]}
 GRAVITY = {"kind": "gravity", "weight": 1}

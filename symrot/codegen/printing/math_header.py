@@ -8,7 +8,7 @@ sum, with what the quotient lost to rounding, found from halves whose products a
 here: interpolation of the exact series at Chebyshev points, in fractions.
 
 Stated error: at most 1 unit in the last place, of sine and cosine for ``|x|`` up to ``FAR``. Measured by
-``python -m symrot.bench.ulps``, and with every float and all multiples of pi/2 by tests/test_kernels_in_c.py
+``python -m symrot.bench.ulps``, and with every float and all multiples of pi/2 by tests/kernels/test_in_c.py
 (tests/reference/sine_harness.c).
 """
 

@@ -41,7 +41,8 @@ def coefficients(
 
     Examples
     --------
-    With Fractions the coefficients are exact, which is how the rules are proven (``tests/test_recurrences.py``).
+    With Fractions the coefficients are exact, which is how the rules are proven
+    (``tests/codegen/test_recurrences.py``).
     """
     run = _Run(
         lambda node: evaluate(node, values, functions, number), functions or {}, [[] for _ in system.series],

@@ -61,7 +61,7 @@ def step_tolerance(tolerance: float) -> tuple[float, float]:
     then hardly depends on tolerance or span, except where the motion itself amplifies errors.
 
     Both constants are calibrated on free asymmetric bodies, through flips about the intermediate axis too, and on heavy
-    tops, against 40-digit references (``tests/test_dop853.py``): errors stay below 5 times the tolerance.
+    tops, against 40-digit references (``tests/propagation/test_dop853.py``): errors stay below 5 times the tolerance.
     """
     check_tolerance(tolerance)
     return tolerance * STEP_SHARE, tolerance**0.125 * NATURAL_TIMES

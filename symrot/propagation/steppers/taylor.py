@@ -66,7 +66,8 @@ def step_tail(tolerance: float) -> tuple[float, float]:
     when nothing but a turning body amplifies them: the error at the end then hardly depends on the span.
 
     The constant is calibrated on free asymmetric bodies, through flips about the intermediate axis too, and on heavy
-    tops, against references of 50 digits (``tests/test_taylor.py``): errors stay below 5 times the tolerance.
+    tops, against references of 50 digits (``tests/propagation/test_taylor.py``): errors stay below 5 times the
+    tolerance.
     """
     check_tolerance(tolerance)
     return tolerance, 1.0 / STEPS_OF_ALL

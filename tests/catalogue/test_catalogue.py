@@ -1,0 +1,262 @@
+"""The catalogue: every derivation derives, none is vacuous, and the printed pages are current."""
+
+import os
+import re
+import subprocess
+import sys
+from importlib import import_module
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+from sympy import Matrix, MatrixBase, Poly, Rational, Symbol
+
+from symrot import catalogue
+from symrot.catalogue.tools.power_series import coefficient, indexed
+from symrot.cli.main import main
+from symrot.conventions import SEQUENCES
+from symrot.errors import InputError
+from symrot.exact import is_zero
+from symrot.proof.derivation import Derivation, ProofError
+
+ROOT = Path(__file__).parents[2]
+
+
+SPREAD = (
+    "rotation_matrices",
+    "heavy_top",
+    "free_asymmetric_body",
+    "gear_trains",
+    "quaternion_rates",
+    "gravity_gradient",
+)
+ASKED = {  # what a course asks for, and the derivation that has it
+    "orthogonality": "rotation_matrices", "Rodrigues": "axis_and_angle", "order": "composition", "spin": "spin_tensor",
+    "lock": "euler_singularities", "Euler parameters": "euler_parameters", "two points": "relative_motion",
+    "particle sum": "angular_momentum", "energy": "kinetic_energy", "solids": "standard_solids", "Poinsot": "poinsot",
+    "Lagrange": "lagrange_and_euler", "top": "heavy_top", "wheel": "gyroscopic_wheel", "Jacobi": "free_asymmetric_body",
+    "power": "work_and_power", "blow": "impulse_and_momentum", "rolling": "rolling", "Willis": "gear_trains",
+    "slider": "planar_linkages", "theta functions": "free_body_attitude", "pendulum": "pendulum",
+    "nutation in time": "heavy_top_motion", "rotor": "symmetric_gyrostat", "motor and brake": "driven_rotation",
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def derived():
+    return {name: catalogue.derivation(name) for name in catalogue.names()}
+
+
+@pytest.fixture(scope="module")
+def printed():
+    return catalogue.pages()
+
+
+def test_the_reading_order_names_every_file_once():
+    files = [path.relative_to(ROOT).with_suffix("") for path in (ROOT / "symrot" / "catalogue").glob("*/*.py")]
+    modules = {".".join(file.parts) for file in files if file.name != "__init__" and file.parent.name != "tools"}
+    assert len(catalogue.names()) == len(set(catalogue.names()))
+    assert set(map(catalogue.module_of, catalogue.names())) == modules
+
+
+def test_an_unknown_derivation_is_refused():
+    with pytest.raises(InputError, match=r"'no_such'.*euler_equations"):
+        catalogue.derivation("no_such")
+
+
+@pytest.mark.parametrize("name", catalogue.names())
+def test_no_step_would_hold_with_an_error(derived, name):
+    """With a small amount added to one side, every equation fails under the same hypotheses: none is vacuous."""
+    steps = [step for step in derived[name].steps if step.relation == "="]
+    assert steps
+    error = Rational(1, 10**9) * Symbol("error", positive=True)
+    for step in steps:
+        left, right = step.left, step.right
+        if isinstance(left, MatrixBase):
+            difference = Matrix(left) - Matrix(right)
+            difference[len(difference) - 1] += error
+        else:
+            difference = left - right + error
+        assert not is_zero(difference, step.hypotheses), step.claim
+
+
+@pytest.mark.parametrize("name", catalogue.names())
+def test_a_page_is_a_page(derived, name):
+    found = derived[name]
+    assert found.name == name and found.title and found.source and found.about
+    for step in found.steps:
+        assert step.claim[0].isupper() and step.claim[-1] in ".:,", step.claim
+        assert step.reason and not step.reason.endswith("."), step.reason
+
+
+IN_WORDS = {  # right sides that are typed in words or names beside what was proven: fewer is better, more is a fault
+    "euler_body_rates": 24, "euler_parameters": 13, "euler_singularities": 12, "rotation_matrices": 5,
+    "angular_momentum": 4, "quaternion_rates": 3, "rotation_vector": 3, "rodrigues": 3, "symmetric_top": 3,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", catalogue.names())
+def test_what_is_shown_is_what_was_proven(derived, name):
+    """A side of an equation is printed from the proof, or its LaTeX is read back and decided when it is built."""
+    words = [step.shown for step in derived[name].steps if not step.printed[1]]
+    assert len(words) <= IN_WORDS.get(name, 2), words
+
+
+def test_a_tampered_page_cannot_be_derived(monkeypatch):
+    """One sign changed in what a catalogue page shows, and in nothing that it proves."""
+    add = Derivation.step
+
+    def tampered(page, claim, left, right, *, shown=None, **others):
+        changed = shown.replace("+", "-", 1) if isinstance(shown, str) else shown
+        return add(page, claim, left, right, shown=changed, **others)
+
+    monkeypatch.setattr(Derivation, "step", tampered)
+    for name in ("kinetic_energy", "relative_motion", "free_body_attitude", "rodrigues", "tensor_rotation"):
+        with pytest.raises(ProofError, match="as it is shown"):
+            import_module(catalogue.module_of(name)).derive()
+
+
+def test_every_sequence_has_its_rates(derived):
+    titles = [item.title for item in derived["euler_body_rates"].items if hasattr(item, "title")]
+    assert [title.split(",")[0] for title in titles] == list(SEQUENCES)
+
+
+def test_the_coefficient_of_a_power_is_that_of_the_product():
+    """Of polynomials with numbers in them, multiplied out and differentiated by SymPy."""
+    x, k = Symbol("x"), Symbol("k")
+    series = {"a": [2, -3, 5, 7, 0, 1], "b": [1, 4, -2, 0, 3, 9]}
+    factors = {"a": {0: x**2 - 3, 1: 2 * x, 2: x**3 + 1}, "b": {0: 4 * x, 1: 1 - x**2}}
+    sums = {name: sum(value * x**n for n, value in enumerate(values)) for name, values in series.items()}
+    whole = sum(factor * sums[name].diff(x, order) for name, own in factors.items() for order, factor in own.items())
+    one = coefficient(factors, x, k)
+    values = {indexed(name, k, shift): (name, shift) for name in series for shift in range(-3, 4)}
+    for n in range(12):
+        numbers = {
+            symbol: series[name][n + shift] if 0 <= n + shift < 6 else 0 for symbol, (name, shift) in values.items()
+        }
+        assert one.subs(numbers).subs(k, n) == Poly(whole, x).coeff_monomial(x**n)
+
+
+def test_what_the_planner_and_the_docstrings_cite_exists():
+    cited = set()
+    for path in (ROOT / "symrot").rglob("*.py"):
+        for word in path.read_text().split():
+            if word.strip("`.,;").startswith("derivations/") and word.strip("`.,;").endswith(".md"):
+                cited.add(word.strip("`.,;").removeprefix("derivations/").removesuffix(".md"))
+    assert cited - {"", "*"} <= set(catalogue.names())
+
+
+def test_the_committed_pages_are_current(printed):
+    """Run `symrot derive --all` when this fails."""
+    directory = ROOT / "derivations"
+    assert {path.name for path in directory.glob("*.md")} == set(printed)
+    for name, text in printed.items():
+        assert (directory / name).read_bytes() == text.encode(), name
+
+
+def test_check_finds_what_is_stale_missing_and_left_over(tmp_path, printed, monkeypatch):
+    monkeypatch.setattr(catalogue, "pages", lambda: printed)
+    assert len(catalogue.derive_all(tmp_path)) == len(printed)
+    assert catalogue.check(tmp_path) == [] and catalogue.derive_all(tmp_path) == []
+    (tmp_path / "spherical_body.md").write_text(printed["spherical_body.md"].replace("**1.** The", "**1.** No"))
+    (tmp_path / "planar_motion.md").unlink()
+    (tmp_path / "old.md").write_text("Derived long ago, printed by `symrot derive old`; do not edit.\n")
+    (tmp_path / "mine.md").write_text("My own notes.\n")
+    stale = dict(catalogue.check(tmp_path))
+    assert {path.name for path in stale} == {"spherical_body.md", "planar_motion.md", "old.md"}
+    assert "\n-**1.** No tensor" in stale[tmp_path / "spherical_body.md"]
+    assert "\n+**1.** The tensor" in stale[tmp_path / "spherical_body.md"]
+    assert {path.name for path in catalogue.derive_all(tmp_path)} == {path.name for path in stale}
+    assert catalogue.check(tmp_path) == [] and (tmp_path / "mine.md").exists() and not (tmp_path / "old.md").exists()
+
+
+def test_a_page_does_not_depend_on_hashing(printed):
+    program = (
+        "from symrot.catalogue import derivation; import sys; names = sys.argv[1:];"
+        "sys.stdout.write(''.join(derivation(n).markdown() for n in names));"
+        "sys.stdout.write(''.join(derivation(n).html() + derivation(n).part(2, True).markdown() for n in names))"
+    )
+    pages = {
+        subprocess.run(
+            [sys.executable, "-c", program, *SPREAD],
+            env=os.environ | {"PYTHONHASHSEED": seed},
+            capture_output=True,
+            check=True,
+        ).stdout.decode()
+        for seed in ("1", "20")
+    }
+    (page,) = pages
+    assert page.startswith("".join(printed[f"{name}.md"] for name in SPREAD))
+
+
+def test_what_was_asked_for_is_there(derived):
+    assert set(ASKED.values()) <= set(derived)
+    assert sum(len(found.steps) for found in derived.values()) > 650
+
+
+def test_all_is_printed_as_html_that_is_well_formed(derived):
+    for name, found in derived.items():
+        page = found.html()
+        tree = ElementTree.fromstring(page.removeprefix("<!DOCTYPE html>\n").replace('<meta charset="utf-8">', "").replace(
+            '<meta name="viewport" content="width=device-width, initial-scale=1">', ""))  # fmt: skip
+        assert len(tree.findall(".//section")) == len(found.steps), name
+        assert "http" not in page.replace("http://www.w3.org/1998/Math/MathML", ""), name
+        text = "".join(tree.itertext())
+        assert "\\" not in text and "$" not in text, name
+
+
+def test_all_is_printed_as_latex_with_balanced_braces(derived):
+    for name, found in derived.items():
+        text = found.latex()
+        bare = text.replace("\\{", "").replace("\\}", "")
+        assert bare.count("{") == bare.count("}"), name
+        assert text.count(r"\left") - text.count(r"\leftarrow") == text.count(r"\right") - text.count(r"\rightarrow"), (
+            name
+        )
+
+
+def test_all_pages_can_be_written_as_html(derived, tmp_path, capsys):
+    assert main(["derive", "--all", "--format", "html", "-o", str(tmp_path / "site")]) == 0
+    assert len(capsys.readouterr().out.split()) == len(derived)
+    assert {path.name for path in (tmp_path / "site").iterdir()} == {f"{name}.html" for name in derived}
+    for path in (tmp_path / "site").iterdir():
+        for target in re.findall(r'href="([^"#]+)"', path.read_text()):
+            assert (tmp_path / "site" / target).exists(), (path.name, target)
+    with pytest.raises(InputError, match=r"latex or html, got 'pdf'"):
+        catalogue.write_pages(tmp_path, "pdf")
+
+
+def test_links_lead_to_pages(printed):
+    for name, text in printed.items():
+        for target in re.findall(r"\]\(([^)#]+)\)", text):
+            assert target in printed, (name, target)
+
+
+@pytest.mark.parametrize("form, start", [("markdown", "# "), ("latex", r"\documentclass"), ("html", "<!DOCTYPE html>")])
+def test_one_step_on_the_command_line(form, start, capsys):
+    assert main(["derive", "heavy_top", "--step", "3", "--detail", "--format", form]) == 0
+    text = capsys.readouterr().out
+    assert text.startswith(start) and "step 3" in text and "In detail" in text
+    assert main(["derive", "heavy_top", "--step", "3", "--format", form]) == 0
+    assert "In detail" not in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    "words, complaint",
+    [
+        (["heavy_top", "--step", "99"], "steps 1 to 17, got 99"),
+        (["heavy_top", "--detail"], "expected --step N"),
+        (["--step", "2"], "expected a NAME"),
+        (["--all", "--step", "2"], "expected a NAME"),
+        (["heavy_top", "--step", "two"], "invalid int"),
+        (["--all", "--format", "html"], "expected a folder, -o DIR"),
+        (["--check", "--format", "latex"], "--check compares the Markdown pages"),
+    ],
+)
+def test_a_step_that_cannot_be_shown_is_refused(words, complaint, capsys):
+    assert main(["derive", *words]) == 2
+    assert complaint in capsys.readouterr().err
+
+
+def test_the_catalogue_is_named_without_sympy():
+    program = "import sys, symrot.catalogue as c; c.names(); sys.exit('sympy' in sys.modules)"
+    subprocess.run([sys.executable, "-c", program], check=True)

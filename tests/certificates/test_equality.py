@@ -1,0 +1,82 @@
+"""The C text is the formula: proven for every kernel, refused for every corrupted text."""
+
+import random
+import re
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+from symrot.certificates.laws.equality import prove_equal
+from symrot.certificates.readback.intended_constants import meaning, rounds_to
+from symrot.certificates.readback.readback import read_kernel
+from symrot.errors import CertificateError
+from symrot.formula.exact_numbers import PI
+from symrot.kernels.library import definition, kernel_names
+
+GENERATED = Path(__file__).parents[2] / "generated" / "c"
+SLICE = ("quaternion_dcm", "quaternion_of_dcm", "euler_zyx_body_rates", "euler_zxz_of_quaternion",
+         "rotation_vector_body_jacobian", "rotation_vector_of_quaternion", "inertia_cone", "mrp_shadow",
+         "euler_equations_principal", "torque_gravity")  # fmt: skip
+
+
+def proven(name, text, suffix=""):
+    found = definition(name)
+    places = {
+        (a.name if a.is_scalar else f"{a.name}[{i}]"): component[0]
+        for a in found.inputs
+        for i, component in enumerate(a.components)
+    }
+    formulas = {f"{a.name}[{i}]": formula for a, each in found.results for i, formula in enumerate(each)}
+    return prove_equal(read_kernel(text, f"{name}{suffix}", name), places, formulas, found.named)
+
+
+def text_of(name):
+    return (GENERATED / f"{name}.c").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", SLICE)
+@pytest.mark.parametrize("suffix", ["", "f"], ids=["double", "float"])
+def test_the_c_text_is_the_formula(name, suffix):
+    proof = proven(name, text_of(name), suffix)
+    assert proof.formulas
+    for truncation in proof.truncations:
+        assert truncation.relative < Fraction(1, 2 ** (26 if suffix else 55))
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("name", kernel_names())
+def test_every_c_text_is_its_formula(name):
+    for suffix in ("", "f"):
+        proven(name, text_of(name), suffix)
+
+
+SWAPS = {"+": "-", "-": "+", "*": "/", "/": "*", "sin": "cos", "cos": "sin", "0.5": "0.25", "2.0": "3.0", "[0]": "[1]",
+         "[1]": "[2]", ">=": "<", "<": ">=", "1.0": "1.5", "==": ">=", "sqrt": "fabs"}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", SLICE)
+def test_a_corrupted_text_is_refused(name):
+    """One token of the one-sample function, or of a function that it calls, is another."""
+    text = text_of(name)
+    for start, end in (m.span(1) for m in re.finditer(r"(?:double|void) \w+\([^)]*\)\n\{(.*?)\n\}", text, re.DOTALL)):
+        head = text[text.rfind("\n", 0, text.rfind("(", 0, start)) : start]
+        if "batch" in head or "float" in head or "near" in head:
+            continue
+        tokens = re.compile(r"\bsin\b|\bcos\b|\bsqrt\b|0\.5|[12]\.0|\[[01]\]|[>=]=|<|[-+*/]")
+        places = [m for m in tokens.finditer(text, start, end) if text[m.start() - 1] != "e"]
+        for match in random.Random(3).sample(places, min(12, len(places))):
+            changed = text[: match.start()] + SWAPS[match[0]] + text[match.end() :]
+            with pytest.raises(CertificateError):
+                proven(name, changed)
+
+
+def test_the_number_a_constant_stands_for():
+    assert meaning(Fraction(1 / 3), "binary64").fraction == Fraction(1, 3)
+    assert meaning(Fraction(0.5), "binary64").fraction == Fraction(1, 2)
+    pi = meaning(Fraction(3.141592653589793), "binary64")
+    assert pi.times_pi and pi.fraction == 1
+    two_pi = meaning(rounds_to(2 * PI, "binary32"), "binary32")
+    assert two_pi.times_pi and two_pi.fraction == 2
+    with pytest.raises(CertificateError, match="simple fraction"):
+        meaning(Fraction(0.123456789012345678), "binary64")

@@ -1,0 +1,95 @@
+"""Under which flags of a compiler a certificate holds."""
+
+from pathlib import Path
+
+import pytest
+
+from symrot.certificates.flags import BITS, BOUNDS, NOTHING, flags_section, judge
+from symrot.cli.main import main
+from symrot.errors import InputError
+
+KERNELS = Path(__file__).parents[2] / "generated" / "c"
+
+
+@pytest.mark.parametrize(
+    ("flags", "holds"),
+    [
+        ("gcc -O2 -ffp-contract=off -fno-math-errno -c kernel.c -o kernel.o", BITS),
+        ("-O3 -mavx2 -std=c99 -Wall -g -fPIC -Iinclude -DNDEBUG -ffp-contract=off", BITS),
+        ("clang -O3 -march=native -ffp-contract=off", BITS),
+        ("gcc -O3 -march=native -ffp-contract=off -fno-tree-slp-vectorize", BITS),
+        ("gcc -O3 -march=native -ffp-contract=off", BOUNDS),  # gcc 12 fuses in vectors all the same
+        ("-O2", BOUNDS),
+        ("-O2 -mavx2 -mfma -ffp-contract=fast", BOUNDS),
+        ("-ffp-contract=off -ffp-contract=fast", BOUNDS),
+        ("-ffp-contract=fast -ffp-contract=off", BITS),
+        ("-Ofast -ffp-contract=off", NOTHING),
+        ("-ffast-math", NOTHING),
+        ("-ffast-math -fno-fast-math -ffp-contract=off", BITS),
+        ("-funsafe-math-optimizations -ffp-contract=off", NOTHING),
+        ("-fassociative-math -ffp-contract=off", NOTHING),
+        ("-freciprocal-math -ffp-contract=off", NOTHING),
+        ("-ffinite-math-only -ffp-contract=off", NOTHING),
+        ("-fno-signed-zeros -ffp-contract=off", NOTHING),
+        ("-mfpmath=387 -ffp-contract=off", NOTHING),
+        ("-m32 -ffp-contract=off", NOTHING),
+        ("-fdenormal-fp-math=preserve-sign -ffp-contract=off", NOTHING),
+        ("-fsingle-precision-constant -ffp-contract=off", NOTHING),
+        ("-ffp-model=precise", BOUNDS),
+        ("-frounding-math -fno-trapping-math -ffp-contract=off", BITS),
+    ],
+)
+def test_flags_are_judged_in_their_order(flags, holds):
+    found = judge(flags)
+    assert found.holds == holds and found.accepted == (holds != NOTHING)
+    assert found == judge(flags.split())
+    if holds == NOTHING:
+        assert found.sentence().startswith("the certificate is void (-")
+
+
+@pytest.mark.parametrize(
+    "flag",
+    ["-funny", "-fno-rounding", "-Dsin=cos", "-mllvm", "/fp:fast", '-O2 "', "", "cl /fp:fast", "icx -O2", "zig cc -O2", "tcc",
+     "gcc @flags", "gcc -Wp,-Dsin=cos", "gcc -Wa,--defsym", "gcc -DNAN=0", "gcc -DSYMROT_RESTRICT=x", "gcc -include sin.h"],
+)  # fmt: skip
+def test_a_flag_or_a_compiler_that_nobody_knows_is_refused_in_one_sentence(flag):
+    with pytest.raises(InputError, match=r"^flags: expected"):
+        judge(flag)
+
+
+@pytest.mark.parametrize(
+    ("flags", "holds"),
+    [("/usr/bin/x86_64-linux-gnu-gcc-12 -ffp-contract=off -DMY_APP=1 main.c kernel.c -o main", BITS),
+     ("ccache clang++-14 -O2 -ffp-contract=off", BITS), ("C:\\\\gcc.exe -O2", BOUNDS), ("kernel.c -ffp-contract=off", BITS),
+     ("i686-linux-gnu-gcc -O2 -ffp-contract=off", NOTHING), ("i686-linux-gnu-gcc -mfpmath=sse -ffp-contract=off", BITS)],
+)  # fmt: skip
+def test_compilers_are_known_by_their_names(flags, holds):
+    """One for a processor with x87 keeps more digits than a type has, unless it is told to use SSE."""
+    assert judge(flags).holds == holds
+
+
+def test_the_section_of_flags_gives_a_reason_for_each():
+    section = flags_section()
+    assert list(section["required"]) == ["-ffp-contract=off"]
+    for name, rows in section.items():
+        assert all(rows.values()), name
+    for flag in section["void"]:
+        assert judge([flag, "-ffp-contract=off"]).holds == NOTHING
+    for flag in section["allowed"]:
+        assert judge([flag, "-ffp-contract=off"]).holds == BITS
+
+
+@pytest.mark.parametrize(
+    ("flags", "code", "said"),
+    [
+        ("gcc -O3 -mavx2 -ffp-contract=off", 0, "the bits of the C text and its error bounds hold"),
+        ("gcc -O2 -march=native", 0, "the error bounds hold, not the bits"),
+        ("gcc -O2 -ffast-math", 1, "the certificate is void"),
+        ("gcc -fmagic", 2, "got '-fmagic'"),
+    ],
+)
+def test_the_audit_says_what_holds_under_flags(capsys, flags, code, said):
+    assert main(["audit", str(KERNELS / "torque_spring.cert.json"), "--flags", flags]) == code
+    found = capsys.readouterr()
+    assert said in (found.err if code else found.out)
+    assert found.err.count("\n") == (1 if code else 0)

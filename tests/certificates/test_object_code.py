@@ -1,0 +1,310 @@
+"""Object code = C text: what compilers make of kernels is accepted, what computes something else is refused."""
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from symrot.certificates.flags import BITS, BOUNDS, NOTHING
+from symrot.certificates.object_code import build as object_code_build
+from symrot.certificates.object_code.build import FLAGS, STRICT, compile_object, objects_section
+from symrot.certificates.object_code.comparison import CONTRACTED, DIFFERS, IDENTICAL, NOT_UNDERSTOOD, compare_object
+from symrot.cli.main import main
+from symrot.errors import CertificateError, CompilerError
+from symrot.workshop import object_code as compiled
+from symrot.workshop.certify import refuted
+from tests.campaigns.certificates.object_campaign import corrupted
+from tests.campaigns.certificates.object_code_mutants import same_bits
+from tests.needs import HERE, needs_avx2, needs_objdump
+
+KERNELS = Path(__file__).parents[2] / "generated" / "c"
+SOME = ("euler_zyx_body_rates", "quaternion_of_dcm", "rotation_vector_of_quaternion", "mrp_shadow", "inertia_rotated")
+
+
+def verdicts(directory, text, compiler="gcc", flags=("-O2", *STRICT), against=None):
+    """Compile a text and compare it with itself, or with another."""
+    source, target = directory / "kernel.c", directory / "kernel.o"
+    source.write_text(text)
+    compile_object(compiler, (*flags, "-I", str(KERNELS)), source, target)
+    return compare_object(against or text, target)
+
+
+# --- what compilers make of kernels -----------------------------------------------------------------------------------
+
+
+@needs_objdump
+@pytest.mark.parametrize("compiler", HERE)
+@pytest.mark.parametrize("name", SOME)
+def test_compiled_kernels_are_accepted(name, compiler):
+    """Strict flags give identical operations for SSE2; with AVX2 and FMA the contracted ones are named as such."""
+    found = objects_section(KERNELS / f"{name}.c", compilers=[compiler])
+    assert len(found["objects"]) == len(FLAGS)
+    for item in found["objects"]:
+        assert len(item["functions"]) == 2
+        if "-mfma" not in item["flags"]:
+            assert {function["verdict"] for function in item["functions"]} == {IDENTICAL}, item
+        for function in item["functions"]:
+            fused = function["verdict"] == DIFFERS and "rounded in one place and fused in another" in function["reason"]
+            assert function["verdict"] in (IDENTICAL, CONTRACTED) or fused, function
+
+
+@needs_objdump
+@needs_avx2
+@pytest.mark.parametrize("compiler", HERE)
+def test_what_is_not_identical_gives_other_bits(compiler, tmp_path):
+    """gcc 12 fuses a*b + c at -O3 though -ffp-contract=off is given (vfmsubadd): found here, and seen in the bits."""
+    source, good, other = KERNELS / "inertia_rotated.c", tmp_path / "good.o", tmp_path / "other.o"
+    compile_object(compiler, ("-O1", *STRICT), source, good)
+    compile_object(compiler, ("-O3", "-mavx2", "-mfma", *STRICT), source, other)
+    text = source.read_text()
+    assert all(item.verdict == IDENTICAL for item in compare_object(text, good))
+    is_identical = all(item.verdict == IDENTICAL for item in compare_object(text, other))
+    assert same_bits(source, good, other) == is_identical
+
+
+@needs_objdump
+@pytest.mark.parametrize(
+    "flags",
+    [("-O0",), ("-O2", "-fstack-protector-all", "-fcf-protection"), ("-O2", "-fPIC", "-fno-plt"), ("-O2", "-g")],
+)
+@pytest.mark.parametrize("compiler", HERE)
+def test_other_harmless_ways_of_compiling_are_accepted_too(compiler, flags):
+    found = objects_section(
+        KERNELS / "rotation_vector_of_quaternion.c", (), [compiler], [(*flags, "-ffp-contract=off")]
+    )
+    assert found["accepted"], found["objects"]
+
+
+@needs_objdump
+@pytest.mark.parametrize("compiler", HERE)
+@pytest.mark.parametrize("flags", ["-O2 -ffast-math", "-O3 -Ofast", "-O2 -funsafe-math-optimizations"])
+def test_fast_math_is_refused_with_the_output_that_differs(compiler, flags):
+    try:
+        found = objects_section(KERNELS / "quaternion_of_dcm.c", (), [compiler], [flags.split()])
+    except CompilerError as reason:  # a text that refuses the flag itself
+        assert "-ffast-math" in str(reason)
+        return
+    (item,) = found["objects"]
+    assert not item["accepted"] and item["flags_hold"] == NOTHING
+    for function in item["functions"]:
+        assert function["verdict"] == DIFFERS
+        assert function["output"].startswith("q[") and "the C text has" in function["reason"]
+
+
+@needs_objdump
+def test_fast_math_that_did_nothing_is_refused_by_its_flags_alone():
+    found = objects_section(
+        KERNELS / "euler_zyx_dcm.c", (), ["gcc"], [("-O2", "-freciprocal-math", "-ffp-contract=off")]
+    )
+    (item,) = found["objects"]
+    assert {function["verdict"] for function in item["functions"]} == {IDENTICAL}
+    assert not item["accepted"] and item["flags_hold"] == NOTHING
+
+
+@needs_objdump
+def test_the_section_is_the_same_each_time_and_lists_compilers_that_are_missing():
+    source = KERNELS / "euler_xyz_dcm.c"
+    first, second = (objects_section(source, (), ["gcc", "no_such_compiler"], FLAGS[:2]) for _ in range(2))
+    assert first == second
+    assert first["missing"] == ["no_such_compiler"] and first["accepted"]
+
+
+@needs_objdump
+def test_a_changed_sign_in_the_text_is_seen_in_the_object(tmp_path):
+    text = (KERNELS / "euler_zyx_dcm.c").read_text()
+    edited = text.replace(" + ", " - ", 1)
+    assert edited != text
+    found = verdicts(tmp_path, edited, against=text)
+    assert found[0].verdict == DIFFERS and found[0].output and not found[0].accepted
+    assert found[1].verdict == IDENTICAL  # the float form was left alone
+    assert "euler_zyx_dcm: differs, output dcm[" in found[0].sentence()
+
+
+@needs_objdump
+@pytest.mark.parametrize("compiler", HERE)
+def test_corrupted_object_files_are_refused(compiler):
+    """A slice of `python -m tests.campaigns.certificates.object_campaign`: what gives the same bits on many inputs is no corruption."""
+    sources = [KERNELS / f"{name}.c" for name in ("euler_zyx_body_rates", "mrp_shadow")]
+    counts, said = corrupted(sources, compiler, ("-O2", *STRICT), 20, 11)
+    assert counts.total() == 20 and all(name.endswith(": refused") for name in counts), said
+    assert len({name.partition(":")[0] for name in counts}) >= 4  # of different kinds
+
+
+# --- what is refused --------------------------------------------------------------------------------------------------
+
+TEXT = "void f(const double x[2], double y[1])\n{\n    y[0] = x[0]*x[1] + x[0];\n}\n"
+GOOD = "movsd xmm0,QWORD PTR [rdi]; movapd xmm1,xmm0; mulsd xmm1,QWORD PTR [rdi+8]; addsd xmm1,xmm0; movsd QWORD PTR [rsi],xmm1"
+UPPER = ("vmovsd xmm17,QWORD PTR [rdi]{}; vmulsd xmm18,xmm17,QWORD PTR [rdi+8]; vmovdqa64 ymm19,ymm17; "
+         "vaddsd xmm18,xmm18,xmm17; vmovsd QWORD PTR [rsi],xmm18; ret")  # fmt: skip
+STRANGE = (
+    (f"{GOOD}; ret", IDENTICAL, ""),
+    (f"{GOOD}; xor ebx,ebx; ret", NOT_UNDERSTOOD, "rbx is not as it was"),
+    (f"sub rsp,8; {GOOD}; ret", NOT_UNDERSTOOD, "'ret"),
+    (f"{GOOD}; movsd QWORD PTR [rdi],xmm1; ret", NOT_UNDERSTOOD, "a write outside the outputs, to x"),
+    (f"{GOOD}; movsd QWORD PTR [rsi+8],xmm1; ret", NOT_UNDERSTOOD, "a write outside the outputs, to y"),
+    (f"{GOOD}; movsd QWORD PTR [rsp+8],xmm1; ret", NOT_UNDERSTOOD, "a write to stack"),
+    (f"movsd xmm2,QWORD PTR [rdi+16]; {GOOD}; ret", NOT_UNDERSTOOD, "a read outside the array x"),
+    (f"movsd xmm2,QWORD PTR [rsi]; {GOOD}; ret", NOT_UNDERSTOOD, "which is not written yet"),
+    (f"movapd xmm3,XMMWORD PTR [rdi]; {GOOD}; ret", NOT_UNDERSTOOD, "an aligned access to x"),
+    (f"movsd xmm2,QWORD PTR fs:[rdi]; {GOOD}; ret", NOT_UNDERSTOOD, "segment fs"),
+    (f"movsd xmm2,QWORD PTR fs:[rip+f]; {GOOD}; ret", NOT_UNDERSTOOD, "segment fs"),
+    ("ret", NOT_UNDERSTOOD, "y[0] is not written"),
+    (f"{GOOD}", NOT_UNDERSTOOD, "no instruction"),
+    (f"cvtsd2si eax,xmm0; {GOOD}; ret", NOT_UNDERSTOOD, "an instruction that is not known"),
+    (f"ldmxcsr DWORD PTR [rdi]; {GOOD}; ret", NOT_UNDERSTOOD, "an instruction that is not known"),
+    (f"call tgamma; {GOOD}; ret", NOT_UNDERSTOOD, "16 bytes"),
+    (f"sub rsp,8; call tgamma; {GOOD}; add rsp,8; ret", NOT_UNDERSTOOD, "a call of tgamma"),
+    (f"jmp rax; {GOOD}; ret", NOT_UNDERSTOOD, "a jump to an address that is computed"),
+    ("1: jmp 1b; ret", NOT_UNDERSTOOD, "more than"),
+    (GOOD.replace("addsd xmm1,xmm0", "addsd xmm1,xmm3") + "; ret", DIFFERS, "a value that nobody set"),
+    (GOOD.replace("mulsd", "divsd") + "; ret", DIFFERS, "div(x[0], x[1])"),
+    (GOOD.replace("addsd xmm1,xmm0", "subsd xmm1,xmm0") + "; ret", DIFFERS, "the object code"),
+    (UPPER.format(""), IDENTICAL, ""),  # registers that AVX-512 has
+    (UPPER.format("; vzeroupper"), IDENTICAL, ""),
+    (UPPER.replace("xmm18,xmm18,", "xmm18{{k1}},xmm18,").format(""), NOT_UNDERSTOOD, "an instruction that is not known"),
+    (UPPER.replace("xmm18,xmm18,xmm17", "xmm18,xmm18,xmm17,{{ru-sae}}").format(""), NOT_UNDERSTOOD, "not known"),
+    (UPPER.replace("vaddsd", "vsubsd").format(""), DIFFERS, "the object code"),
+    ("movsd xmm0,QWORD PTR [rdi]; movsd xmm1,QWORD PTR [rdi+8]; vfmadd213sd xmm1,xmm0,xmm0; movsd QWORD PTR [rsi],xmm1; ret",
+     CONTRACTED, ""),
+)  # fmt: skip
+
+
+@needs_objdump
+@pytest.mark.parametrize(("code", "verdict", "said"), STRANGE, ids=range(len(STRANGE)))
+def test_machine_code_by_hand(tmp_path, code, verdict, said):
+    assembly, target = tmp_path / "f.s", tmp_path / "f.o"
+    rows = [
+        ".intel_syntax noprefix",
+        ".text",
+        ".globl f",
+        "f:",
+        *code.split(";"),
+        '.section .note.GNU-stack,"",@progbits',
+    ]
+    assembly.write_text("\n".join([*rows, ""]))
+    subprocess.run(["gcc", "-c", assembly, "-o", target], check=True)
+    (found,) = compare_object(TEXT, target)
+    assert (found.verdict, said in found.reason) == (verdict, True), found
+
+
+@needs_objdump
+def test_a_product_that_is_rounded_here_and_fused_there_is_refused(tmp_path):
+    """y = (x0*x1 + x2) - x0*x1: with one of the two products fused, the error of the other no longer cancels."""
+    text = "void f(const double x[3], double y[1])\n{\n    const double p = x[0]*x[1];\n    y[0] = (p + x[2]) - p;\n}\n"
+    rows = ["movsd xmm0,QWORD PTR [rdi]", "movsd xmm1,QWORD PTR [rdi+8]", "movsd xmm2,QWORD PTR [rdi+16]",
+            "vmulsd xmm3,xmm0,xmm1", "vfmadd231sd xmm2,xmm0,xmm1", "vsubsd xmm2,xmm2,xmm3",
+            "movsd QWORD PTR [rsi],xmm2", "ret"]  # fmt: skip
+    (tmp_path / "f.s").write_text("\n".join([".intel_syntax noprefix", ".globl f", "f:", *rows, ""]))
+    subprocess.run(["gcc", "-c", tmp_path / "f.s", "-o", tmp_path / "f.o"], check=True)
+    (found,) = compare_object(text, tmp_path / "f.o")
+    assert found.verdict == DIFFERS and "rounded in one place and fused in another" in found.reason
+
+
+@needs_objdump
+def test_files_that_are_no_object_files_are_refused_in_one_sentence(tmp_path):
+    source, target = tmp_path / "kernel.c", tmp_path / "kernel.o"
+    source.write_text(TEXT)
+    with pytest.raises(CertificateError, match="got none"):
+        compare_object(TEXT, target)
+    with pytest.raises(CertificateError, match="got a folder"):
+        compare_object(TEXT, tmp_path)
+    target.write_bytes(b"")
+    with pytest.raises(CertificateError, match="got an empty one"):
+        compare_object(TEXT, target)
+    target.write_text("no object")
+    with pytest.raises(CertificateError, match="objdump cannot read it"):
+        compare_object(TEXT, target)
+    compile_object("gcc", ("-O2",), source, target)
+    with pytest.raises(CertificateError, match="expected machine code of g, got that of f"):
+        compare_object(TEXT.replace("void f(", "void g("), target)
+    with pytest.raises(CertificateError, match="expected a definition of h"):
+        compare_object(TEXT, target, ["h"])
+    subprocess.run(["gcc", "-shared", "-o", tmp_path / "kernel.so", target], check=True)
+    with pytest.raises(CertificateError, match="linked"):
+        compare_object(TEXT, tmp_path / "kernel.so")
+    with pytest.raises(CompilerError, match="refuses"):
+        compile_object("gcc", ("-fno_such_flag",), source, target)
+    with pytest.raises(CompilerError, match="not on the path"):
+        compile_object("no_such_compiler", (), source, target)
+
+
+@needs_objdump
+@pytest.mark.parametrize("compiler", HERE)
+def test_objects_of_link_time_optimisation_are_refused_with_what_to_do(compiler, tmp_path):
+    with pytest.raises(CertificateError, match="-flto"):
+        verdicts(tmp_path, TEXT, compiler, ("-O2", "-flto"))
+    if compiler == "gcc":
+        assert verdicts(tmp_path, TEXT, compiler, ("-O2", "-flto", "-ffat-lto-objects"))[0].verdict == IDENTICAL
+
+
+WRONG = GOOD.replace("addsd xmm1,xmm0", "subsd xmm1,xmm0")
+
+
+@needs_objdump
+def test_code_of_another_part_of_the_file_does_not_stand_for_a_function(tmp_path):
+    """A wrong f, and under the same section and address in another part the right code: an archive, a group."""
+    for name, code in (("f", WRONG), ("g", GOOD)):
+        source = tmp_path / f"{name}.s"
+        source.write_text(f".intel_syntax noprefix\n.text\n.globl {name}\n{name}: {code}; ret\n")
+        subprocess.run(["gcc", "-c", source, "-o", tmp_path / f"{name}.o"], check=True)
+    subprocess.run(["ar", "rcs", tmp_path / "both.a", tmp_path / "f.o", tmp_path / "g.o"], check=True)
+    with pytest.raises(CertificateError, match="got an archive"):
+        compare_object(TEXT, tmp_path / "both.a")
+    parts = [
+        f'.section .text.f,"axG",@progbits,{name},comdat\n.globl {name}\n{name}: {code}; ret\n'
+        for name, code in (("f", WRONG), ("g", GOOD))
+    ]
+    (tmp_path / "both.s").write_text(".intel_syntax noprefix\n" + "".join(parts))
+    subprocess.run(["gcc", "-c", tmp_path / "both.s", "-o", tmp_path / "both.o"], check=True)
+    with pytest.raises(CertificateError, match="two sections of one name"):
+        compare_object(TEXT, tmp_path / "both.o")
+
+
+# --- link 5 of certificates -------------------------------------------------------------------------------------------
+
+
+@needs_objdump
+def test_certify_compares_object_code_and_keeps_what_it_found(tmp_path, capsys, monkeypatch):
+    """Compiled and compared once; a refusal names the function and what differs, and is an exit code of 1."""
+    monkeypatch.setenv("SYMROT_CACHE", str(tmp_path / "cache"))
+    monkeypatch.setattr(object_code_build, "FLAGS", FLAGS[1:2])
+    monkeypatch.setattr(object_code_build.objects_section, "__defaults__", ((), tuple(HERE), FLAGS[1:2]))
+    folder = tmp_path / "k"
+    assert main(["certify", "quaternion_product", "--objects", "-o", str(folder)]) == 0
+    said = capsys.readouterr().out
+    assert said.count("the C text, rounding for rounding: bits and bounds hold") == len(HERE)
+    monkeypatch.setattr(compiled, "objects_section", None)  # not called again
+    assert main(["certify", "quaternion_product", "--objects"]) == 0
+    assert capsys.readouterr().out in said
+    assert main(["certify", "quaternion_product", "-o", str(folder)]) == 0
+    assert "compared before, which is kept and not looked at" in capsys.readouterr().out
+    path = folder / "quaternion_product.cert.json"
+    assert main(["audit", str(path)]) == 0
+    assert "what it says of object code was not looked at" in capsys.readouterr().out
+
+
+def test_a_difference_under_flags_that_keep_bits_fails():
+    """Under flags that contract, a product that is fused in places is said and is no failure."""
+    function = {"name": "f", "verdict": DIFFERS, "output": "y", "reason": "the C text has a + b", "cases": 1}
+    objects = [{"compiler": "gcc", "flags": f"for {holds}", "flags_hold": holds, "accepted": False, "functions": [function]}
+               for holds in (BITS, BOUNDS)]  # fmt: skip
+    strict, contracted = ({"objects": [each], "missing": []} for each in objects)
+    assert not compiled.holds(strict) and not compiled.holds(contracted) and not compiled.holds(None)
+    same = {**objects[0], "accepted": True, "functions": [function | {"verdict": IDENTICAL}]}
+    both = {"objects": [same, objects[1]], "missing": ["clang"]}
+    assert compiled.holds(both) and not refuted([{"objects": both}, {}]) and refuted([{"objects": strict}])
+    said = compiled.lines(both)
+    assert "not the C text (f: differs, output y: the C text has a + b)" in said[1] and "clang is not on" in said[2]
+    counts = compiled.table({"one": both, "two": both, "three": None})
+    assert counts[:2] == ["  gcc for bits: 2 of 2", "  gcc for bounds: 0 of 2"] and counts[2].startswith("    one: not")
+
+
+@pytest.mark.parametrize("arguments", [["quaternion_dcm"], ["--all"]])
+@pytest.mark.parametrize(("there", "said"), [((), "gcc or clang on the path"), (("gcc",), "objdump")])
+def test_without_compiler_or_objdump_nothing_is_written(arguments, there, said, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(compiled, "compiler_version", lambda name: "1" if name in there else "")
+    monkeypatch.setattr(shutil, "which", lambda name, *_: None)
+    assert main(["certify", *arguments, "--objects", "-o", str(tmp_path / "k")]) == 2
+    found = capsys.readouterr()
+    assert said in found.err and found.err.count("\n") == 1 and not found.out and not list(tmp_path.iterdir())

@@ -1,0 +1,421 @@
+"""Rounding bounds: no error is ever larger, they are near to what is measured, and wrong ones are caught."""
+
+import copy
+import json
+import math
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+
+import mpmath
+import numpy as np
+import pytest
+
+from symrot.certificates.readback.readback import read_kernel
+from symrot.certificates.rounding import functions, intervals
+from symrot.certificates.rounding.adjoint import evaluate
+from symrot.certificates.rounding.bounds import STORE, bound_outputs, bound_task, check_section, rounding_section, tasks
+from symrot.certificates.rounding.bounds_text import in_words, library_section, rounded_up
+from symrot.certificates.rounding.library import largest_box, operations_of, prepare, problem, resized
+from symrot.certificates.rounding.output_graph import cone_of
+from symrot.certificates.rounding.region import Region
+from symrot.certificates.rounding.store import TABLE, method, printed_table, table
+from symrot.cli.main import main
+from symrot.errors import CertificateError, InputError
+from symrot.formula.exact_numbers import PI
+from symrot.kernels.library import definition, kernel_names
+from symrot.workshop.bound_table import understated
+from tests.campaigns.certificates.rounding_campaign import compare, loosest
+from tests.campaigns.certificates.rounding_measured import measure
+
+GENERATED = Path(__file__).parents[2] / "generated" / "c"
+UNIT = {"binary64": 2.0**-53, "binary32": 2.0**-24}
+SLICE = ("quaternion_dcm", "quaternion_body_rates", "euler_zxz_dcm", "euler_zyx_body_rates", "mrp_shadow",
+         "rotation_vector_of_quaternion", "rotation_vector_space_rates", "inertia_cone", "euler_zxz_of_quaternion")  # fmt: skip
+BUDGET = 12_000  # of a slice; the certificates use eight times as many
+
+
+def text_of(name):
+    return (GENERATED / f"{name}.c").read_text(encoding="utf-8")
+
+
+def kernel(body, real="double"):
+    """A kernel of x[3] with one output, from its expression."""
+    head = f"void k{'f' if real == 'float' else ''}(const {real} x[3], {real} y[1])"
+    return read_kernel(f"#include <math.h>\n{head}\n{{\n    y[0] = {body};\n}}\n", "kf" if real == "float" else "k")
+
+
+def box_of(low, high, count=3):
+    return {f"x[{i}]": (Fraction(low), Fraction(high)) for i in range(count)}
+
+
+def bound_of(body, low, high, real="double", count=3):
+    operations = kernel(body, real)
+    return bound_outputs(operations, {p: box_of(low, high, count)[p] for p in operations.inputs}, fresh=True)[0]
+
+
+# --- known errors -----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("body", "low", "high", "units"),
+    [
+        ("x[0] + x[1]", -1, 1, 1),  # half a unit of the binade [1, 2)
+        ("x[0]*x[1]", -1, 1, "1/2"),  # never above 1: half a unit of [1/2, 1)
+        ("x[0]*x[1]", 1, 2, 2),
+        ("2.0*x[0]", -1, 1, 0),  # exact
+        ("-x[0]", -1, 1, 0),
+        ("x[0] - x[1]", 1, 2, 0),  # Sterbenz
+        ("1.0 - x[0]", 2, 4, 0),  # both are multiples of 2^-51 and the difference is below 4
+        ("sqrt(x[0])", 1, 4, 1),
+        ("x[0]/x[1]", 1, 2, 1),
+        ("sin(x[0])", -1, 1, 1),  # one unit in the last place of what is below 1
+    ],
+)
+def test_the_error_of_one_operation(body, low, high, units):
+    found = bound_of(body, low, high)
+    assert found.converged
+    assert found.bound == pytest.approx(float(Fraction(units)) * 2.0**-53, rel=1e-9, abs=1e-300)
+    single = bound_of(body.replace("sin", "sinf").replace("sqrt", "sqrtf").replace(".0", ".0f"), low, high, "float")
+    assert single.bound == pytest.approx(float(Fraction(units)) * 2.0**-24, rel=1e-6, abs=1e-40)
+
+
+def test_errors_of_operations_add_up_with_their_derivatives():
+    """(x*y)*z on [1, 2]: the first product errs by 2 units and is doubled, the second, up to 8, errs by 4."""
+    assert bound_of("(x[0]*x[1])*x[2]", 1, 2).bound == pytest.approx(8 * 2.0**-53)
+
+
+def test_a_constant_errs_by_half_a_unit_where_it_is_rounded():
+    assert bound_of("x[0] + 0.5", 0, 0).bound == 0
+    third = bound_of("x[0]*0.3333333333333333", 1, 1)
+    assert third.bound >= float(Fraction(1, 3) - Fraction(1 / 3))
+
+
+def test_a_constant_errs_by_what_it_is_off_from_what_it_stands_for():
+    off = float(abs(Fraction(math.pi) - PI))
+    assert bound_of("x[0]*3.141592653589793", 1, 1).bound == pytest.approx(off + 2.0**-52, rel=1e-9)
+
+
+def test_the_larger_of_two_is_known_to_be_large():
+    """max(1 + x, 1 - x) is at least 1, so its root too, and half its inverse at most 1/2 and off by 1/4 unit."""
+    larger = "(1.0 + x[0] >= 1.0 - x[0] ? 1.0 + x[0] : 1.0 - x[0])"
+    found = bound_of(f"0.5/sqrt({larger})", -1, 1)
+    assert found.converged
+    assert found.bound == pytest.approx((1 / 4 + 1 / 2 + 1 / 4) * 2.0**-53, rel=0.03)
+
+
+def test_underflow_is_part_of_the_bound():
+    found = bound_of("x[0]*x[1]", 0, Fraction(1, 10**170))
+    assert 0 < found.bound < 1e-318
+
+
+def test_fused_products_are_covered_where_nothing_else_takes_them():
+    assert bound_of("x[0]*x[1] + x[2]", -1, 1).contraction_safe
+    assert not bound_of("x[0]*x[1] + x[2] + (x[2] - x[0]*x[1])", -1, 1).contraction_safe
+
+
+def test_a_derivative_that_is_infinite_at_a_point_only_by_parts():
+    """The root of a sum of squares, sin(x)/x: no bound by their parts at zero, one as a whole."""
+    assert bound_of("sqrt(x[0]*x[0] + x[1]*x[1])", -1, 1).bound < 4 * 2.0**-53
+    assert bound_of("x[0] == 0.0 ? 1.0 : sin(x[0])/x[0]", -1, 1).bound < 4 * 2.0**-53
+    with pytest.raises(InputError, match="singular"):
+        bound_of("sqrt(x[0])*x[1]", -1, 1)
+
+
+# --- enclosures -------------------------------------------------------------------------------------------------------
+
+EXACT = {
+    "sine": mpmath.sin, "cosine": mpmath.cos,
+    "sinc": lambda x: mpmath.sin(x) / x, "sinc_slope": lambda x: (x * mpmath.cos(x) - mpmath.sin(x)) / x**2,
+    "sine_gap": lambda x: (x - mpmath.sin(x)) / x**3,
+    "sine_gap_slope": lambda x: (3 * mpmath.sin(x) - x * mpmath.cos(x) - 2 * x) / x**4,
+    "tangent_gap": lambda x: (mpmath.sin(x) - x * mpmath.cos(x)) / x**3,
+    "tangent_gap_slope": lambda x: ((x**2 - 3) * mpmath.sin(x) + 3 * x * mpmath.cos(x)) / x**4,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", EXACT)
+def test_functions_are_enclosed(name):
+    rng = np.random.default_rng(5)
+    middle, width = rng.uniform(-9, 9, 120), 10.0 ** rng.uniform(-16, 0.5, 120)
+    middle[:20] = np.arange(1, 21) * 0.5 * np.pi
+    ends = np.stack([middle - width, middle + width])
+    found = getattr(functions, name)(ends)
+    with mpmath.workdps(60):
+        for k in range(120):
+            for part in (0.0, 0.3, 0.5, 1.0):
+                x = mpmath.mpf(ends[0, k] + part * (ends[1, k] - ends[0, k]))
+                assert found[0, k] <= EXACT[name](x) <= found[1, k]
+    assert (found[1] - found[0])[width < 1e-9].max() < 1e-8
+
+
+def test_arithmetic_is_enclosed_and_exact_ends_stay():
+    rng = np.random.default_rng(6)
+    a, b = (np.sort(rng.uniform(-2, 2, (2, 200)) * 2.0 ** rng.integers(-30, 30, 200), axis=0) for _ in range(2))
+    a[:, :40], b[:, :40] = np.round(a[:, :40]), np.round(b[:, :40])
+    for name, exact in (("add", lambda x, y: x + y), ("multiply", lambda x, y: x * y), ("divide", lambda x, y: x / y)):
+        with np.errstate(all="ignore"):
+            found = getattr(intervals, name)(a, b)
+        for k in np.flatnonzero(np.isfinite(found).all(axis=0)):
+            ends = [exact(Fraction(x), Fraction(y)) for x in a[:, k] for y in b[:, k] if name != "divide" or y]
+            assert Fraction(found[0, k]) <= min(ends) and max(ends) <= Fraction(found[1, k])
+            if (
+                name != "divide"
+                and all(Fraction(float(end)) == end for end in ends)
+                and max(abs(a[:, k]).max(), abs(b[:, k]).max()) < 2**20
+            ):
+                assert k >= 40 or (found[:, k] == [float(min(ends)), float(max(ends))]).all()
+
+
+# --- bounds against measured errors -----------------------------------------------------------------------------------
+
+
+def rows_of(name, suffix="", points=3000, budget=BUDGET):
+    operations = operations_of(name, text_of(name))[1 if suffix else 0]
+    given = problem(definition(name), operations)
+    bounds = bound_outputs(operations, given.box, given.region, budget)
+    return compare(operations, bounds, measure(operations, given.box, bounds, given.region, points), name)
+
+
+@pytest.mark.parametrize("name", SLICE)
+@pytest.mark.parametrize("suffix", ["", "f"], ids=["double", "float"])
+def test_no_error_is_larger_than_its_bound_nor_the_bound_far_from_it(name, suffix):
+    for row in rows_of(name, suffix):
+        assert row.holds, f"{row.output}: {row.measured} above {row.bound} at {row.at}"
+        assert row.ratio < 2 * loosest(name)  # with few points less is measured
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("name", kernel_names())
+def test_no_error_of_any_kernel_is_larger_than_its_bound(name):
+    for suffix in ("", "f"):
+        for row in rows_of(name, suffix, 100_000, 100_000):
+            assert row.holds and row.tight, row
+
+
+def test_a_kernel_that_rounds_worse_has_a_larger_bound():
+    text = text_of("euler_zyx_body_rates")
+    at = text.index("void euler_zyx_body_rates(")
+    body = text[at : text.index("}", at)]
+    product = next(line for line in body.splitlines() if "dangles[0]" in line)
+    value = product.split("=", 1)[1].strip().rstrip(";")
+    changed = text.replace(product, product.replace(value, f"({value} + 1024.0) - 1024.0"), 1)
+    found = []
+    for source in (text, changed):
+        operations = read_kernel(source, "euler_zyx_body_rates")
+        given = problem(definition("euler_zyx_body_rates"), operations)
+        found.append(bound_outputs(operations, given.box, budget=BUDGET)[0].bound)
+    assert found[1] > 2 * found[0]
+
+
+def test_the_bound_of_a_part_is_never_larger():
+    """Bounds on halves of a box are at most that of the box, and a point is at most its box."""
+    operations = operations_of("euler_zyx_body_rates", text_of("euler_zyx_body_rates"))[0]
+    given = problem(definition("euler_zyx_body_rates"), operations)
+    cone = cone_of(operations, operations.outputs[0][1])
+    ends = np.array([[float(given.box[place][k]) for place in cone.places] for k in (0, 1)])
+    rng = np.random.default_rng(2)
+    inner = np.sort(rng.uniform(ends[0][:, None], ends[1][:, None], (2, len(cone.places), 200)), axis=0)
+    outer = np.stack([(inner[0] + ends[0][:, None]) / 2, (inner[1] + ends[1][:, None]) / 2])
+    none = np.zeros((0, 200), np.int8)
+    assert (evaluate(cone, inner, none).bound <= evaluate(cone, outer, none).bound * (1 + 1e-12)).all()
+
+
+def test_an_angle_is_compared_modulo_whole_turns_and_said_so():
+    operations = operations_of("euler_zxz_of_quaternion", text_of("euler_zxz_of_quaternion"))[0]
+    given = problem(definition("euler_zxz_of_quaternion"), operations)
+    first, second, _ = bound_outputs(operations, given.box, given.region, BUDGET)
+    assert first.turns and not second.turns
+    assert all("whole turns" in choice for choice in first.choices)
+
+
+# --- the section ------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def section():
+    kernels = operations_of("quaternion_dcm", text_of("quaternion_dcm"))
+    given = problem(definition("quaternion_dcm"), kernels[0])
+    return rounding_section(*kernels, given.box, given.region, BUDGET), kernels
+
+
+def test_a_section_is_plain_data_and_the_same_again(section):
+    found, kernels = section
+    again = rounding_section(
+        *kernels, problem(definition("quaternion_dcm"), kernels[0]).box, Region(), BUDGET, fresh=True
+    )
+    assert json.dumps(again) == json.dumps(json.loads(json.dumps(found)))
+    check_section(found, *kernels)
+    check_section(found, *kernels, rerun=True)
+
+
+def _halved(section):
+    item = section["precisions"][0]["outputs"][1]
+    item["absolute"] = (float.fromhex(item["absolute"]) / 2).hex()
+
+
+def _halved_throughout(section):
+    for item in section["precisions"][1]["outputs"]:
+        for key in ("absolute", "pointwise"):
+            item[key] = (float.fromhex(item[key]) / 2).hex()
+        item["units"] = f"{float(item['units']) / 2:.3f}"
+
+
+def _without_output(section):
+    del section["precisions"][0]["outputs"][3]
+
+
+def _infinite(section):
+    section["precisions"][0]["outputs"][0]["absolute"] = "inf"
+
+
+def _smaller_box(section):
+    section["box"]["q[0]"] = [(0.1).hex(), (0.2).hex()]
+
+
+def _other_libm(section):
+    section["libm_ulp"] = (0.5).hex()
+
+
+def _unsafe_choice(section):
+    section["precisions"][0]["outputs"][0]["choices"] = ["q[0] >= q[1]"]
+
+
+def _garbage(section):
+    section["precisions"][0]["outputs"][0]["at"] = {"q[0]": 3}
+
+
+def _without_float(section):
+    del section["precisions"][1]
+
+
+def _other_operations(section):
+    section["precisions"][0]["operations_sha256"] = "0" * 64
+
+
+@pytest.mark.parametrize(
+    "tamper",
+    [_halved, _halved_throughout, _without_output, _infinite, _smaller_box, _other_libm, _garbage, _without_float,
+     _other_operations, _unsafe_choice],
+)  # fmt: skip
+def test_a_tampered_section_is_refused_at_once(section, tamper):
+    found, kernels = section
+    changed = copy.deepcopy(found)
+    tamper(changed)
+    with pytest.raises(CertificateError):
+        check_section(changed, *kernels)
+
+
+def test_a_bound_that_is_only_a_little_smaller_is_refused_by_bounding_again(section):
+    found, kernels = section
+    changed = copy.deepcopy(found)
+    changed["precisions"][0]["outputs"][0]["evaluations"] += 1
+    with pytest.raises(CertificateError, match="again"):
+        check_section(changed, *kernels, rerun=True)
+
+
+def test_processes_find_what_one_finds(monkeypatch, tmp_path):
+    monkeypatch.setenv("SYMROT_CACHE", str(tmp_path))
+    kernels = [("inertia_rod", text_of("inertia_rod")), ("inertia_disk", text_of("inertia_disk"))]
+    assert prepare(kernels, workers=2, budget=999) > 0
+    assert prepare(kernels, workers=2, budget=999) == 0
+
+
+# --- the table that comes with symrot, and what is printed of it ------------------------------------------------------
+
+
+def test_the_table_is_of_this_method_and_holds_the_library():
+    """`python -m symrot.workshop.bound_table` prints it anew."""
+    assert table()["method"] == method()
+    for name in SLICE:
+        for operations in operations_of(name, text_of(name)):
+            given = problem(definition(name), operations)
+            for task in tasks(operations, given.box, given.region).values():
+                assert task.key in table()["bounds"]
+    found = {key: STORE.get(key) for key in table()["bounds"]}
+    assert printed_table(found.items()) == TABLE.read_text(encoding="utf-8")
+    assert all(each.pointwise <= each.bound < float("inf") for each in found.values())
+
+
+@pytest.mark.parametrize("name", ["quaternion_dcm", "inertia_cone"])
+def test_bounds_of_the_table_are_found_again(name):
+    for operations in operations_of(name, text_of(name)):
+        given = problem(definition(name), operations)
+        for task in tasks(operations, given.box, given.region).values():
+            assert bound_task(task, fresh=True) == STORE.get(task.key)
+
+
+@pytest.mark.parametrize(
+    "change", [{"pointwise": 0.0, "bound": 0.0}, {"worst": ()}, {"pointwise": 1.0}, {"bound": float("inf")}]
+)
+def test_a_forged_bound_of_the_table_is_found(change, monkeypatch):
+    """By the point that it names: `python -m symrot.workshop.bound_table --check` looks at all of them."""
+    double, _ = operations_of("quaternion_dcm", text_of("quaternion_dcm"))
+    given = problem(definition("quaternion_dcm"), double)
+    wanted = {task.key: task for task in tasks(double, given.box, given.region).values()}
+    assert understated(wanted) == []
+    key = next(iter(wanted))
+    forged = replace(STORE.get(key), **change)
+    kept = json.loads(printed_table([(key, forged)]))["bounds"][key]
+    monkeypatch.setitem(table()["bounds"], key, kept)
+    assert understated(wanted) == [key]
+
+
+def test_certificates_and_heads_say_the_bounds_of_the_text_under_them():
+    for name in ("quaternion_dcm", "euler_zxz_of_quaternion"):
+        text = text_of(name)
+        section = library_section(name, text)
+        assert json.loads((GENERATED / f"{name}.cert.json").read_text(encoding="utf-8"))["rounding"] == section
+        head = " ".join(line.strip(" *") for line in text[: text.index("*/")].splitlines())
+        assert f"Errors: {in_words(name, text)}." in head
+
+
+@pytest.mark.parametrize("value", ["0", "1/3", "1", "999", "9991/10", "1/1000", "123456789", "1/99999"])
+def test_what_is_said_is_never_below_what_is_bounded(value):
+    exact = Fraction(value)
+    assert exact <= Fraction(rounded_up(exact)) <= exact * Fraction(101, 100)
+
+
+# --- the inverse problem, and what is refused -------------------------------------------------------------------------
+
+
+def test_the_largest_box_has_the_error_and_a_larger_one_has_not():
+    operations = kernel("x[0]*x[1] + x[2]")
+    box = box_of(-1, 1)
+    size, largest = largest_box(operations, box, 1e-14)
+    assert bound_outputs(operations, largest)[0].bound <= 1e-14
+    assert bound_outputs(operations, resized(box, 1.01 * size, list(box)))[0].bound > 1e-14
+    alone, only = largest_box(operations, box, 1e-15, ["x[2]"])
+    assert only["x[0]"] == box["x[0]"] and alone > 1
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["euler_zyx_body_rates", "--box", "theta=-1.6:1.6"], "cos(angles[1])"),
+        (["euler_equations_principal", "--box", "A=-1:1"], "inertia[0]"),
+        (["euler_zyx_body_rates", "--box", "theta=1:-1"], "the least value first"),
+        (["euler_zyx_body_rates", "--box", "theta=nan:1"], "expected a number"),
+        (["euler_zyx_body_rates", "--box", "theta=0:inf"], "expected a number"),
+        (["euler_zyx_body_rates", "--box", "theta"], "NAME=LOW:HIGH"),
+        (["euler_zyx_body_rates", "--box", "nutation=0:1"], "one of phi, theta"),
+        (["euler_zyx_body_rat"], "did you mean"),
+        (["quaternion_dcm", "--target", "-1"], "above 0"),
+        (["quaternion_dcm", "--target", "nan"], "above 0"),
+        (["quaternion_dcm", "--target", "1e-30"], "1e-30"),
+        (["quaternion_dcm", "--variable", "q0"], "--target"),
+        (["quaternion_dcm", "--box", "q1=-1e200:1e200"], "no bound"),
+    ],
+)
+def test_what_has_no_bound_is_refused_in_one_sentence(capsys, words, said):
+    assert main(["bound", *words]) == 2
+    printed = capsys.readouterr()
+    assert not printed.out and said in printed.err and printed.err.count("\n") == 1
+
+
+def test_the_command_prints_bounds(capsys):
+    assert main(["bound", "quaternion_dcm", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert {item["units"] for item in found["precisions"][0]["outputs"]} == {"4.001"}
+    assert main(["bound", "quaternion_dcm", "--target", "1e-13"]) == 0
+    assert "as wide" in capsys.readouterr().out

@@ -1,0 +1,186 @@
+"""Claims under hypotheses of any polynomial kind: refused where nothing obeys them, false with an exact point of them.
+
+Every point is put into the hypotheses and the claim again by mpmath, from their texts.
+"""
+
+from random import Random
+
+import pytest
+from sympy import symbols
+from sympy.polys.domains import QQ
+from sympy.polys.groebnertools import groebner
+from sympy.polys.orderings import grevlex, lex
+from sympy.polys.rings import ring
+
+import symrot
+from symrot.checker.verdict import Verdict
+from symrot.errors import InputError
+from symrot.exact.ring.groebner import groebner_basis
+from symrot.exact.ring.ratio import TooLarge
+from tests.checker.test_check import values_at
+
+UNIT = "q0**2 + q1**2 + q2**2 + q3**2 == 1"
+ORTHONORMAL = ["p1**2 + p2**2 + p3**2 == 1", "q1**2 + q2**2 + q3**2 == 1", "p1*q1 + p2*q2 + p3*q3 == 0"]
+
+NOWHERE = (
+    ("x == x", ["x**2 == -1"], "x[*]{2}2 [+] 1"),
+    ("q1 == q1", [UNIT, "q0 == 2"], "q0 - 2"),
+    ("x == x", ["x + y == 1", "x + y == 2"], "contradict"),
+    ("x == x", ["x > 0", "x == -1"], "x [+] 1"),
+    ("x == x", ["x > 0", "y > 0", "x + y == 0"], "x [+] y"),
+    ("x == x", ["x**2 + y**2 == -1"], "cannot be"),
+    ("x == x", ["x**2 - 2*x*y + 2*y**2 == -1"], "cannot be"),
+    ("x == x", ["x**4 + x + 1 == 0"], "cannot be"),
+    ("x == x", ["sin(a) == 2"], "sin[(]a[)] - 2"),
+    ("x == x", ["sin(a) == 3*cos(b) + 5"], "cannot be"),
+    ("x == x", ["sqrt(y) == -1"], "cannot be"),
+    ("x/x == 1", ["x**2 == 0"], "where both sides are defined"),
+    ("I1 == I1", ["I1 > 0", "I2 > 0", "I1*I2 == -I3**2"], "cannot be"),
+    ("x == y", ["x == y", "x*y == -1"], "contradict|cannot be"),
+)
+
+
+@pytest.mark.parametrize(("claim", "given", "words"), NOWHERE, ids=[", ".join(given) for _, given, _ in NOWHERE])
+def test_hypotheses_that_hold_nowhere_prove_nothing(claim, given, words):
+    with pytest.raises(InputError, match=words) as refusal:
+        symrot.check(claim, assume=given)
+    assert "\n" not in str(refusal.value)
+
+
+FALSE = (
+    ("q0 == q1", [UNIT, "q0*q1 == q2*q3"]),
+    ("I1 == I2", ["I1*I2 == I3**2"]),
+    ("I1 == I2", ["I1*I2 == I3**2", "I1 > 0", "I2 > 0"]),
+    ("r == x + y", ["r**2 == x**2 + y**2"]),
+    ("r == x", ["r**2 == x**2 + y**2", "r > 0", "y > 0"]),
+    ("omega2*I2 == L", ["omega1*I1 == L"]),
+    ("p1 == q2", ORTHONORMAL),
+    ("x == y", ["x**2/a**2 + y**2/b**2 == 1"]),
+    ("x == y", ["x**3 + y**3 == 9"]),
+    ("x == y", ["x**2 - 2*y**2 == 1"]),
+    ("x == y", ["x**2 + y**2 == 3"]),
+    ("x == 1", ["x**2 == 2"]),
+    ("x == 1", ["x**3 == 2"]),
+    ("sin(x) == x", ["x**2 == 2"]),
+    ("T == I1*w1**2/2", ["2*T == I1*w1**2 + I2*w2**2", "L**2 == I1**2*w1**2 + I2**2*w2**2", "I1 > 0", "I2 > 0"]),
+    ("a == b", ["a**2 + b**2 == c**2", "a > 0", "b > 0", "c > 0"]),
+    ("x == y", ["a*x == a*y"]),
+)
+
+
+@pytest.mark.parametrize(("claim", "given"), FALSE, ids=[f"{claim} given {given}" for claim, given in FALSE])
+def test_a_counterexample_obeys_the_hypotheses(claim, given):
+    verdict = symrot.check(claim, assume=given, repair=False)
+    assert verdict.verdict == "false"
+    values = verdict.counterexample.values
+    for hypothesis in given:
+        if "==" in hypothesis:
+            left, right = values_at(hypothesis, values)
+            assert abs(left - right) < 1e-30
+        else:
+            assert values_at(hypothesis.replace(">", "=="), values)[0] > 0
+    left, right = values_at(claim, values)
+    assert abs(left - right) > 1e-10
+
+
+def test_points_that_need_a_root_of_higher_degree_name_it():
+    shown = symrot.check("x == y", assume=["x**2 + y**2 == 1", "x*y == 1/3"], repair=False).counterexample
+    assert shown.values["root"].startswith("CRootOf(")
+    assert shown.rhs == "root"
+
+
+TRUE = (
+    ("x == 0", ["x**2 == 0"]),
+    ("x == 0", ["x**2 + y**2 == 0"]),
+    ("x == y", ["a*x == a*y", "a != 0"]),
+    ("x == y", ["a*x == a*y", "a > 0"]),
+    ("x == y", ["x**2 == y**2", "x > 0", "y > 0"]),
+    ("x == y", ["x**3 == y**3"]),
+    ("x == 1", ["x**3 == 1"]),
+    ("sin(x) == 0", ["cos(x) == 1"]),
+    ("I1/I3 == I3/I2", ["I1*I2 == I3**2"]),
+    ("L/I1 == omega1", ["omega1*I1 == L"]),
+    ("r == sqrt(x**2 + y**2)", ["r**2 == x**2 + y**2", "r > 0"]),
+    ("(p2*q3 - p3*q2)**2 + (p3*q1 - p1*q3)**2 + (p1*q2 - p2*q1)**2 == 1", ORTHONORMAL),
+    ("x**2/a**2 == 1 - y**2/b**2", ["x**2/a**2 + y**2/b**2 == 1"]),
+)
+
+
+@pytest.mark.parametrize(("claim", "given"), TRUE, ids=[f"{claim} given {given}" for claim, given in TRUE])
+def test_what_follows_for_real_numbers_is_true_without_a_note(claim, given):
+    """In the ideal, up to a power, after division by what is not zero, or by the sign of the symbols."""
+    verdict = symrot.check(claim, assume=given)
+    assert (verdict.verdict, verdict.notes) == ("true", ())
+
+
+def test_a_condition_that_the_hypotheses_exclude_is_not_offered():
+    assert symrot.check("A*w == B*w", assume=["A == B + 1"], repair=False).verdict == "false"
+    assert symrot.check("A*w == B*w", repair=False).verdict == "conditional"
+
+
+def test_a_verdict_without_a_known_point_says_so():
+    """x^2 + y^2 = 3 z^2 has the origin only among rationals; a point off it is irrational, and found."""
+    assert symrot.check("z == 1", assume=["x**2 + y**2 == 3*z**2", "z != 0"], repair=False).verdict == "false"
+    hard = "x**6 + y**6 + z**6 - 3*x**2*y**2*z**2 + x**2*y + 7 == 0"
+    verdict = symrot.check("x + y == y + x", assume=[hard])
+    assert verdict.verdict == "true"
+    assert verdict.notes == () or "no real point is known" in verdict.notes[0]
+
+
+def test_a_note_is_shown_and_exported():
+    verdict = Verdict("true", notes=("no real point is known",))
+    assert "note: no real point is known" in str(verdict)
+    assert verdict.to_json()["notes"] == ["no real point is known"]
+
+
+def test_signs_of_sympy_symbols_count():
+    x, y = symbols("x y", positive=True)
+    assert symrot.check(x, y, assume=[x**2 - y**2]).verdict == "true"
+    u, v = symbols("u v", negative=True)
+    assert symrot.check(u, v, assume=[u**2 - v**2]).verdict == "true"
+    assert symrot.check(u, x, assume=[u**2 - x**2], repair=False).verdict == "false"
+
+
+@pytest.mark.parametrize("order", [lex, grevlex], ids=str)
+def test_groebner_bases_are_those_of_sympy(order):
+    source = Random(3)
+    base, *unknowns = ring("x y z", QQ, order)
+    for _ in range(25):
+        polynomials = [
+            base.from_dict({
+                tuple(source.choice((0, 0, 1, 2)) for _ in unknowns): QQ(source.randint(1, 5)) for _ in range(3)
+            })
+            for _ in range(2)
+        ]  # fmt: skip
+        assert groebner_basis(polynomials, base) == tuple(groebner(polynomials, base))
+
+
+def test_a_groebner_basis_stops_at_its_budget():
+    base, x, y, z = ring("x y z", QQ, lex)
+    with pytest.raises(TooLarge, match="more than 100 products"):
+        groebner_basis([x**3 + y**2 * z + 1, y**3 + z**2 * x + 1, z**3 + x**2 * y + 2], base, 100)
+
+
+def test_random_hypotheses_never_give_a_wrong_verdict():
+    """A planted point obeys the hypotheses: what fails there is not true, and they are not refused."""
+    source = Random(11)
+    names = ("x", "y", "z")
+    for _ in range(25):
+        point = {name: source.randint(-3, 3) for name in names}
+        given = []
+        for _ in range(source.randint(1, 2)):
+            terms = [source.choice(names) + "*" + source.choice(names) for _ in range(2)] + [source.choice(names)]
+            formula = " + ".join(f"{source.randint(1, 3)}*{term}" for term in terms)
+            given.append(f"{formula} == {eval(formula, {}, point)}")
+        claim = f"{source.choice(names)}*{source.choice(names)} == {source.choice(names)} + {source.randint(-2, 2)}"
+        left, right = (eval(side, {}, point) for side in claim.split("=="))
+        verdict = symrot.check(claim, assume=given, repair=False).verdict
+        assert verdict != "true" or left == right, (claim, given, point)
+
+
+def test_a_square_over_a_root_is_known_not_to_be_negative():
+    """Found by the campaign: the sign of the root is that of a square, which is no condition."""
+    claim = "cos(a)**2/abs(cos(a))*x == sqrt((1 - 2*sin(a/2)**2)**2)*x"
+    assert symrot.check(claim).verdict == "true"
+    wrong = symrot.check("cos(a)*x == sqrt((1 - 2*sin(a/2)**2)**2)*x", repair=False)
+    assert wrong.verdict == "conditional" and wrong.counterexample
