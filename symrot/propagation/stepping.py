@@ -8,7 +8,7 @@ import ctypes
 import math
 import os
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cached_property
 from itertools import pairwise
 from operator import le
@@ -37,11 +37,13 @@ __all__ = [
     "SteppedRecording",
     "Stepper",
     "Stretch",
+    "Switching",
     "Task",
     "both_sides",
     "check_longest_step",
     "check_tolerance",
     "rising",
+    "stats_of",
     "stretches",
 ]
 
@@ -58,11 +60,23 @@ DONE, PAUSED, FULL, NOT_FINITE, UNDERFLOW = range(5)  # what a stepper in C retu
 NOT_FINITE_SENTENCE = "its rate of change is not finite there"
 
 
+class Switching(NamedTuple):
+    """What a function with a switch did at a time, s, such as ``sign(omega_3)`` in a torque.
+
+    ``how`` is ``"passed"``: the motion goes on beyond the switch; ``"held"``: the motion slides along the switch, as a
+    wheel that friction holds at rest; ``"released"``: it leaves the switch along which it slid.
+    """
+
+    t: float
+    function: str
+    how: str
+
+
 class Stats(NamedTuple):
     """What a propagation cost: steps kept and tried again, evaluations of the kernel, seconds in all.
 
-    ``switches`` counts changes of the sequence of Euler angles, where angles are the state, and those of torques with
-    switches, whose times, s, are ``switching_times``.
+    ``switches`` counts changes of the sequence of Euler angles, where angles are the state, and the times at which
+    torques with switches switch: ``switching_times``, s, each once. ``switchings`` says which functions switch there.
     """
 
     accepted: int
@@ -71,6 +85,15 @@ class Stats(NamedTuple):
     seconds: float
     switches: int = 0
     switching_times: tuple[float, ...] = ()
+    switchings: tuple[Switching, ...] = ()
+
+
+def stats_of(cost: Any, seconds: float, switchings: Iterable[Switching]) -> Stats:
+    """Return what a motion cost (steps accepted and rejected, evaluations) and where it switched."""
+    accepted, rejected, evaluations = map(int, cost)
+    listed = tuple(sorted(switchings))
+    times = tuple(sorted({change.t for change in listed}))  # of switches that coincide one
+    return Stats(accepted, rejected, evaluations, seconds, len(times), times, listed)
 
 
 # ------------------------------------------------------------------------------------------------ checks and sentences
