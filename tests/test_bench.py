@@ -27,8 +27,8 @@ from symrot.cli import main
 from symrot.codegen.numpy_kernel import load_numpy_kernel
 from symrot.errors import InputError, SymrotError
 from symrot.planner import make_plan
-from symrot.report.work_precision import compared, lines, lines_of_comparison, read_study
 from symrot.propagation.propagator import propagator
+from symrot.report.work_precision import compared, lines, lines_of_comparison, read_study
 from symrot.scene import Scene, load_scene
 
 SHORT = {

@@ -23,7 +23,7 @@ Floats = NDArray[np.float64]
 PARTS = (0.382, 0.618, 0.854, 1.0)
 """Of the span, where a motion is judged: an unstable one passes through places where errors all but vanish."""
 REST = 1e-3
-"""Of the largest angular velocity where a motion is judged: a body slower than that is measured as if it were so fast."""
+"""Of the largest angular velocity where a motion is judged: slower bodies are measured as if they were so fast."""
 
 
 class State(NamedTuple):
