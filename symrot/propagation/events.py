@@ -119,7 +119,12 @@ def _checked(event: Event, where: str) -> Event:
         raise InputError(f"{where}: {str(error).removeprefix('event: ')}") from None
     unknown = sorted(names(node) - KNOWN - {"pi"})
     if unknown:
-        raise InputError(f"{where}: expected names among t, omega_1..3, q0..q3 and pi, got {', '.join(unknown)}")
+        from symrot.expression_advice import name_advice  # only on the way to an error
+
+        advice = name_advice(unknown[0], KNOWN | {"pi"})
+        reason = f" ({advice})" if advice else ""
+        expectation = "expected names among t, omega_1..3, q0..q3 and pi"
+        raise InputError(f"{where}: {expectation}, got {', '.join(unknown)}{reason}")
     if not isinstance(event.terminal, bool | int) or event.terminal < 0:
         raise InputError(f"{where}: terminal: expected true, false or a count, got {number.show(event.terminal)}")
     if isinstance(event.direction, bool) or event.direction not in (-1, 0, 1):
