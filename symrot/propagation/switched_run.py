@@ -9,6 +9,7 @@ import numpy as np
 
 from symrot.errors import InputError
 from symrot.expression import evaluate
+from symrot.propagation import progress
 from symrot.propagation.cut_off import CutOff
 from symrot.propagation.events import search, signs_at_ends
 from symrot.propagation.polynomials import Piece
@@ -59,12 +60,14 @@ class SwitchedRun:
 
     def follow(self, consume: Consumer) -> None:
         """Follow the motion to its end, handing on each part as it is known."""
-        self._check_start()
-        while self.t != self.end:
-            regime = self.motion.regime(self.held)
-            guard = self._segment(regime, consume)
-            if guard is not None:
-                self._switch(regime, guard)
+        with progress.within(self.motion.start, self.end):
+            self._check_start()
+            while self.t != self.end:
+                progress.report(self.t, self.motion.start, self.end)
+                regime = self.motion.regime(self.held)
+                guard = self._segment(regime, consume)
+                if guard is not None:
+                    self._switch(regime, guard)
 
     def _check_start(self) -> None:
         """Refuse a start on a switch from which both sides lead away: the motion has more than one way on."""
