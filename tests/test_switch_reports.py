@@ -63,6 +63,17 @@ def test_the_dense_output_and_the_events_of_a_motion_tell_the_same():
 
 
 @needs_compiler
+@pytest.mark.parametrize("method", METHODS)
+def test_friction_stops_a_body_in_one_direction_by_every_method(method):
+    """omega_3 falls to zero at 6 s, whichever way the wheel turns when it is let go at 8 s."""
+    scene = Scene.from_dict(wheel(), "wheel")
+    events = ["omega_3", {"formula": "omega_3", "direction": -1}, {"formula": "omega_3", "direction": 1}]
+    found = symrot.propagate(scene, method=method, events=events)
+    assert [times.tolist() for times in found.t_events[:2]] == [[pytest.approx(6, abs=1e-12)]] * 2
+    assert found.event_kinds[0] == ["falling"] and not len(found.t_events[2])
+
+
+@needs_compiler
 def test_the_summary_and_json_say_what_each_switch_does(tmp_path, capsys):
     path = tmp_path / "wheel.toml"
     path.write_text(toml(wheel()))

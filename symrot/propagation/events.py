@@ -391,6 +391,8 @@ def _settled(
             continue  # it was seen to cross within rounding of the edge
         if not (before and after) and rests and not arrived:
             continue  # zero all along up to an end of what is known: it passes through nothing
+        if rests and arrived:
+            after = 0  # where it goes when it is let go is another matter
         t = t0 if at_start else start if rests and arrived else end if start == end else 0.5 * (start + end)
         kind = "rising" if after > before else "falling" if after < before else "touching"
         if events[event].direction and kind != {1: "rising", -1: "falling"}[events[event].direction]:
