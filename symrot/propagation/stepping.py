@@ -345,6 +345,7 @@ class Task:
         self.allowed, self.pace = stepper.allowance(tolerance)
         self.accepted = self.rejected = self.evaluations = 0
         self.mark = (0, self.t0)  # steps and time when the pace was judged last
+        self.goal = t0  # where the motion goes, beyond all switching times
         self.way = 0.0  # the whole of which this is a part, s; 0: this is all
         self.fields: dict[str, int] = {}  # of the run in C: what a method sets beside the rest
 
@@ -406,7 +407,7 @@ class Task:
         run.pace, run.stop = (end - self.t0) * self.pace, end
         stepper.enter(run, Stretch(self.t0, end, self.t0, end), self.allowed)
         first, out = address(times), address(states)
-        self.mark = (0, self.t0)
+        self.mark, self.goal = (0, self.t0), end
         try:
             while self.advance(run, first, count, out, None, 0) != DONE:
                 pass
@@ -460,7 +461,7 @@ class Task:
 
     def runs(self, end: float) -> Iterator[Any]:
         """Yield the C side's run, set up for each stretch between switching times, and count what it cost."""
-        stepper = self.stepper
+        stepper, self.goal = self.stepper, end
         pace = (self.way or abs(end - self.t0)) * self.pace
         run = stepper.new_run(t=self.t0, pace=pace, max_step=self.max_step, **self.fields)
         run.y[:] = self.y0
@@ -494,7 +495,7 @@ class Task:
         tried = stepper.tried(run)
         if tried >= self.max_steps:
             raise CutOff(run.t, stepper.reasons[PAUSED].format(steps=self.max_steps, run=run), run.stop)
-        progress.report(run.t, self.t0, run.stop)
+        progress.report(run.t, self.t0, self.goal)
         if tried - self.mark[0] >= PATIENCE:
             self.judge_pace(tried, run)
         return status
