@@ -321,9 +321,11 @@ def _equal_moments(scene: Scene, structure: Structure) -> Outcome:
 def _special_constants(scene: Scene, structure: Structure) -> Outcome:
     torques: list[Structure] = []
     found: dict[str, list[str]] = {"0": [], "1": [], "-1": []}
+    silent: list[str] = []
     for torque, given in zip(structure["torques"], scene.torques, strict=True):
         if given.kind == "expression":
             torques.append(torque)
+            silent += _silent(torque, given)
             continue
         fields: dict[str, Any] = {}
         for name, pattern in torque["fields"].items():
@@ -335,9 +337,29 @@ def _special_constants(scene: Scene, structure: Structure) -> Outcome:
         torques.append(torque | {"fields": fields})
     if not structure["torques"]:
         return structure, True, "no torque acts: Euler's equations are free", "euler_equations"
-    said = [f"{', '.join(names)} = {mark}" for mark, names in found.items() if names]
+    said = [f"{', '.join(names)} = {mark}" for mark, names in found.items() if names] + silent
     why = "; ".join(said) or "no component of a torque is exactly zero"
     return structure | {"torques": torques}, bool(said), why, ""
+
+
+def _silent(torque: Structure, given: Any) -> list[str]:
+    """Return in words the axes about which formulas give no torque."""
+    axes = [str(i + 1) for i, formula in enumerate(given.values["torque"]) if _is_zero(formula)]
+    if not axes:
+        return []
+    listed = f"axis {axes[0]}" if len(axes) == 1 else f"axes {', '.join(axes[:-1])} and {axes[-1]}"
+    return [f"the formulas give no torque about {torque['frame']} {listed}"]
+
+
+def _is_zero(formula: str) -> bool:
+    """Return whether a formula is a number, and zero."""
+    node = expression.parse(formula, switching=True)
+    if expression.names(node):
+        return False
+    try:
+        return bool(expression.evaluate(node, {}) == 0)
+    except KeyError:  # a function of a number
+        return False
 
 
 def _depends_on_attitude(torque: Structure) -> bool:
@@ -411,7 +433,11 @@ def _one_axis(scene: Scene, structure: Structure) -> Outcome:
     pairs = list(zip(structure["torques"], scene.torques, strict=True))
     along = [axis for axis in axes if all(_torque_along(torque, axis, scene, given) for torque, given in pairs)]
     if not along:
-        return structure, False, "the body does not turn about one principal axis only", ""
+        formulas = any(torque["kind"] == "expression" for torque in structure["torques"])
+        why = "the body does not turn about one principal axis only"
+        if axes and formulas:
+            why = "a torque given by formulas is not taken to keep the rotation about one axis"
+        return structure, False, why, ""
     axis = along[0]
     start = [_pattern(q, unit=True) for q in scene.initial.quaternion] if structure["attitude"] else None
     planar = structure | {"planar": axis, "initial_quaternion": start}

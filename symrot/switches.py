@@ -90,6 +90,8 @@ def condition_error(node: Node) -> str:
             if condition:
                 return "a comparison such as omega_3 < 1 as the condition of where"
             asked = [node[0] == "call" and node[1] == "where" and k == 0 for k, _ in enumerate(children(node))]
+        elif node[1] == "less" and any(part[0] == "call" and part[1] in ("less", "not") for part in node[2]):
+            return "one comparison at a time, such as 1 < t and t < 2"
         elif not condition:
             return "comparisons only in the condition of where"
         else:

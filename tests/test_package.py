@@ -15,7 +15,17 @@ ROOT = Path(__file__).parents[1]
 PACKAGE = ROOT / "symrot"
 
 ROOMS = (  # from left to right: a module imports at its top only from its own room and from rooms on its left
-    {"errors", "conventions", "expression", "input_file", "switches", "number", "symbols", "kernel"},
+    {
+        "errors",
+        "conventions",
+        "expression",
+        "expression_advice",
+        "input_file",
+        "switches",
+        "number",
+        "symbols",
+        "kernel",
+    },
     {"exact"},
     {"proof", "proof_pages"},
     {"kinematics", "inertia"},

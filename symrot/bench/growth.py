@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from symrot.bench.exact_path import ExactPath
 from symrot.closed_form.choose import exact_form
 from symrot.codegen import library
+from symrot.planner import make_plan
 from symrot.propagation.motion import Motion
 from symrot.propagation.propagator import propagator
 from symrot.propagation.smoothness import roughness
@@ -56,6 +57,7 @@ class Track:
     """
 
     def __init__(self, scene: Scene, times: Floats, periodic: bool) -> None:
+        make_plan(scene)  # refuses switches: series go on where a switch would change the equations
         self.scene, self.times = scene, times
         self.motion = propagator(scene, "dop853" if self.rough(scene) else "taylor", TIGHTEST)._motion
         self.speed = max(float(np.linalg.norm([float(w) for w in scene.initial.omega_b])), 1e-300)

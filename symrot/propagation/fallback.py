@@ -253,7 +253,7 @@ class _Task:
         return self._stretches(end, SMALLEST_RTOL, allowed, bars)
 
     def _stretches(self, end: float, rtol: float, atol: Floats, bars: list[float]) -> list[Piece]:
-        y, self.pieces, self.mark = self.y0, [], (self.evaluations, self.t0)
+        y, self.pieces, self.mark, self.goal = self.y0, [], (self.evaluations, self.t0), end
         for stretch in stretches(self.t0, end, self.breaks):
             with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
                 self._follow_stretch(stretch, y, rtol, atol, bars)
@@ -289,7 +289,7 @@ class _Task:
         longest = self.max_step
         solver = begin(stretch.start, y, longest)
         while solver.status == "running":
-            progress.report(float(solver.t), self.t0, stretch.stop)
+            progress.report(float(solver.t), self.t0, self.goal)
             before, y = float(solver.t), solver.y.copy()
             self._judge_pace(before, stretch.stop)
             message = solver.step()

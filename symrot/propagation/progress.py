@@ -4,19 +4,30 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 
-__all__ = ["report", "reporting"]
+__all__ = ["report", "reporting", "within"]
 
 Reporter = Callable[[float, float, float], object]
 """Gets the time reached, the start and the end, s, every few hundredths of a second."""
 
+_whole: ContextVar[tuple[float, float] | None] = ContextVar("whole", default=None)
 _reporter: ContextVar[Reporter | None] = ContextVar("reporter", default=None)
 
 
 def report(t: float, start: float, stop: float) -> None:
-    """Tell the reporter, if there is one."""
+    """Tell the reporter, if there is one; of a motion that is part of another one, by the span of the whole."""
     reporter = _reporter.get()
     if reporter is not None:
-        reporter(t, start, stop)
+        reporter(t, *(_whole.get() or (start, stop)))
+
+
+@contextmanager
+def within(start: float, stop: float) -> Iterator[None]:
+    """Have motions report how far they have come on the way from ``start`` to ``stop``, s, of which they are parts."""
+    token = _whole.set(_whole.get() or (start, stop))
+    try:
+        yield
+    finally:
+        _whole.reset(token)
 
 
 @contextmanager

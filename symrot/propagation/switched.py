@@ -28,7 +28,7 @@ from symrot.propagation.motion import Motion
 from symrot.propagation.polynomials import Piece
 from symrot.propagation.propagator import Propagator
 from symrot.propagation.regimes import Modes, Regime
-from symrot.propagation.stepping import Floats, Recording, Stats, both_sides
+from symrot.propagation.stepping import Floats, Recording, Stats, Switching, both_sides, stats_of
 from symrot.propagation.switched_run import MATH, Chunk, SwitchedRun
 from symrot.scene import Initial
 
@@ -118,7 +118,7 @@ class SwitchedMotion(Motion):
         """Return the states at the times, shape (n, N), and what it cost."""
         began, states = perf_counter(), np.empty((len(times), len(self.plan.states)))
         cost, done = np.zeros(3, dtype=np.int64), np.empty(0, dtype=np.intp)
-        switching: list[float] = []
+        changes: dict[tuple[float, str], str] = {}
         for part in both_sides(times, self.start):
             sorted_times = times[part]
             count = int((sorted_times == self.start).sum())
@@ -140,10 +140,8 @@ class SwitchedMotion(Motion):
                 raise
             done = np.concatenate([done, part])
             cost += run.cost
-            switching += run.switching
-        accepted, rejected, evaluations = map(int, cost)
-        seconds, times_of = perf_counter() - began, tuple(sorted(switching))
-        return states, Stats(accepted, rejected, evaluations, seconds, len(switching), times_of)
+            changes |= run.changes
+        return states, stats_of(cost, perf_counter() - began, _switchings(changes))
 
     def parts(self, end: float, broken: list[PropagationError]) -> tuple[list[Piece], Recording]:
         """Return the motion from its start to an end as polynomials and at any time; what cut it off in ``broken``."""
@@ -153,24 +151,25 @@ class SwitchedMotion(Motion):
             run.follow(chunks.append)
         except CutOff as error:
             broken.append(error)
-        accepted, rejected, evaluations = map(int, run.cost)
-        stats = Stats(accepted, rejected, evaluations, 0.0, len(run.switching), tuple(sorted(run.switching)))
+        stats = stats_of(run.cost, 0.0, _switchings(run.changes))
         states = SwitchedRecording(self.start, self.plan.initial_state, (self.start, end), stats, chunks)
         return [chunk.piece for chunk in chunks], states
 
     def dense(self, span: tuple[float, float]) -> Recording:
         """Return the states as a function of time."""
         chunks: list[Chunk] = []
-        cost, began, switching = np.zeros(3, dtype=np.int64), perf_counter(), list[float]()
+        cost, began, changes = np.zeros(3, dtype=np.int64), perf_counter(), dict[tuple[float, str], str]()
         for end in {min(*span, self.start), max(*span, self.start)} - {self.start}:
             run = SwitchedRun(self, end)
             run.follow(chunks.append)
             cost += run.cost
-            switching += run.switching
-        accepted, rejected, evaluations = map(int, cost)
-        seconds, times_of = perf_counter() - began, tuple(sorted(switching))
-        stats = Stats(accepted, rejected, evaluations, seconds, len(switching), times_of)
+            changes |= run.changes
+        stats = stats_of(cost, perf_counter() - began, _switchings(changes))
         return SwitchedRecording(self.start, self.plan.initial_state, span, stats, chunks)
+
+
+def _switchings(changes: dict[tuple[float, str], str]) -> list[Switching]:
+    return [Switching(t, function, how) for (t, function), how in changes.items()]
 
 
 class SwitchedRecording(Recording):

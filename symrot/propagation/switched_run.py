@@ -9,6 +9,7 @@ import numpy as np
 
 from symrot.errors import InputError
 from symrot.expression import evaluate
+from symrot.propagation import progress
 from symrot.propagation.cut_off import CutOff
 from symrot.propagation.events import search, signs_at_ends
 from symrot.propagation.polynomials import Piece
@@ -50,6 +51,7 @@ class SwitchedRun:
         self.modes, self.held = motion.initial_modes(), frozenset[str]()
         self.cost = np.zeros(3, dtype=np.int64)  # steps accepted and rejected, evaluations
         self.switching: list[float] = []
+        self.changes: dict[tuple[float, str], str] = {}  # what each function with a switch did at a time
         self.flipped: dict[str, int] = {}  # modes changed at this very time, and how often
         self.released: set[str] = set()  # modes whose guards were held until this very time: they leave zero slowly
         self.left: set[tuple[str, int]] = set()  # modes and their values left at this very time
@@ -58,12 +60,14 @@ class SwitchedRun:
 
     def follow(self, consume: Consumer) -> None:
         """Follow the motion to its end, handing on each part as it is known."""
-        self._check_start()
-        while self.t != self.end:
-            regime = self.motion.regime(self.held)
-            guard = self._segment(regime, consume)
-            if guard is not None:
-                self._switch(regime, guard)
+        with progress.within(self.motion.start, self.end):
+            self._check_start()
+            while self.t != self.end:
+                progress.report(self.t, self.motion.start, self.end)
+                regime = self.motion.regime(self.held)
+                guard = self._segment(regime, consume)
+                if guard is not None:
+                    self._switch(regime, guard)
 
     def _check_start(self) -> None:
         """Refuse a start on a switch from which both sides lead away: the motion has more than one way on."""
@@ -203,6 +207,7 @@ class SwitchedRun:
         self.flipped[mode] = again + 1
         if again > 2 and kind == "sign":
             raise CutOff(self.t, f"the switch {self._name(mode)} leaves no way to go on", self.end)
+        self.changes[self.t, self._name(mode)] = "released" if mode in self.held else "passed"
         if mode in self.held:
             self.held -= {mode}
             self.modes[mode] = guard.change
@@ -222,6 +227,7 @@ class SwitchedRun:
         if self.end < self.motion.start:
             raise CutOff(self.t, "a motion that slides along a switch has more than one past", self.end)
         self.held |= {mode}
+        self.changes[self.t, self._name(mode)] = "held"
         guard = next(switch["guard"] for switch in self.motion.switches if switch["mode"] == mode)
         if guard[0] == "symbol" and guard[1] in regime.plan.states:
             self.y[regime.plan.states.index(guard[1])] = 0.0  # exactly, where the guard is a state
