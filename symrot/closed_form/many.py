@@ -102,8 +102,8 @@ class _Linked(NamedTuple):
     table: int  # doubles
 
 
-def _loop(name: str) -> Any:
-    (library,) = load("many")
+def _loop(name: str, library_name: str = "many") -> Any:
+    (library,) = load(library_name)
     run, size = getattr(library, name), ctypes.c_ssize_t
     run.argtypes, run.restype = (ctypes.c_void_p, size, size), size
     return run
@@ -120,7 +120,9 @@ def _linked(batch: Batch) -> _Linked:
 
         found = spin_up_compiled.functions()
         places = _place(found.prepare), _place(found.evaluate)
-        return _Linked(_loop("symrot_many_spin_up"), *places, found.record, spin_up_compiled.TABLE)
+        together = load("spin_up_many")[0].symrot_many_spin_ups_at_once()
+        room = ctypes.c_double * (ctypes.sizeof(found.record) // 8 * together)
+        return _Linked(_loop("symrot_many_spin_ups", "spin_up_many"), *places, room, spin_up_compiled.TABLE * together)
     prepare, at, record = functions(batch.name, len(batch.arguments))
     return _Linked(_loop("symrot_many"), _place(prepare), _place(at), record, 0)
 
