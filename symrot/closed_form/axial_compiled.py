@@ -17,7 +17,7 @@ from symrot.codegen import library as codegen
 from symrot.codegen.address import address
 from symrot.errors import CompilerError
 
-__all__ = ["EARLY", "LOST", "Loops", "available", "loops", "parts"]
+__all__ = ["EARLY", "LOST", "Constants", "Loops", "available", "functions", "parts"]
 
 LOST, EARLY = 1, 2
 """What the loops return where samples have more turns than they know, and where a time lies before the doubles."""
@@ -25,6 +25,9 @@ LOST, EARLY = 1, 2
 _LARGEST = 200  # 2^200 stands for what is larger: whatever it multiplies is more turns than the loops know
 _BITS = 260  # more than four doubles hold
 _WIDE, _WIDER, _PAIR = 3, 4, 2  # parts of a constant
+_TURNING = 14  # doubles of a `turning` of axial.h
+_TURN_BITS = 340  # of a share of the angle in turns to a radian
+_EXPONENT = 700.0  # the exponential of more leaves the doubles
 _PI_TOP, _PI_BOTTOM = number.PI.as_integer_ratio()
 _bound: dict[str, tuple[Any, Any]] = {}
 
@@ -64,7 +67,14 @@ def available() -> bool:
     return bool(_bound) or not codegen.missing()
 
 
-def _functions() -> tuple[Any, Any]:
+def functions() -> tuple[Any, Any]:
+    """Return the loop over samples, and the type of a record of constants.
+
+    Raises
+    ------
+    CompilerError
+        If there is no C compiler, or it breaks error-free arithmetic.
+    """
     if not _bound:
         (compiled,) = library.load("axial")
         if not compiled.symrot_axial_sound():
@@ -77,76 +87,104 @@ def _functions() -> tuple[Any, Any]:
     return _bound["axial"]
 
 
-def _turning(share: Fraction, rate: Fraction, push: Fraction, decay: Fraction) -> list[float]:
-    """Return the constants of so many times the angle, in turns: `turning` of axial.h."""
-    top, bottom = share.numerator * _PI_BOTTOM, 2 * share.denominator * _PI_TOP
-
-    def turns(x: Fraction, count: int) -> list[float]:
-        return parts(x.numerator * top, x.denominator * bottom, count)
-
-    if not decay:
-        return [*turns(rate, _WIDE), 0.0, 0.0, 0.0, *turns(push / 2, _WIDER), *[0.0] * 4]
-    gain = push - decay * rate
-    rest = gain / decay**2
-    below = rest.denominator * bottom
-    beyond = -rest.numerator * top % below
-    fraction = (beyond - below if 2 * beyond > below else beyond), below
-    return [
-        *turns(rate, _WIDE),
-        *turns(push / decay, _WIDE),
-        *turns(gain, _PAIR),
-        0.0,
-        0.0,
-        *turns(rest, _PAIR),
-        *parts(*fraction, _PAIR),
-    ]
-
-
-def loops(
-    axis: int,
-    axial: tuple[Fraction, Fraction, Fraction],
-    rates: Sequence[Fraction],
-    across: tuple[Fraction, Fraction],
-    attitude: tuple[list[float], list[float]],
-    first: float,
-) -> Loops:
-    """Return the loops of a motion.
+class Constants:
+    """The constants of a driven body; a call returns those of one start, as the record of axial.h.
 
     Parameters
     ----------
     axis : 0, 1 or 2
-    axial : 3 Fractions
-        Angular velocity at the start, rad/s, constant acceleration, rad/s^2, and decay, 1/s, about the axis.
-    rates : 3 Fractions
-        Angular velocity at the start, rad/s.
+    driven : 2 Fractions
+        Constant acceleration, rad/s^2, and decay, 1/s, about the axis.
     across : 2 Fractions
         Lag of the transverse angular velocity per angle about the axis, and its decay, 1/s.
-    attitude : 2 lists of 4 floats
-        What cosine and sine of half the angle multiply.
-    first : float
-        s; earlier times are refused.
-
-    Raises
-    ------
-    CompilerError
-        If there is no C compiler, or it breaks error-free arithmetic.
     """
-    evaluate, record = _functions()
-    rate, push, decay = axial
-    lag, slowing = across
-    one, other = rates[axis - 2], rates[axis - 1]
-    turned, shapes = bool(one or other), [[0.0] * 3 for _ in range(3)]
-    shapes[axis][2] = 1.0
-    shapes[axis - 2][:2] = float(one), -float(other)
-    shapes[axis - 1][:2] = float(other), float(one)
-    final = push / decay if decay else Fraction(0)
-    values = [
-        float(bool(decay)), 1.0, float(turned), first,
-        *parts(*(-decay).as_integer_ratio(), _PAIR), *parts(*(-slowing).as_integer_ratio(), _PAIR),
-        *(parts(*x.as_integer_ratio(), 1)[0] for x in (rate, push - decay * rate, final, rate - final)),
-        *_turning(Fraction(1, 2), *axial), *(_turning(lag, *axial) if turned else [0.0] * 14),
-        *(x for row in shapes for x in row),
-        *(x for pair in zip(*attitude, strict=True) for x in (*pair, 0.0, 0.0)),
-    ]  # fmt: skip
-    constants = record(*values)
-    return Loops(evaluate, constants, ctypes.addressof(constants))
+
+    def __init__(self, axis: int, driven: tuple[Fraction, Fraction], across: tuple[Fraction, Fraction]) -> None:
+        self.axis, (push, decay), (lag, slowing) = axis, driven, across
+        fastest = float(max(decay, slowing))
+        self.first = -_EXPONENT / fastest if fastest else -math.inf
+        self._push, self._decay, self._shared = _over_one(push, decay)
+        self._sign = -1 if decay < 0 else 1
+        self._head = [
+            self.first, *parts(*(-decay).as_integer_ratio(), _PAIR), *parts(*(-slowing).as_integer_ratio(), _PAIR)
+        ]  # fmt: skip
+        self._final = _nearest(self._sign * self._push, abs(self._decay)) if decay else 0.0
+        self._pushed = _nearest(self._push, self._shared)
+        self._shares = Fraction(1, 2), lag
+        self._turns: dict[bool, tuple[int, int, list[float]]] = {}
+
+    def head(self, turned: bool) -> list[float]:
+        """Return what stands before the numbers of :meth:`moving`; ``turned``: the body turns across the axis too."""
+        return [float(bool(self._decay)), 1.0, float(turned), *self._head]
+
+    def moving(self, rate: Fraction | float, turned: bool) -> list[float]:
+        """Return `axial` of axial.h and the one `turning` that a motion needs, `half` or `lag`, for a rate, rad/s."""
+        turn, bits, fixed = self._turns.get(turned) or self._turning(turned)
+        top, bottom = rate.as_integer_ratio()
+        if not self._decay:
+            evenly = parts(top * turn, bottom << bits, _WIDE)
+            return [top / bottom, self._pushed, 0.0, top / bottom, *evenly, 0.0, 0.0, 0.0, *fixed]
+        gain, over = self._push * bottom - self._decay * top, self._shared * bottom
+        rest, below = gain * self._shared * turn, self._decay * self._decay * bottom << bits
+        beyond = -rest % below
+        return [
+            top / bottom, _nearest(gain, over), self._final,
+            _nearest(-self._sign * gain, abs(self._decay) * bottom),
+            *parts(top * turn, bottom << bits, _WIDE), *fixed,
+            *parts(gain * turn, over << bits, _PAIR), 0.0, 0.0,
+            *parts(rest, below, _PAIR), *parts(beyond - below if 2 * beyond > below else beyond, below, _PAIR),
+        ]  # fmt: skip
+
+    def _turning(self, turned: bool) -> tuple[int, int, list[float]]:
+        """Return the share of the angle in turns to a radian, its bits behind the point, and what all starts share."""
+        share = self._shares[turned]
+        top, bottom = share.numerator * _PI_BOTTOM, 2 * share.denominator * _PI_TOP
+        bits = max(0, _TURN_BITS + bottom.bit_length() - top.bit_length())
+        turn = (top << bits) // bottom
+        if self._decay:
+            fixed = parts(self._sign * self._push * turn, abs(self._decay) << bits, _WIDE)
+        else:
+            fixed = [*parts(self._push * turn, 2 * self._shared << bits, _WIDER), *[0.0] * 4]
+        self._turns[turned] = turn, bits, fixed
+        return self._turns[turned]
+
+    def __call__(self, rates: Sequence[Fraction], attitude: tuple[list[float], list[float]]) -> Loops:
+        """Return the loops of a motion.
+
+        Parameters
+        ----------
+        rates : 3 Fractions
+            Angular velocity at the start, rad/s.
+        attitude : 2 lists of 4 floats
+            What cosine and sine of half the angle multiply.
+        """
+        evaluate, record = functions()
+        one, other = rates[self.axis - 2], rates[self.axis - 1]
+        turned, moving = bool(one or other), self.moving(rates[self.axis], bool(one or other))
+        half, lag = ([0.0] * _TURNING, moving[4:]) if turned else (moving[4:], [0.0] * _TURNING)
+        constants = record(
+            *self.head(turned), *moving[:4], *half, *lag, *self.shapes(float(one), float(other)),
+            *(x for pair in zip(*attitude, strict=True) for x in (*pair, 0.0, 0.0)),
+        )  # fmt: skip
+        return Loops(evaluate, constants, ctypes.addressof(constants))
+
+    def shapes(self, one: Any, other: Any) -> list[Any]:
+        """Return the nine numbers of `omega` of axial.h, by rows."""
+        rows: list[list[Any]] = [[0.0] * 3 for _ in range(3)]
+        rows[self.axis][2] = 1.0
+        rows[self.axis - 2][:2] = one, -other
+        rows[self.axis - 1][:2] = other, one
+        return [x for row in rows for x in row]
+
+
+def _over_one(*values: Fraction) -> tuple[int, ...]:
+    """Return integers and the positive denominator that they share."""
+    shared = math.lcm(*(value.denominator for value in values))
+    return (*(value.numerator * (shared // value.denominator) for value in values), shared)
+
+
+def _nearest(top: int, bottom: int) -> float:
+    """Return the double nearest to a ratio, 2^200 for what is larger."""
+    if top.bit_length() - bottom.bit_length() > _LARGEST:
+        return 2.0**_LARGEST if top > 0 else -(2.0**_LARGEST)
+    return top / bottom

@@ -3,23 +3,28 @@
 Where all digits of a sum may cancel, integers find it, one motion after the other; pairs of doubles do the rest.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from symrot import number
 from symrot.closed_form import double_double as dd
+from symrot.closed_form.axial import Driven, turned_about
 from symrot.closed_form.free_body import NEGLIGIBLE, Body, Defect
-from symrot.closed_form.gyrostat import Gyrostat
-from symrot.closed_form.heavy_top import Top
+from symrot.closed_form.heavy_top import Frame
 from symrot.closed_form.library import Floats
 from symrot.closed_form.many import Batch
 from symrot.closed_form.pairs import GRID, LARGEST, SMALLEST, attitude, pair, quotient
+from symrot.closed_form.spin_up_compiled import LIMITS
 from symrot.inertia.principal import Principal
 
-__all__ = ["Column", "attitudes", "free_bodies", "free_bodies_of_moments", "gyrostats", "tops", "tops_of", "usual"]
+__all__ = [
+    "Column", "attitudes", "driven", "free_bodies", "free_bodies_of_moments", "gyrostats", "spin_ups", "tops",
+    "turned", "usual",
+]  # fmt: skip
 
 Column = Floats | Fraction
 """A constant: of each motion, shape (n,), or the same of all."""
@@ -27,6 +32,7 @@ Column = Floats | Fraction
 _SPREAD = 2.0**-300  # components of a quaternion farther apart are left to fractions
 _DOUBT = 2.0**-12  # of a step of the grid: pairs of doubles err by less than a quarter of it
 _TIE = 2.0**-40  # of the last bit
+_TURNED = 2.0**-96  # by which a product of unit quaternions may err
 
 
 def attitudes(quaternions: Floats) -> Floats:
@@ -34,6 +40,26 @@ def attitudes(quaternions: Floats) -> Floats:
 
     Pairs of doubles settle all but one of some thousand; exact numbers settle that one.
     """
+    high, low = _units(quaternions)
+    return _on_grid(high, low, 0.0, lambda i: attitude(_unit(quaternions[i])))
+
+
+def turned(frame: Frame, quaternions: Floats) -> Floats:
+    """Return unit quaternions as :meth:`symrot.closed_form.heavy_top.Frame.start` has them, shape (n, 8)."""
+    found = _units(quaternions)
+    if frame.before is not None:
+        found = _product(_constant(frame.before), found)
+    if frame.after is not None:
+        found = _product(found, _constant(frame.after))
+    return _on_grid(*found, _TURNED, lambda i: frame.start(_unit(quaternions[i])))
+
+
+def _unit(quaternion: Floats) -> Sequence[Fraction]:
+    return number.unit(list(map(Fraction, quaternion.tolist())))
+
+
+def _units(quaternions: Floats) -> dd.Pair:
+    """Return unit quaternions as pairs of doubles, to less than a quarter of :data:`_DOUBT` of each component."""
     scaled = np.ldexp(quaternions, -np.frexp(abs(quaternions).max(axis=1))[1][:, None])
     square = dd.two_product(scaled, scaled)
     total = (square[0][:, 0], square[1][:, 0])
@@ -46,15 +72,40 @@ def attitudes(quaternions: Floats) -> Floats:
     high = scaled / root
     back = dd.two_product(high, root)
     low = (((scaled - back[0]) - back[1]) - high * rest) / root
-    high, low = high + low, low - ((high + low) - high)
+    return high + low, low - ((high + low) - high)
+
+
+def _constant(quaternion: Sequence[Fraction]) -> dd.Pair:
+    high, low = zip(*map(pair, quaternion), strict=True)
+    return np.array([high]), np.array([low])
+
+
+def _product(a: dd.Pair, b: dd.Pair) -> dd.Pair:
+    """Return products of quaternions, shape (n, 4), to 2^-100: that of a unit quaternion, not of each component."""
+    found: list[Any] = [None] * 4
+    for i, j in np.ndindex(4, 4):
+        k = i ^ j  # the basis of a product
+        sign = -1.0 if (i and i == j) or (i, j) in ((1, 3), (2, 1), (3, 2)) else 1.0
+        term = dd.multiply((sign * a[0][:, i], sign * a[1][:, i]), (b[0][:, j], b[1][:, j]))
+        found[k] = term if found[k] is None else dd.add(found[k], term)
+    return np.column_stack([high for high, _ in found]), np.column_stack([low for _, low in found])
+
+
+def _on_grid(high: Floats, low: Floats, error: float, exactly: Callable[[int], Sequence[float]]) -> Floats:
+    """Return pairs as :func:`symrot.closed_form.pairs.on_grid` has them; rows that they leave in doubt, exactly.
+
+    The pairs err by a quarter of :data:`_DOUBT` of a step of the grid of each component, and by ``error``.
+    """
     last = np.where(abs(high) > _SPREAD, np.spacing(abs(high)), 1.0)
     part, steps = abs(low) / last, low / (last * GRID)
-    doubtful = abs(abs(steps - np.floor(steps)) - 0.5) < _DOUBT
-    doubtful |= (abs(part - 0.5) < _TIE) | (abs(part - 0.25) < _TIE) | ((high != 0) & (abs(high) <= _SPREAD))
+    wide = error / last
+    doubtful = abs(abs(steps - np.floor(steps)) - 0.5) < _DOUBT + wide / GRID
+    doubtful |= (abs(part - 0.5) < _TIE + wide) | (abs(part - 0.25) < _TIE + wide)
+    doubtful |= ((high != 0) | (error > 0)) & (abs(high) <= _SPREAD)
     found = np.empty((len(high), 8))
     found[:, ::2], found[:, 1::2] = high + 0.0, np.rint(steps) * (last * GRID) + 0.0  # zeros without a sign
     for i in np.flatnonzero(doubtful.any(axis=1)).tolist():
-        found[i] = attitude(number.unit(list(map(Fraction, quaternions[i].tolist()))))
+        found[i] = exactly(i)
     return found
 
 
@@ -74,6 +125,11 @@ def _columns(values: Sequence[Column], n: int) -> Floats:
         else:
             found[:, 2 * k] = value
     return found
+
+
+def _together(values: Sequence[Column], n: int) -> Floats:
+    """Return constants as pairs, shape (2 k,) where all motions share them."""
+    return _columns(values, n)[0] if all(isinstance(value, Fraction) for value in values) else _columns(values, n)
 
 
 def usual(omega: Floats) -> NDArray[np.bool_]:
@@ -121,19 +177,54 @@ def _integers(values: list[float]) -> list[int]:
     return [a * (shared // over_a), b * (shared // over_b), c * (shared // over_c)]
 
 
-def tops(top: Top, omega: Floats, start: Floats) -> Batch:
-    """Return the motions of one plain heavy top; arguments as :func:`free_bodies`."""
-    space = np.array(top.space)
-    return Batch("heavy_top", (np.array(top.moments), np.array(top.pull), _pairs(omega), start, space, None))
+def tops(
+    across: Column, own: Column, pull: Floats, frame: Frame, omega: Floats, start: Floats,
+) -> Batch:  # fmt: skip
+    """Return the motions of heavy tops: weight times height as pairs (2,) or (n, 2), the rest as :func:`free_bodies`.
+
+    ``start`` holds attitudes between the axes of the frame, see :func:`turned`.
+    """
+    rates = _pairs(np.ascontiguousarray(omega[:, frame.named]))
+    axes = None if frame.axes is None else np.array(frame.axes)
+    return Batch("heavy_top", (_together([across, own], len(omega)), pull, rates, start, np.array(frame.space), axes))
 
 
-def tops_of(across: Column, own: Column, pull: Floats, space: Floats, omega: Floats, start: Floats) -> Batch:
-    """Return the motions of plain heavy tops: weight times height as pairs (n, 2), the rest as :func:`tops`."""
-    return Batch("heavy_top", (_columns([across, own], len(omega)), pull, _pairs(omega), start, space, None))
+def gyrostats(across: Column, own: Column, rotor: Column, axis: int, omega: Floats, start: Floats) -> Batch:
+    """Return the motions of gyrostats with a rotor along an axis, the rest as :func:`free_bodies`."""
+    named = [(axis + 1) % 3, (axis + 2) % 3, axis]
+    rates = _pairs(np.ascontiguousarray(omega[:, named]))
+    given = [_together([across, own], len(omega)), _together([rotor], len(omega))]
+    return Batch("gyrostat", (*given, rates, start, np.array([*map(float, named), 0.0])))
 
 
-def gyrostats(body: Gyrostat, omega: Floats, start: Floats) -> Batch:
-    """Return the motions of one gyrostat; arguments as :func:`free_bodies`."""
-    named = np.array([*map(float, body.named), 0.0])
-    rates = _pairs(np.ascontiguousarray(omega[:, body.named]))
-    return Batch("gyrostat", (np.array(body.moments), np.array(body.rotor), rates, start, named))
+def spin_ups(across: Column, own: Column, torque: Column, axis: int, omega: Floats, start: Floats) -> Batch:
+    """Return the motions of symmetric bodies under a torque about their axis, the rest as :func:`free_bodies`."""
+    numbers = np.empty((len(omega), 20))
+    numbers[:, :6] = _columns([across, own, torque], len(omega))
+    numbers[:, 6:12] = _pairs(omega[:, [axis - 2, axis - 1, axis]])
+    numbers[:, 12:] = start
+    return Batch("spin_up", (numbers, np.array([axis, *LIMITS])))
+
+
+def driven(body: Driven | Sequence[Driven], omega: Floats, start: Floats) -> Batch:
+    """Return the rotations of one driven body, or of a body each; the rest as :func:`free_bodies`.
+
+    Its constants are elementary, and found in integers.
+    """
+    bodies = [body] * len(omega) if isinstance(body, Driven) else body
+    axis = bodies[0].axis
+    turned = omega[:, [axis - 2, axis - 1]].any(axis=1)
+    moving = zip(bodies, omega[:, axis].tolist(), turned.tolist(), strict=True)
+    found = np.zeros((len(omega), 65))  # `axial` of axial.h
+    found[:, 8:26] = [each.constants.moving(rate, across) for each, rate, across in moving]
+    found[turned, 26:40], found[turned, 12:26] = found[turned, 12:26], 0.0
+    if isinstance(body, Driven):
+        found[:, :8] = body.constants.head(False)
+    else:
+        found[:, :8] = [each.constants.head(False) for each in bodies]
+    found[:, 2] = turned
+    for k, value in enumerate(bodies[0].constants.shapes(omega[:, axis - 2], omega[:, axis - 1])):
+        found[:, 40 + k] = value
+    attitude = start.reshape(-1, 8)[:, ::2]
+    found[:, 49::4], found[:, 50::4] = attitude, np.column_stack(turned_about(axis, list(attitude.T)))
+    return Batch("axial", (found,))

@@ -9,7 +9,7 @@ from symrot.errors import InputError
 from symrot.number import equal, show
 
 __all__ = [
-    "GRID", "LARGEST", "SMALLEST", "Number", "attitude", "common", "numbers", "pair", "quotient", "same", "spread",
+    "GRID", "LARGEST", "SMALLEST", "Number", "attitude", "common", "numbers", "on_grid", "pair", "quotient", "same", "spread",
 ]  # fmt: skip
 
 Number = float | int | Fraction
@@ -51,9 +51,13 @@ def attitude(values: Sequence[Number]) -> list[float]:
 
     An attitude needs no more, and arithmetic in pairs of doubles finds the same numbers for many attitudes at once.
     """
+    return on_grid([(value, 0.0) if isinstance(value, float) else quotient(*value.as_integer_ratio()) for value in values])
+
+
+def on_grid(values: Sequence[tuple[float, float]]) -> list[float]:
+    """Return hi, lo of each pair in one list, lo rounded to a multiple of :data:`GRID` of the last bit of hi."""
     result: list[float] = []
-    for value in values:
-        hi, lo = (value, 0.0) if isinstance(value, float) else quotient(value.numerator, value.denominator)
+    for hi, lo in values:
         step = ulp(hi) * GRID
         result += (hi, round(lo / step) * step if lo and step else lo)
     return result

@@ -22,6 +22,7 @@ from numpy.typing import ArrayLike
 from symrot.closed_form import spin_up_compiled
 from symrot.closed_form.library import Floats, times_of
 from symrot.closed_form.pairs import SMALLEST, Number, numbers, same, spread
+from symrot.closed_form.pairs import attitude as pairs_of
 from symrot.closed_form.spin_up_compiled import Compiled
 from symrot.errors import InputError
 from symrot.number import show
@@ -61,7 +62,7 @@ class SpinUp:
         self._given = moments, axis, torque, rates, attitude
         turned = rates[axis - 2], rates[axis - 1], rates[axis]
         self._source = (
-            Compiled(axis, spread([*moments, torque, *turned, *attitude]))
+            Compiled(axis, [*spread([*moments, torque, *turned]), *pairs_of(attitude)])
             if spin_up_compiled.available()
             else self.integers
         )

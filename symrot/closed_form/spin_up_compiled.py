@@ -12,9 +12,14 @@ from symrot.codegen import library
 from symrot.codegen.address import address
 from symrot.errors import CompilerError
 
-__all__ = ["Compiled", "available"]
+__all__ = ["LIMITS", "TABLE", "Compiled", "available", "functions"]
 
-_COUNT = int(spin_up_series.NEAR) * PIECES
+TABLE = int(spin_up_series.NEAR) * PIECES * (DEGREE + 1) * 4
+"""Doubles of Taylor's polynomials."""
+
+LIMITS = (spin_up_series.NEAR, spin_up_series.WIDE, spin_up_series.MOST)
+"""What the third argument of ``symrot_spin_up_prepare`` holds."""
+
 _LACKING, _LOST = 1, 2  # what samples lack, see spin_up.h
 
 
@@ -34,7 +39,14 @@ def available() -> bool:
     return bool(_bound) or not library.missing()
 
 
-def _functions() -> _Functions:
+def functions() -> _Functions:
+    """Return the compiled functions, and the types of what they take.
+
+    Raises
+    ------
+    CompilerError
+        If there is no C compiler, or it refuses the source.
+    """
     if not _bound:
         constants, samples = load("spin_up")
         prepare, length = constants.symrot_spin_up_prepare, constants.symrot_spin_up_length
@@ -66,17 +78,16 @@ class Compiled:
 
     def __init__(self, axis: int, numbers: list[float]) -> None:
         self._axis, self._numbers = axis, numbers
-        self._evaluate = _functions().evaluate
+        self._evaluate = functions().evaluate
         self._known = constants, _, _ = self._prepared(None)
         self.longest: float = constants[1] / constants[0]
 
     def _prepared(self, table: Floats | None) -> tuple[Any, int, Floats | None]:
         """Return the constants, where they are, and the table, which is filled if there is one."""
-        functions = _functions()
-        constants = functions.record()
+        bound = functions()
+        constants = bound.record()
         place = ctypes.addressof(constants)
-        limits = functions.limits(spin_up_series.NEAR, spin_up_series.WIDE, spin_up_series.MOST)
-        if functions.prepare(self._axis, functions.numbers(*self._numbers), limits, address(table), place):
+        if bound.prepare(self._axis, bound.numbers(*self._numbers), bound.limits(*LIMITS), address(table), place):
             raise CompilerError("the C compiler breaks error-free arithmetic: it must round every operation as written")
         return constants, place, table
 
@@ -86,6 +97,6 @@ class Compiled:
         _, place, table = self._known
         status: int = self._evaluate(place, address(table), *given)
         if status & _LACKING:
-            self._known = _, place, table = self._prepared(np.empty((_COUNT, DEGREE + 1, 4)))
+            self._known = _, place, table = self._prepared(np.empty(TABLE))
             status = self._evaluate(place, address(table), *given)
         return bool(status & _LOST)

@@ -1,10 +1,10 @@
 """Ensembles in closed form: which trajectories have one, and all of a form in one call.
 
-Trajectories whose numbers are unusual (beyond 1e205, a top that is turned first, an axis that is driven) are made one
-by one, each as a motion alone; where no constant varies, they share what the body and its torques give.
+Trajectories whose numbers are unusual (beyond 1e205, products of inertia that vary) are made one by one, each as a
+motion alone; where no constant varies, they share what the body and its torques give.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 from itertools import combinations
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -16,6 +16,7 @@ from symrot.closed_form import double_double as dd
 from symrot.closed_form.choose import Exact, Form, exact_form
 from symrot.closed_form.pairs import LARGEST, SMALLEST, attitude, pair
 from symrot.codegen import library
+from symrot.errors import InputError
 from symrot.ensemble.variation import PRINCIPAL, PRODUCTS, Variation
 from symrot.propagation.stepping import Floats
 from symrot.scene import Initial
@@ -29,15 +30,24 @@ Rows = NDArray[np.intp]
 MOST_BITS = 62  # of a pattern
 
 
-def forms_of(variation: Variation) -> list[tuple[Form | None, Rows]]:
+class Kind(NamedTuple):
+    """The form of a motion, and the axis of the body that it is about, if there is one."""
+
+    form: Form | None
+    axis: int | None
+
+
+def forms_of(variation: Variation) -> list[tuple[Kind, Rows]]:
     """Return the forms of an ensemble, each with its trajectories; one look at a scene for each pattern of zeros.
 
     A form is chosen by which components are zero and which moments and coefficients are equal: never by other numbers.
     """
-    chosen: dict[Form | None, list[Rows]] = {}
+    chosen: dict[Kind, list[Rows]] = {}
     for rows in _patterns(variation):
-        chosen.setdefault(exact_form(variation.scene_of(int(rows[0]))), []).append(rows)
-    return [(form, np.sort(np.concatenate(parts))) for form, parts in chosen.items()]
+        scene = variation.scene_of(int(rows[0]))
+        form = exact_form(scene)
+        chosen.setdefault(Kind(form, form and form.axis(scene)), []).append(rows)
+    return [(kind, np.sort(np.concatenate(parts))) for kind, parts in chosen.items()]
 
 
 def _patterns(variation: Variation) -> list[Rows]:
@@ -48,7 +58,9 @@ def _patterns(variation: Variation) -> list[Rows]:
     bits += [one == other for one, other in combinations(columns.values(), 2)]
     bits += [abs(columns[name]) <= variation.negligible for name in columns if name in PRODUCTS]
     bits += [columns[name] == value for name in columns for value in variation.constants_beside(name)]
-    summed = len(variation.scene.torques) > 1 and any(variation.places[name].torque >= 0 for name in columns)
+    kinds = [torque.kind for torque in variation.scene.torques]
+    varied = [kinds[place] for name in columns if (place := variation.places[name].torque) >= 0]
+    summed = any(kinds.count(kind) > 1 for kind in varied)
     if summed or len(bits) > MOST_BITS:  # sums of constants may vanish too
         return [np.array([i]) for i in range(n)]
     code = np.zeros(n, dtype=np.int64)
@@ -82,14 +94,14 @@ def choose(variation: Variation, times: Floats, start: float, faster: bool) -> l
     trajectory itself, so that its method does not depend on the others.
     """
     found, without_compiler = [], bool(not faster and library.missing())  # steps need one too
-    for form, rows in forms_of(variation):
-        if form is None:
+    for kind, rows in forms_of(variation):
+        if kind.form is None:
             continue
-        batch, usual = (None, None) if without_compiler else _batch(variation, form, rows)
-        if batch is None and faster:
-            rows = rows[_angles(variation, times, start)[rows] > STEPS_BELOW.get(form.library, 0.0)]
-        if len(rows):
-            found.append(Solved(form, rows, batch, usual))
+        for each, batch, usual in [(rows, None, None)] if without_compiler else _batches(variation, kind, rows):
+            if batch is None and faster:
+                each = each[_angles(variation, times, start)[each] > STEPS_BELOW.get(kind.form.library, 0.0)]
+            if len(each):
+                found.append(Solved(kind.form, each, batch, usual))
     return found
 
 
@@ -174,90 +186,174 @@ class _Alone:
 
 # ------------------------------------------------------------------------------------------------ arrays of each form
 
+Usual = NDArray[np.bool_] | bool
 
-def _batch(variation: Variation, form: Form, rows: Rows) -> tuple["Batch | None", Any]:
-    """Return the motions as arrays, or None where they are made one by one; and which rows the arrays are good for."""
-    make = BATCHES.get(form.library)
+
+class _Part(NamedTuple):
+    """Trajectories of one form about one axis, with what all forms take of them."""
+
+    variation: Variation
+    axis: int | None
+    rows: Rows
+    omega: Floats  # (n, 3)
+
+    @property
+    def start(self) -> Floats:
+        """Unit quaternions as pairs of doubles, (n, 8) or (8,)."""
+        found = self.variation.attitudes
+        return np.array(attitude(self.variation.scene.initial.quaternion)) if found is None else found[self.rows]
+
+    def constant(self, name: str) -> Any:
+        """Return a constant as a Fraction, or of each trajectory."""
+        value = self.variation.constant(name)
+        return value if isinstance(value, Fraction) else value[self.rows]
+
+    def moments(self) -> tuple[Any, Any]:
+        """Return the moments across the axis and about it."""
+        assert self.axis is not None
+        return self.constant(PRINCIPAL[self.axis - 2]), self.constant(PRINCIPAL[self.axis])
+
+
+def _batches(variation: Variation, kind: Kind, rows: Rows) -> Iterator[tuple[Rows, "Batch | None", Any]]:
+    """Yield motions as arrays, or None where they are made one by one; and which rows the arrays are good for."""
+    make = BATCHES.get(kind.form.library) if kind.form else None
     if make is None:
-        return None, None
+        yield rows, None, None
+        return
     from symrot.closed_form.batches import usual
 
-    omega = np.ascontiguousarray(variation.omega[rows])
-    start = variation.attitudes
-    start = np.array(attitude(variation.scene.initial.quaternion)) if start is None else start[rows]
-    batch, fine = make(variation, rows, omega, start)
-    if batch is None:
-        return None, None
-    for name in variation.columns:
-        size = abs(variation.columns[name][rows])
-        fine = fine & (size <= LARGEST) & ((size >= SMALLEST) | (size == 0))
-    return batch, fine & usual(omega)
+    for part in _parts(variation, kind, rows):
+        batch, fine = make(part)
+        if batch is not None:
+            for name in variation.columns:
+                size = abs(variation.columns[name][part.rows])
+                fine = fine & (size <= LARGEST) & ((size >= SMALLEST) | (size == 0))
+            fine = fine & usual(part.omega)
+        yield part.rows, batch, fine
 
 
-def _free(variation: Variation, rows: Rows, omega: Floats, start: Floats) -> tuple["Batch | None", Any]:
+def _parts(variation: Variation, kind: Kind, rows: Rows) -> Iterator[_Part]:
+    """Yield the trajectories of a form; of tops, those whose centre lies on either side of the fixed point apart."""
+    groups = [rows]
+    if kind.form and kind.form.library == "heavy_top" and variation.columns:
+        height = variation.constant(f"{variation.prefix(0)}center_of_mass_{(kind.axis or 0) + 1}")
+        if not isinstance(height, Fraction):
+            groups = [rows[height[rows] > 0], rows[height[rows] <= 0]]
+    for group in groups:
+        if len(group):
+            yield _Part(variation, kind.axis, group, np.ascontiguousarray(variation.omega[group]))
+
+
+def _free(part: _Part) -> tuple["Batch | None", Usual]:
     from symrot.closed_form import batches
 
+    variation = part.variation
     if not variation.columns:
-        return batches.free_bodies(variation.scene.body.principal, omega, start), True
+        return batches.free_bodies(variation.scene.body.principal, part.omega, part.start), True
     if not variation.in_principal_axes:
-        return None, None
+        return None, False
     if any(isinstance(x, Fraction) and Fraction(float(x)) != x for x in map(variation.constant, PRINCIPAL)):
-        return None, None
-    table = variation.moments[rows]
-    return batches.free_bodies_of_moments(table, omega, start), table.min(axis=1) > 0
+        return None, False
+    table = variation.moments[part.rows]
+    return batches.free_bodies_of_moments(table, part.omega, part.start), table.min(axis=1) > 0
 
 
-def _doubles(value: Any, rows: Rows) -> Any:
-    return float(value) if isinstance(value, Fraction) else value[rows]
+def _doubles(value: Any) -> Any:
+    return float(value) if isinstance(value, Fraction) else value
 
 
-def _top(variation: Variation, rows: Rows, omega: Floats, start: Floats) -> tuple["Batch | None", Any]:
+def _top(part: _Part) -> tuple["Batch | None", Usual]:
     from symrot.closed_form import batches
-    from symrot.closed_form.heavy_top import Top
+    from symrot.closed_form.heavy_top import Frame
 
-    torque, body = variation.scene.torques[0].values, variation.scene.body
-    if not variation.columns:
-        moments = [body.inertia[k][k] for k in range(3)]
-        top = Top(moments, torque["weight"], torque["center_of_mass"], torque["direction"])
-        return (batches.tops(top, omega, start), True) if top.plain else (None, None)
-    prefix = variation.prefix(0)
-    names = ("weight", *(f"center_of_mass_{k}" for k in (1, 2, 3)))
-    constants = {name: variation.constant(f"{prefix}{name}") for name in names}
-    direction = torque["direction"]
-    sizes = {name: np.broadcast_to(_doubles(x, rows), len(rows)) for name, x in constants.items()}
-    if direction[0] or direction[1]:
-        return None, None
-    pull = np.zeros((len(rows), 2))
-    if all(not isinstance(x, Fraction) or Fraction(float(x)) == x for x in constants.values()):
-        pull[:, 0], pull[:, 1] = dd.two_product(sizes["weight"], sizes["center_of_mass_3"])
+    assert part.axis is not None
+    variation = part.variation
+    prefix, torque = variation.prefix(0), variation.scene.torques[0].values
+    weight, height = (part.constant(f"{prefix}{name}") for name in ("weight", f"center_of_mass_{part.axis + 1}"))
+    fine: Any = True
+    if isinstance(weight, Fraction) and isinstance(height, Fraction):
+        pull = np.array(pair(weight * height))
     else:
-        weight, height = (constants[name] for name in ("weight", "center_of_mass_3"))
-        for k, i in enumerate(rows.tolist()):
-            factors = [x if isinstance(x, Fraction) else Fraction(float(x[i])) for x in (weight, height)]
-            pull[k] = pair(factors[0] * factors[1])
-    plain = (sizes["center_of_mass_1"] == 0) & (sizes["center_of_mass_2"] == 0) & (abs(pull[:, 0]) > SMALLEST)
-    plain &= (pull[:, 0] > 0) if direction[2] < 0 else (pull[:, 0] < 0)
-    plain &= np.all([(abs(x) < 1e120) & ((x == 0) | (abs(x) > 1e-120)) for x in sizes.values()], axis=0)
-    across, own = (variation.constant(name) for name in ("I_xx", "I_zz"))
-    across, own = (x if isinstance(x, Fraction) else x[rows] for x in (across, own))
-    upright = np.array([1.0, *[0.0] * 7])
-    return batches.tops_of(across, own, pull * np.sign(pull[:, :1]), upright, omega, start), plain
+        pull = np.empty((len(part.rows), 2))
+        if all(not isinstance(x, Fraction) or Fraction(float(x)) == x for x in (weight, height)):
+            pull[:, 0], pull[:, 1] = dd.two_product(_doubles(weight), _doubles(height))
+        else:
+            for k in range(len(part.rows)):
+                factors = [x if isinstance(x, Fraction) else Fraction(float(x[k])) for x in (weight, height)]
+                pull[k] = pair(factors[0] * factors[1])
+        fine = abs(pull[:, 0]) > SMALLEST
+        for size in (abs(_doubles(weight)), abs(_doubles(height))):
+            fine = fine & (size < 1e120) & (size > 1e-120)
+    sign = 1 if pull.flat[0] > 0 else -1
+    frame = Frame(part.axis, [-sign * x for x in torque["direction"]])
+    if frame.plain:
+        start = part.start
+    elif variation.quaternion is None:
+        start = np.array(frame.start(variation.scene.initial.quaternion))
+    else:
+        start = batches.turned(frame, variation.quaternion[part.rows])
+    return batches.tops(*part.moments(), sign * pull, frame, part.omega, start), fine
 
 
-def _gyrostat(variation: Variation, rows: Rows, omega: Floats, start: Floats) -> tuple["Batch | None", Any]:
+def _gyrostat(part: _Part) -> tuple["Batch | None", Usual]:
     from symrot.closed_form import batches
-    from symrot.closed_form.gyrostat import Gyrostat
 
-    if variation.columns:
-        return None, None
-    scene = variation.scene
-    body = Gyrostat([scene.body.inertia[k][k] for k in range(3)], scene.torques[0].values["angular_momentum"])
-    return batches.gyrostats(body, omega, start), True
+    assert part.axis is not None
+    rotor = part.constant(f"{part.variation.prefix(0)}angular_momentum_{part.axis + 1}")
+    return batches.gyrostats(*part.moments(), rotor, part.axis, part.omega, part.start), True
 
 
-BATCHES: dict[str, Callable[[Variation, Rows, Floats, Floats], tuple["Batch | None", Any]]] = {
+def _driving(part: _Part, kind: str, field: str, axis: int) -> Any:
+    """Return the sum of a component of the torques of a kind; None if it is one of several that vary."""
+    variation = part.variation
+    found = [
+        part.constant(f"{variation.prefix(k)}{field}_{axis % 3 + 1}")
+        for k, torque in enumerate(variation.scene.torques)
+        if torque.kind == kind
+    ]
+    if all(isinstance(value, Fraction) for value in found):
+        return sum(found, Fraction(0))
+    return found[0] if len(found) == 1 else None
+
+
+def _driven(part: _Part) -> tuple["Batch | None", Usual]:
+    from symrot.closed_form import batches
+    from symrot.closed_form.axial import Driven
+
+    axis = part.axis
+    assert axis is not None
+    moments = [part.constant(name) for name in PRINCIPAL]
+    push = _driving(part, "constant_body", "torque", axis)
+    drags = [_driving(part, "damping", "linear", k) for k in (axis, axis - 1)]
+    given = [*moments, push, *drags]
+    if any(value is None for value in given):
+        return None, False
+    if all(isinstance(value, Fraction) for value in given):
+        return batches.driven(Driven(moments, axis, push, *drags), part.omega, part.start), True
+    n = len(part.rows)
+    columns = [[value] * n if isinstance(value, Fraction) else value.tolist() for value in given]
+    try:
+        bodies = [Driven(row[:3], axis, *row[3:]) for row in zip(*columns, strict=True)]
+    except InputError:  # of one, which says so
+        return None, False
+    return batches.driven(bodies, part.omega, part.start), True
+
+
+def _spin_up(part: _Part) -> tuple["Batch | None", Usual]:
+    from symrot.closed_form import batches
+
+    assert part.axis is not None
+    torque = _driving(part, "constant_body", "torque", part.axis)
+    if torque is None:
+        return None, False
+    return batches.spin_ups(*part.moments(), torque, part.axis, part.omega, part.start), True
+
+
+BATCHES: dict[str, Callable[[_Part], tuple["Batch | None", Usual]]] = {
     "free_body": _free,
     "heavy_top": _top,
     "gyrostat": _gyrostat,
+    "axial": _driven,
+    "spin_up": _spin_up,
 }
-"""How the trajectories of a form become arrays; those of other forms are made one by one."""
+"""How the trajectories of a form become arrays."""

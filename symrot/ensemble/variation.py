@@ -288,7 +288,7 @@ def _array(values: ArrayLike, shape: tuple[int, ...], name: str, unit: str) -> F
         raise InputError(
             f"{name}: expected finite numbers in {unit}, got {array[tuple(place)]} in trajectory {place[0]}"
         )
-    return array
+    return array + 0.0  # zeros without a sign, as exact numbers have them
 
 
 def _places(scene: Scene) -> dict[str, _Place]:
