@@ -165,7 +165,7 @@ def test_parameters_follow_the_epoch_exactly():
     """What was found once and what is found anew make what all found anew makes."""
     found = propagator(scene(GENERAL, GENERAL_TORQUE, 10**6), "dop853")._motion
     plan, kernel = epoch.moved(found.plan, found.kernel)
-    following = epoch.Following(kernel, plan.constants, 0.1)
+    following = epoch.Following(kernel.rate_parameters, plan.constants, 0.1)
     for since in (0.0, 1 / 3, -(10**9)):
         values = {**plan.constants, "epoch": Fraction(0.1) + Fraction(since)}
         assert following.parameters(since) == bind(kernel.rate_parameters, values)

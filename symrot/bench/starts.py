@@ -55,7 +55,10 @@ _BRAKE = {"kind": "damping", "linear": ["1/10", "1/10", "1/5"]}
 _PUSH = {"kind": "constant_body", "torque": [0, 0, "1/9"]}
 MADE: dict[str, Callable[[], Scene]] = {
     "tilted free body": lambda: _made(
-        "tilted free body", [], {"xx": 3, "yy": 4, "zz": 5, "xy": "-1/10", "xz": "1/5", "yz": "1/7"}, ["1/3", "-1/7", "2"]
+        "tilted free body",
+        [],
+        {"xx": 3, "yy": 4, "zz": 5, "xy": "-1/10", "xz": "1/5", "yz": "1/7"},
+        ["1/3", "-1/7", "2"],
     ),
     "turned heavy top": lambda: _made(
         "turned heavy top",

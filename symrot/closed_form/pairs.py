@@ -51,7 +51,9 @@ def attitude(values: Sequence[Number]) -> list[float]:
 
     An attitude needs no more, and arithmetic in pairs of doubles finds the same numbers for many attitudes at once.
     """
-    return on_grid([(value, 0.0) if isinstance(value, float) else quotient(*value.as_integer_ratio()) for value in values])
+    return on_grid(
+        [(value, 0.0) if isinstance(value, float) else quotient(*value.as_integer_ratio()) for value in values]
+    )
 
 
 def on_grid(values: Sequence[tuple[float, float]]) -> list[float]:

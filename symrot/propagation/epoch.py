@@ -25,7 +25,7 @@ from symrot.propagation.cut_off import CutOff
 from symrot.propagation.dop853 import Clock
 from symrot.propagation.kernels import kernel_key, motion_library
 from symrot.propagation.stepping import NOT_FINITE_SENTENCE
-from symrot.scene_kernel import EPOCH, EXACT_FUNCTIONS, SceneKernel
+from symrot.scene_kernel import EPOCH, EXACT_FUNCTIONS, Parameters, SceneKernel
 
 __all__ = ["Following", "clock", "compiled", "far", "moved", "moved_parameters"]
 
@@ -53,34 +53,37 @@ def moved(plan: Plan, kernel: SceneKernel) -> tuple[Plan, SceneKernel]:
 
 def moved_parameters(kernel: SceneKernel, constants: Mapping[str, Fraction], epoch: float) -> list[float]:
     """Return the parameters of moved rates for the constants of a scene: exact arithmetic, one rounding each."""
-    return Following(kernel, constants).parameters(epoch)
+    return Following(kernel.rate_parameters, constants).parameters(Fraction(epoch))
 
 
 class Following:
-    """The parameters of moved rates for one epoch after another; what does not depend on it is found once.
+    """The parameters of formulas with a moved clock, for one epoch after another.
+
+    What does not depend on the epoch is computed once.
 
     Parameters
     ----------
-    kernel : SceneKernel
-        Of :func:`moved`.
+    parameters : pairs of name and formula
+        Such as those of the rates of a kernel that :func:`moved` returns.
     constants : mapping
         Of the scene.
     start : float
         What the clock of the scene shows, s, where that of the motion shows 0.
     """
 
-    def __init__(self, kernel: SceneKernel, constants: Mapping[str, Fraction], start: float = 0.0) -> None:
+    def __init__(self, parameters: Parameters, constants: Mapping[str, Fraction], start: float = 0.0) -> None:
         known = {"pi": number.PI, **constants}
         self._start = Fraction(start)
-        self._formulas = [_folded(node, known) for _, node in kernel.rate_parameters]
+        self._formulas = [_folded(node, known) for _, node in parameters]
+        self.fixed = all(node[0] == "number" for node in self._formulas)
 
-    def parameters(self, epoch: float) -> list[float]:
+    def parameters(self, epoch: float | Fraction) -> list[float]:
         """Return them for an epoch, s, on the clock of the motion: exact arithmetic, one rounding each."""
         values = {EPOCH: self._start + Fraction(epoch)}
         try:
             return [float(evaluate(node, values, EXACT_FUNCTIONS)) for node in self._formulas]
         except OverflowError:
-            raise CutOff(epoch, NOT_FINITE_SENTENCE) from None
+            raise CutOff(float(epoch), NOT_FINITE_SENTENCE) from None
 
 
 def clock(
@@ -94,7 +97,7 @@ def clock(
     @cache
     def following() -> tuple[Path, Following]:
         plan, kernel = moving()
-        return compiled(plan, kernel), Following(kernel, constants, start)
+        return compiled(plan, kernel), Following(kernel.rate_parameters, constants, start)
 
     return lambda since: (following()[0], following()[1].parameters(since))
 

@@ -24,7 +24,7 @@ from symrot.propagation.trajectory import ARRAY_FUNCTIONS, Trajectory
 from symrot.scene import Initial
 from symrot.scene_kernel import EPOCH, SceneKernel
 
-__all__ = ["Motion", "unreduced"]
+__all__ = ["Motion", "on_own_clock", "unreduced"]
 
 Floats = NDArray[np.float64]
 
@@ -256,6 +256,17 @@ class Motion:
         solver = self.choice.method.partition(":")[2]
         deviations = formula_deviations(self.plan, self.kernel, self.rate_parameters)
         return {"blocks": blocks, "scales": scales, "deviations": deviations, **({"method": solver} if solver else {})}
+
+
+def on_own_clock(plan: Plan, choice: Choice, tolerance: float) -> Motion:
+    """Return the motion of a plan on a clock that shows 0 at its start; its rates may take another epoch each time.
+
+    Where no time stands in the rates, there is but one clock.
+    """
+    motion: Motion = object.__new__(Motion)
+    motion.plan, motion.choice, motion.tolerance, motion.library = plan, choice, tolerance, None
+    motion.start = float(plan.scene.span.start)
+    return _OnOwnClock(motion) if motion.kernel.rates.uses("t") else Motion(plan, choice, tolerance)
 
 
 class _OnOwnClock(Motion):

@@ -6,12 +6,15 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from symrot.codegen import library
-from symrot.expression import names, parse, rename, text
+from symrot.codegen.epoch import moved_formulas
+from symrot.expression import Node, names, parse, rename, text
 from symrot.kernel import Argument, Program
+from symrot.propagation.epoch import Following
 from symrot.propagation.events import Event, guard_library_source
+from symrot.propagation.instant import Instant
 from symrot.propagation.kernels import error_blocks
 from symrot.propagation.motion import Motion
-from symrot.scene_kernel import SceneKernel, bind
+from symrot.scene_kernel import bind
 
 if TYPE_CHECKING:
     from symrot.propagation.switched import SwitchedMotion
@@ -31,13 +34,22 @@ class Guard(NamedTuple):
 
 
 class Regime:
-    """The smooth motion while some guards stay at zero, and the guards that end it."""
+    """The smooth motion while some guards stay at zero, and the guards that end it.
+
+    Its clock shows 0 wherever the motion enters it: the parameters of rates and guards are those of that instant.
+    """
 
     def __init__(self, switched: "SwitchedMotion", motion: Motion, held: frozenset[str]) -> None:
         self.motion, self.plan, self.held, self.constants = motion, motion.plan, held, switched.constants
+        modes = [switch["mode"] for switch in switched.switches]
+        distances = [_distance(switch) for switch in switched.switches]
+        moved, parameters = moved_formulas(distances, {*self.constants, *modes})
+        names_of_clock = {name: f"since_{name}" for name, _ in parameters if name not in {*self.constants, *modes}}
+        self.parameters = tuple((names_of_clock.get(name, name), formula) for name, formula in parameters)
+        self.formulas = {mode: rename(node, names_of_clock) for mode, node in zip(modes, moved, strict=True)}
         self.guards = [guard for switch in switched.switches for guard in self._guards(switch)]
-        known = {*self.constants, *(switch["mode"] for switch in switched.switches)}
         nodes = [parse(guard.formula) for guard in self.guards]
+        known = {name for name, _ in self.parameters} | set(modes)
         self.more = sorted(known & set().union(*map(names, nodes)))
         self.events = [Event(guard.formula, terminal=True, direction=-1) for guard in self.guards]
         columns = {name: f"{name} of the scene" for name in self.more}  # a kernel has names of its own for constants
@@ -46,35 +58,67 @@ class Regime:
         formulas = [rename(node, columns) for node in nodes]
         source = guard_library_source(program, formulas, self.plan.states, *error_blocks(self.plan))
         self.path = library.build(source, "events")
-        self._bound: dict[tuple[int, ...], tuple[list[float], list[float]]] = {}
+        self._following: dict[tuple[int, ...], tuple[Following, Following, list[float]]] = {}
+        self._bound: dict[tuple[tuple[int, ...], Instant | None], tuple[list[float], dict[str, float]]] = {}
 
     def _guards(self, switch: Mapping[str, Any]) -> Iterator[Guard]:
         mode, where = switch["mode"], switch["where"]
+        guard = text(self.formulas[mode])
         if mode in self.held:
             yield Guard(mode, f"1 - {mode}_of_t", 1, where)
             yield Guard(mode, f"1 + {mode}_of_t", -1, where)
         elif switch["kind"] == "sign":
-            yield Guard(mode, f"{mode}*({text(switch['guard'])})", 0, where)
+            yield Guard(mode, f"{mode}*({guard})", 0, where)
         else:
-            yield Guard(mode, f"({text(switch['guard'])}) - {mode}", -1, where)
-            yield Guard(mode, f"{mode} + 1 - ({text(switch['guard'])})", 1, where)
+            yield Guard(mode, guard, -1, where)
+            yield Guard(mode, f"1 - ({guard})", 1, where)
 
-    def bound(self, modes: Modes) -> tuple[list[float], list[float]]:
-        """Return the parameters of the stepper's library and of the guards' for some modes."""
+    def _values(self, modes: Modes, zero: Instant) -> tuple[list[float], dict[str, float]]:
+        """Return the parameters of the rates, and those of the guards by name, for a clock that is 0 at an instant."""
         key = tuple(modes.values())
-        if key not in self._bound:
+        if key not in self._following:
             constants = {**self.constants, **{name: Fraction(value) for name, value in modes.items()}}
-            kernel: SceneKernel = self.motion.kernel
-            rates = bind(kernel.rate_parameters, constants)
+            own = self.motion.kernel.rate_parameters, self.parameters
+            rates, guards = (Following(parameters, constants) for parameters in own)
+            self._following[key] = rates, guards, bind(self.motion.kernel.quantity_parameters, constants)
+        rates, guards, _ = self._following[key]
+        place = key, None if rates.fixed and guards.fixed else zero
+        if place not in self._bound:
+            if place[1] is not None:
+                self._bound = {key: value for key, value in self._bound.items() if key[1] in (None, zero)}
+            numbers = rates.parameters(zero.exact)
             if self.motion.choice.method == "taylor":
-                rates += self.motion.taylor_parameters[len(rates) :]
-            guards = [*bind(kernel.quantity_parameters, constants), *(float(constants[name]) for name in self.more)]
-            self._bound[key] = rates, guards
-        return self._bound[key]
+                numbers += self.motion.taylor_parameters[len(numbers) :]
+            values = dict(zip((name for name, _ in self.parameters), guards.parameters(zero.exact), strict=True))
+            self._bound[place] = numbers, {**values, **{name: float(mode) for name, mode in modes.items()}}
+        return self._bound[place]
+
+    def bound(self, modes: Modes, zero: Instant) -> tuple[list[float], list[float]]:
+        """Return the parameters of the stepper's library and of the guards', on a clock that shows 0 at an instant."""
+        rates, values = self._values(modes, zero)
+        quantities = self._following[tuple(modes.values())][2]
+        return rates, [*quantities, *(values[name] for name in self.more)]
+
+    def values(self, modes: Modes, zero: Instant) -> dict[str, float]:
+        """Return what the names in :attr:`formulas` stand for, but for time and states."""
+        return self._values(modes, zero)[1]
 
     def active(self, modes: Modes) -> list[bool]:
         """Return which guards matter."""
         return [guard.where is None or modes[guard.where[0]] == guard.where[1] for guard in self.guards]
+
+    def of_time(self, mode: str) -> bool:
+        """Return whether the guard of a mode is a formula of time alone."""
+        return names(self.formulas[mode]) <= {"t", "pi", *(name for name, _ in self.parameters)}
+
+
+def _distance(switch: Mapping[str, Any]) -> Node:
+    """Return what is zero where a switch switches: its guard, less the whole number below it for a floor.
+
+    The number is subtracted before anything is rounded: far from t = 0 it takes most digits of the guard away.
+    """
+    guard: Node = switch["guard"]
+    return guard if switch["kind"] == "sign" else ("-", guard, ("symbol", switch["mode"]))
 
 
 def _with_parameters(program: Program, more: list[str]) -> Program:

@@ -23,8 +23,8 @@ from symrot.expression import evaluate, names, parse, rename
 from symrot.number import PI
 from symrot.planner import Plan, make_plan
 from symrot.propagation.cut_off import CutOff, add_samples
-from symrot.propagation.method import choose_method
-from symrot.propagation.motion import Motion
+from symrot.propagation.method import Choice, choose_method
+from symrot.propagation.motion import Motion, on_own_clock
 from symrot.propagation.polynomials import Piece
 from symrot.propagation.propagator import Propagator
 from symrot.propagation.regimes import Modes, Regime
@@ -50,8 +50,13 @@ class SwitchedPropagator(Propagator):
 class SwitchedMotion(Motion):
     """A motion under torques with switches."""
 
-    movable = False  # guards name the time of the scene
+    movable = False  # each regime has a clock of its own
     switched = True
+
+    def __init__(self, plan: Plan, choice: Choice, tolerance: float) -> None:
+        self.plan, self.choice, self.tolerance, self.library = plan, choice, tolerance, None
+        self.start = float(plan.scene.span.start)
+        self.regime(frozenset())
 
     @cached_property
     def switches(self) -> list[dict[str, Any]]:
@@ -99,15 +104,14 @@ class SwitchedMotion(Motion):
     def regime(self, held: frozenset[str]) -> Regime:
         """Return the smooth motion while the guards of some modes stay at zero; derived when first asked for."""
         if held not in self._regimes:
-            motion: Motion = self
+            plan = self.plan
             if held:
                 torques = [
                     {**torque, "held": sorted(m for m in torque.get("parameters", ()) if torque["prefix"] + m in held)}
-                    for torque in self.plan.structure["torques"]
+                    for torque in plan.structure["torques"]
                 ]
-                plan = replace(self.plan, structure=self.plan.structure | {"torques": torques})
-                motion = Motion(plan, self.choice, self.tolerance)
-            self._regimes[held] = Regime(self, motion, held)
+                plan = replace(plan, structure=plan.structure | {"torques": torques})
+            self._regimes[held] = Regime(self, on_own_clock(plan, self.choice, self.tolerance), held)
         return self._regimes[held]
 
     @cached_property
@@ -125,9 +129,11 @@ class SwitchedMotion(Motion):
             states[part[:count]] = self.plan.initial_state
             run = SwitchedRun(self, float(sorted_times[-1]))
 
-            def sample(chunk: Chunk, part: Any = part, sorted_times: Floats = sorted_times) -> None:
+            def sample(
+                chunk: Chunk, part: Any = part, sorted_times: Floats = sorted_times, side: float = run.side
+            ) -> None:
                 nonlocal count
-                last = count + int((np.abs(sorted_times[count:] - self.start) <= abs(chunk.stop - self.start)).sum())
+                last = count + chunk.stop.reached(sorted_times[count:], side)
                 if last > count:
                     states[part[count:last]] = chunk.states(sorted_times[count:last])
                     count = last
@@ -153,7 +159,7 @@ class SwitchedMotion(Motion):
             broken.append(error)
         stats = stats_of(run.cost, 0.0, _switchings(run.changes))
         states = SwitchedRecording(self.start, self.plan.initial_state, (self.start, end), stats, chunks)
-        return [chunk.piece for chunk in chunks], states
+        return [chunk.piece() for chunk in chunks], states
 
     def dense(self, span: tuple[float, float]) -> Recording:
         """Return the states as a function of time."""
@@ -173,15 +179,24 @@ def _switchings(changes: dict[tuple[float, str], str]) -> list[Switching]:
 
 
 class SwitchedRecording(Recording):
+    """A motion under torques with switches at any time, from the parts between them."""
+
     def __init__(
         self, t0: float, y0: tuple[float, ...], span: tuple[float, float], stats: Stats, chunks: list[Chunk]
     ) -> None:
         super().__init__(t0, np.array(y0), (min(*span, t0), max(*span, t0)), stats)
         self._chunks = sorted(chunks, key=lambda chunk: min(chunk.start, chunk.stop))
-        self._ends = np.array([max(chunk.start, chunk.stop) for chunk in self._chunks])
+        ends = [max(chunk.start, chunk.stop) for chunk in self._chunks]
+        self._ends, self._rests = np.array([end.high for end in ends]), np.array([end.low for end in ends])
 
     def _fill(self, times: Floats, states: Floats) -> None:
         places = np.searchsorted(self._ends, times)
+        while True:  # a time that is rounded up to the end of a chunk lies in the next one
+            inside = np.minimum(places, len(self._ends) - 1)
+            beyond = (places < len(self._ends)) & (self._ends[inside] == times) & (self._rests[inside] < 0.0)
+            if not beyond.any():
+                break
+            places[beyond] += 1
         for place in np.unique(places):
             if place == len(self._chunks):
                 states[places == place] = np.nan  # beyond where the motion was cut off

@@ -7,11 +7,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from symrot.closed_form.double_double import two_sum
 from symrot.errors import InputError
 from symrot.expression import evaluate
 from symrot.propagation import progress
 from symrot.propagation.cut_off import CutOff
 from symrot.propagation.events import search, signs_at_ends
+from symrot.propagation.instant import Instant
 from symrot.propagation.polynomials import Piece
 from symrot.propagation.regimes import Guard, Regime
 from symrot.propagation.smooth_pieces import SOURCES
@@ -23,6 +25,7 @@ if TYPE_CHECKING:
 __all__ = ["MATH", "Chunk", "SwitchedRun"]
 
 MOST_SWITCHES = 1_000_000
+NEARBY, MOST_ULPS = 1e-6, 64.0  # parts of the way since the last switch; last bits of a time that was located
 CHATTER, CHATTERING = 50, 1e-9  # so many switches within that part of the span are endlessly many
 Consumer = Callable[["Chunk"], None]
 
@@ -34,40 +37,78 @@ MATH: dict[str, Callable[..., float]] = {
 
 
 class Chunk(NamedTuple):
-    """A part of a motion from ``start`` to ``stop``, s: its states there at any time, and as polynomials."""
+    """A part of a motion from ``start`` to ``stop``, and its polynomials on a clock that shows 0 at ``zero``."""
 
-    start: float
-    stop: float
-    states: Callable[[Floats], Floats]
-    piece: Piece
+    start: Instant
+    stop: Instant
+    zero: Instant
+    own_states: Callable[[Floats], Floats]
+    own_piece: Piece
+
+    def states(self, times: Floats) -> Floats:
+        """Return the states at times, s, on the clock of the scene."""
+        return self.own_states(self.zero.since(times))
+
+    def piece(self) -> Piece:
+        """Return the part as polynomials on the clock of the scene."""
+        rows, edges = self.own_piece.rows.copy(), self.own_piece.edges + self.zero.low + self.zero.high
+        edges[0], edges[-1] = self.start.high, self.stop.high  # as the parts before and after have them
+        time, low = two_sum(self.zero.high, rows[:, 0])
+        rows[:, 0], rows[:, 2] = two_sum(time, low + (rows[:, 2] + self.zero.low))
+        return Piece(edges, rows)
 
 
 class SwitchedRun:
-    """A motion on its way from the start to one end."""
+    """A motion on its way from the start to one end.
+
+    Its clock shows 0 at the last switch, which is known to twice the digits of a double: ``t`` and ``end`` are times on
+    that clock, s.
+    """
 
     def __init__(self, motion: "SwitchedMotion", end: float) -> None:
-        self.motion, self.end, self.span = motion, end, abs(end - motion.start)
-        self.t, self.y = motion.start, np.array(motion.plan.initial_state, dtype=np.float64)
+        self.motion, self.span = motion, abs(end - motion.start)
+        self.side = 1.0 if end >= motion.start else -1.0
+        self.zero, self._end = Instant(motion.start), Instant(end)
+        self.t, self.end = 0.0, float(self.zero.since(end))
+        self.y = np.array(motion.plan.initial_state, dtype=np.float64)
+        self.by_name = {switch["mode"]: switch for switch in motion.switches}
         self.modes, self.held = motion.initial_modes(), frozenset[str]()
         self.cost = np.zeros(3, dtype=np.int64)  # steps accepted and rejected, evaluations
-        self.switching: list[float] = []
+        self.switches = 0
         self.changes: dict[tuple[float, str], str] = {}  # what each function with a switch did at a time
         self.flipped: dict[str, int] = {}  # modes changed at this very time, and how often
         self.released: set[str] = set()  # modes whose guards were held until this very time: they leave zero slowly
         self.left: set[tuple[str, int]] = set()  # modes and their values left at this very time
         self.settled = 0
-        self.recent: deque[float] = deque(maxlen=CHATTER)
+        self.recent: deque[Instant] = deque(maxlen=CHATTER)
 
     def follow(self, consume: Consumer) -> None:
         """Follow the motion to its end, handing on each part as it is known."""
-        with progress.within(self.motion.start, self.end):
-            self._check_start()
-            while self.t != self.end:
-                progress.report(self.t, self.motion.start, self.end)
-                regime = self.motion.regime(self.held)
-                guard = self._segment(regime, consume)
-                if guard is not None:
-                    self._switch(regime, guard)
+        with progress.within(self.motion.start, self._end.high, lambda: self.zero.high):
+            try:
+                self._check_start()
+                while self.t != self.end:
+                    progress.report(self.t, 0.0, self.end)
+                    regime = self.motion.regime(self.held)
+                    guard = self._segment(regime, consume)
+                    if guard is not None:
+                        self._switch(regime, guard)
+            except CutOff as error:
+                raise error.later(self.zero.high) from None
+
+    @property
+    def now(self) -> float:
+        """The time on the clock of the scene, s."""
+        return self.zero.after(self.t).high
+
+    def _at(self, t: float) -> Instant:
+        return self._end if t == self.end else self.zero.after(t)
+
+    def _move_clock(self, zero: Instant) -> None:
+        """Have the clock show 0 at an instant, where the motion is now."""
+        self.zero, self.t, self.end = zero, 0.0, float(zero.since(self._end.high))
+        if self.side * self.end < 0.0:  # within rounding of the end
+            self.end = 0.0
 
     def _check_start(self) -> None:
         """Refuse a start on a switch from which both sides lead away: the motion has more than one way on."""
@@ -78,12 +119,12 @@ class SwitchedRun:
                 continue
             regime, leaving = self.motion.regime(self.held), 0
             for sign in (1, -1):
-                rates, values = regime.bound({**self.modes, mode: sign})
+                rates, values = regime.bound({**self.modes, mode: sign}, self.zero)
                 piece, _ = next(self._source(regime, rates).pieces())
                 signs, _ = signs_at_ends(regime.path, [guard.formula for guard in regime.guards], values, piece)
                 leaving += all(s > 0 for s, guard in zip(signs, regime.guards, strict=True) if guard.mode == mode)
             if leaving == 2:
-                way = "past" if self.end < self.motion.start else "future"
+                way = "past" if self.side < 0.0 else "future"
                 raise CutOff(self.t, f"the motion starts on {self._name(mode)} and has more than one {way}", self.end)
 
     def _source(self, regime: Regime, rates: list[float]) -> Any:
@@ -91,7 +132,9 @@ class SwitchedRun:
 
     def _segment(self, regime: Regime, consume: Consumer) -> Guard | None:
         """Follow one smooth part; return the guard that ended it, or None at the end of the motion."""
-        rates, values = regime.bound(self.modes)
+        if self.t != 0.0:
+            self._move_clock(self._at(self.t))
+        rates, values = regime.bound(self.modes, self.zero)
         active = regime.active(self.modes)
         events = [
             event if on else event._replace(terminal=False) for event, on in zip(regime.events, active, strict=True)
@@ -115,7 +158,7 @@ class SwitchedRun:
                         self.t, self.y = passed[-1], states(np.array(passed[-1:]))[0]
                         self.flipped, self.left, self.released = {}, set(), set()
                     return
-                consume(Chunk(passed[-1], float(piece.edges[-1]), states, piece))
+                consume(self._chunk(passed[-1], float(piece.edges[-1]), states, piece))
                 passed.append(float(piece.edges[-1]))
 
         current: list[tuple[Piece, Callable[[Floats], Floats]]] = []
@@ -131,14 +174,45 @@ class SwitchedRun:
             self.t = self.end if current else self.t  # a mode was settled: once more from here
             return None
         piece, states = current[0]
-        if abs(stop - self.motion.start) > abs(passed[-1] - self.motion.start):
-            rows = int((np.abs(piece.edges[:-1] - start) < abs(stop - start)).sum())
-            consume(Chunk(passed[-1], stop, states, Piece(np.append(piece.edges[:rows], stop), piece.rows[:rows])))
+        ended = next(each.event for each in reversed(found) if each.t == stop and active[each.event])
+        guard = regime.guards[ended]
+        instant = self._at(stop) if stop == self.end else self._located(regime, guard, stop)
+        if abs(stop) > abs(passed[-1]):
+            rows = int((np.abs(piece.edges[:-1]) < abs(stop)).sum())
+            part = Piece(np.append(piece.edges[:rows], stop), piece.rows[:rows])
+            consume(Chunk(self._at(passed[-1]), instant, self.zero, states, part))
         self.y = states(np.array([stop]))[0]
         self.t = stop
+        if stop != self.end:
+            self._move_clock(instant)
         self.flipped, self.left, self.released = {}, set(), set()
-        ended = next(each.event for each in reversed(found) if each.t == stop and active[each.event])
-        return regime.guards[ended]
+        return guard
+
+    def _chunk(self, start: float, stop: float, states: Callable[[Floats], Floats], piece: Piece) -> Chunk:
+        return Chunk(self._at(start), self._at(stop), self.zero, states, piece)
+
+    def _located(self, regime: Regime, guard: Guard, t: float) -> Instant:
+        """Return the instant at which a guard is zero, next to t.
+
+        On a clock that shows 0 there a guard of time alone is known to all digits; one step of Newton's rule finds its
+        zero to twice the digits of t.
+        """
+        instant = self.zero.after(t)
+        if guard.mode in self.held or not regime.of_time(guard.mode):
+            return instant
+        switch, aside = self.by_name[guard.mode], NEARBY * abs(t)
+        goal = 0.0 if switch["kind"] == "sign" else max(guard.change, 0)
+        values = regime.values(self.modes, instant)
+
+        def value(t: float) -> float:
+            return float(evaluate(regime.formulas[guard.mode], {**values, "t": t}, MATH, float)) - goal
+
+        try:
+            slope = (value(aside) - value(-aside)) / (2.0 * aside)
+            correction = -value(0.0) / slope
+        except (ArithmeticError, ValueError):
+            return instant
+        return instant.after(correction) if abs(correction) <= MOST_ULPS * math.ulp(t) else instant
 
     def _negative(
         self, regime: Regime, active: list[bool], values: list[float], piece: Piece
@@ -159,7 +233,7 @@ class SwitchedRun:
         formulas, settled = [guard.formula for guard in regime.guards], dict(self.modes)
         resting = {s["mode"]: 1 for s in self.motion.switches if s["kind"] == "sign" and self.modes[s["mode"]] == 0}
         alive = {**self.modes, **resting}
-        signs, _ = signs_at_ends(regime.path, formulas, regime.bound(alive)[1], piece)
+        signs, _ = signs_at_ends(regime.path, formulas, regime.bound(alive, self.zero)[1], piece)
         end = float(piece.edges[-1])
         later = end, states(np.array([end]))[0]  # a guard may leave zero more slowly than rounding shows
         for switch in self.motion.switches:
@@ -170,12 +244,12 @@ class SwitchedRun:
             sign = signs[numbers[0]]
             if switch["kind"] == "floor":  # closed on the left: at n + 1 it is n + 1
                 upper = signs[numbers[1]]
-                if not upper and self._guard_value(switch["guard"]) == self.modes[mode] + 1:
+                if not upper and self._guard_value(mode) == 1.0:
                     settled[mode] = self.modes[mode] + 1
                 continue
             if sign and self.modes[mode] == 0:
                 settled[mode] = sign
-            elif not sign and self._guard_value(switch["guard"]) == 0.0 == self._guard_value(switch["guard"], later):
+            elif not sign and self._guard_value(mode) == 0.0 == self._guard_value(mode, later):
                 settled[mode] = switch["at_zero"]
         changed = settled != self.modes
         if changed:
@@ -185,21 +259,23 @@ class SwitchedRun:
         self.modes = settled
         return changed
 
-    def _guard_value(self, guard: Any, place: tuple[float, Floats] | None = None) -> float:
-        """Return a guard at a time and a state, or at the present ones, under the present modes."""
+    def _guard_value(self, mode: str, place: tuple[float, Floats] | None = None) -> float:
+        """Return the distance of a mode's guard from its zero, at a time and a state or at the present ones.
+
+        Of a floor, how far the guard is above the whole number that is its mode.
+        """
         t, y = place or (self.t, self.y)
         names = [f"omega_{i} of t" for i in (1, 2, 3)]
         names += [f"q{i} of t" for i in range(4)] if self.motion.plan.structure["attitude"] else []
         quantities = self.motion.evaluate(np.array([t]), y[None], names)[0].tolist()
         values = {name.removesuffix(" of t"): value for name, value in zip(names, quantities, strict=True)}
-        values |= {name: float(value) for name, value in self.motion.constants.items()}
-        values |= {"t": t, **{name: float(mode) for name, mode in self.modes.items()}}
-        return float(evaluate(guard, values, MATH, float))
+        regime = self.motion.regime(self.held)
+        values |= {**regime.values(self.modes, self.zero), "t": t}
+        return float(evaluate(regime.formulas[mode], values, MATH, float))
 
     def _switch(self, regime: Regime, guard: Guard) -> None:
         """Change the mode of a guard; hold the guard at zero where both sides send the motion back."""
-        mode, switch = guard.mode, next(s for s in self.motion.switches if s["mode"] == guard.mode)
-        kind = switch["kind"]
+        mode, kind = guard.mode, self.by_name[guard.mode]["kind"]
         self.left.add((mode, self.modes[mode]))
         again = self.flipped.get(mode, 0)
         if again == 0:
@@ -207,7 +283,7 @@ class SwitchedRun:
         self.flipped[mode] = again + 1
         if again > 2 and kind == "sign":
             raise CutOff(self.t, f"the switch {self._name(mode)} leaves no way to go on", self.end)
-        self.changes[self.t, self._name(mode)] = "released" if mode in self.held else "passed"
+        self.changes[self.now, self._name(mode)] = "released" if mode in self.held else "passed"
         if mode in self.held:
             self.held -= {mode}
             self.modes[mode] = guard.change
@@ -217,18 +293,18 @@ class SwitchedRun:
         elif kind == "sign":
             self.modes[mode] = -self.modes[mode]
         else:
-            whole = math.floor(self._guard_value(switch["guard"]))
-            far = abs(whole - self.modes[mode]) > 1  # it jumped over some whole numbers
-            self.modes[mode] = whole if far else self.modes[mode] + guard.change
+            above = math.floor(self._guard_value(mode))
+            far = abs(above) > 1  # it jumped over some whole numbers
+            self.modes[mode] += above if far else guard.change
             if (mode, self.modes[mode]) in self.left:
                 raise CutOff(self.t, f"the motion would slide along the jump of {self._name(mode)}", self.end)
 
     def _hold(self, regime: Regime, mode: str) -> None:
-        if self.end < self.motion.start:
+        if self.side < 0.0:
             raise CutOff(self.t, "a motion that slides along a switch has more than one past", self.end)
         self.held |= {mode}
-        self.changes[self.t, self._name(mode)] = "held"
-        guard = next(switch["guard"] for switch in self.motion.switches if switch["mode"] == mode)
+        self.changes[self.now, self._name(mode)] = "held"
+        guard = self.by_name[mode]["guard"]
         if guard[0] == "symbol" and guard[1] in regime.plan.states:
             self.y[regime.plan.states.index(guard[1])] = 0.0  # exactly, where the guard is a state
         try:
@@ -239,12 +315,13 @@ class SwitchedRun:
             ) from None
 
     def _count(self) -> None:
-        self.switching.append(self.t)
-        self.recent.append(self.t)
-        near = len(self.recent) == CHATTER and abs(self.t - self.recent[0]) <= CHATTERING * self.span
-        if near or len(self.switching) > MOST_SWITCHES:
-            within = f"{CHATTER} within {abs(self.t - self.recent[0]):.1e} s" if near else f"more than {MOST_SWITCHES}"
+        self.switches += 1
+        self.recent.append(self.zero.after(self.t))
+        way = abs(float(self.recent[-1].exact - self.recent[0].exact))
+        near = len(self.recent) == CHATTER and way <= CHATTERING * self.span
+        if near or self.switches > MOST_SWITCHES:
+            within = f"{CHATTER} within {way:.1e} s" if near else f"more than {MOST_SWITCHES}"
             raise CutOff(self.t, f"its switches follow one another endlessly ({within})", self.end)
 
     def _name(self, mode: str) -> str:
-        return next(str(switch["label"]) for switch in self.motion.switches if switch["mode"] == mode)
+        return str(self.by_name[mode]["label"])
