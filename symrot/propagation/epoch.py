@@ -15,6 +15,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
+from math import lcm
 from pathlib import Path
 
 from symrot import number
@@ -76,14 +77,54 @@ class Following:
         self._start = Fraction(start)
         self._formulas = [_folded(node, known) for _, node in parameters]
         self.fixed = all(node[0] == "number" for node in self._formulas)
+        self._lines = [_line(node) for node in self._formulas]
 
     def parameters(self, epoch: float | Fraction) -> list[float]:
         """Return them for an epoch, s, on the clock of the motion: exact arithmetic, one rounding each."""
-        values = {EPOCH: self._start + Fraction(epoch)}
+        time = self._start + Fraction(epoch)
+        top, bottom, values = time.numerator, time.denominator, {EPOCH: time}
         try:
-            return [float(evaluate(node, values, EXACT_FUNCTIONS)) for node in self._formulas]
+            return [
+                float(evaluate(node, values, EXACT_FUNCTIONS))
+                if line is None
+                else (line[0] * bottom + line[1] * top) / (line[2] * bottom)
+                for node, line in zip(self._formulas, self._lines, strict=True)
+            ]
         except OverflowError:
             raise CutOff(float(epoch), NOT_FINITE_SENTENCE) from None
+
+
+def _line(node: Node) -> tuple[int, int, int] | None:
+    """Return integers a, b, c where a formula is (a + b*epoch)/c, or None; integers are divided with one rounding."""
+    values = _coefficients(node)
+    if values is None:
+        return None
+    constant, slope = values
+    shared = lcm(constant.denominator, slope.denominator)
+    return int(constant * shared), int(slope * shared), shared
+
+
+def _coefficients(node: Node) -> tuple[Fraction, Fraction] | None:
+    """Return a and b where a formula is a + b*epoch, or None."""
+    if node[0] == "number":
+        return Fraction(node[1]), Fraction(0)
+    if node == ("symbol", EPOCH):
+        return Fraction(0), Fraction(1)
+    parts = [_coefficients(child) for child in children(node)]
+    if node[0] == "call" or any(part is None for part in parts):
+        return None
+    (a, b), *others = (part for part in parts if part is not None)
+    if node[0] == "neg":
+        return -a, -b
+    if node[0] == "**":
+        return (a, b) if node[2] == 1 else None
+    ((c, d),) = others
+    if node[0] in "+-":
+        sign = 1 if node[0] == "+" else -1
+        return a + sign * c, b + sign * d
+    if node[0] == "*" and not (b and d):
+        return a * c, a * d + b * c
+    return (a / c, b / c) if node[0] == "/" and not d else None
 
 
 def clock(

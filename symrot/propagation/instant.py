@@ -27,9 +27,18 @@ class Instant(NamedTuple):
 
     def after(self, *seconds: float) -> "Instant":
         """Return the instant so many seconds later; of several numbers their sum."""
-        time = sum(map(Fraction, seconds), self.exact)
-        high = float(time)
-        return Instant(high, float(time - Fraction(high)))
+        high, low = self
+        for second in seconds:
+            total = high + second
+            part = total - high
+            low += (high - (total - part)) + (second - part)  # what the sum lost
+            high = total
+        total = high + low
+        return Instant(total, low - (total - high))
+
+    def __sub__(self, other: "Instant") -> float:
+        """Return the seconds from another instant to this one."""
+        return (self.high - other.high) + (self.low - other.low)
 
     def since(self, times: Any) -> Any:
         """Return times, s, on a clock that shows 0 at this instant."""

@@ -3,18 +3,20 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from fractions import Fraction
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from symrot.codegen import library
 from symrot.codegen.epoch import moved_formulas
 from symrot.expression import Node, names, parse, rename, text
 from symrot.kernel import Argument, Program
+from symrot.propagation.binding import folded
 from symrot.propagation.epoch import Following
 from symrot.propagation.events import Event, guard_library_source
 from symrot.propagation.instant import Instant
 from symrot.propagation.kernels import error_blocks
 from symrot.propagation.motion import Motion
-from symrot.scene_kernel import bind
+from symrot.scene_kernel import Parameters, bind
 
 if TYPE_CHECKING:
     from symrot.propagation.switched import SwitchedMotion
@@ -41,12 +43,15 @@ class Regime:
 
     def __init__(self, switched: "SwitchedMotion", motion: Motion, held: frozenset[str]) -> None:
         self.motion, self.plan, self.held, self.constants = motion, motion.plan, held, switched.constants
+        self.switches = switched.switches
         modes = [switch["mode"] for switch in switched.switches]
         distances = [_distance(switch) for switch in switched.switches]
         moved, parameters = moved_formulas(distances, {*self.constants, *modes})
         names_of_clock = {name: f"since_{name}" for name, _ in parameters if name not in {*self.constants, *modes}}
         self.parameters = tuple((names_of_clock.get(name, name), formula) for name, formula in parameters)
         self.formulas = {mode: rename(node, names_of_clock) for mode, node in zip(modes, moved, strict=True)}
+        known = {"t", "pi", *(name for name, _ in self.parameters)}
+        self.of_time = {mode for mode, formula in self.formulas.items() if names(formula) <= known}
         self.guards = [guard for switch in switched.switches for guard in self._guards(switch)]
         nodes = [parse(guard.formula) for guard in self.guards]
         known = {name for name, _ in self.parameters} | set(modes)
@@ -59,7 +64,7 @@ class Regime:
         source = guard_library_source(program, formulas, self.plan.states, *error_blocks(self.plan))
         self.path = library.build(source, "events")
         self._following: dict[tuple[int, ...], tuple[Following, Following, list[float]]] = {}
-        self._bound: dict[tuple[tuple[int, ...], Instant | None], tuple[list[float], dict[str, float]]] = {}
+        self._bound: dict[tuple[tuple[int, ...], Instant | None], tuple[list[float], list[float]]] = {}
 
     def _guards(self, switch: Mapping[str, Any]) -> Iterator[Guard]:
         mode, where = switch["mode"], switch["where"]
@@ -73,43 +78,50 @@ class Regime:
             yield Guard(mode, guard, -1, where)
             yield Guard(mode, f"1 - ({guard})", 1, where)
 
-    def _values(self, modes: Modes, zero: Instant) -> tuple[list[float], dict[str, float]]:
-        """Return the parameters of the rates, and those of the guards by name, for a clock that is 0 at an instant."""
+    def _follow(self, modes: Modes) -> tuple[Following, Following, list[float]]:
+        """Return the parameters of rates and guards for one clock after another, and those of the quantities."""
         key = tuple(modes.values())
         if key not in self._following:
-            constants = {**self.constants, **{name: Fraction(value) for name, value in modes.items()}}
-            own = self.motion.kernel.rate_parameters, self.parameters
-            rates, guards = (Following(parameters, constants) for parameters in own)
-            self._following[key] = rates, guards, bind(self.motion.kernel.quantity_parameters, constants)
-        rates, guards, _ = self._following[key]
-        place = key, None if rates.fixed and guards.fixed else zero
-        if place not in self._bound:
-            if place[1] is not None:
-                self._bound = {key: value for key, value in self._bound.items() if key[1] in (None, zero)}
-            numbers = rates.parameters(zero.exact)
-            if self.motion.choice.method == "taylor":
-                numbers += self.motion.taylor_parameters[len(numbers) :]
-            values = dict(zip((name for name, _ in self.parameters), guards.parameters(zero.exact), strict=True))
-            self._bound[place] = numbers, {**values, **{name: float(mode) for name, mode in modes.items()}}
-        return self._bound[place]
+            values = {name: Fraction(value) for name, value in modes.items()}
+            rates, guards, quantities = self._with_constants
+            self._following[key] = Following(rates, values), Following(guards, values), bind(quantities, values)
+        return self._following[key]
+
+    def values(self, modes: Modes, zero: Instant) -> dict[str, float]:
+        """Return what the names in :attr:`formulas` stand for on a clock that shows 0 at an instant."""
+        numbers = self._follow(modes)[1].parameters(zero.exact)
+        return {name: number for (name, _), number in zip(self.parameters, numbers, strict=True)} | {
+            name: float(mode) for name, mode in modes.items()
+        }
 
     def bound(self, modes: Modes, zero: Instant) -> tuple[list[float], list[float]]:
         """Return the parameters of the stepper's library and of the guards', on a clock that shows 0 at an instant."""
-        rates, values = self._values(modes, zero)
-        quantities = self._following[tuple(modes.values())][2]
-        return rates, [*quantities, *(values[name] for name in self.more)]
+        following, guards, quantities = self._follow(modes)
+        place = tuple(modes.values()), None if following.fixed and guards.fixed else zero
+        if place not in self._bound:
+            if place[1] is not None:
+                self._bound = {key: value for key, value in self._bound.items() if key[1] in (None, zero)}
+            rates, values = following.parameters(zero.exact), self.values(modes, zero)
+            if self.motion.choice.method == "taylor":
+                rates += self.motion.taylor_parameters[len(rates) :]
+            self._bound[place] = rates, [*quantities, *(values[name] for name in self.more)]
+        return self._bound[place]
 
-    def values(self, modes: Modes, zero: Instant) -> dict[str, float]:
-        """Return what the names in :attr:`formulas` stand for, but for time and states."""
-        return self._values(modes, zero)[1]
+    @cached_property
+    def _with_constants(self) -> tuple[Parameters, Parameters, Parameters]:
+        """The parameters of rates, guards and quantities as formulas of the modes and the epoch alone."""
+        modes = {switch["mode"] for switch in self.switches}
+        known = {name: value for name, value in self.constants.items() if name not in modes}
+        kernel = self.motion.kernel
+        rates, guards, quantities = (
+            tuple((name, folded(formula, known)) for name, formula in parameters)
+            for parameters in (kernel.rate_parameters, self.parameters, kernel.quantity_parameters)
+        )
+        return rates, guards, quantities
 
     def active(self, modes: Modes) -> list[bool]:
         """Return which guards matter."""
         return [guard.where is None or modes[guard.where[0]] == guard.where[1] for guard in self.guards]
-
-    def of_time(self, mode: str) -> bool:
-        """Return whether the guard of a mode is a formula of time alone."""
-        return names(self.formulas[mode]) <= {"t", "pi", *(name for name, _ in self.parameters)}
 
 
 def _distance(switch: Mapping[str, Any]) -> Node:

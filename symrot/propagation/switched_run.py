@@ -198,7 +198,7 @@ class SwitchedRun:
         zero to twice the digits of t.
         """
         instant = self.zero.after(t)
-        if guard.mode in self.held or not regime.of_time(guard.mode):
+        if guard.mode in self.held or guard.mode not in regime.of_time:
             return instant
         switch, aside = self.by_name[guard.mode], NEARBY * abs(t)
         goal = 0.0 if switch["kind"] == "sign" else max(guard.change, 0)
@@ -317,7 +317,7 @@ class SwitchedRun:
     def _count(self) -> None:
         self.switches += 1
         self.recent.append(self.zero.after(self.t))
-        way = abs(float(self.recent[-1].exact - self.recent[0].exact))
+        way = abs(self.recent[-1] - self.recent[0])
         near = len(self.recent) == CHATTER and way <= CHATTERING * self.span
         if near or self.switches > MOST_SWITCHES:
             within = f"{CHATTER} within {way:.1e} s" if near else f"more than {MOST_SWITCHES}"
