@@ -11,16 +11,9 @@ from symrot.errors import InputError, PropagationError
 from symrot.propagation.events import read_events
 from symrot.scene import Scene
 
+pytestmark = pytest.mark.usefixtures("quick_compiler")
 METHODS = ["taylor", "dop853", "exact"]
 ULP = 2.0**-52
-
-
-@pytest.fixture(scope="module", autouse=True)
-def own_cache(tmp_path_factory):
-    """Build into a directory of this test run."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("SYMROT_CACHE", str(tmp_path_factory.mktemp("cache")))
-        yield
 
 
 def scene(omega=("3/8", 1, "1/2"), stop=30, **more):

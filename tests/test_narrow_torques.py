@@ -18,6 +18,7 @@ from symrot.errors import PropagationError
 from tests.campaigns.collocation import Feature
 from tests.campaigns.references import Problem, attitude_apart, reference
 
+pytestmark = pytest.mark.usefixtures("quick_compiler")
 ALLOWED = 20  # tolerances, as promised
 STEPPED = ("auto", "taylor", "dop853")
 

@@ -34,14 +34,6 @@ from tests.test_recurrences import FUNCTION_SYSTEMS, START, SYSTEMS, program
 MATH = {name: getattr(math, name) for name in FUNCTIONS if name != "abs"}
 
 
-@pytest.fixture(scope="module", autouse=True)
-def own_cache(tmp_path_factory):
-    """Build into a directory of this test run."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("SYMROT_CACHE", str(tmp_path_factory.mktemp("cache")))
-        yield
-
-
 def rigid_body_program():
     """Return a heavy body about a fixed point: moments a, b, c; weight times centre of mass; gravity along -z."""
     names = [f"w{i}" for i in (1, 2, 3)] + [f"q{i}" for i in range(4)]
