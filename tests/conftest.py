@@ -73,13 +73,11 @@ def quick_compiler_words(shared_directory: Path) -> str | None:
     return str(script)
 
 
-@pytest.fixture(scope="module")
-def quick_compiler(quick_compiler_words: str | None) -> Iterator[None]:
-    """Compile for a module that judges motions and messages; the flags that ship are judged where machine code is."""
-    with pytest.MonkeyPatch.context() as patch:
-        if quick_compiler_words is not None:
-            patch.setenv("CC", quick_compiler_words)
-        yield
+@pytest.fixture
+def quick_compiler(quick_compiler_words: str | None, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Compile for a test that judges motions and messages; others judge speed and bits under the flags that ship."""
+    if quick_compiler_words is not None:
+        monkeypatch.setenv("CC", quick_compiler_words)
 
 
 @pytest.fixture(autouse=True)

@@ -13,7 +13,6 @@ from symrot.errors import InputError, PropagationError
 from symrot.propagation import driven
 from symrot.scene import Scene
 
-
 pytestmark = pytest.mark.usefixtures("quick_compiler")
 
 

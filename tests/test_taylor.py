@@ -457,6 +457,7 @@ def test_the_benchmark_runs_and_ranks():
     assert bench.best_of(runs, 1e-30, ["taylor"]) is None
 
 
+@pytest.mark.usefixtures("quick_compiler")
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-6, 1e-9, 1e-12])
 @pytest.mark.parametrize("power", range(1, 7))
 def test_series_with_gaps_are_followed(power, tolerance):
