@@ -1,5 +1,6 @@
 """What all tests share: one cache of compiled kernels, the order of work, and a precision of mpmath that none may change."""
 
+import gc
 import os
 import shlex
 from collections.abc import Iterator
@@ -24,6 +25,13 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
     from xdist.scheduler import WorkStealingScheduling
 
     return WorkStealingScheduling(config, log)
+
+
+def pytest_collection_finish() -> None:
+    """Keep the garbage collector from walking through all modules and tests again and again while SymPy derives."""
+    gc.collect()
+    gc.freeze()
+    gc.set_threshold(50_000, 20, 50)
 
 
 @pytest.fixture(scope="session")

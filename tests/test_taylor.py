@@ -75,6 +75,7 @@ def small(rates, scale=1.0, flags=(), order=None):
 # ------------------------------------------------------------------------------------------------ coefficients
 
 
+@pytest.mark.usefixtures("quick_compiler")
 @pytest.mark.parametrize(
     "flags", [(), ("-DSYMROT_PAIRS",), ("-DSYMROT_PLAIN",)], ids=["vectors", "vectors of two", "plain C"]
 )
@@ -88,6 +89,7 @@ def test_compiled_coefficients_are_those_of_the_recurrences(flags):
         compare(rates, flags)
 
 
+@pytest.mark.usefixtures("quick_compiler")
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_compiled_polynomial_systems(name):
     compare(SYSTEMS[name])
@@ -104,6 +106,7 @@ def compare(rates, flags=(), order=20):
     assert (unit == found * 0.5 ** np.arange(order + 1)[:, None]).all() or flags  # a power of two costs no bit
 
 
+@pytest.mark.usefixtures("quick_compiler")
 @pytest.mark.parametrize("order", [4, 6, 10, 16, 22])
 def test_any_even_order(order):
     compare(SYSTEMS["free body"], order=order)
