@@ -118,4 +118,4 @@ def test_a_strange_value_anywhere_in_a_certificate_gets_one_sentence(name, seed,
             recheck.check(path)
         except Exception as reason:
             assert "\n" not in str(reason)
-    assert refused >= 0.7 * count
+    assert refused > 0.75 * count
