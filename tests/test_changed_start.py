@@ -13,6 +13,7 @@ from symrot.planner import make_plan, structure_key
 from symrot.propagation import kernels, motion, propagator, taylor
 from symrot.scene import Initial, Scene, load_scene
 
+pytestmark = pytest.mark.usefixtures("quick_compiler")
 PRISM = load_scene("tumbling_prism")
 TILTED = {"inertia": {"xx": 3, "yy": 4, "zz": 5, "xy": "-1/10", "xz": "1/5", "yz": "1/7"}}
 

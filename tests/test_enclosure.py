@@ -27,6 +27,7 @@ from symrot.scene import Scene
 from symrot.scene_kernel import bind
 from tests.needs import needs_compiler
 
+pytestmark = pytest.mark.usefixtures("quick_compiler")
 RANDOM = np.random.default_rng(12)
 COMPLEX = {name: getattr(cmath, name) for name in FUNCTIONS if name not in ("sech", "atan2")}
 COMPLEX["sech"] = lambda z: 1 / cmath.cosh(z)

@@ -102,6 +102,7 @@ def error(omega, quaternion, reference):
     return np.abs(np.concatenate([omega, quaternion], axis=-1) - reference).max()
 
 
+@pytest.mark.usefixtures("quick_compiler")
 @pytest.mark.parametrize("case", CASES)
 @pytest.mark.parametrize("t0", STARTS)
 def test_a_start_far_away_costs_no_digit(case, t0):

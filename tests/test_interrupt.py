@@ -52,8 +52,20 @@ def left_over(folder):
     return [path for path in folder.rglob("*") if path.name.startswith(".symrot-") or path.suffix == ".part"]
 
 
-@pytest.mark.parametrize("to_group", [True, False], ids=["group", "alone"])
-@pytest.mark.parametrize("command", COMMANDS)
+WAYS = ["group", "alone"]
+
+
+@pytest.mark.parametrize(
+    ("command", "to_group"),
+    [
+        pytest.param(
+            command, way == "group", id=f"{command}-{way}",
+            marks=[] if way == WAYS[place % 2] else pytest.mark.campaign,
+        )
+        for place, command in enumerate(COMMANDS)
+        for way in WAYS
+    ],
+)  # fmt: skip
 def test_a_command_ends_when_it_is_interrupted(command, to_group, tmp_path):
     process = started(COMMANDS[command], tmp_path)
     time.sleep(random.uniform(0.3, 2.5))  # at any time: the test holds for all of them

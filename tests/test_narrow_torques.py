@@ -18,6 +18,7 @@ from symrot.errors import PropagationError
 from tests.campaigns.collocation import Feature
 from tests.campaigns.references import Problem, attitude_apart, reference
 
+pytestmark = pytest.mark.usefixtures("quick_compiler")
 ALLOWED = 20  # tolerances, as promised
 STEPPED = ("auto", "taylor", "dop853")
 
@@ -164,23 +165,23 @@ def test_an_ensemble_meets_the_pulse(method):
     assert np.abs(ensemble.omega[:, 2, 2] - np.array(starts)[:, 2] - sqrt(pi)).max() < ALLOWED * 1e-10 * 1.8
 
 
-@pytest.mark.parametrize("torque", ["exp(t**3)", "exp(exp(t))", "cosh(100*t)", "1/(t-1/3)**3"])
-def test_overflow_and_poles_end_in_a_sentence(torque):
+def test_overflow_and_poles_end_in_a_sentence():
     """Every method says how far it came, within a time that only a run without an end exceeds."""
-    code = f"""
+    code = """
 import symrot
 from symrot.errors import PropagationError
-scene = symrot.Scene.from_dict({{"schema": 1, "body": {{"principal": [1, 2, 3]}}, "initial": {{"omega": [0, 0, 1]}},
-    "span": {{"t": [0, 20]}}, "torque": [{{"kind": "expression", "torque": ["0", "0", {torque!r}]}}]}})
-for method in ("auto", "taylor", "dop853"):
-    try:
-        symrot.propagator(scene, method, 1e-10)([20.0])
-    except PropagationError as error:
-        print(error)
+for torque in ("exp(t**3)", "exp(exp(t))", "cosh(100*t)", "1/(t-1/3)**3"):
+    scene = symrot.Scene.from_dict({"schema": 1, "body": {"principal": [1, 2, 3]}, "initial": {"omega": [0, 0, 1]},
+        "span": {"t": [0, 20]}, "torque": [{"kind": "expression", "torque": ["0", "0", torque]}]})
+    for method in ("auto", "taylor", "dop853"):
+        try:
+            symrot.propagator(scene, method, 1e-10)([20.0])
+        except PropagationError as error:
+            print(torque, method, error)
 """
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=20)
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=80)
     assert done.returncode == 0, done.stderr
-    assert len([line for line in done.stdout.splitlines() if "t =" in line]) == 3
+    assert len([line for line in done.stdout.splitlines() if "t =" in line]) == 4 * 3, done.stdout
 
 
 @pytest.mark.parametrize("method", STEPPED)

@@ -12,6 +12,7 @@ from symrot.scene import Scene
 from symrot.switches import condition_error, has_switches, smooth
 from tests.needs import needs_compiler
 
+pytestmark = pytest.mark.usefixtures("quick_compiler")
 METHODS = ["taylor", "dop853", "scipy:DOP853"]
 RANDOM = np.random.default_rng(5)
 
