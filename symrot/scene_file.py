@@ -41,7 +41,7 @@ def _torques(name: str) -> list[dict[str, Any]]:
 
 def _has_kernel(torque: dict[str, Any]) -> bool:
     if torque["kind"] != "expression":
-        return torque["kind"] != TABLE_KIND.kind
+        return str(torque["kind"]) != TABLE_KIND.kind
     return not any(has_switches(parse(str(formula), switching=True)) for formula in torque["torque"])
 
 

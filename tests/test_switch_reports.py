@@ -190,6 +190,8 @@ def test_a_wide_table_of_numbers_goes_on_below_itself(monkeypatch):
     rows = [["method", *(f"1e-{k:02d}" for k in range(30))], ["taylor", *(f"{k}.25" for k in range(30))]]
     lines = layout.columns(rows, right=range(1, 31))
     assert max(map(len, lines)) <= 78
+    named = layout.columns([["fastest, us", *rows[0][1:]]], right=range(1, 31))
+    assert all(line.startswith("fastest, us") for line in named if line)  # which is not wrapped instead
     assert sum(line.startswith("method") for line in lines) == sum(line.startswith("taylor") for line in lines) > 1
     assert " ".join(lines).count("1e-") == 30
 

@@ -128,6 +128,9 @@ def _widths(rows: Sequence[Sequence[str]], width: int, wrap: int, right: Sequenc
     left = width - 2 * (count - 1) - sum(size for i, size in enumerate(widths) if i != wrap)
     widths[wrap] = max(1, min(widths[wrap], max(left, LEAST)))
     words = [max((len(word) for row in rows for word in row[i].split()), default=1) for i in range(count)]
+    narrowest = [widths[i] if i in right else min(widths[i], words[i]) for i in range(count)]
+    if sum(narrowest) + 2 * (count - 1) > width and len(right) > 1:
+        return widths  # too many numbers for one line: the table goes on below itself
     while sum(widths) + 2 * (count - 1) > width:
         wide = [i for i in range(count) if i not in right and widths[i] > words[i]]
         if not wide:

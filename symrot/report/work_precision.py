@@ -89,12 +89,13 @@ def lines(found: Mapping[str, Any]) -> list[str]:
     )  # fmt: skip
     skipped = fields([(f"{item['method']}:", one_line(item["why"])) for item in found["skipped"]])
     parts: list[Iterable[str]] = [[title], [f"  {line}" for line in head]]
-    parts += [["for each decade of the error: time of the fastest (1), and how many times as long the others take"]]
-    parts[-1] = [*parts[-1], *(f"  {line}" for line in _decades(found))]
+    title = "for each decade of the error: time of the fastest (1), and how many times as long the others take"
+    parts += [[line.strip() for line in fields([("", title)])]]
+    parts[-1] = [*parts[-1], *(f"  {line}".rstrip() for line in _decades(found))]
     for name, table in (("how many times longer, median over the decades", _against(found)),
                         ("where each method ends", _floors(found["runs"])), ("left out", skipped)):  # fmt: skip
         if table:
-            parts.append([name, *(f"  {line}" for line in table)])
+            parts.append([name, *(f"  {line}".rstrip() for line in table)])
     return [line for number, part in enumerate(parts) for line in ([] if number == 0 else [""]) + list(part)]
 
 
