@@ -12,13 +12,14 @@ from numpy.typing import NDArray
 
 from symrot import number
 from symrot.closed_form import double_double as dd
-from symrot.closed_form.axial import Driven, turned_about
+from symrot.closed_form.axial import turned_about
+from symrot.closed_form.axial_compiled import Constants
 from symrot.closed_form.free_body import NEGLIGIBLE, Body, Defect
 from symrot.closed_form.heavy_top import Frame
 from symrot.closed_form.library import Floats
 from symrot.closed_form.many import Batch
 from symrot.closed_form.pairs import GRID, LARGEST, SMALLEST, attitude, pair, quotient
-from symrot.closed_form.spin_up_compiled import LIMITS
+from symrot.closed_form.spin_up_compiled import limits
 from symrot.inertia.principal import Principal
 
 __all__ = [
@@ -32,7 +33,7 @@ Column = Floats | Fraction
 _SPREAD = 2.0**-300  # components of a quaternion farther apart are left to fractions
 _DOUBT = 2.0**-12  # of a step of the grid: pairs of doubles err by less than a quarter of it
 _TIE = 2.0**-40  # of the last bit
-_TURNED = 2.0**-96  # by which a product of unit quaternions may err
+_TURNED = 2.0**-99  # by which products of unit quaternions may err: units by 2^-100, two products by 2^-102 each
 
 
 def attitudes(quaternions: Floats) -> Floats:
@@ -203,27 +204,24 @@ def spin_ups(across: Column, own: Column, torque: Column, axis: int, omega: Floa
     numbers[:, :6] = _columns([across, own, torque], len(omega))
     numbers[:, 6:12] = _pairs(omega[:, [axis - 2, axis - 1, axis]])
     numbers[:, 12:] = start
-    return Batch("spin_up", (numbers, np.array([axis, *LIMITS])))
+    return Batch("spin_up", (numbers, np.array([axis, *limits()])))
 
 
-def driven(body: Driven | Sequence[Driven], omega: Floats, start: Floats) -> Batch:
+def driven(constants: Constants | Sequence[Constants], omega: Floats, start: Floats) -> Batch:
     """Return the rotations of one driven body, or of a body each; the rest as :func:`free_bodies`.
 
-    Its constants are elementary, and found in integers.
+    The constants are elementary, and found in integers.
     """
-    bodies = [body] * len(omega) if isinstance(body, Driven) else body
+    bodies = [constants] * len(omega) if isinstance(constants, Constants) else constants
     axis = bodies[0].axis
     turned = omega[:, [axis - 2, axis - 1]].any(axis=1)
     moving = zip(bodies, omega[:, axis].tolist(), turned.tolist(), strict=True)
     found = np.zeros((len(omega), 65))  # `axial` of axial.h
-    found[:, 8:26] = [each.constants.moving(rate, across) for each, rate, across in moving]
+    found[:, 8:26] = [each.moving(rate, across) for each, rate, across in moving]
     found[turned, 26:40], found[turned, 12:26] = found[turned, 12:26], 0.0
-    if isinstance(body, Driven):
-        found[:, :8] = body.constants.head(False)
-    else:
-        found[:, :8] = [each.constants.head(False) for each in bodies]
+    found[:, :8] = constants.head(False) if isinstance(constants, Constants) else [c.head(False) for c in constants]
     found[:, 2] = turned
-    for k, value in enumerate(bodies[0].constants.shapes(omega[:, axis - 2], omega[:, axis - 1])):
+    for k, value in enumerate(bodies[0].shapes(omega[:, axis - 2], omega[:, axis - 1])):
         found[:, 40 + k] = value
     attitude = start.reshape(-1, 8)[:, ::2]
     found[:, 49::4], found[:, 50::4] = attitude, np.column_stack(turned_about(axis, list(attitude.T)))

@@ -186,6 +186,7 @@ class _Alone:
 
 # ------------------------------------------------------------------------------------------------ arrays of each form
 
+_FAR = 1e100  # moments, torques and damping up to it, and moments down to its inverse, have quotients within bounds
 Usual = NDArray[np.bool_] | bool
 
 
@@ -319,24 +320,28 @@ def _driving(part: _Part, kind: str, field: str, axis: int) -> Any:
 def _driven(part: _Part) -> tuple["Batch | None", Usual]:
     from symrot.closed_form import batches
     from symrot.closed_form.axial import Driven
+    from symrot.closed_form.axial_compiled import Constants
 
     axis = part.axis
     assert axis is not None
-    moments = [part.constant(name) for name in PRINCIPAL]
     push = _driving(part, "constant_body", "torque", axis)
     drags = [_driving(part, "damping", "linear", k) for k in (axis, axis - 1)]
-    given = [*moments, push, *drags]
-    if any(value is None for value in given):
+    if any(value is None for value in (push, *drags)):
         return None, False
-    if all(isinstance(value, Fraction) for value in given):
-        return batches.driven(Driven(moments, axis, push, *drags), part.omega, part.start), True
-    n = len(part.rows)
-    columns = [[value] * n if isinstance(value, Fraction) else value.tolist() for value in given]
+    given = [*part.moments(), push, *drags]
     try:
-        bodies = [Driven(row[:3], axis, *row[3:]) for row in zip(*columns, strict=True)]
-    except InputError:  # of one, which says so
+        if all(isinstance(value, Fraction) for value in given):
+            moments = [part.constant(name) for name in PRINCIPAL]
+            return batches.driven(Driven(moments, axis, push, *drags).constants, part.omega, part.start), True
+        bounds = [_doubles(value) for value in given]
+        if any((np.abs(x) > _FAR).any() for x in bounds) or any((x < 1 / _FAR).any() for x in map(np.array, bounds[:2])):
+            return None, False
+        columns = [[value] * len(part.rows) if isinstance(value, Fraction) else value.tolist() for value in given]
+        ratios = [[x.as_integer_ratio() for x in column] for column in columns]
+        bodies = [Constants(axis, (a, c), *rest) for a, c, *rest in zip(*ratios, strict=True)]
+        return batches.driven(bodies, part.omega, part.start), True
+    except InputError:  # of one trajectory, which says so alone
         return None, False
-    return batches.driven(bodies, part.omega, part.start), True
 
 
 def _spin_up(part: _Part) -> tuple["Batch | None", Usual]:
