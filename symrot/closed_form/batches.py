@@ -20,7 +20,6 @@ from symrot.closed_form.library import Floats
 from symrot.closed_form.many import Batch
 from symrot.closed_form.pairs import GRID, LARGEST, SMALLEST, attitude, pair, quotient
 from symrot.closed_form.spin_up_compiled import limits
-from symrot.inertia.principal import Principal
 
 __all__ = [
     "Column", "attitudes", "driven", "free_bodies", "free_bodies_of_moments", "gyrostats", "spin_ups", "tops",
@@ -145,9 +144,9 @@ def _noticed(omega: Floats) -> Floats:
     return np.where(abs(omega) < np.ldexp(abs(omega).max(axis=1), -NEGLIGIBLE)[:, None], 0.0, omega)
 
 
-def free_bodies(principal: Principal, omega: Floats, start: Floats) -> Batch:
+def free_bodies(body: Body, omega: Floats, start: Floats) -> Batch:
     """Return the motions of one free body from :func:`usual` angular velocities and attitudes (8,) or (n, 8)."""
-    body, rates, exact = Body(principal), _pairs(_noticed(omega)), np.empty((len(omega), 8))
+    rates, exact = _pairs(_noticed(omega)), np.empty((len(omega), 8))
     exact[:, :6] = body.gaps
     for i, given in enumerate(rates[:, ::2].tolist() if body.axes is None else omega.tolist()):
         integers = _integers(given)

@@ -4,7 +4,7 @@ Trajectories whose numbers are unusual (beyond 1e205, products of inertia that v
 motion alone; where no constant varies, they share what the body and its torques give.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Hashable, Iterator, Sequence
 from fractions import Fraction
 from itertools import combinations
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from symrot.closed_form import double_double as dd
 from symrot.closed_form.choose import Exact, Form, exact_form
 from symrot.closed_form.pairs import LARGEST, SMALLEST, attitude, pair
+from symrot.closed_form.library import loaded
 from symrot.codegen import library
 from symrot.errors import InputError
 from symrot.ensemble.variation import PRINCIPAL, PRODUCTS, Variation
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
 __all__ = ["STEPS_BELOW", "Solved", "choose", "follow_exact", "forms_of"]
 
 Rows = NDArray[np.intp]
-MOST_BITS = 62  # of a pattern
+MOST_BITS = 59  # of a pattern, beside those of angular velocity
 
 
 class Kind(NamedTuple):
@@ -43,18 +44,30 @@ def forms_of(variation: Variation) -> list[tuple[Kind, Rows]]:
     A form is chosen by which components are zero and which moments and coefficients are equal: never by other numbers.
     """
     chosen: dict[Kind, list[Rows]] = {}
-    for rows in _patterns(variation):
-        scene = variation.scene_of(int(rows[0]))
-        form = exact_form(scene)
-        chosen.setdefault(Kind(form, form and form.axis(scene)), []).append(rows)
-    return [(kind, np.sort(np.concatenate(parts))) for kind, parts in chosen.items()]
+    known: dict[Hashable, Kind] = variation.kept("forms", dict)
+    for pattern, rows in _patterns(variation):
+        kind = known.get(pattern)
+        if kind is None:
+            scene = variation.scene_of(int(rows[0]))
+            form = exact_form(scene)
+            kind = Kind(form, form and form.axis(scene))
+            if pattern is not None:
+                known[pattern] = kind
+        chosen.setdefault(kind, []).append(rows)
+    return [
+        (kind, parts[0] if len(parts) == 1 else np.sort(np.concatenate(parts))) for kind, parts in chosen.items()
+    ]
 
 
-def _patterns(variation: Variation) -> list[Rows]:
-    """Return the trajectories in groups with the same zeros and the same equal constants."""
+def _patterns(variation: Variation) -> list[tuple[Hashable, Rows]]:
+    """Return the trajectories in groups with the same zeros and the same equal constants, each with what they share."""
     columns, n = variation.columns, len(variation)
-    bits = [variation.omega[:, k] != 0 for k in range(3)]
-    bits += [column != 0 for column in columns.values()]
+    code = (variation.omega != 0) @ np.array([1, 2, 4])
+    if not columns:
+        if (code == code[0]).all():
+            return [(int(code[0]), np.arange(n))]
+        return [(k, rows) for k in range(8) if len(rows := np.flatnonzero(code == k))]
+    bits = [column != 0 for column in columns.values()]
     bits += [one == other for one, other in combinations(columns.values(), 2)]
     bits += [abs(columns[name]) <= variation.negligible for name in columns if name in PRODUCTS]
     bits += [columns[name] == value for name in columns for value in variation.constants_beside(name)]
@@ -62,13 +75,12 @@ def _patterns(variation: Variation) -> list[Rows]:
     varied = [kinds[place] for name in columns if (place := variation.places[name].torque) >= 0]
     summed = any(kinds.count(kind) > 1 for kind in varied)
     if summed or len(bits) > MOST_BITS:  # sums of constants may vanish too
-        return [np.array([i]) for i in range(n)]
-    code = np.zeros(n, dtype=np.int64)
-    for k, bit in enumerate(bits):
-        code |= bit.astype(np.int64) << k
+        return [(None, np.array([i])) for i in range(n)]
+    code = code + np.array(bits).T @ (8 << np.arange(len(bits)))
     order = np.argsort(code, kind="stable")
     edges = np.flatnonzero(np.diff(code[order])) + 1
-    return np.split(order, edges)
+    names = tuple(columns)
+    return [((names, int(code[rows[0]])), rows) for rows in np.split(order, edges)]
 
 
 STEPS_BELOW = {"axial": 1000.0, "spin_up": 1500.0, "heavy_top": 100.0}
@@ -93,9 +105,12 @@ def choose(variation: Variation, times: Floats, start: float, faster: bool) -> l
     90 us (a spin-up): then steps are faster up to the angles of :data:`STEPS_BELOW`. The angle is that of the
     trajectory itself, so that its method does not depend on the others.
     """
-    found, without_compiler = [], bool(not faster and library.missing())  # steps need one too
+    found: list[Solved] = []
     for kind, rows in forms_of(variation):
         if kind.form is None:
+            continue
+        without_compiler = not loaded(kind.form.library) and library.missing()
+        if without_compiler and faster:  # steps are followed by SciPy then
             continue
         for each, batch, usual in [(rows, None, None)] if without_compiler else _batches(variation, kind, rows):
             if batch is None and faster:
@@ -160,7 +175,12 @@ def _put_starts(
         return
     states = variation.initial_states
     if at_start.ndim == 1:
-        at_start = np.broadcast_to(at_start, (len(variation), len(at_start)))
+        own = slice(None) if len(rows) == len(variation) else rows
+        for sample in np.flatnonzero(at_start).tolist():
+            omega[own, sample] = states[own, :3]
+            if quaternion is not None:
+                quaternion[own, sample] = states[own, 3:]
+        return
     chosen, sample = np.nonzero(at_start[rows])
     omega[rows[chosen], sample] = states[rows[chosen], :3]
     if quaternion is not None:
@@ -201,8 +221,11 @@ class _Part(NamedTuple):
     @property
     def start(self) -> Floats:
         """Unit quaternions as pairs of doubles, (n, 8) or (8,)."""
-        found = self.variation.attitudes
-        return np.array(attitude(self.variation.scene.initial.quaternion)) if found is None else found[self.rows]
+        variation, found = self.variation, self.variation.attitudes
+        if found is None:
+            own = variation.kept("attitude", lambda: np.array(attitude(variation.scene.initial.quaternion)))
+            return own  # type: ignore[no-any-return]
+        return found if len(self.rows) == len(variation) else found[self.rows]
 
     def constant(self, name: str) -> Any:
         """Return a constant as a Fraction, or of each trajectory."""
@@ -247,10 +270,12 @@ def _parts(variation: Variation, kind: Kind, rows: Rows) -> Iterator[_Part]:
 
 def _free(part: _Part) -> tuple["Batch | None", Usual]:
     from symrot.closed_form import batches
+    from symrot.closed_form.free_body import Body
 
     variation = part.variation
     if not variation.columns:
-        return batches.free_bodies(variation.scene.body.principal, part.omega, part.start), True
+        body = variation.kept("free body", lambda: Body(variation.scene.body.principal))
+        return batches.free_bodies(body, part.omega, part.start), True
     if not variation.in_principal_axes:
         return None, False
     if any(isinstance(x, Fraction) and Fraction(float(x)) != x for x in map(variation.constant, PRINCIPAL)):
@@ -286,11 +311,13 @@ def _top(part: _Part) -> tuple["Batch | None", Usual]:
         for size in (abs(_doubles(weight)), abs(_doubles(height))):
             fine = fine & (size < 1e120) & (size > 1e-120)
     sign = 1 if pull.flat[0] > 0 else -1
-    frame = Frame(part.axis, [-sign * x for x in torque["direction"]])
+    axis, key = part.axis, (part.axis, sign)
+    frame = variation.kept(("frame", key), lambda: Frame(axis, [-sign * x for x in torque["direction"]]))
     if frame.plain:
         start = part.start
     elif variation.quaternion is None:
-        start = np.array(frame.start(variation.scene.initial.quaternion))
+        own = variation.scene.initial.quaternion
+        start = variation.kept(("turned attitude", key), lambda: np.array(frame.start(own)))
     else:
         start = batches.turned(frame, variation.quaternion[part.rows])
     return batches.tops(*part.moments(), sign * pull, frame, part.omega, start), fine
@@ -322,7 +349,7 @@ def _driven(part: _Part) -> tuple["Batch | None", Usual]:
     from symrot.closed_form.axial import Driven
     from symrot.closed_form.axial_compiled import Constants
 
-    axis = part.axis
+    axis, variation = part.axis, part.variation
     assert axis is not None
     push = _driving(part, "constant_body", "torque", axis)
     drags = [_driving(part, "damping", "linear", k) for k in (axis, axis - 1)]
