@@ -39,12 +39,12 @@ def parts(top: int, bottom: int, count: int) -> list[float]:
     """Return top/bottom as so many doubles, each the rounded rest of those before it; of equal ratios the same."""
     sign, top = (-1, -top) if top < 0 else (1, top)
     size = top.bit_length() - bottom.bit_length()
-    if size > _LARGEST:
-        return [sign * 2.0**_LARGEST, *[0.0] * (count - 1)]
-    shift = _BITS - size
-    left, found = (top << shift) // bottom if shift > 0 else top // (bottom << -shift), []
+    shift, found = _BITS - size, []
+    left = (top << shift) // bottom if shift > 0 else top // (bottom << -shift)
     if left >> _BITS:  # one bit more: for other integers of the same ratio it may not be there
         left, shift = left >> 1, shift - 1
+    if shift < _BITS - _LARGEST:
+        return [sign * 2.0**_LARGEST, *[0.0] * (count - 1)]
     left *= sign
     for _ in range(count):
         high = float(left)
