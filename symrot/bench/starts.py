@@ -12,6 +12,7 @@ the method that ``auto`` takes. Time of the processor, medians.
 """
 
 import argparse
+import ctypes
 from collections.abc import Callable, Iterator
 from functools import partial
 from statistics import median
@@ -22,6 +23,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symrot.closed_form import motion as forms
+from symrot.closed_form import spin_up_compiled
+from symrot.codegen.address import address
 from symrot.ensemble.ensemble import propagate_ensemble
 from symrot.errors import InputError
 from symrot.planner import structure_key
@@ -55,7 +58,10 @@ _BRAKE = {"kind": "damping", "linear": ["1/10", "1/10", "1/5"]}
 _PUSH = {"kind": "constant_body", "torque": [0, 0, "1/9"]}
 MADE: dict[str, Callable[[], Scene]] = {
     "tilted free body": lambda: _made(
-        "tilted free body", [], {"xx": 3, "yy": 4, "zz": 5, "xy": "-1/10", "xz": "1/5", "yz": "1/7"}, ["1/3", "-1/7", "2"]
+        "tilted free body",
+        [],
+        {"xx": 3, "yy": 4, "zz": 5, "xy": "-1/10", "xz": "1/5", "yz": "1/7"},
+        ["1/3", "-1/7", "2"],
     ),
     "turned heavy top": lambda: _made(
         "turned heavy top",
@@ -137,7 +143,11 @@ def _row(found: Propagator, rounds: int) -> tuple[float, ...]:
 
 def _in_c(motion: Any, initial: Any, rounds: int) -> float:
     """Return what the constants of a closed form take in C; steppers have none."""
-    functions = forms._bound.get(motion.form.library) if motion.choice.method == "exact" else None
+    if motion.choice.method != "exact":
+        return 0.0
+    if motion.form.library == "spin_up":
+        return _spin_up_in_c(motion.exact._source, rounds)
+    functions = forms._bound.get(motion.form.library)
     if functions is None:
         return 0.0
     calls: list[tuple[Any, ...]] = []
@@ -152,6 +162,17 @@ def _in_c(motion: Any, initial: Any, rounds: int) -> float:
     finally:
         forms._bound[motion.form.library] = functions
     return _median(lambda kept=alive: functions[0](*calls[0]), rounds)  # type: ignore[misc]  # whose memory is written
+
+
+def _spin_up_in_c(source: Any, rounds: int) -> float:
+    """Return the same of a spin-up: without polynomials, and with them where samples asked for them."""
+    found, total = spin_up_compiled.functions(), 0.0
+    record, table = found.record(), np.empty(spin_up_compiled.TABLE)
+    given = found.numbers(*source._numbers), found.limits(*spin_up_compiled.limits())
+    for room in (None, table) if source._known[2] is not None else (None,):
+        place = address(room), ctypes.addressof(record)
+        total += _median(lambda place=place: found.prepare(source._axis, *given, *place), rounds)  # type: ignore[misc]
+    return total
 
 
 def changed_starts(scenes: list[str], rounds: int) -> None:

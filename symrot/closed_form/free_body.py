@@ -91,11 +91,14 @@ class Body:
     def along(self, omega0: Sequence[Number]) -> tuple[list[int], int]:
         """Return angular velocity along the principal axes, as integers over one denominator."""
         rates, shared = common(omega0)
-        largest = max(map(abs, rates)) * self._unit
+        x, y, z = rates
+        largest = max(abs(x), abs(y), abs(z))
         if self.axes is not None:
-            axes = self._axes
-            rates = [sum([axes[3 * i + k] * rates[i] for i in range(3)]) for k in range(3)]
-            shared *= self._unit
+            xx, xy, xz, yx, yy, yz, zx, zy, zz = self._axes
+            rates = [xx * x + yx * y + zx * z, xy * x + yy * y + zy * z, xz * x + yz * y + zz * z]
+            largest, shared = largest * self._unit, shared * self._unit
+        if largest.bit_length() <= NEGLIGIBLE:  # not even 1 is
+            return rates, shared
         return [0 if abs(x) << NEGLIGIBLE < largest else x for x in rates], shared
 
     def motion(self, omega0: Sequence[Number], quaternion0: Sequence[Number]) -> ExactMotion:
@@ -142,7 +145,12 @@ class Defect:
         x, y, z = w
         one, two, three = self._one * x * x, self._two * y * y, self._three * z * z
         defect, largest = one + two + three, self._largest * max(abs(x), abs(y), abs(z))
-        if not defect or abs(defect) << NEGLIGIBLE < max(abs(one), abs(two), abs(three)):
+        if not defect:
+            return 0.0, 0.0
+        widest = max(one.bit_length(), two.bit_length(), three.bit_length())
+        if defect.bit_length() + NEGLIGIBLE < widest + 2 and abs(defect) << NEGLIGIBLE < max(
+            abs(one), abs(two), abs(three)
+        ):
             return 0.0, 0.0
         return quotient(defect, largest * largest)
 

@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 
 from symrot.closed_form import double_double as dd
 from symrot.closed_form.choose import Exact, Form, exact_form
-from symrot.closed_form.pairs import LARGEST, SMALLEST, attitude, pair
 from symrot.closed_form.library import loaded
+from symrot.closed_form.pairs import LARGEST, SMALLEST, attitude, pair
 from symrot.codegen import library
-from symrot.errors import InputError
 from symrot.ensemble.variation import PRINCIPAL, PRODUCTS, Variation
+from symrot.errors import InputError
 from symrot.propagation.stepping import Floats
 from symrot.scene import Initial
 
@@ -54,9 +54,7 @@ def forms_of(variation: Variation) -> list[tuple[Kind, Rows]]:
             if pattern is not None:
                 known[pattern] = kind
         chosen.setdefault(kind, []).append(rows)
-    return [
-        (kind, parts[0] if len(parts) == 1 else np.sort(np.concatenate(parts))) for kind, parts in chosen.items()
-    ]
+    return [(kind, parts[0] if len(parts) == 1 else np.sort(np.concatenate(parts))) for kind, parts in chosen.items()]
 
 
 def _patterns(variation: Variation) -> list[tuple[Hashable, Rows]]:
@@ -349,7 +347,7 @@ def _driven(part: _Part) -> tuple["Batch | None", Usual]:
     from symrot.closed_form.axial import Driven
     from symrot.closed_form.axial_compiled import Constants
 
-    axis, variation = part.axis, part.variation
+    axis = part.axis
     assert axis is not None
     push = _driving(part, "constant_body", "torque", axis)
     drags = [_driving(part, "damping", "linear", k) for k in (axis, axis - 1)]
@@ -361,7 +359,9 @@ def _driven(part: _Part) -> tuple["Batch | None", Usual]:
             moments = [part.constant(name) for name in PRINCIPAL]
             return batches.driven(Driven(moments, axis, push, *drags).constants, part.omega, part.start), True
         bounds = [_doubles(value) for value in given]
-        if any((np.abs(x) > _FAR).any() for x in bounds) or any((x < 1 / _FAR).any() for x in map(np.array, bounds[:2])):
+        if any((np.abs(x) > _FAR).any() for x in bounds) or any(
+            (x < 1 / _FAR).any() for x in map(np.array, bounds[:2])
+        ):
             return None, False
         columns = [[value] * len(part.rows) if isinstance(value, Fraction) else value.tolist() for value in given]
         ratios = [[x.as_integer_ratio() for x in column] for column in columns]
