@@ -14,11 +14,11 @@ from symrot import number
 from symrot.closed_form import double_double as dd
 from symrot.closed_form.axial import turned_about
 from symrot.closed_form.axial_compiled import Constants
-from symrot.closed_form.free_body import NEGLIGIBLE, Body, Defect
+from symrot.closed_form.free_body import NEGLIGIBLE, Body, Defect, gaps
 from symrot.closed_form.heavy_top import Frame
 from symrot.closed_form.library import Floats
 from symrot.closed_form.many import Batch
-from symrot.closed_form.pairs import GRID, LARGEST, SMALLEST, attitude, pair, quotient
+from symrot.closed_form.pairs import GRID, LARGEST, SMALLEST, attitude, common, pair, quotient
 from symrot.closed_form.spin_up_compiled import limits
 
 __all__ = [
@@ -158,14 +158,26 @@ def free_bodies(body: Body, omega: Floats, start: Floats) -> Batch:
     return Batch("free_body", (np.array(body.moments), rates, start, exact, axes))
 
 
-def free_bodies_of_moments(moments: Floats, omega: Floats, start: Floats) -> Batch:
-    """Return the motions of free bodies in their principal axes: moments (n, 3), the rest as :func:`free_bodies`."""
-    omega, exact = _noticed(omega), np.empty((len(omega), 8))
-    for k in range(3):
-        exact[:, 2 * k], exact[:, 2 * k + 1] = dd.two_sum(moments[:, (k + 1) % 3], -moments[:, (k + 2) % 3])
-    for i, (own, given) in enumerate(zip(moments.tolist(), omega.tolist(), strict=True)):
-        exact[i, 6:] = Defect(_integers(own))(_integers(given))
-    return Batch("free_body", (_pairs(moments), _pairs(omega), start, exact, None))
+def free_bodies_of_moments(moments: Sequence[Column], omega: Floats, start: Floats) -> Batch:
+    """Return the motions of free bodies in their principal axes: three moments, the rest as :func:`free_bodies`."""
+    omega, n = _noticed(omega), len(omega)
+    exact, pairs = np.empty((n, 8)), _columns(moments, n)
+    plain = not pairs[:, 1::2].any()  # moments are doubles
+    if plain:
+        table = np.ascontiguousarray(pairs[:, ::2])
+        own = table.tolist()
+        for k in range(3):
+            exact[:, 2 * k], exact[:, 2 * k + 1] = dd.two_sum(table[:, (k + 1) % 3], -table[:, (k + 2) % 3])
+    else:
+        own = list(zip(*([x] * n if isinstance(x, Fraction) else x.tolist() for x in moments), strict=True))
+    for i, (row, given) in enumerate(zip(own, omega.tolist(), strict=True)):
+        if plain:
+            integers = _integers(row)
+        else:
+            integers, shared = common(row)
+            exact[i, :6] = gaps(integers, shared)
+        exact[i, 6:] = Defect(integers)(_integers(given))
+    return Batch("free_body", (pairs, _pairs(omega), start, exact, None))
 
 
 def _integers(values: list[float]) -> list[int]:

@@ -17,7 +17,7 @@ from symrot.closed_form.pairs import SMALLEST, Number, attitude, common, numbers
 from symrot.inertia.principal import Principal, principal_axes
 from symrot.scene import Initial
 
-__all__ = ["NEGLIGIBLE", "Body", "Defect", "motion", "motion_of_tensor", "starts"]
+__all__ = ["NEGLIGIBLE", "Body", "Defect", "gaps", "motion", "motion_of_tensor", "starts"]
 
 NEGLIGIBLE = 200  # bits: what is smaller is taken for zero, as in number.equal
 
@@ -77,7 +77,7 @@ class Body:
 
     def __init__(self, body: Principal) -> None:
         integers, shared = common(body.moments)
-        self.moments, self.gaps, self.defect = spread(body.moments), _gaps(integers, shared), Defect(integers)
+        self.moments, self.gaps, self.defect = spread(body.moments), gaps(integers, shared), Defect(integers)
         entries = [x for row in body.axes for x in row]
         self._axes, self._unit = common(entries)
         self._rates: tuple[Sequence[Number], list[float], list[float]] = (
@@ -119,10 +119,11 @@ class Body:
 def _differences(moments: Sequence[Number], omega: Sequence[Number]) -> list[float]:
     """Return I2 - I3, I3 - I1, I1 - I2 and the defect |L|^2 - 2 T I_mid, scaled as free_body.c takes it, as hi, lo."""
     integers, shared = common(moments)
-    return [*_gaps(integers, shared), *Defect(integers)(common(omega)[0])]
+    return [*gaps(integers, shared), *Defect(integers)(common(omega)[0])]
 
 
-def _gaps(i: list[int], shared: int) -> list[float]:
+def gaps(i: list[int], shared: int) -> list[float]:
+    """Return I2 - I3, I3 - I1, I1 - I2 of moments as integers over one denominator, as hi, lo."""
     found: list[float] = []
     for k in range(3):
         difference = i[(k + 1) % 3] - i[(k + 2) % 3]

@@ -9,7 +9,8 @@ from symrot.errors import InputError
 from symrot.number import equal, show
 
 __all__ = [
-    "GRID", "LARGEST", "SMALLEST", "Number", "attitude", "common", "numbers", "on_grid", "pair", "quotient", "same", "spread",
+    "GRID", "LARGEST", "SMALLEST", "Number", "attitude", "common", "numbers", "on_grid", "pair", "quotient", "same",
+    "spread",
 ]  # fmt: skip
 
 Number = float | int | Fraction

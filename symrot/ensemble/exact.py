@@ -25,7 +25,7 @@ from symrot.scene import Initial
 if TYPE_CHECKING:
     from symrot.closed_form.many import Batch
 
-__all__ = ["STEPS_BELOW", "Solved", "choose", "follow_exact", "forms_of"]
+__all__ = ["ALONE_LOSES_BELOW", "ARRAYS_LOSE_BELOW", "Solved", "choose", "follow_exact", "forms_of"]
 
 Rows = NDArray[np.intp]
 MOST_BITS = 59  # of a pattern, beside those of angular velocity
@@ -81,8 +81,11 @@ def _patterns(variation: Variation) -> list[tuple[Hashable, Rows]]:
     return [((names, int(code[rows[0]])), rows) for rows in np.split(order, edges)]
 
 
-STEPS_BELOW = {"axial": 1000.0, "spin_up": 1500.0, "heavy_top": 100.0}
-"""Up to which angle, rad, steps are faster than closed forms that are made one by one; see :func:`choose`."""
+ARRAYS_LOSE_BELOW = {"symmetric body driven about its axis, angular velocity alone": 1e4}
+"""Up to which angle, rad, steps are faster than arrays of a form whose constants do not vary; see :func:`choose`."""
+
+ALONE_LOSES_BELOW = {"free_body": 1e4, "axial": 1e3, "spin_up": 1e3}
+"""The same of closed forms that are made one by one, by library."""
 
 
 class Solved(NamedTuple):
@@ -97,11 +100,18 @@ class Solved(NamedTuple):
 def choose(variation: Variation, times: Floats, start: float, faster: bool) -> list[Solved]:
     """Return the trajectories to be followed in closed form: with ``faster``, those for which steps take longer.
 
-    Measured by ``python -m symrot.bench.starts --ensembles``, for spans of 0.1 to 1000 s and tolerances of 1e-6 and
-    1e-12: a closed form made as an array takes 3 to 14 us, less than any steps, which take 5 to 30 us and 0.05 us for
-    each rad. Made one by one it takes 40 us (a top whose axes are turned first), 60 us (a rotation about one axis) or
-    90 us (a spin-up): then steps are faster up to the angles of :data:`STEPS_BELOW`. The angle is that of the
-    trajectory itself, so that its method does not depend on the others.
+    Measured for 0.01 to 10^4 rad, tolerances of 1e-6 and 1e-12 and 400 trajectories of 101 samples (``python -m
+    symrot.bench.starts --ensembles`` prints the same for the scenes' own spans), in microseconds per trajectory:
+
+    - Arrays of closed forms take 4 to 18 where starts alone vary and 4 to 29 where constants do; steps take 13 to 46 and
+      33 to 75 up to 10 rad, and more beyond. A body in axes that are not principal takes 23, as steps do up to 30 rad.
+    - The one exception is the angular velocity alone of a symmetric body that is damped, from starts alone: 12 as an
+      array, 6 to 9 by steps, which are few since the motion ends.
+    - Motions made one by one take 1100 with products of inertia that vary, for their principal axes, and 40 to 80 about
+      one axis or spun up, with constants so large or small that arrays are not made. Steps take as much at the angles of
+      :data:`ALONE_LOSES_BELOW`.
+
+    The angle is that of the trajectory itself, so that its method does not depend on the others.
     """
     found: list[Solved] = []
     for kind, rows in forms_of(variation):
@@ -110,9 +120,12 @@ def choose(variation: Variation, times: Floats, start: float, faster: bool) -> l
         without_compiler = not loaded(kind.form.library) and library.missing()
         if without_compiler and faster:  # steps are followed by SciPy then
             continue
+        least = ARRAYS_LOSE_BELOW.get(kind.form.name) if faster and not variation.columns else None
+        if least is not None:
+            rows = rows[_angles(variation, times, start)[rows] > least]
         for each, batch, usual in [(rows, None, None)] if without_compiler else _batches(variation, kind, rows):
             if batch is None and faster:
-                each = each[_angles(variation, times, start)[each] > STEPS_BELOW.get(kind.form.library, 0.0)]
+                each = each[_angles(variation, times, start)[each] > ALONE_LOSES_BELOW.get(kind.form.library, 0.0)]
             if len(each):
                 found.append(Solved(kind.form, each, batch, usual))
     return found
@@ -276,10 +289,9 @@ def _free(part: _Part) -> tuple["Batch | None", Usual]:
         return batches.free_bodies(body, part.omega, part.start), True
     if not variation.in_principal_axes:
         return None, False
-    if any(isinstance(x, Fraction) and Fraction(float(x)) != x for x in map(variation.constant, PRINCIPAL)):
-        return None, False
-    table = variation.moments[part.rows]
-    return batches.free_bodies_of_moments(table, part.omega, part.start), table.min(axis=1) > 0
+    moments = [part.constant(name) for name in PRINCIPAL]
+    fine = variation.moments[part.rows].min(axis=1) > 0
+    return batches.free_bodies_of_moments(moments, part.omega, part.start), fine
 
 
 def _doubles(value: Any) -> Any:

@@ -279,13 +279,17 @@ def read_variation(
 def _check_bodies(variation: Variation) -> None:
     """Refuse moments of inertia that no body has, or that leave its motion undetermined.
 
-    Doubles settle it where principal moments are given and clearly fulfil their inequalities; the rest is looked at
-    exactly.
+    Doubles settle it where principal moments clearly fulfil their inequalities; the rest is looked at exactly.
     """
-    doubtful = np.ones(len(variation), dtype=bool)
-    if variation.in_principal_axes:
-        small, middle, large = np.sort(variation.moments, axis=1).T
-        doubtful = ~((small > CLEARLY * large) & (small + middle > (1 + CLEARLY) * large))
+    moments = variation.moments
+    if not variation.in_principal_axes:
+        tensors = np.empty((len(variation), 3, 3))
+        for name, (i, j) in PLACES.items():
+            value = variation.constant(name)
+            tensors[:, i, j] = tensors[:, j, i] = float(value) if isinstance(value, Fraction) else value
+        moments = np.linalg.eigvalsh(tensors)  # to some 1e-15 of the largest
+    small, middle, large = np.sort(moments, axis=1).T
+    doubtful = ~((small > CLEARLY * large) & (small + middle > (1 + CLEARLY) * large))
     for i in np.flatnonzero(doubtful).tolist():
         principal = variation.scene_of(i).body.principal
         require_admissible(principal, f"parameters, trajectory {i}")
