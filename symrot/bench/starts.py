@@ -44,7 +44,7 @@ Floats = NDArray[np.float64]
 
 
 def _made(name: str, torques: list[dict[str, Any]], inertia: Any, omega: list[str], **more: Any) -> Scene:
-    body = {"inertia": inertia} if isinstance(inertia, dict) else {"principal": inertia}
+    body: dict[str, Any] = {"inertia": inertia} if isinstance(inertia, dict) else {"principal": inertia}
     if any(torque["kind"] == "gravity" for torque in torques):
         body["about"] = "fixed_point"
     given = {"omega": omega, "attitude": {"quaternion": [1, "1/3", "-1/5", "2/7"]}}

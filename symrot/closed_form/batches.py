@@ -225,7 +225,7 @@ def driven(constants: Constants | Sequence[Constants], omega: Floats, start: Flo
     """
     bodies = [constants] * len(omega) if isinstance(constants, Constants) else constants
     axis = bodies[0].axis
-    turned = omega[:, [axis - 2, axis - 1]].any(axis=1)
+    turned: NDArray[np.bool_] = (omega[:, [axis - 2, axis - 1]] != 0).any(axis=1)
     moving = zip(bodies, omega[:, axis].tolist(), turned.tolist(), strict=True)
     found = np.zeros((len(omega), 65))  # `axial` of axial.h
     found[:, 8:26] = [each.moving(rate, across) for each, rate, across in moving]

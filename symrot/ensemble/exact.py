@@ -103,13 +103,14 @@ def choose(variation: Variation, times: Floats, start: float, faster: bool) -> l
     Measured for 0.01 to 10^4 rad, tolerances of 1e-6 and 1e-12 and 400 trajectories of 101 samples (``python -m
     symrot.bench.starts --ensembles`` prints the same for the scenes' own spans), in microseconds per trajectory:
 
-    - Arrays of closed forms take 4 to 18 where starts alone vary and 4 to 29 where constants do; steps take 13 to 46 and
-      33 to 75 up to 10 rad, and more beyond. A body in axes that are not principal takes 23, as steps do up to 30 rad.
+    - Arrays of closed forms take 4 to 18 where starts alone vary and 4 to 29 where constants do; steps take 13 to 46
+      and 33 to 75 up to 10 rad, and more beyond. A body in axes that are not principal takes 23, as steps do up to
+      30 rad.
     - The one exception is the angular velocity alone of a symmetric body that is damped, from starts alone: 12 as an
       array, 6 to 9 by steps, which are few since the motion ends.
     - Motions made one by one take 1100 with products of inertia that vary, for their principal axes, and 40 to 80 about
-      one axis or spun up, with constants so large or small that arrays are not made. Steps take as much at the angles of
-      :data:`ALONE_LOSES_BELOW`.
+      one axis or spun up, with constants so large or small that arrays are not made. Steps take as much at the angles
+      of :data:`ALONE_LOSES_BELOW`.
 
     The angle is that of the trajectory itself, so that its method does not depend on the others.
     """
@@ -187,10 +188,10 @@ def _put_starts(
     states = variation.initial_states
     if at_start.ndim == 1:
         own = slice(None) if len(rows) == len(variation) else rows
-        for sample in np.flatnonzero(at_start).tolist():
-            omega[own, sample] = states[own, :3]
+        for k in np.flatnonzero(at_start).tolist():
+            omega[own, k] = states[own, :3]
             if quaternion is not None:
-                quaternion[own, sample] = states[own, 3:]
+                quaternion[own, k] = states[own, 3:]
         return
     chosen, sample = np.nonzero(at_start[rows])
     omega[rows[chosen], sample] = states[rows[chosen], :3]

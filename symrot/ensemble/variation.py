@@ -281,7 +281,7 @@ def _check_bodies(variation: Variation) -> None:
 
     Doubles settle it where principal moments clearly fulfil their inequalities; the rest is looked at exactly.
     """
-    moments = variation.moments
+    moments: Any = variation.moments
     if not variation.in_principal_axes:
         tensors = np.empty((len(variation), 3, 3))
         for name, (i, j) in PLACES.items():
