@@ -180,8 +180,7 @@ def _spin_up(scene: Scene) -> Starts:
 
     axis = _driven_symmetry_axis(scene)
     assert axis is not None
-    moments, torque = _moments(scene), push_and_drag(scene)[0][axis]
-    return lambda start: spin_up.motion(moments, axis, torque, start.omega_b, start.quaternion)
+    return spin_up.starts(_moments(scene), axis, push_and_drag(scene)[0][axis])
 
 
 FORMS = (

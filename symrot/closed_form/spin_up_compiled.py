@@ -79,7 +79,7 @@ class Compiled:
     """
 
     def __init__(self, axis: int, numbers: list[float]) -> None:
-        self._axis, self._numbers = axis, numbers
+        self._axis, self._numbers = axis, functions().numbers(*numbers)
         self._evaluate = functions().evaluate
         self._known = constants, _, _ = self._prepared(None)
         self.longest: float = constants[1] / constants[0]
@@ -89,7 +89,7 @@ class Compiled:
         bound = functions()
         constants = bound.record()
         place = ctypes.addressof(constants)
-        if bound.prepare(self._axis, bound.numbers(*self._numbers), bound.limits(*limits()), address(table), place):
+        if bound.prepare(self._axis, self._numbers, bound.limits(*limits()), address(table), place):
             raise CompilerError("the C compiler breaks error-free arithmetic: it must round every operation as written")
         return constants, place, table
 
