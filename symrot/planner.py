@@ -94,7 +94,8 @@ class Plan:
         """The initial values of :attr:`states`."""
         start = self.scene.initial
         values = (*start.omega_b, *start.quaternion, 0)
-        return tuple([float(values[place]) for place in self._places])
+        ratios = [values[place].as_integer_ratio() for place in self._places]
+        return tuple([top / bottom for top, bottom in ratios])  # as float(), at half the price
 
     @cached_property
     def _places(self) -> tuple[int, ...]:
@@ -108,9 +109,16 @@ class Plan:
         """
         scene, plan = object.__new__(Scene), object.__new__(Plan)
         scene.__dict__.update(self.scene.__dict__, initial=initial)
-        shared = {name: getattr(self, name) for name in ("structure", "rows", "scene_constants", "states", "_places")}
-        plan.__dict__.update(shared, scene=scene)
+        plan.__dict__.update(self._shared, scene=scene)
         return plan
+
+    @cached_property
+    def _shared(self) -> dict[str, Any]:
+        """What plans from other starts take over, by name."""
+        names = ("structure", "rows", "scene_constants", "states", "_places")
+        found: dict[str, Any] = {name: getattr(self, name) for name in names}
+        found["_shared"] = found
+        return found
 
     def explain(self) -> str:
         """Return the plan as a table for people: item, kept or skipped, rule, derivation, operations saved."""

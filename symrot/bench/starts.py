@@ -12,6 +12,7 @@ the method that ``auto`` takes. Time of the processor, medians.
 """
 
 import argparse
+import ctypes
 from collections.abc import Callable, Iterator
 from functools import partial
 from statistics import median
@@ -22,6 +23,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symrot.closed_form import motion as forms
+from symrot.closed_form import spin_up_compiled
+from symrot.codegen.address import address
 from symrot.ensemble.ensemble import propagate_ensemble
 from symrot.errors import InputError
 from symrot.planner import structure_key
@@ -41,7 +44,7 @@ Floats = NDArray[np.float64]
 
 
 def _made(name: str, torques: list[dict[str, Any]], inertia: Any, omega: list[str], **more: Any) -> Scene:
-    body = {"inertia": inertia} if isinstance(inertia, dict) else {"principal": inertia}
+    body: dict[str, Any] = {"inertia": inertia} if isinstance(inertia, dict) else {"principal": inertia}
     if any(torque["kind"] == "gravity" for torque in torques):
         body["about"] = "fixed_point"
     given = {"omega": omega, "attitude": {"quaternion": [1, "1/3", "-1/5", "2/7"]}}
@@ -131,16 +134,20 @@ def _row(found: Propagator, rounds: int) -> tuple[float, ...]:
         _median(lambda: structure_key(scene, initial), rounds) + _median(lambda: motion.from_start(initial), rounds),
         _median(bind, rounds),
         _median(prepare, rounds),
-        _in_c(motion, initial, rounds) + _median(lambda: motion.follow(times, True), rounds),
+        _in_c(motion, initial, times, rounds) + _median(lambda: motion.follow(times, True), rounds),
         _median(lambda: found(times, omega=omega), rounds),
         _median(lambda: found(times, quaternion=quaternion), rounds),
         _median(lambda: found(times, omega=omega, quaternion=quaternion), rounds),
     )
 
 
-def _in_c(motion: Any, initial: Any, rounds: int) -> float:
+def _in_c(motion: Any, initial: Any, times: Floats, rounds: int) -> float:
     """Return what the constants of a closed form take in C; steppers have none."""
-    functions = forms._bound.get(motion.form.library) if motion.choice.method == "exact" else None
+    if motion.choice.method != "exact":
+        return 0.0
+    if motion.form.library == "spin_up":
+        return _spin_up_in_c(motion.exact._source, times, rounds)
+    functions = forms._bound.get(motion.form.library)
     if functions is None:
         return 0.0
     calls: list[tuple[Any, ...]] = []
@@ -155,6 +162,22 @@ def _in_c(motion: Any, initial: Any, rounds: int) -> float:
     finally:
         forms._bound[motion.form.library] = functions
     return _median(lambda kept=alive: functions[0](*calls[0]), rounds)  # type: ignore[misc]  # whose memory is written
+
+
+def _spin_up_in_c(source: Any, times: Floats, rounds: int) -> float:
+    """Return the same of a spin-up: without polynomials, and with them where samples asked for them."""
+    found, total = spin_up_compiled.functions(), 0.0
+    record, table = found.record(), np.empty(spin_up_compiled.TABLE)
+    given = source._numbers, found.limits(*spin_up_compiled.limits())
+    omega, quaternion = np.empty((SAMPLES, 3)), np.empty((SAMPLES, 4))
+    samples = len(times), address(times), address(omega), address(quaternion)
+    lacking = source._known[2] is not None
+    for room in (None, table) if lacking else (None,):
+        place = address(room), ctypes.addressof(record)
+        total += _median(lambda place=place: found.prepare(source._axis, *given, *place), rounds)  # type: ignore[misc]
+        if lacking and room is None:  # samples are asked for before it is known
+            total += _median(lambda: found.evaluate(ctypes.addressof(record), None, *samples), rounds)
+    return total
 
 
 def changed_starts(scenes: list[str], rounds: int) -> None:

@@ -194,7 +194,8 @@ class Driven:
                 f"{[float(x) for x in moments]} kg m^2, torque {float(push)!r} N m, damping {float(drag)!r} and "
                 f"{float(slowing)!r} N m s"
             )
-        self.constants = axial_compiled.Constants(axis, self.driven, self.turning)
+        driving = [x.as_integer_ratio() for x in (push, drag, slowing)]
+        self.constants = axial_compiled.Constants(axis, (across.as_integer_ratio(), own.as_integer_ratio()), *driving)
 
     def motion(self, omega0: Sequence[Number], quaternion0: Sequence[Number]) -> AxialMotion:
         """Return the motion from an initial state."""

@@ -15,9 +15,12 @@ from symrot.closed_form import library
 from symrot.closed_form.library import Floats
 from symrot.codegen import library as codegen
 from symrot.codegen.address import address
-from symrot.errors import CompilerError
+from symrot.errors import CompilerError, InputError
 
-__all__ = ["EARLY", "LOST", "Constants", "Loops", "available", "functions", "parts"]
+__all__ = ["EARLY", "LOST", "Constants", "Loops", "Ratio", "available", "functions", "parts"]
+
+Ratio = tuple[int, int]
+"""Numerator and positive denominator."""
 
 LOST, EARLY = 1, 2
 """What the loops return where samples have more turns than they know, and where a time lies before the doubles."""
@@ -33,12 +36,16 @@ _bound: dict[str, tuple[Any, Any]] = {}
 
 
 def parts(top: int, bottom: int, count: int) -> list[float]:
-    """Return top/bottom as so many doubles, each the rounded rest of those before it."""
+    """Return top/bottom as so many doubles, each the rounded rest of those before it; of equal ratios the same."""
+    sign, top = (-1, -top) if top < 0 else (1, top)
     size = top.bit_length() - bottom.bit_length()
-    if size > _LARGEST:
-        return [2.0**_LARGEST if top > 0 else -(2.0**_LARGEST), *[0.0] * (count - 1)]
-    shift = _BITS - size
-    left, found = (top << shift) // bottom if shift > 0 else top // (bottom << -shift), []
+    shift, found = _BITS - size, []
+    left = (top << shift) // bottom if shift > 0 else top // (bottom << -shift)
+    if left >> _BITS:  # one bit more: for other integers of the same ratio it may not be there
+        left, shift = left >> 1, shift - 1
+    if shift < _BITS - _LARGEST:
+        return [sign * 2.0**_LARGEST, *[0.0] * (count - 1)]
+    left *= sign
     for _ in range(count):
         high = float(left)
         left -= int(high)
@@ -93,24 +100,30 @@ class Constants:
     Parameters
     ----------
     axis : 0, 1 or 2
-    driven : 2 Fractions
-        Constant acceleration, rad/s^2, and decay, 1/s, about the axis.
-    across : 2 Fractions
-        Lag of the transverse angular velocity per angle about the axis, and its decay, 1/s.
+    moments : 2 ratios
+        Across the axis and about it, kg m^2. A ratio is a pair of integers, the second positive.
+    torque, damping, damping_across : ratios
+        N m and N m s.
+
+    Raises
+    ------
+    InputError
+        If a rate or an acceleration is beyond all doubles; a call raises it too.
     """
 
-    def __init__(self, axis: int, driven: tuple[Fraction, Fraction], across: tuple[Fraction, Fraction]) -> None:
-        self.axis, (push, decay), (lag, slowing) = axis, driven, across
-        fastest = float(max(decay, slowing))
+    def __init__(self, axis: int, moments: tuple[Ratio, Ratio], torque: Ratio, damping: Ratio, across: Ratio) -> None:
+        (a, over_a), (c, over_c) = moments
+        self.axis, self._moments = axis, moments
+        push, over_push = torque[0] * over_c, torque[1] * c
+        decay, over_decay = damping[0] * over_c, damping[1] * c
+        slowing = across[0] * over_a, across[1] * a
+        self._push, self._decay, self._shared = push * over_decay, decay * over_push, over_push * over_decay
+        fastest = max(decay / over_decay, slowing[0] / slowing[1])
         self.first = -_EXPONENT / fastest if fastest else -math.inf
-        self._push, self._decay, self._shared = _over_one(push, decay)
         self._sign = -1 if decay < 0 else 1
-        self._head = [
-            self.first, *parts(*(-decay).as_integer_ratio(), _PAIR), *parts(*(-slowing).as_integer_ratio(), _PAIR)
-        ]  # fmt: skip
+        self._head = [self.first, *parts(-decay, over_decay, _PAIR), *parts(-slowing[0], slowing[1], _PAIR)]
         self._final = _nearest(self._sign * self._push, abs(self._decay)) if decay else 0.0
-        self._pushed = _nearest(self._push, self._shared)
-        self._shares = Fraction(1, 2), lag
+        self._pushed = _nearest(push, over_push)
         self._turns: dict[bool, tuple[int, int, list[float]]] = {}
 
     def head(self, turned: bool) -> list[float]:
@@ -137,10 +150,11 @@ class Constants:
 
     def _turning(self, turned: bool) -> tuple[int, int, list[float]]:
         """Return the share of the angle in turns to a radian, its bits behind the point, and what all starts share."""
-        share = self._shares[turned]
-        top, bottom = share.numerator * _PI_BOTTOM, 2 * share.denominator * _PI_TOP
-        bits = max(0, _TURN_BITS + bottom.bit_length() - top.bit_length())
-        turn = (top << bits) // bottom
+        turn, bits = _HALF
+        if turned:
+            (a, over_a), (c, over_c) = self._moments
+            lag = Fraction(c * over_a - a * over_c, over_c * a)
+            turn, bits = _turns_of(lag.numerator, lag.denominator)
         if self._decay:
             fixed = parts(self._sign * self._push * turn, abs(self._decay) << bits, _WIDE)
         else:
@@ -177,14 +191,21 @@ class Constants:
         return [x for row in rows for x in row]
 
 
-def _over_one(*values: Fraction) -> tuple[int, ...]:
-    """Return integers and the positive denominator that they share."""
-    shared = math.lcm(*(value.denominator for value in values))
-    return (*(value.numerator * (shared // value.denominator) for value in values), shared)
+def _turns_of(top: int, bottom: int) -> tuple[int, int]:
+    """Return so many times the turns in a radian, as an integer with bits behind its point."""
+    top, bottom = top * _PI_BOTTOM, 2 * bottom * _PI_TOP
+    bits = max(0, _TURN_BITS + bottom.bit_length() - top.bit_length())
+    return (top << bits) // bottom, bits
+
+
+_HALF = _turns_of(1, 2)  # of half the angle
 
 
 def _nearest(top: int, bottom: int) -> float:
-    """Return the double nearest to a ratio, 2^200 for what is larger."""
-    if top.bit_length() - bottom.bit_length() > _LARGEST:
-        return 2.0**_LARGEST if top > 0 else -(2.0**_LARGEST)
-    return top / bottom
+    """Return the double nearest to a ratio."""
+    try:
+        return top / bottom
+    except OverflowError:
+        raise InputError(
+            "expected a torque, damping and angular velocity whose rates are finite doubles, got more than 1e308"
+        ) from None

@@ -12,14 +12,14 @@ from numpy.typing import NDArray
 
 from symrot import number
 from symrot.closed_form import double_double as dd
-from symrot.closed_form.axial import Driven, turned_about
-from symrot.closed_form.free_body import NEGLIGIBLE, Body, Defect
+from symrot.closed_form.axial import turned_about
+from symrot.closed_form.axial_compiled import Constants
+from symrot.closed_form.free_body import NEGLIGIBLE, Body, Defect, gaps
 from symrot.closed_form.heavy_top import Frame
 from symrot.closed_form.library import Floats
 from symrot.closed_form.many import Batch
-from symrot.closed_form.pairs import GRID, LARGEST, SMALLEST, attitude, pair, quotient
-from symrot.closed_form.spin_up_compiled import LIMITS
-from symrot.inertia.principal import Principal
+from symrot.closed_form.pairs import GRID, LARGEST, SMALLEST, attitude, common, pair, quotient
+from symrot.closed_form.spin_up_compiled import limits
 
 __all__ = [
     "Column", "attitudes", "driven", "free_bodies", "free_bodies_of_moments", "gyrostats", "spin_ups", "tops",
@@ -32,7 +32,7 @@ Column = Floats | Fraction
 _SPREAD = 2.0**-300  # components of a quaternion farther apart are left to fractions
 _DOUBT = 2.0**-12  # of a step of the grid: pairs of doubles err by less than a quarter of it
 _TIE = 2.0**-40  # of the last bit
-_TURNED = 2.0**-96  # by which a product of unit quaternions may err
+_TURNED = 2.0**-99  # by which products of unit quaternions may err: units by 2^-100, two products by 2^-102 each
 
 
 def attitudes(quaternions: Floats) -> Floats:
@@ -144,9 +144,9 @@ def _noticed(omega: Floats) -> Floats:
     return np.where(abs(omega) < np.ldexp(abs(omega).max(axis=1), -NEGLIGIBLE)[:, None], 0.0, omega)
 
 
-def free_bodies(principal: Principal, omega: Floats, start: Floats) -> Batch:
+def free_bodies(body: Body, omega: Floats, start: Floats) -> Batch:
     """Return the motions of one free body from :func:`usual` angular velocities and attitudes (8,) or (n, 8)."""
-    body, rates, exact = Body(principal), _pairs(_noticed(omega)), np.empty((len(omega), 8))
+    rates, exact = _pairs(_noticed(omega)), np.empty((len(omega), 8))
     exact[:, :6] = body.gaps
     for i, given in enumerate(rates[:, ::2].tolist() if body.axes is None else omega.tolist()):
         integers = _integers(given)
@@ -158,14 +158,26 @@ def free_bodies(principal: Principal, omega: Floats, start: Floats) -> Batch:
     return Batch("free_body", (np.array(body.moments), rates, start, exact, axes))
 
 
-def free_bodies_of_moments(moments: Floats, omega: Floats, start: Floats) -> Batch:
-    """Return the motions of free bodies in their principal axes: moments (n, 3), the rest as :func:`free_bodies`."""
-    omega, exact = _noticed(omega), np.empty((len(omega), 8))
-    for k in range(3):
-        exact[:, 2 * k], exact[:, 2 * k + 1] = dd.two_sum(moments[:, (k + 1) % 3], -moments[:, (k + 2) % 3])
-    for i, (own, given) in enumerate(zip(moments.tolist(), omega.tolist(), strict=True)):
-        exact[i, 6:] = Defect(_integers(own))(_integers(given))
-    return Batch("free_body", (_pairs(moments), _pairs(omega), start, exact, None))
+def free_bodies_of_moments(moments: Sequence[Column], omega: Floats, start: Floats) -> Batch:
+    """Return the motions of free bodies in their principal axes: three moments, the rest as :func:`free_bodies`."""
+    omega, n = _noticed(omega), len(omega)
+    exact, pairs = np.empty((n, 8)), _columns(moments, n)
+    plain = not pairs[:, 1::2].any()  # moments are doubles
+    if plain:
+        table = np.ascontiguousarray(pairs[:, ::2])
+        own = table.tolist()
+        for k in range(3):
+            exact[:, 2 * k], exact[:, 2 * k + 1] = dd.two_sum(table[:, (k + 1) % 3], -table[:, (k + 2) % 3])
+    else:
+        own = list(zip(*([x] * n if isinstance(x, Fraction) else x.tolist() for x in moments), strict=True))
+    for i, (row, given) in enumerate(zip(own, omega.tolist(), strict=True)):
+        if plain:
+            integers = _integers(row)
+        else:
+            integers, shared = common(row)
+            exact[i, :6] = gaps(integers, shared)
+        exact[i, 6:] = Defect(integers)(_integers(given))
+    return Batch("free_body", (pairs, _pairs(omega), start, exact, None))
 
 
 def _integers(values: list[float]) -> list[int]:
@@ -203,27 +215,24 @@ def spin_ups(across: Column, own: Column, torque: Column, axis: int, omega: Floa
     numbers[:, :6] = _columns([across, own, torque], len(omega))
     numbers[:, 6:12] = _pairs(omega[:, [axis - 2, axis - 1, axis]])
     numbers[:, 12:] = start
-    return Batch("spin_up", (numbers, np.array([axis, *LIMITS])))
+    return Batch("spin_up", (numbers, np.array([axis, *limits()])))
 
 
-def driven(body: Driven | Sequence[Driven], omega: Floats, start: Floats) -> Batch:
+def driven(constants: Constants | Sequence[Constants], omega: Floats, start: Floats) -> Batch:
     """Return the rotations of one driven body, or of a body each; the rest as :func:`free_bodies`.
 
-    Its constants are elementary, and found in integers.
+    The constants are elementary, and found in integers.
     """
-    bodies = [body] * len(omega) if isinstance(body, Driven) else body
+    bodies = [constants] * len(omega) if isinstance(constants, Constants) else constants
     axis = bodies[0].axis
-    turned = omega[:, [axis - 2, axis - 1]].any(axis=1)
+    turned: NDArray[np.bool_] = (omega[:, [axis - 2, axis - 1]] != 0).any(axis=1)
     moving = zip(bodies, omega[:, axis].tolist(), turned.tolist(), strict=True)
     found = np.zeros((len(omega), 65))  # `axial` of axial.h
-    found[:, 8:26] = [each.constants.moving(rate, across) for each, rate, across in moving]
+    found[:, 8:26] = [each.moving(rate, across) for each, rate, across in moving]
     found[turned, 26:40], found[turned, 12:26] = found[turned, 12:26], 0.0
-    if isinstance(body, Driven):
-        found[:, :8] = body.constants.head(False)
-    else:
-        found[:, :8] = [each.constants.head(False) for each in bodies]
+    found[:, :8] = constants.head(False) if isinstance(constants, Constants) else [c.head(False) for c in constants]
     found[:, 2] = turned
-    for k, value in enumerate(bodies[0].constants.shapes(omega[:, axis - 2], omega[:, axis - 1])):
+    for k, value in enumerate(bodies[0].shapes(omega[:, axis - 2], omega[:, axis - 1])):
         found[:, 40 + k] = value
     attitude = start.reshape(-1, 8)[:, ::2]
     found[:, 49::4], found[:, 50::4] = attitude, np.column_stack(turned_about(axis, list(attitude.T)))

@@ -129,6 +129,8 @@ def _driven_axis(scene: Scene) -> int | None:
     push, turning = push_and_drag(scene)[0], _only_axis(scene.initial.omega_b)
     axis = turning if turning is not None else _only_axis(push)
     across = [*scene.initial.omega_b, *push]
+    if not any(across):
+        return 0  # at rest for ever
     return None if any(x for i, x in enumerate(across) if i % 3 != axis) else axis
 
 
@@ -178,8 +180,7 @@ def _spin_up(scene: Scene) -> Starts:
 
     axis = _driven_symmetry_axis(scene)
     assert axis is not None
-    moments, torque = _moments(scene), push_and_drag(scene)[0][axis]
-    return lambda start: spin_up.motion(moments, axis, torque, start.omega_b, start.quaternion)
+    return spin_up.starts(_moments(scene), axis, push_and_drag(scene)[0][axis])
 
 
 FORMS = (

@@ -15,7 +15,7 @@ from fractions import Fraction
 from symrot.closed_form import free_body
 from symrot.closed_form.frames import product, quaternion_of, to_axis
 from symrot.closed_form.motion import ExactMotion, prepared
-from symrot.closed_form.pairs import SMALLEST, Number, attitude, common, numbers, on_grid, quotient, same, spread
+from symrot.closed_form.pairs import SMALLEST, Number, attitude, common, numbers, on_grid, same, spread
 from symrot.errors import InputError
 from symrot.scene import Initial
 
@@ -154,4 +154,4 @@ class Frame:
             found, shared = list(product(self._before[0], found)), shared * self._before[1]
         if self._after is not None:
             found, shared = list(product(found, self._after[0])), shared * self._after[1]
-        return on_grid([quotient(x, shared) for x in found])
+        return on_grid([(x, shared) for x in found])

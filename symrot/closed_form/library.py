@@ -19,7 +19,7 @@ from symrot.codegen import library
 from symrot.errors import CompilerError, InputError
 from symrot.number import show
 
-__all__ = ["FLAGS", "PARTS", "Floats", "begin", "load", "source", "times_of"]
+__all__ = ["FLAGS", "PARTS", "Floats", "begin", "load", "loaded", "source", "times_of"]
 
 Floats = NDArray[np.float64]
 
@@ -74,6 +74,11 @@ def begin(name: str) -> list[library.Building]:
             if Path(__file__).with_name(f"{name}{part}.c").exists()
         ]
     return _begun[name]
+
+
+def loaded(name: str) -> bool:
+    """Return whether a closed form is at hand, so that no compiler is needed for it."""
+    return name in _loaded
 
 
 def load(name: str) -> tuple[Any, ...]:

@@ -6,6 +6,7 @@
 #include "spin_up_phase.h"
 #include "spin_up_series.h"
 #include "series.h"
+#include <string.h>
 
 enum {
     TERMS = 26, /* of a series near resonance, for a step of 1/4: (r/8)^26/26! < 1e-20 for r < 13.5 */
@@ -124,16 +125,14 @@ typedef quaternions numbers_of_lanes;
 ALWAYS_INLINE void opposite(int lanes, const double *from, double *to)
 {
     for (int k = 0; k < 4; ++k)
-        for (int lane = 0; lane < lanes; ++lane)
-            to[k*lanes + lane] = from[(3 - k)*lanes + lane];
+        memcpy(to + k*lanes, from + (3 - k)*lanes, (size_t)lanes*sizeof *to);
 }
 
 /* Components 1, 0, 3, 2. */
 ALWAYS_INLINE void beside(int lanes, const double *from, double *to)
 {
     for (int k = 0; k < 4; ++k)
-        for (int lane = 0; lane < lanes; ++lane)
-            to[k*lanes + lane] = from[(k^1)*lanes + lane];
+        memcpy(to + k*lanes, from + (k^1)*lanes, (size_t)lanes*sizeof *to);
 }
 
 /* The series of q0, q1, q2, q3 about a place from its first terms, the last in doubles; halves: 1/(2 n). */

@@ -12,13 +12,10 @@ from symrot.codegen import library
 from symrot.codegen.address import address
 from symrot.errors import CompilerError
 
-__all__ = ["LIMITS", "TABLE", "Compiled", "available", "functions"]
+__all__ = ["TABLE", "Compiled", "available", "functions", "limits"]
 
 TABLE = int(spin_up_series.NEAR) * PIECES * (DEGREE + 1) * 4
 """Doubles of Taylor's polynomials."""
-
-LIMITS = (spin_up_series.NEAR, spin_up_series.WIDE, spin_up_series.MOST)
-"""What the third argument of ``symrot_spin_up_prepare`` holds."""
 
 _LACKING, _LOST = 1, 2  # what samples lack, see spin_up.h
 
@@ -32,6 +29,11 @@ class _Functions(NamedTuple):
 
 
 _bound: list[_Functions] = []
+
+
+def limits() -> tuple[float, float, float]:
+    """Return what the third argument of ``symrot_spin_up_prepare`` holds."""
+    return spin_up_series.NEAR, spin_up_series.WIDE, spin_up_series.MOST
 
 
 def available() -> bool:
@@ -77,7 +79,7 @@ class Compiled:
     """
 
     def __init__(self, axis: int, numbers: list[float]) -> None:
-        self._axis, self._numbers = axis, numbers
+        self._axis, self._numbers = axis, functions().numbers(*numbers)
         self._evaluate = functions().evaluate
         self._known = constants, _, _ = self._prepared(None)
         self.longest: float = constants[1] / constants[0]
@@ -87,7 +89,7 @@ class Compiled:
         bound = functions()
         constants = bound.record()
         place = ctypes.addressof(constants)
-        if bound.prepare(self._axis, bound.numbers(*self._numbers), bound.limits(*LIMITS), address(table), place):
+        if bound.prepare(self._axis, self._numbers, bound.limits(*limits()), address(table), place):
             raise CompilerError("the C compiler breaks error-free arithmetic: it must round every operation as written")
         return constants, place, table
 

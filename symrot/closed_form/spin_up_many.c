@@ -12,30 +12,6 @@ static void near_tables_of_lanes(int pieces, near_motion motions[LANES])
     near_tables(LANES, pieces, motions);
 }
 
-/*
- * Find the constants of four motions with their polynomials, bit by bit as alone.
- *
- * in   numbers[4]  of each motion
- * out  tables      of each, one after the other
- * out  f[4]
- */
-static void prepare_four(
-    int axis, const double *const numbers[LANES], const double limits[3], double *tables, spin_up f[LANES])
-{
-    const int pieces = (int)(limits[0]*SPIN_UP_PIECES);
-    half_way h[LANES];
-    near_motion near[LANES];
-    int needed[LANES];
-    for (int lane = 0; lane < LANES; ++lane) {
-        needed[lane] = prepare_first(axis, numbers[lane], limits, h + lane, f + lane);
-        near[lane] = near_motion_of(h + lane, tables + lane*pieces*SPIN_UP_TAYLOR*4);
-    }
-    near_tables_of_lanes(pieces, near);
-    for (int lane = 0; lane < LANES; ++lane)
-        if (needed[lane])
-            prepare_rest(h + lane, near + lane, f + lane);
-}
-
 typedef int (*samples_of)(const void *, const double *, ptrdiff_t, const double *, double *, double *);
 
 enum { TABLE = 4*SPIN_UP_TAYLOR };
@@ -69,20 +45,22 @@ static int passes(const spin_up *f, double first, double last)
     return f->start == SPIN_UP_NEAR || (f->start == SPIN_UP_BEYOND ? one < f->edge : other > -f->edge);
 }
 
-/* Find constants with polynomials of up to four motions, and their samples. */
-static void follow_together(
-    const symrot_many_motions *m, int count, const ptrdiff_t which[LANES], spin_up records[LANES])
+/* Find the polynomials of up to four motions, the rest of their constants, and their samples. */
+static void follow_together(const symrot_many_motions *m, int count, const ptrdiff_t which[LANES], const half_way h[LANES],
+    spin_up records[LANES])
 {
     const int pieces = (int)(m->given[1][1]*SPIN_UP_PIECES);
-    const double *numbers[LANES];
+    near_motion near[LANES];
     for (int lane = 0; lane < LANES; ++lane)
-        numbers[lane] = m->given[0] + which[lane < count ? lane : 0]*m->strides[0];
+        near[lane] = near_motion_of(h + (lane < count ? lane : 0), m->table + lane*pieces*TABLE);
     if (count > 1)
-        prepare_four((int)m->given[1][0], numbers, m->given[1] + 1, m->table, records);
+        near_tables_of_lanes(pieces, near);
     else
-        symrot_spin_up_prepare((int)m->given[1][0], numbers[0], m->given[1] + 1, m->table, records);
-    for (int lane = 0; lane < count; ++lane)
-        sampled(m, which[lane], records + lane, m->table + lane*pieces*TABLE);
+        near_table(pieces, near);
+    for (int lane = 0; lane < count; ++lane) {
+        prepare_rest(h + lane, near + lane, records + lane);
+        sampled(m, which[lane], records + lane, near[lane].table);
+    }
 }
 
 /*
@@ -94,8 +72,9 @@ ptrdiff_t symrot_many_spin_ups(const symrot_many_motions *m, ptrdiff_t first, pt
     if (!dd_sound())
         return first;
     spin_up *records = m->record;
+    half_way h[LANES];
     ptrdiff_t waiting[LANES];
-    int count = 0;
+    int count = 0; /* of them */
     double earliest = 0.0, latest = 0.0;
     for (ptrdiff_t i = first; i < last; ++i) {
         if (m->quaternion != NULL && (i == first || m->times_stride))
@@ -104,17 +83,18 @@ ptrdiff_t symrot_many_spin_ups(const symrot_many_motions *m, ptrdiff_t first, pt
                 earliest = k == 0 || t < earliest ? t : earliest;
                 latest = k == 0 || t > latest ? t : latest;
             }
-        symrot_spin_up_prepare((int)m->given[1][0], m->given[0] + i*m->strides[0], m->given[1] + 1, NULL, records);
-        if ((m->quaternion == NULL || !passes(records, earliest, latest)) && !sampled(m, i, records, NULL))
+        spin_up *own = records + count;
+        prepare_first((int)m->given[1][0], m->given[0] + i*m->strides[0], m->given[1] + 1, h + count, own);
+        if ((m->quaternion == NULL || !passes(own, earliest, latest)) && !sampled(m, i, own, NULL))
             continue;
         waiting[count++] = i;
         if (count == LANES) {
-            follow_together(m, count, waiting, records);
+            follow_together(m, count, waiting, h, records);
             count = 0;
         }
     }
     if (count)
-        follow_together(m, count, waiting, records);
+        follow_together(m, count, waiting, h, records);
     return last;
 }
 

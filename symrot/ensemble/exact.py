@@ -4,7 +4,7 @@ Trajectories whose numbers are unusual (beyond 1e205, products of inertia that v
 motion alone; where no constant varies, they share what the body and its torques give.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Hashable, Iterator, Sequence
 from fractions import Fraction
 from itertools import combinations
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -14,20 +14,21 @@ from numpy.typing import NDArray
 
 from symrot.closed_form import double_double as dd
 from symrot.closed_form.choose import Exact, Form, exact_form
+from symrot.closed_form.library import loaded
 from symrot.closed_form.pairs import LARGEST, SMALLEST, attitude, pair
 from symrot.codegen import library
-from symrot.errors import InputError
 from symrot.ensemble.variation import PRINCIPAL, PRODUCTS, Variation
+from symrot.errors import InputError
 from symrot.propagation.stepping import Floats
 from symrot.scene import Initial
 
 if TYPE_CHECKING:
     from symrot.closed_form.many import Batch
 
-__all__ = ["STEPS_BELOW", "Solved", "choose", "follow_exact", "forms_of"]
+__all__ = ["ALONE_LOSES_BELOW", "ARRAYS_LOSE_BELOW", "Solved", "choose", "follow_exact", "forms_of"]
 
 Rows = NDArray[np.intp]
-MOST_BITS = 62  # of a pattern
+MOST_BITS = 59  # of a pattern, beside those of angular velocity
 
 
 class Kind(NamedTuple):
@@ -43,18 +44,28 @@ def forms_of(variation: Variation) -> list[tuple[Kind, Rows]]:
     A form is chosen by which components are zero and which moments and coefficients are equal: never by other numbers.
     """
     chosen: dict[Kind, list[Rows]] = {}
-    for rows in _patterns(variation):
-        scene = variation.scene_of(int(rows[0]))
-        form = exact_form(scene)
-        chosen.setdefault(Kind(form, form and form.axis(scene)), []).append(rows)
-    return [(kind, np.sort(np.concatenate(parts))) for kind, parts in chosen.items()]
+    known: dict[Hashable, Kind] = variation.kept("forms", dict)
+    for pattern, rows in _patterns(variation):
+        kind = known.get(pattern)
+        if kind is None:
+            scene = variation.scene_of(int(rows[0]))
+            form = exact_form(scene)
+            kind = Kind(form, form and form.axis(scene))
+            if pattern is not None:
+                known[pattern] = kind
+        chosen.setdefault(kind, []).append(rows)
+    return [(kind, parts[0] if len(parts) == 1 else np.sort(np.concatenate(parts))) for kind, parts in chosen.items()]
 
 
-def _patterns(variation: Variation) -> list[Rows]:
-    """Return the trajectories in groups with the same zeros and the same equal constants."""
+def _patterns(variation: Variation) -> list[tuple[Hashable, Rows]]:
+    """Return the trajectories in groups with the same zeros and the same equal constants, each with what they share."""
     columns, n = variation.columns, len(variation)
-    bits = [variation.omega[:, k] != 0 for k in range(3)]
-    bits += [column != 0 for column in columns.values()]
+    code = (variation.omega != 0) @ np.array([1, 2, 4])
+    if not columns:
+        if (code == code[0]).all():
+            return [(int(code[0]), np.arange(n))]
+        return [(k, rows) for k in range(8) if len(rows := np.flatnonzero(code == k))]
+    bits = [column != 0 for column in columns.values()]
     bits += [one == other for one, other in combinations(columns.values(), 2)]
     bits += [abs(columns[name]) <= variation.negligible for name in columns if name in PRODUCTS]
     bits += [columns[name] == value for name in columns for value in variation.constants_beside(name)]
@@ -62,17 +73,19 @@ def _patterns(variation: Variation) -> list[Rows]:
     varied = [kinds[place] for name in columns if (place := variation.places[name].torque) >= 0]
     summed = any(kinds.count(kind) > 1 for kind in varied)
     if summed or len(bits) > MOST_BITS:  # sums of constants may vanish too
-        return [np.array([i]) for i in range(n)]
-    code = np.zeros(n, dtype=np.int64)
-    for k, bit in enumerate(bits):
-        code |= bit.astype(np.int64) << k
+        return [(None, np.array([i])) for i in range(n)]
+    code = code + np.array(bits).T @ (8 << np.arange(len(bits)))
     order = np.argsort(code, kind="stable")
     edges = np.flatnonzero(np.diff(code[order])) + 1
-    return np.split(order, edges)
+    names = tuple(columns)
+    return [((names, int(code[rows[0]])), rows) for rows in np.split(order, edges)]
 
 
-STEPS_BELOW = {"axial": 1000.0, "spin_up": 1500.0, "heavy_top": 100.0}
-"""Up to which angle, rad, steps are faster than closed forms that are made one by one; see :func:`choose`."""
+ARRAYS_LOSE_BELOW = {"symmetric body driven about its axis, angular velocity alone": 1e4}
+"""Up to which angle, rad, steps are faster than arrays of a form whose constants do not vary; see :func:`choose`."""
+
+ALONE_LOSES_BELOW = {"free_body": 1e4, "axial": 1e3, "spin_up": 1e3}
+"""The same of closed forms that are made one by one, by library."""
 
 
 class Solved(NamedTuple):
@@ -87,19 +100,33 @@ class Solved(NamedTuple):
 def choose(variation: Variation, times: Floats, start: float, faster: bool) -> list[Solved]:
     """Return the trajectories to be followed in closed form: with ``faster``, those for which steps take longer.
 
-    Measured by ``python -m symrot.bench.starts --ensembles``, for spans of 0.1 to 1000 s and tolerances of 1e-6 and
-    1e-12: a closed form made as an array takes 3 to 14 us, less than any steps, which take 5 to 30 us and 0.05 us for
-    each rad. Made one by one it takes 40 us (a top whose axes are turned first), 60 us (a rotation about one axis) or
-    90 us (a spin-up): then steps are faster up to the angles of :data:`STEPS_BELOW`. The angle is that of the
-    trajectory itself, so that its method does not depend on the others.
+    Measured for 0.01 to 10^4 rad, tolerances of 1e-6 and 1e-12 and 400 trajectories of 101 samples (``python -m
+    symrot.bench.starts --ensembles`` prints the same for the scenes' own spans), in microseconds per trajectory:
+
+    - Arrays of closed forms take 4 to 18 where starts alone vary and 4 to 29 where constants do; steps take 13 to 46
+      and 33 to 75 up to 10 rad, and more beyond. A body in axes that are not principal takes 23, as steps do up to
+      30 rad.
+    - The one exception is the angular velocity alone of a symmetric body that is damped, from starts alone: 12 as an
+      array, 6 to 9 by steps, which are few since the motion ends.
+    - Motions made one by one take 1100 with products of inertia that vary, for their principal axes, and 40 to 80 about
+      one axis or spun up, with constants so large or small that arrays are not made. Steps take as much at the angles
+      of :data:`ALONE_LOSES_BELOW`.
+
+    The angle is that of the trajectory itself, so that its method does not depend on the others.
     """
-    found, without_compiler = [], bool(not faster and library.missing())  # steps need one too
+    found: list[Solved] = []
     for kind, rows in forms_of(variation):
         if kind.form is None:
             continue
+        without_compiler = not loaded(kind.form.library) and library.missing()
+        if without_compiler and faster:  # steps are followed by SciPy then
+            continue
+        least = ARRAYS_LOSE_BELOW.get(kind.form.name) if faster and not variation.columns else None
+        if least is not None:
+            rows = rows[_angles(variation, times, start)[rows] > least]
         for each, batch, usual in [(rows, None, None)] if without_compiler else _batches(variation, kind, rows):
             if batch is None and faster:
-                each = each[_angles(variation, times, start)[each] > STEPS_BELOW.get(kind.form.library, 0.0)]
+                each = each[_angles(variation, times, start)[each] > ALONE_LOSES_BELOW.get(kind.form.library, 0.0)]
             if len(each):
                 found.append(Solved(kind.form, each, batch, usual))
     return found
@@ -160,7 +187,12 @@ def _put_starts(
         return
     states = variation.initial_states
     if at_start.ndim == 1:
-        at_start = np.broadcast_to(at_start, (len(variation), len(at_start)))
+        own = slice(None) if len(rows) == len(variation) else rows
+        for k in np.flatnonzero(at_start).tolist():
+            omega[own, k] = states[own, :3]
+            if quaternion is not None:
+                quaternion[own, k] = states[own, 3:]
+        return
     chosen, sample = np.nonzero(at_start[rows])
     omega[rows[chosen], sample] = states[rows[chosen], :3]
     if quaternion is not None:
@@ -186,6 +218,7 @@ class _Alone:
 
 # ------------------------------------------------------------------------------------------------ arrays of each form
 
+_FAR = 1e100  # moments, torques and damping up to it, and moments down to its inverse, have quotients within bounds
 Usual = NDArray[np.bool_] | bool
 
 
@@ -200,8 +233,11 @@ class _Part(NamedTuple):
     @property
     def start(self) -> Floats:
         """Unit quaternions as pairs of doubles, (n, 8) or (8,)."""
-        found = self.variation.attitudes
-        return np.array(attitude(self.variation.scene.initial.quaternion)) if found is None else found[self.rows]
+        variation, found = self.variation, self.variation.attitudes
+        if found is None:
+            own = variation.kept("attitude", lambda: np.array(attitude(variation.scene.initial.quaternion)))
+            return own  # type: ignore[no-any-return]
+        return found if len(self.rows) == len(variation) else found[self.rows]
 
     def constant(self, name: str) -> Any:
         """Return a constant as a Fraction, or of each trajectory."""
@@ -246,16 +282,17 @@ def _parts(variation: Variation, kind: Kind, rows: Rows) -> Iterator[_Part]:
 
 def _free(part: _Part) -> tuple["Batch | None", Usual]:
     from symrot.closed_form import batches
+    from symrot.closed_form.free_body import Body
 
     variation = part.variation
     if not variation.columns:
-        return batches.free_bodies(variation.scene.body.principal, part.omega, part.start), True
+        body = variation.kept("free body", lambda: Body(variation.scene.body.principal))
+        return batches.free_bodies(body, part.omega, part.start), True
     if not variation.in_principal_axes:
         return None, False
-    if any(isinstance(x, Fraction) and Fraction(float(x)) != x for x in map(variation.constant, PRINCIPAL)):
-        return None, False
-    table = variation.moments[part.rows]
-    return batches.free_bodies_of_moments(table, part.omega, part.start), table.min(axis=1) > 0
+    moments = [part.constant(name) for name in PRINCIPAL]
+    fine = variation.moments[part.rows].min(axis=1) > 0
+    return batches.free_bodies_of_moments(moments, part.omega, part.start), fine
 
 
 def _doubles(value: Any) -> Any:
@@ -285,11 +322,13 @@ def _top(part: _Part) -> tuple["Batch | None", Usual]:
         for size in (abs(_doubles(weight)), abs(_doubles(height))):
             fine = fine & (size < 1e120) & (size > 1e-120)
     sign = 1 if pull.flat[0] > 0 else -1
-    frame = Frame(part.axis, [-sign * x for x in torque["direction"]])
+    axis, key = part.axis, (part.axis, sign)
+    frame = variation.kept(("frame", key), lambda: Frame(axis, [-sign * x for x in torque["direction"]]))
     if frame.plain:
         start = part.start
     elif variation.quaternion is None:
-        start = np.array(frame.start(variation.scene.initial.quaternion))
+        own = variation.scene.initial.quaternion
+        start = variation.kept(("turned attitude", key), lambda: np.array(frame.start(own)))
     else:
         start = batches.turned(frame, variation.quaternion[part.rows])
     return batches.tops(*part.moments(), sign * pull, frame, part.omega, start), fine
@@ -319,24 +358,30 @@ def _driving(part: _Part, kind: str, field: str, axis: int) -> Any:
 def _driven(part: _Part) -> tuple["Batch | None", Usual]:
     from symrot.closed_form import batches
     from symrot.closed_form.axial import Driven
+    from symrot.closed_form.axial_compiled import Constants
 
     axis = part.axis
     assert axis is not None
-    moments = [part.constant(name) for name in PRINCIPAL]
     push = _driving(part, "constant_body", "torque", axis)
     drags = [_driving(part, "damping", "linear", k) for k in (axis, axis - 1)]
-    given = [*moments, push, *drags]
-    if any(value is None for value in given):
+    if any(value is None for value in (push, *drags)):
         return None, False
-    if all(isinstance(value, Fraction) for value in given):
-        return batches.driven(Driven(moments, axis, push, *drags), part.omega, part.start), True
-    n = len(part.rows)
-    columns = [[value] * n if isinstance(value, Fraction) else value.tolist() for value in given]
+    given = [*part.moments(), push, *drags]
     try:
-        bodies = [Driven(row[:3], axis, *row[3:]) for row in zip(*columns, strict=True)]
-    except InputError:  # of one, which says so
+        if all(isinstance(value, Fraction) for value in given):
+            moments = [part.constant(name) for name in PRINCIPAL]
+            return batches.driven(Driven(moments, axis, push, *drags).constants, part.omega, part.start), True
+        bounds = [_doubles(value) for value in given]
+        if any((np.abs(x) > _FAR).any() for x in bounds) or any(
+            (x < 1 / _FAR).any() for x in map(np.array, bounds[:2])
+        ):
+            return None, False
+        columns = [[value] * len(part.rows) if isinstance(value, Fraction) else value.tolist() for value in given]
+        ratios = [[x.as_integer_ratio() for x in column] for column in columns]
+        bodies = [Constants(axis, (a, c), *rest) for a, c, *rest in zip(*ratios, strict=True)]
+        return batches.driven(bodies, part.omega, part.start), True
+    except InputError:  # of one trajectory, which says so alone
         return None, False
-    return batches.driven(bodies, part.omega, part.start), True
 
 
 def _spin_up(part: _Part) -> tuple["Batch | None", Usual]:

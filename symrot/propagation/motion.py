@@ -49,6 +49,7 @@ def unreduced(plan: Plan, form: Form) -> Plan:
 
 OF_START = (
     "rate_parameters", "taylor_parameters", "stepping", "exact", "_quantity_values", "_initial", "_on_own_clock",
+    "_clock",
 )  # fmt: skip
 """What a motion keeps that depends on its start."""
 
@@ -126,9 +127,14 @@ class Motion:
             start = (self.taylor_parameters, self.plan.initial_state, self.start)
             return taylor.task(self.library, *start, self.tolerance)
         timed = (self.movable or self.epoch) and self._timed
-        clock = epoch.clock(self._moved, self.plan.constants, self.epoch) if timed else None
+        clock = (lambda since: self._clock(since)) if timed else None
         start = (self.rate_parameters, self.plan.initial_state, self.start)
         return dop853.task(self.library, *start, self.tolerance, clock=clock)
+
+    @cached_property
+    def _clock(self) -> dop853.Clock:
+        """The clock of the rates, once it is moved."""
+        return epoch.clock(self._moved, self.plan.constants, self.epoch)
 
     def _moved(self) -> tuple[Plan, SceneKernel]:
         """Return plan and kernel on a clock that can be moved."""
@@ -316,8 +322,12 @@ def _exact_parts(motion: Motion, times: Floats, rise: bool) -> tuple[tuple[Float
     omega, quaternion = exact.evaluate(times - start if start else times, quaternion=attitude)
     assert omega is not None
     if not (rise and len(times) and times.item(0) > start):  # to the last bit, as every method has it
-        at_start: Any = times == start
-        if rise:
+        at_start: Any
+        if not rise:
+            at_start = times == start
+        elif len(times) > 1 and times.item(0) == start < times.item(1):
+            at_start = 0
+        else:
             at_start = slice(times.searchsorted(start, "left"), times.searchsorted(start, "right"))
         omega[at_start] = motion.plan.initial_state[:3]
         if quaternion is not None:
