@@ -17,6 +17,7 @@ from sympy import Expr, Integer, Rational, cos, exp, log, pi, sin
 from sympy.polys.rings import PolyElement
 
 from symrot.errors import InputError
+from symrot.exact.floats import seems_zero
 from symrot.exact.intervals import enclosure
 from symrot.exact.inverse import INVERSE, range_of
 from symrot.exact.ring import FormulaRing
@@ -50,21 +51,24 @@ def proof(ring: FormulaRing, numerator: PolyElement) -> tuple[FormulaRing, ...] 
     numerator = ring.reduce(numerator)
     if not numerator:
         return ()
-    for lift in lifts(ring, numerator):
+    for lift in lifts(ring, numerator, only_zero=not ring.hypotheses):
         further = [proof(lift.ring, poly) for poly in lift.numerators]
         if None not in further:
             return (lift.ring, *(other for found in further if found for other in found))
     return None
 
 
-def lifts(ring: FormulaRing, numerator: PolyElement) -> Iterator[Lift]:
-    """Yield, for factors of a reduced numerator, what suffices for them to vanish."""
+def lifts(ring: FormulaRing, numerator: PolyElement, only_zero: bool = False) -> Iterator[Lift]:
+    """Yield, for factors of a reduced numerator, what suffices for them to vanish.
+
+    With ``only_zero``, factors that are not zero at a few points in double precision are left out.
+    """
     places = {number for leaf, number in ring.symbols.items() if isinstance(leaf, _NAMES)}
     if not places or len(numerator) > MOST_TERMS or not any(mono[n] for mono in numerator for n in places):
         return
     for factor, _ in numerator.factor_list()[1]:
         used = {number for number in places if any(mono[number] for mono in factor)}
-        if used:
+        if used and (not only_zero or seems_zero(factor.as_expr(*ring.generators), ring.domain)):
             with suppress(InputError):  # a lift that cannot be read proves nothing
                 yield from _lifts_of(ring, factor, used)
 

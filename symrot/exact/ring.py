@@ -13,6 +13,7 @@ leads with a power of its own generator, and replacing leading powers gives the 
 
 from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
+from functools import lru_cache
 from typing import Any
 
 import sympy
@@ -31,7 +32,7 @@ from symrot.exact.angles import (
     constant_cosine_sine,
     linear_form,
 )
-from symrot.exact.budget import spend_ring
+from symrot.exact.budget import remembered, spend_ring
 from symrot.exact.constants import Number, cosine_number, root_number, vanishes
 from symrot.exact.functions import REWRITTEN, TRIGONOMETRIC, is_jet
 from symrot.exact.inverse import INVERSE, cosine_sine
@@ -189,15 +190,9 @@ class FormulaRing:
 
     def _radicand(self, base: Expr, index: int) -> Radicand:
         """Return a radicand in lowest terms, reduced by those hypotheses that hold no roots themselves."""
-        plain = [relation for relation in self.hypotheses if not any(map(is_root, preorder_traversal(relation)))]
-        inner = FormulaRing([base], plain)
-        content, above, below = inner.lowest_polynomials(inner.ratio(base))
-        if inner.roots and len(above) + len(below) > MOST_NESTED_TERMS:
-            raise TooLarge(f"a root of a formula with roots and more than {MOST_NESTED_TERMS} terms is not taken apart")
-        if index != 2:
-            return Radicand(content, above.as_expr(*inner.generators), below.as_expr(*inner.generators))
-        rest, outside, loose = take_squares(above, below, inner.generators)
-        return Radicand(content, rest, Integer(1), outside, loose)
+        plain = tuple(each for each in self.hypotheses if not any(map(is_root, preorder_traversal(each))))
+        found: Radicand = remembered(("radicand", base, index, plain), lambda: _taken_apart(base, index, plain))
+        return found
 
     def _dependences(self) -> dict[Root, Dependence]:
         """Return the square roots that are products of other generators, if there are several."""
@@ -458,6 +453,17 @@ class FormulaRing:
         return constant, above, below
 
 
+def _taken_apart(base: Expr, index: int, hypotheses: Sequence[Expr]) -> Radicand:
+    inner = FormulaRing([base], hypotheses)
+    content, above, below = inner.lowest_polynomials(inner.ratio(base))
+    if inner.roots and len(above) + len(below) > MOST_NESTED_TERMS:
+        raise TooLarge(f"a root of a formula with roots and more than {MOST_NESTED_TERMS} terms is not taken apart")
+    if index != 2:
+        return Radicand(content, above.as_expr(*inner.generators), below.as_expr(*inner.generators))
+    rest, outside, loose = take_squares(above, below, inner.generators)
+    return Radicand(content, rest, Integer(1), outside, loose)
+
+
 def _named(dependence: Dependence | None) -> list[Root]:
     """Return the roots by which a root is expressed."""
     if dependence is None:
@@ -469,6 +475,7 @@ def _occurring(poly: PolyElement) -> set[int]:
     return {number for mono in poly for number, power in enumerate(mono) if power}
 
 
+@lru_cache(maxsize=20_000)
 def _order(node: Expr) -> tuple[str, str]:
     """Return a key that does not depend on hashing."""
     return (str(node), type(node).__name__)
@@ -476,4 +483,4 @@ def _order(node: Expr) -> tuple[str, str]:
 
 def _depth(root: Root) -> tuple[int, str, str]:
     """Return a key that puts outer roots before the roots inside them."""
-    return (-root.depth, str(root.expression), str(root.power_expression))
+    return (-root.depth, _order(root.expression)[0], _order(root.power_expression)[0])
