@@ -303,7 +303,7 @@ def campaign(count: int, seed: int = 0, real: bool = False, workers: int = 1, lo
     known, tally = read_log(log), Tally()
 
     def rest() -> Iterator[tuple[int, Any]]:
-        for number, claim in enumerate(real_claims(count, seed) if real else claims(count, seed), start=1):
+        for place, claim in enumerate(real_claims(count, seed) if real else claims(count, seed), start=1):
             row = known.get(number)
             if row is not None and not row.claim.startswith(claim if real else claim[0]):
                 raise InputError(
@@ -312,7 +312,7 @@ def campaign(count: int, seed: int = 0, real: bool = False, workers: int = 1, lo
             if row is not None and not row.wrong and not row.late:
                 tally.add(row)
             else:
-                yield number, claim
+                yield place, claim
 
     for row in judged_claims(partial(judged_real, seed) if real else judged, rest(), workers, log):
         tally.add(row)
@@ -321,7 +321,10 @@ def campaign(count: int, seed: int = 0, real: bool = False, workers: int = 1, lo
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run a campaign; exit code 1 when an answer is wrong, late or none, or more than 1 % of the claims of rewriting open."""
+    """Run a campaign; exit code 1 for an answer that is wrong, late or missing, or too many undecided ones.
+
+    Of claims made by rewriting 1 % may be undecided, or true and refused; of real functions any number.
+    """
     parser = ArgumentParser(prog="python -m symrot.checker.campaign", description=__doc__.splitlines()[0])
     parser.add_argument("--count", type=int, default=1000, help="claims (default: 1000)")
     parser.add_argument("--seed", type=int, default=0)

@@ -11,7 +11,17 @@ from random import Random
 
 from symrot.checker.campaign_run import Judged, answer_of
 from symrot.checker.interface import check
-from symrot.checker.judge_real import NAMES, Edge, NoValue, Unclear, compare, drawn_point, generic_point, real_value
+from symrot.checker.judge_real import (
+    NAMES,
+    Edge,
+    Large,
+    NoValue,
+    Unclear,
+    compare,
+    drawn_point,
+    generic_point,
+    real_value,
+)
 from symrot.checker.reader import read_expression, read_relation
 from symrot.checker.tree import Node, replaced, text, walk
 from symrot.checker.verdict import Verdict
@@ -215,7 +225,7 @@ def _fault_of_true(left: Node, right: Node, source: Random, conditions: Sequence
             if not compare(left, right, point):
                 return "true, but not at " + ", ".join(f"{name} = {value}" for name, value in point.items())
         except (NoValue, Unclear) as reason:
-            edges += isinstance(reason, Edge)
+            edges += isinstance(reason, Edge | Large)
             continue
         defined += 1
         if defined >= POINTS // 4 and number >= POINTS:

@@ -1,4 +1,4 @@
-"""One run of a campaign: claim after claim, in one process or several, with a log from which an interrupted run goes on."""
+"""One run of a campaign: claim after claim, in one process or several, with a log from which it can go on."""
 
 import json
 import signal
@@ -150,7 +150,7 @@ def _judged(judge: Judge, chunk: Sequence[tuple[int, Any]]) -> list[Judged]:
 
 
 def read_log(log: Path | None) -> dict[int, Judged]:
-    """Return the claims of a log by number, the last line of each; a line that was cut off by an interruption is left out.
+    """Return the claims of a log by number, the last line of each; without a line that an interruption cut off.
 
     Raises
     ------

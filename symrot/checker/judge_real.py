@@ -15,7 +15,7 @@ from mpmath import MPContext
 
 from symrot.checker.tree import Node
 
-__all__ = ["NAMES", "Edge", "NoValue", "Unclear", "compare", "drawn_point", "generic_point", "real_value"]
+__all__ = ["NAMES", "Edge", "Large", "NoValue", "Unclear", "compare", "drawn_point", "generic_point", "real_value"]
 
 NAMES = ("x", "y", "z")
 
@@ -39,6 +39,10 @@ class Unclear(Exception):
 
 class Edge(Unclear):
     """The judge cannot tell since the point is on the edge of the domain, or close to it."""
+
+
+class Large(Unclear):
+    """There is a value, as far as the judge came, but one too large to be compared."""
 
 
 def _context(digits: int) -> Any:
@@ -108,7 +112,7 @@ class _Judge:
         if base == 0:
             return self.mp.mpf(0 if exponent else 1)
         if abs(self.mp.log(abs(base)) * exponent.numerator / exponent.denominator) > _MOST:
-            raise Unclear
+            raise Large
         if exponent.denominator == 1:
             return base**exponent.numerator
         return self.mp.exp(self.mp.log(base) * exponent.numerator / exponent.denominator)
@@ -126,7 +130,7 @@ class _Judge:
 
     def of_exp(self, u: Any) -> Any:
         if abs(u) > _MOST:
-            raise Unclear
+            raise Large
         return self.mp.exp(u)
 
     def of_sinh(self, u: Any) -> Any:
@@ -149,7 +153,7 @@ class _Judge:
 
     def angle(self, u: Any) -> Any:
         if abs(u) > self.mp.mpf(10) ** 20:
-            raise Unclear
+            raise Large
         return u
 
     def of_asin(self, u: Any) -> Any:
