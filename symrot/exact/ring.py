@@ -13,7 +13,6 @@ leads with a power of its own generator, and replacing leading powers gives the 
 
 from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
-from functools import lru_cache
 from typing import Any
 
 import sympy
@@ -40,12 +39,15 @@ from symrot.exact.known_angles import halved, is_bound, parts_of, unbound
 from symrot.exact.radicands import Dependence, dependences, take_squares
 from symrot.exact.ratio import Ratio, Ratios, TooLarge
 from symrot.exact.relations import Relations, Rule, relate
-from symrot.exact.roots import Radical, Radicand, Root, is_root, radical, square_root_of_number
+from symrot.exact.roots import Radical, Radicand, Root, is_root, radical, square_root_of_number, written
 
 __all__ = ["FormulaRing", "as_zero"]
 
 MOST_MULTIPLES = 240
 """Of a base angle."""
+
+MOST_ANGLE_TERMS = 4096
+"""Of a sine or cosine in those of the base angles: a sum of twelve angles has 2048."""
 
 MOST_NESTED_TERMS = 40
 """Of a radicand that holds roots itself: each further nesting multiplies the work."""
@@ -139,6 +141,7 @@ class FormulaRing:
             (atom, sympy.exp(base_angle(atom, self.exponent_bases[atom]))) for atom in exponents
         )
         self.cosines = self._number((atom, cos(base_angle(atom, self.bases[atom]))) for atom in atoms)
+        self.own = {self.generators[n]: n for n in range(len(self.roots), len(self.generators))}
         if self.fine:
             (self.fine_place,) = self._number([(pi, 2 * cos(pi / self.fine))]).values()
 
@@ -313,8 +316,8 @@ class FormulaRing:
 
     def _read(self, node: Expr) -> Ratio:
         ratios = self.ratios
-        if node in self.symbols:
-            return Ratio(self.ring.gens[self.symbols[node]])
+        if node in self.own:
+            return Ratio(self.ring.gens[self.own[node]])
         if node.is_Rational:
             return ratios.number(int(node.p), int(node.q))
         if node in self.rewritten:
@@ -393,6 +396,8 @@ class FormulaRing:
             c = self._in_generator(self.cosines[atom], first)
             s = self._in_generator(self.cosines[atom], second) * self.ring.gens[self.sines[atom]]
             s = s if multiple > 0 else -s
+            if len(cosine) * (len(c) + len(s)) > MOST_ANGLE_TERMS:
+                raise TooLarge(f"the sine of a sum of angles with more than {MOST_ANGLE_TERMS} terms is not expanded")
             cosine, sine = cosine * c - sine * s, sine * c + cosine * s
         turned = Ratio(cosine), Ratio(sine)
         for pair in pairs:
@@ -475,12 +480,11 @@ def _occurring(poly: PolyElement) -> set[int]:
     return {number for mono in poly for number, power in enumerate(mono) if power}
 
 
-@lru_cache(maxsize=20_000)
 def _order(node: Expr) -> tuple[str, str]:
     """Return a key that does not depend on hashing."""
-    return (str(node), type(node).__name__)
+    return (written(node), type(node).__name__)
 
 
 def _depth(root: Root) -> tuple[int, str, str]:
     """Return a key that puts outer roots before the roots inside them."""
-    return (-root.depth, _order(root.expression)[0], _order(root.power_expression)[0])
+    return (-root.depth, written(root.expression), written(root.power_expression))
