@@ -20,6 +20,7 @@ from symrot.checker.judge_real import (
     compare,
     drawn_point,
     generic_point,
+    has_values,
     real_value,
 )
 from symrot.checker.reader import read_expression, read_relation
@@ -234,15 +235,7 @@ def _fault_of_true(left: Node, right: Node, source: Random, conditions: Sequence
 
 
 def _defined(left: Node, right: Node, source: Random) -> bool:
-    for _ in range(MOST_POINTS // 2):
-        point = generic_point(source)
-        try:
-            for side in (left, right):
-                real_value(side, point)
-        except (NoValue, Unclear):
-            continue
-        return True
-    return False
+    return has_values((left, right), (generic_point(source) for _ in range(MOST_POINTS // 2)))
 
 
 def _conditions(requirement: str) -> list[tuple[str, Node, Node]]:

@@ -14,7 +14,7 @@ from symrot.checker.real_points import ATTEMPTS
 from symrot.checker.verdict import Counterexample
 from symrot.errors import InputError
 from symrot.exact import cyclotomic, domain
-from symrot.exact.branches import lifts, proof
+from symrot.exact.branches import lifts, principal, proof
 from symrot.exact.budget import one_decision
 from symrot.exact.congruence import proof_by_congruence
 from symrot.exact.counterexample import Counterexample as Witness
@@ -269,6 +269,11 @@ def _branches(
             found = branch_requirements(lift.ring, [poly for poly in lift.numerators if poly])
             if found is not None:
                 return found, (lift.ring,)
+        within = principal(ring, numerators[0]) if found is None else None
+        if within is not None:
+            ends = [end for end in (within.least, within.most) if not surely_nonnegative(end)]
+            text = " and ".join(f"{shown(end)} >= 0" for end in ends)
+            return [Requirement("principal_value", text, signs=tuple(ends))] if ends else [], within.rings
     return found, ()
 
 

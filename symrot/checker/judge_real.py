@@ -6,7 +6,7 @@ only; logarithms of positive numbers; ``asin`` and ``acos`` between -1 and 1; no
 multiplied by zero must have a value too. Near the edge of a domain, and beyond e^100, the judge does not know.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from random import Random
 from typing import Any
@@ -15,7 +15,18 @@ from mpmath import MPContext
 
 from symrot.checker.tree import Node
 
-__all__ = ["NAMES", "Edge", "Large", "NoValue", "Unclear", "compare", "drawn_point", "generic_point", "real_value"]
+__all__ = [
+    "NAMES",
+    "Edge",
+    "Large",
+    "NoValue",
+    "Unclear",
+    "compare",
+    "drawn_point",
+    "generic_point",
+    "has_values",
+    "real_value",
+]
 
 NAMES = ("x", "y", "z")
 
@@ -42,7 +53,7 @@ class Edge(Unclear):
 
 
 class Large(Unclear):
-    """There is a value, as far as the judge came, but one too large to be compared."""
+    """There is a value, but one too large to be compared."""
 
 
 def _context(digits: int) -> Any:
@@ -54,6 +65,13 @@ def _context(digits: int) -> Any:
 _CONTEXTS = {digits: _context(digits) for digits in (DIGITS, MORE_DIGITS)}
 
 
+UNKNOWN = object()
+"""A real number, about which nothing else is known."""
+
+_EVERYWHERE = ("abs", "exp", "sinh", "cosh", "tanh", "sin", "cos", "atan")
+"""Functions that have a value of every real number."""
+
+
 class _Judge:
     """Values at one point, in one precision."""
 
@@ -61,16 +79,32 @@ class _Judge:
         self.mp = _CONTEXTS[digits]
         self.values = {name: self.mp.mpf(value.numerator) / value.denominator for name, value in point.items()}
         self.edge = self.mp.mpf(10) ** -EDGE
+        self.failed: Node | None = None  # the piece without a value
 
     def value(self, node: Node) -> Any:
+        """Return the value of a tree, or ``UNKNOWN`` for a real number that is too large, or made of one."""
+        try:
+            return self.small_value(node)
+        except Large:
+            return UNKNOWN
+        except (NoValue, Unclear):
+            self.failed = self.failed or node
+            raise
+
+    def small_value(self, node: Node) -> Any:
         kind, args = node.kind, node.args
         if kind == "number":
             return self.mp.mpf(node.value.numerator) / node.value.denominator
         if kind == "name":
             return +self.mp.pi if node.value == "pi" else self.values[node.value]
         if kind == "power":
-            return self.power(self.value(args[0]), _rational(args[1]))
+            base, exponent = self.value(args[0]), _rational(args[1])
+            if base is UNKNOWN:
+                raise Large if exponent.denominator == 1 and exponent >= 0 else Unclear
+            return self.power(base, exponent)
         parts = [self.value(argument) for argument in args]
+        if any(part is UNKNOWN for part in parts):
+            raise Large if kind in ("sum", "product", "neg") or node.value in _EVERYWHERE else Unclear
         if kind == "sum":
             return sum(parts[1:], parts[0])
         if kind == "product":
@@ -202,9 +236,35 @@ def real_value(node: Node, point: Point, digits: int = DIGITS) -> Any:
         Where the judge cannot tell, or does not know a function.
     """
     try:
-        return _Judge(point, digits).value(node)
+        return _Judge(point, digits).small_value(node)
     except (AttributeError, KeyError, TypeError, OverflowError, MemoryError):
         raise Unclear from None
+
+
+def has_values(sides: Sequence[Node], points: Iterable[Point]) -> bool:
+    """Return whether at one of the points all sides have values, as far as the judge can tell.
+
+    The piece that had no value at the last point is looked at first: it often has none at the next one either.
+    """
+    pieces = list(sides)
+    for point in points:
+        judge = _Judge(point, DIGITS)
+        try:
+            for piece in pieces:
+                judge.value(piece)
+            return True
+        except (NoValue, Unclear, AttributeError, KeyError, TypeError, OverflowError, MemoryError):
+            if judge.failed is not None:
+                pieces = [judge.failed, *(piece for piece in pieces if piece is not judge.failed)][: len(sides) + 2]
+                pieces += [side for side in sides if not any(side is piece for piece in pieces)]
+    return False
+
+
+def _value_or_unknown(node: Node, point: Point, digits: int) -> Any:
+    try:
+        return real_value(node, point, digits)
+    except Large:
+        return UNKNOWN
 
 
 def compare(left: Node, right: Node, point: Point) -> bool:
@@ -218,7 +278,9 @@ def compare(left: Node, right: Node, point: Point) -> bool:
     """
     gaps = []
     for digits in (DIGITS, MORE_DIGITS):
-        a, b = (real_value(side, point, digits) for side in (left, right))
+        a, b = (_value_or_unknown(side, point, digits) for side in (left, right))
+        if a is UNKNOWN or b is UNKNOWN:
+            raise Large
         gap = abs(a - b) / (1 + abs(a) + abs(b))
         if gap == 0:
             return True
