@@ -19,7 +19,6 @@ from symrot.checker.judge_real import (
     Unclear,
     compare,
     drawn_point,
-    generic_point,
     has_values,
     real_value,
 )
@@ -191,7 +190,7 @@ def fault(claim: str, verdict: Verdict | str, source: Random) -> str:
     """
     _, left, right = read_relation(claim)
     if isinstance(verdict, str):
-        if any(words in verdict for words in _OF_THE_DOMAIN) and _defined(left, right, source):
+        if any(words in verdict for words in _OF_THE_DOMAIN) and has_values((left, right), MOST_POINTS // 2):
             return f"refused as if it had no value: {verdict}"
         return ""
     if verdict.verdict == "undecided":
@@ -232,10 +231,6 @@ def _fault_of_true(left: Node, right: Node, source: Random, conditions: Sequence
         if defined >= POINTS // 4 and number >= POINTS:
             break
     return "" if defined or edges else "true of nothing: no point has a value on both sides"
-
-
-def _defined(left: Node, right: Node, source: Random) -> bool:
-    return has_values((left, right), (generic_point(source) for _ in range(MOST_POINTS // 2)))
 
 
 def _conditions(requirement: str) -> list[tuple[str, Node, Node]]:

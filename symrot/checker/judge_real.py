@@ -6,14 +6,15 @@ only; logarithms of positive numbers; ``asin`` and ``acos`` between -1 and 1; no
 multiplied by zero must have a value too. Near the edge of a domain, and beyond e^100, the judge does not know.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
+from functools import cache
 from random import Random
 from typing import Any
 
 from mpmath import MPContext
 
-from symrot.checker.tree import Node
+from symrot.checker.tree import Node, walk
 
 __all__ = [
     "NAMES",
@@ -241,22 +242,30 @@ def real_value(node: Node, point: Point, digits: int = DIGITS) -> Any:
         raise Unclear from None
 
 
-def has_values(sides: Sequence[Node], points: Iterable[Point]) -> bool:
-    """Return whether at one of the points all sides have values, as far as the judge can tell.
+@cache
+def _generic_judges(count: int) -> tuple[_Judge, ...]:
+    source = Random(count)
+    return tuple(_Judge(generic_point(source), DIGITS) for _ in range(count))
+
+
+def has_values(sides: Sequence[Node], count: int) -> bool:
+    """Return whether at one of so many generic points all sides have values, as far as the judge can tell.
 
     The piece that had no value at the last point is looked at first: it often has none at the next one either.
     """
     pieces = list(sides)
-    for point in points:
-        judge = _Judge(point, DIGITS)
+    for judge in _generic_judges(count):
+        judge.failed = None
         try:
             for piece in pieces:
                 judge.value(piece)
             return True
         except (NoValue, Unclear, AttributeError, KeyError, TypeError, OverflowError, MemoryError):
-            if judge.failed is not None:
-                pieces = [judge.failed, *(piece for piece in pieces if piece is not judge.failed)][: len(sides) + 2]
-                pieces += [side for side in sides if not any(side is piece for piece in pieces)]
+            failed = judge.failed
+        if failed is not None:
+            if not any(node.kind == "name" and node.value != "pi" for _, node in walk(failed)):
+                return False
+            pieces = [failed, *sides]
     return False
 
 
