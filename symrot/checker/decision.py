@@ -11,6 +11,7 @@ from symrot.checker.conditions import Requirement, branch_requirements, requirem
 from symrot.checker.grounds import Grounds
 from symrot.checker.printed import shown
 from symrot.checker.real_points import ATTEMPTS
+from symrot.checker.unordered import is_unordered
 from symrot.checker.verdict import Counterexample
 from symrot.errors import InputError
 from symrot.exact import cyclotomic, domain
@@ -72,6 +73,10 @@ def decide_problem(problem: Problem) -> Decision:
             return _decide(problem)
     except RecursionError:
         return Decision("undecided", reason="the formulas are nested too deeply to be read")
+    except (TypeError, AttributeError) as reason:
+        if is_unordered(reason):
+            return Decision("undecided", reason="it cannot be told which of two numbers in it is larger")
+        raise
 
 
 def _decide(problem: Problem) -> Decision:
