@@ -11,10 +11,11 @@ from symrot.checker.conditions import Requirement, branch_requirements, requirem
 from symrot.checker.grounds import Grounds
 from symrot.checker.printed import shown
 from symrot.checker.real_points import ATTEMPTS
+from symrot.checker.unordered import is_unordered
 from symrot.checker.verdict import Counterexample
 from symrot.errors import InputError
 from symrot.exact import cyclotomic, domain
-from symrot.exact.branches import lifts, proof
+from symrot.exact.branches import lifts, principal, proof
 from symrot.exact.budget import one_decision
 from symrot.exact.congruence import proof_by_congruence
 from symrot.exact.counterexample import Counterexample as Witness
@@ -72,6 +73,10 @@ def decide_problem(problem: Problem) -> Decision:
             return _decide(problem)
     except RecursionError:
         return Decision("undecided", reason="the formulas are nested too deeply to be read")
+    except (TypeError, AttributeError) as reason:
+        if is_unordered(reason):
+            return Decision("undecided", reason="it cannot be told which of two numbers in it is larger")
+        raise
 
 
 def _decide(problem: Problem) -> Decision:
@@ -269,6 +274,11 @@ def _branches(
             found = branch_requirements(lift.ring, [poly for poly in lift.numerators if poly])
             if found is not None:
                 return found, (lift.ring,)
+        within = principal(ring, numerators[0]) if found is None else None
+        if within is not None:
+            ends = [end for end in (within.least, within.most) if not surely_nonnegative(end)]
+            text = " and ".join(f"{shown(end)} >= 0" for end in ends)
+            return [Requirement("principal_value", text, signs=tuple(ends))] if ends else [], within.rings
     return found, ()
 
 

@@ -8,14 +8,26 @@ multiplied by zero must have a value too. Near the edge of a domain, and beyond 
 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
+from functools import cache
 from random import Random
 from typing import Any
 
 from mpmath import MPContext
 
-from symrot.checker.tree import Node
+from symrot.checker.tree import Node, walk
 
-__all__ = ["NAMES", "Edge", "NoValue", "Unclear", "compare", "drawn_point", "generic_point", "real_value"]
+__all__ = [
+    "NAMES",
+    "Edge",
+    "Large",
+    "NoValue",
+    "Unclear",
+    "compare",
+    "drawn_point",
+    "generic_point",
+    "has_values",
+    "real_value",
+]
 
 NAMES = ("x", "y", "z")
 
@@ -41,6 +53,10 @@ class Edge(Unclear):
     """The judge cannot tell since the point is on the edge of the domain, or close to it."""
 
 
+class Large(Unclear):
+    """There is a value, but one too large to be compared."""
+
+
 def _context(digits: int) -> Any:
     made = MPContext()
     made.dps = digits
@@ -50,6 +66,13 @@ def _context(digits: int) -> Any:
 _CONTEXTS = {digits: _context(digits) for digits in (DIGITS, MORE_DIGITS)}
 
 
+UNKNOWN = object()
+"""A real number, about which nothing else is known."""
+
+_EVERYWHERE = ("abs", "exp", "sinh", "cosh", "tanh", "sin", "cos", "atan")
+"""Functions that have a value of every real number."""
+
+
 class _Judge:
     """Values at one point, in one precision."""
 
@@ -57,16 +80,32 @@ class _Judge:
         self.mp = _CONTEXTS[digits]
         self.values = {name: self.mp.mpf(value.numerator) / value.denominator for name, value in point.items()}
         self.edge = self.mp.mpf(10) ** -EDGE
+        self.failed: Node | None = None  # the piece without a value
 
     def value(self, node: Node) -> Any:
+        """Return the value of a tree, or ``UNKNOWN`` for a real number that is too large, or made of one."""
+        try:
+            return self.small_value(node)
+        except Large:
+            return UNKNOWN
+        except (NoValue, Unclear):
+            self.failed = self.failed or node
+            raise
+
+    def small_value(self, node: Node) -> Any:
         kind, args = node.kind, node.args
         if kind == "number":
             return self.mp.mpf(node.value.numerator) / node.value.denominator
         if kind == "name":
             return +self.mp.pi if node.value == "pi" else self.values[node.value]
         if kind == "power":
-            return self.power(self.value(args[0]), _rational(args[1]))
+            base, exponent = self.value(args[0]), _rational(args[1])
+            if base is UNKNOWN:
+                raise Large if exponent.denominator == 1 and exponent >= 0 else Unclear
+            return self.power(base, exponent)
         parts = [self.value(argument) for argument in args]
+        if any(part is UNKNOWN for part in parts):
+            raise Large if kind in ("sum", "product", "neg") or node.value in _EVERYWHERE else Unclear
         if kind == "sum":
             return sum(parts[1:], parts[0])
         if kind == "product":
@@ -108,7 +147,7 @@ class _Judge:
         if base == 0:
             return self.mp.mpf(0 if exponent else 1)
         if abs(self.mp.log(abs(base)) * exponent.numerator / exponent.denominator) > _MOST:
-            raise Unclear
+            raise Large
         if exponent.denominator == 1:
             return base**exponent.numerator
         return self.mp.exp(self.mp.log(base) * exponent.numerator / exponent.denominator)
@@ -126,7 +165,7 @@ class _Judge:
 
     def of_exp(self, u: Any) -> Any:
         if abs(u) > _MOST:
-            raise Unclear
+            raise Large
         return self.mp.exp(u)
 
     def of_sinh(self, u: Any) -> Any:
@@ -149,7 +188,7 @@ class _Judge:
 
     def angle(self, u: Any) -> Any:
         if abs(u) > self.mp.mpf(10) ** 20:
-            raise Unclear
+            raise Large
         return u
 
     def of_asin(self, u: Any) -> Any:
@@ -198,9 +237,43 @@ def real_value(node: Node, point: Point, digits: int = DIGITS) -> Any:
         Where the judge cannot tell, or does not know a function.
     """
     try:
-        return _Judge(point, digits).value(node)
+        return _Judge(point, digits).small_value(node)
     except (AttributeError, KeyError, TypeError, OverflowError, MemoryError):
         raise Unclear from None
+
+
+@cache
+def _generic_judges(count: int) -> tuple[_Judge, ...]:
+    source = Random(count)
+    return tuple(_Judge(generic_point(source), DIGITS) for _ in range(count))
+
+
+def has_values(sides: Sequence[Node], count: int) -> bool:
+    """Return whether at one of so many generic points all sides have values, as far as the judge can tell.
+
+    The piece that had no value at the last point is looked at first: it often has none at the next one either.
+    """
+    pieces = list(sides)
+    for judge in _generic_judges(count):
+        judge.failed = None
+        try:
+            for piece in pieces:
+                judge.value(piece)
+            return True
+        except (NoValue, Unclear, AttributeError, KeyError, TypeError, OverflowError, MemoryError):
+            failed = judge.failed
+        if failed is not None:
+            if not any(node.kind == "name" and node.value != "pi" for _, node in walk(failed)):
+                return False
+            pieces = [failed, *sides]
+    return False
+
+
+def _value_or_unknown(node: Node, point: Point, digits: int) -> Any:
+    try:
+        return real_value(node, point, digits)
+    except Large:
+        return UNKNOWN
 
 
 def compare(left: Node, right: Node, point: Point) -> bool:
@@ -214,7 +287,9 @@ def compare(left: Node, right: Node, point: Point) -> bool:
     """
     gaps = []
     for digits in (DIGITS, MORE_DIGITS):
-        a, b = (real_value(side, point, digits) for side in (left, right))
+        a, b = (_value_or_unknown(side, point, digits) for side in (left, right))
+        if a is UNKNOWN or b is UNKNOWN:
+            raise Large
         gap = abs(a - b) / (1 + abs(a) + abs(b))
         if gap == 0:
             return True

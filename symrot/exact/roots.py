@@ -10,6 +10,7 @@ what follows from the relations is true, and what does not may still be true on 
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from functools import lru_cache
 from math import prod
 
 from sympy import Abs, Expr, I, Integer, Pow, Rational, Symbol, exp, factorint, sqrt
@@ -17,7 +18,23 @@ from sympy.core.function import AppliedUndef
 
 from symrot.errors import InputError
 
-__all__ = ["Radical", "Radicand", "Root", "absolute", "is_root", "radical", "sign_of", "square_root_of_number"]
+__all__ = [
+    "Radical",
+    "Radicand",
+    "Root",
+    "absolute",
+    "is_root",
+    "radical",
+    "sign_of",
+    "square_root_of_number",
+    "written",
+]
+
+
+@lru_cache(maxsize=20_000)
+def written(node: Expr) -> str:
+    """Return the text of an expression: a key for sorting that does not depend on hashing."""
+    return str(node)
 
 
 @dataclass(frozen=True)
