@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from symrot.errors import InputError
 from symrot.propagation import progress
-from symrot.propagation.cut_off import CutOff, add_samples, why_hopeless
+from symrot.propagation.cut_off import CutOff, add_samples, why_hopeless, why_stuck
 from symrot.propagation.enclosure import Deviations, longest_followed
 from symrot.propagation.stepping import (
     NOT_FINITE_SENTENCE,
@@ -45,6 +45,7 @@ HELD, REGAIN = 0.5, 1.5  # a step of that part of the longest allowed was held b
 STUCK = "the step shrank to nothing, as it does before a singularity"
 PILOT_TURN = 1e-3  # rad over the whole span
 PILOT_TOLERANCE = 1e-3  # of the coarse pass
+BEFORE_POLE = 0.5  # of the way to where the coarse pass is cut off: further on, states may grow without bound
 PILOT_STEPS = 10  # a motion of so many coarse steps may spend the whole share in every step
 MAX_EVALUATIONS = 1_000_000  # unless another limit is given: half a minute
 PATIENCE = 50_000  # evaluations after each of which the pace is judged
@@ -230,7 +231,10 @@ class _Task:
         return inside, states
 
     def solutions(self, end: float) -> list[Piece]:
-        """Return (low, high, solution) for each stretch between switching times, from t0 to the end."""
+        """Return (low, high, solution) for each stretch between switching times, from t0 to the end.
+
+        Where the coarse pass is cut off, the motion is followed as far as that came, so that its samples are not lost.
+        """
         if end == self.t0:
             return []
         slowest = PILOT_TURN / abs(end - self.t0)  # rad/s: nothing turns the body that turns it less
@@ -238,10 +242,17 @@ class _Task:
             SLACK * PILOT_TOLERANCE * (scale if scale > 0.0 else max(float(np.linalg.norm(self.y0[block])), slowest))
             for block, scale in self.blocks
         ]
-        self.final = False
-        pilot = self._stretches(end, PILOT_TOLERANCE, np.full(len(self.y0), PILOT_TOLERANCE), bars)
-        coarse = sum(len(solution.ts) - 1 for _, _, solution in pilot)
-        path = np.concatenate([np.abs(solution(solution.ts)) for _, _, solution in pilot], axis=1)
+        self.final, early = False, None
+        try:
+            self._stretches(end, PILOT_TOLERANCE, np.full(len(self.y0), PILOT_TOLERANCE), bars)
+        except CutOff as error:
+            if not self.pieces or self.evaluations >= self.max_evaluations:
+                raise
+            early, end = error, float(self.pieces[-1][2].ts[-1])
+        way = abs(end - self.t0) * (1.0 if early is None else BEFORE_POLE)
+        pilot = [(solution, solution.ts[np.abs(solution.ts - self.t0) <= way]) for _, _, solution in self.pieces]
+        coarse = sum(len(solution.ts) - 1 for solution, _ in pilot)
+        path = np.concatenate([np.abs(solution(times)) for solution, times in pilot if len(times)], axis=1)
         share = self.tolerance * METHODS[self.method] * min(1.0, PILOT_STEPS / coarse)
         allowed, bars = np.empty(len(self.y0)), []
         for block, scale in self.blocks:
@@ -250,7 +261,13 @@ class _Task:
             # SciPy takes the mean over all states, we the sum over a block
             allowed[block] = share * max(size, slowest) / math.sqrt(len(self.y0))
         self.final = True
-        return self._stretches(end, SMALLEST_RTOL, allowed, bars)
+        try:
+            pieces = self._stretches(end, SMALLEST_RTOL, allowed, bars)
+        except CutOff as error:
+            raise error if early is None else CutOff(error.t, error.reason, early.stop) from None
+        if early is not None:
+            raise early
+        return pieces
 
     def _stretches(self, end: float, rtol: float, atol: Floats, bars: list[float]) -> list[Piece]:
         y, self.pieces, self.mark, self.goal = self.y0, [], (self.evaluations, self.t0), end
@@ -280,6 +297,7 @@ class _Task:
         finally:
             if interpolants:
                 lagging = self.method in ("BDF", "LSODA")  # their steps hold the end that they begin at
+                times = times[: len(interpolants) + 1]  # an interrupt may come between the two
                 solution = scipy.integrate.OdeSolution(times, interpolants, alt_segment=lagging)
                 self.pieces.append((min(times[0], times[-1]), max(times[0], times[-1]), solution))
 
@@ -293,13 +311,17 @@ class _Task:
             before, y = float(solver.t), solver.y.copy()
             self._judge_pace(before, stretch.stop)
             message = solver.step()
+            step = float(solver.t) - before
+            # LSODA may say that it went on when it could not
+            if message == solver.TOO_SMALL_STEP or (solver.status != "failed" and not step * solver.direction > 0.0):
+                raise CutOff(before, why_stuck(STUCK, before, self.t0, stretch.stop), stretch.stop)
             if solver.status == "failed" or not np.isfinite(solver.y).all():
                 raise CutOff(float(solver.t), message or NOT_FINITE_SENTENCE, stretch.stop)
-            dense, step = solver.dense_output(), float(solver.t - before)
+            dense = solver.dense_output()
             proven = step if self.deviations is None else self._proven(before, y, dense, step, bars)
             if proven != step:
                 if abs(proven) <= 4.0 * math.ulp(before):
-                    raise CutOff(before, STUCK, stretch.stop)
+                    raise CutOff(before, why_stuck(STUCK, before, self.t0, stretch.stop), stretch.stop)
                 longest = abs(proven)
                 solver = begin(before, y, longest)
                 continue

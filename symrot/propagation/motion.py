@@ -6,7 +6,7 @@ from fractions import Fraction
 from functools import cached_property
 from pathlib import Path
 from time import perf_counter
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -23,6 +23,9 @@ from symrot.propagation.stepping import NOT_FINITE_SENTENCE, Recording, Task
 from symrot.propagation.trajectory import ARRAY_FUNCTIONS, Trajectory
 from symrot.scene import Initial
 from symrot.scene_kernel import EPOCH, SceneKernel
+
+if TYPE_CHECKING:
+    from symrot.propagation.enclosure import Deviations
 
 __all__ = ["Motion", "on_own_clock", "unreduced"]
 
@@ -49,7 +52,7 @@ def unreduced(plan: Plan, form: Form) -> Plan:
 
 OF_START = (
     "rate_parameters", "taylor_parameters", "stepping", "exact", "_quantity_values", "_initial", "_on_own_clock",
-    "_clock",
+    "_clock", "deviations",
 )  # fmt: skip
 """What a motion keeps that depends on its start."""
 
@@ -255,13 +258,29 @@ class Motion:
         recording.epoch = self.epoch
         return recording
 
+    @cached_property
+    def deviations(self) -> "Deviations | None":
+        """What steps in Python are held to."""
+        if self.first:
+            return self.first.rebound(self.rate_parameters)
+        return formula_deviations(self.plan, self.kernel, self.rate_parameters)
+
+    def rebound(self, parameters: Sequence[float]) -> "Deviations | None":
+        """Return what steps in Python are held to, for other parameters of the rates."""
+        names = [name for name, _ in self.kernel.rate_parameters]
+        return self.deviations and self.deviations.rebound(dict(zip(names, parameters, strict=True)))
+
     @property
     def scipy_options(self) -> dict[str, Any]:
         """How the fallback judges errors, and by which of SciPy's methods it steps."""
         blocks, scales = error_blocks(self.plan)
         solver = self.choice.method.partition(":")[2]
-        deviations = formula_deviations(self.plan, self.kernel, self.rate_parameters)
-        return {"blocks": blocks, "scales": scales, "deviations": deviations, **({"method": solver} if solver else {})}
+        return {
+            "blocks": blocks,
+            "scales": scales,
+            "deviations": self.deviations,
+            **({"method": solver} if solver else {}),
+        }
 
 
 def on_own_clock(plan: Plan, choice: Choice, tolerance: float) -> Motion:

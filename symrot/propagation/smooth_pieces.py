@@ -7,7 +7,7 @@ import numpy as np
 
 from symrot.propagation import dop853, taylor
 from symrot.propagation.cut_off import CutOff
-from symrot.propagation.kernels import error_blocks, formula_deviations
+from symrot.propagation.kernels import error_blocks
 from symrot.propagation.polynomials import Piece, fitted, rows_of
 from symrot.propagation.regimes import Regime
 from symrot.propagation.stepping import Floats
@@ -72,11 +72,10 @@ class SciPyPieces:
         run, t, y = self.run, self.run.t, self.run.y
         side = 1.0 if run.end >= t else -1.0
         length = run.span / WINDOWS
+        options = self.motion.scipy_options | {"deviations": self.motion.rebound(self.rates)}
         while t != run.end:
             stop = run.end if abs(run.end - t) <= 1.01 * length else t + side * length
             share = max(abs(stop - t) / run.span, 1e-3)
-            options = self.motion.scipy_options
-            options["deviations"] = formula_deviations(self.motion.plan, self.motion.kernel, self.rates)
             recording = fallback.record(
                 self.motion.rates, self.rates, y, t, (t, stop), run.motion.tolerance * share, **options
             )
