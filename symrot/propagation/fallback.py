@@ -35,7 +35,7 @@ __all__ = ["METHODS", "FallbackRecording", "integrate", "method_name", "record"]
 Rhs = Callable[[float, Floats, Floats], ArrayLike]
 Piece = tuple[float, float, Any]  # from, to, SciPy's solution between
 
-METHODS = {"DOP853": 0.1, "RK45": 0.1, "RK23": 0.1, "Radau": 1.0, "BDF": 0.01, "LSODA": 0.05}
+METHODS = {"DOP853": 0.1, "RK45": 0.1, "RK23": 0.1, "Radau": 1.0, "BDF": 0.01, "LSODA": 0.02}
 """SciPy's methods, and the share of the tolerance that one step of each is given; calibrated as in dop853.py."""
 
 DEFAULT = "DOP853"
