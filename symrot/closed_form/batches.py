@@ -5,7 +5,6 @@ Where all digits of a sum may cancel, integers find it, one motion after the oth
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
