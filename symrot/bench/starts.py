@@ -7,9 +7,8 @@ The first table has a row for each scene and method, in microseconds: to read th
 known), to bind parameters, to set up the motion (constants of a closed form; the task of a stepper), the motion itself
 (all that is done in C, and the call of it); then whole calls at 101 times with another angular velocity, attitude, or
 both; last what of the dearer of the first two, and of the third, is not the motion itself (each start has its own:
-printed is that of both). The second has microseconds
-per trajectory of 101 samples, in closed form and by steps, with other starts alone and with other constants too, and
-the method that ``auto`` takes. Time of the processor, medians.
+printed is that of both). The second has microseconds per trajectory of 101 samples, in closed form and by steps, with
+other starts alone and with other constants too, and the method that ``auto`` takes. Time of the processor, medians.
 """
 
 import argparse
