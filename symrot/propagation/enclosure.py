@@ -17,6 +17,7 @@ __all__ = ["Deviations", "Disc", "longest_followed"]
 LARGEST_EXPONENT = 700.0  # of e, well within doubles
 LEAST_EXPONENT = -745.0  # what is smaller underflows, and need not be zero
 WEIGHTED = ("clock", "sum")  # rules of series with constants of their own
+SLOWER = 10  # times: how long bounds take disc by disc
 SHRINK = 0.3  # least that a step is shortened to at once
 
 
@@ -208,6 +209,7 @@ class Deviations:
     def __init__(self, enclosure: Enclosure, parameters: Mapping[str, float]) -> None:
         self.enclosure, self._bounds = enclosure, _one_function(enclosure)
         self.likely = 0  # number of the reach that proved the last step
+        self.spent = 0  # evaluations, by time
         self._bind(parameters)
 
     def rebound(self, parameters: Mapping[str, float]) -> "Deviations":
@@ -233,6 +235,7 @@ class Deviations:
 
     def __call__(self, t: float, reach: float, y: Sequence[float], radii: Sequence[float]) -> list[float]:
         """Return the bounds for times within ``reach`` of t and states within ``radii`` of y: infinite at poles."""
+        self.spent += 1
         try:
             bounds = self._bounds(t, reach, y, radii, self._listed, self._sizes)
             if math.isfinite(sum(bounds)):
@@ -243,6 +246,7 @@ class Deviations:
 
     def slowly(self, t: float, reach: float, y: Sequence[float], radii: Sequence[float]) -> list[float]:
         """Return the bounds disc by disc, with the logarithms of sizes that over- and underflow."""
+        self.spent += SLOWER
         discs: dict[int, Disc] = {}
         try:
             for number in self.enclosure.series:

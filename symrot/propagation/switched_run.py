@@ -54,14 +54,20 @@ class SwitchedRun:
         self.released: set[str] = set()  # modes whose guards were held until this very time: they leave zero slowly
         self.left: set[tuple[str, int]] = set()  # modes and their values left at this very time
         self.settled = 0
+        self.spent, self.mark = 0, (0, self.t)  # SciPy's evaluations; those and the time when the pace was judged last
+        self.interrupt: KeyboardInterrupt | None = None  # that came while SciPy followed the motion, beyond a switch
         self.recent: deque[float] = deque(maxlen=CHATTER)
 
     def follow(self, consume: Consumer) -> None:
         """Follow the motion to its end, handing on each part as it is known."""
         self._check_start()
+        if self.interrupt is not None:
+            raise self.interrupt
         while self.t != self.end:
             regime = self.motion.regime(self.held)
             guard = self._segment(regime, consume)
+            if self.interrupt is not None:
+                raise self.interrupt
             if guard is not None:
                 self._switch(regime, guard)
 
