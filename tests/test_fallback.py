@@ -158,3 +158,28 @@ def test_a_torque_that_leaves_zero_slowly_is_followed(method):
     exact, found = propagator(scene, "dop853", 1e-11)(), propagator(scene, f"scipy:{method}", 1e-6)()
     assert abs(found.omega - exact.omega).max() < 20 * 1e-6 * abs(exact.omega).max()
     assert abs(found.quaternion - exact.quaternion).max() < 20 * 1e-6
+
+
+HYSTERESIS = "-0.5577*where(omega_{0} > 0.3021, 1, where(omega_{0} < -0.2165, -1, 0)) + 0.447*sin(2.01*t)"
+HYSTERETIC = {  # one that is stepped from rest by LSODA, and one that slides where the other mode is no divisor
+    "from rest": ([1, 1, 2], [0, 0, -0.3647], ["0", HYSTERESIS.format(2), "0"]),
+    "slides": (
+        [1, 1.5, 2], [0.266, 0.383, -0.1882],
+        ["0", "0", "-0.4927*where(omega_3 > 0.3939, 1, where(omega_3 < -0.1193, -1, 0)) + 0.1286*sin(1.7792*t)"],
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("method", ["taylor", "scipy:LSODA", "scipy:RK45"])
+@pytest.mark.parametrize("name", HYSTERETIC)
+def test_a_torque_that_falls_behind_two_thresholds_is_followed(name, method):
+    body, omega, torque = HYSTERETIC[name]
+    content = {
+        "schema": 1, "body": {"principal": body}, "initial": {"omega": omega}, "span": {"t": [0, 3]},
+        "torque": [{"kind": "expression", "torque": torque}], "output": {"quantities": ["omega", "quaternion"]},
+    }  # fmt: skip
+    scene = Scene.from_dict(content)
+    times = np.linspace(0.0, 3.0, 7)
+    exact, found = propagator(scene, "dop853", 1e-11)(times), propagator(scene, method, 1e-6)(times)
+    assert abs(found.omega - exact.omega).max() < 20 * 1e-6 * abs(exact.omega).max()
+    assert abs(found.quaternion - exact.quaternion).max() < 20 * 1e-6

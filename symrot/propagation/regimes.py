@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from symrot.codegen import library
 from symrot.expression import names, parse, rename, text
 from symrot.kernel import Argument, Program
+from symrot.propagation.binding import two_doubles, value_of
 from symrot.propagation.events import Event, guard_library_source
 from symrot.propagation.kernels import error_blocks
 from symrot.propagation.motion import Motion
@@ -67,7 +68,8 @@ class Regime:
             kernel: SceneKernel = self.motion.kernel
             rates = bind(kernel.rate_parameters, constants)
             if self.motion.choice.method == "taylor":
-                rates += self.motion.taylor_parameters[len(rates) :]
+                for _, node in kernel.quantity_parameters:  # of these modes: with others some have no value
+                    rates += two_doubles(*value_of(node, constants).as_integer_ratio())
             guards = [*bind(kernel.quantity_parameters, constants), *(float(constants[name]) for name in self.more)]
             self._bound[key] = rates, guards
         return self._bound[key]

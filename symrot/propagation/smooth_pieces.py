@@ -20,6 +20,7 @@ __all__ = ["SOURCES"]
 
 ROOM = 4  # steps in the first piece after a switch; twice as many in each piece after it
 WINDOWS, FEWEST = 64, 8  # pieces of the span that SciPy follows at a time, at first and later
+JOIN = 0.01  # of the tolerance: how far the ends of LSODA's steps may be apart
 RECENT = 4  # smooth parts before, whose lengths tell how long the next may be
 FIRST_ANGLE = 30.0  # rad
 SHORTEST = 1e-6  # of the span
@@ -77,7 +78,7 @@ class SciPyPieces:
         run, t, y = self.run, self.run.t, self.run.y
         side = 1.0 if run.end >= t else -1.0
         length = self._first_length()
-        options = self.motion.scipy_options | {"deviations": self.motion.rebound(self.rates)}
+        options = self.motion.scipy_options_for(self.rates)
         while t != run.end:
             stop = run.end if abs(run.end - t) <= 1.01 * length else t + side * length
             share = max(abs(stop - t) / run.span, 1e-3)
@@ -98,7 +99,8 @@ class SciPyPieces:
             self.counts += recording.stats[:3]
             run.spent += recording.stats.evaluations + OVERHEAD
             for edges in recording.edges(t, stop):
-                yield fitted(recording, edges, *error_blocks(self.motion.plan)), recording
+                accuracy = JOIN * run.motion.tolerance * share
+                yield fitted(recording, edges, *error_blocks(self.motion.plan), accuracy=accuracy), recording
             if ended is not None:
                 raise ended
             y, t, length = recording(stop), stop, min(2.0 * length, run.span / FEWEST)
