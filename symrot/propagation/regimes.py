@@ -10,7 +10,7 @@ from symrot.codegen import library
 from symrot.codegen.epoch import moved_formulas
 from symrot.expression import Node, names, parse, rename, text
 from symrot.kernel import Argument, Program
-from symrot.propagation.binding import folded
+from symrot.propagation.binding import folded, two_doubles, value_of
 from symrot.propagation.epoch import Following
 from symrot.propagation.events import Event, guard_library_source
 from symrot.propagation.instant import Instant
@@ -63,7 +63,7 @@ class Regime:
         formulas = [rename(node, columns) for node in nodes]
         source = guard_library_source(program, formulas, self.plan.states, *error_blocks(self.plan))
         self.path = library.build(source, "events")
-        self._following: dict[tuple[int, ...], tuple[Following, Following, list[float]]] = {}
+        self._following: dict[tuple[int, ...], tuple[Following, Following, list[float], list[float]]] = {}
         self._bound: dict[tuple[tuple[int, ...], Instant | None], tuple[list[float], list[float]]] = {}
 
     def _guards(self, switch: Mapping[str, Any]) -> Iterator[Guard]:
@@ -78,13 +78,21 @@ class Regime:
             yield Guard(mode, guard, -1, where)
             yield Guard(mode, f"1 - ({guard})", 1, where)
 
-    def _follow(self, modes: Modes) -> tuple[Following, Following, list[float]]:
-        """Return the parameters of rates and guards for one clock after another, and those of the quantities."""
+    def _follow(self, modes: Modes) -> tuple[Following, Following, list[float], list[float]]:
+        """Return the parameters of rates and guards for one clock after another; of quantities, as doubles and pairs.
+
+        Pairs are what Taylor steps keep invariants by; under other modes some of them have no value.
+        """
         key = tuple(modes.values())
         if key not in self._following:
             values = {name: Fraction(value) for name, value in modes.items()}
             rates, guards, quantities = self._with_constants
-            self._following[key] = Following(rates, values), Following(guards, values), bind(quantities, values)
+            taylor = self.motion.choice.method == "taylor"
+            ratios = [value_of(node, values).as_integer_ratio() for _, node in quantities] if taylor else []
+            pairs = [part for ratio in ratios for part in two_doubles(*ratio)]
+            self._following[key] = (
+                Following(rates, values), Following(guards, values), bind(quantities, values), pairs,
+            )  # fmt: skip
         return self._following[key]
 
     def values(self, modes: Modes, zero: Instant) -> dict[str, float]:
@@ -96,14 +104,13 @@ class Regime:
 
     def bound(self, modes: Modes, zero: Instant) -> tuple[list[float], list[float]]:
         """Return the parameters of the stepper's library and of the guards', on a clock that shows 0 at an instant."""
-        following, guards, quantities = self._follow(modes)
+        following, guards, quantities, pairs = self._follow(modes)
         place = tuple(modes.values()), None if following.fixed and guards.fixed else zero
         if place not in self._bound:
             if place[1] is not None:
                 self._bound = {key: value for key, value in self._bound.items() if key[1] in (None, zero)}
             rates, values = following.parameters(zero.exact), self.values(modes, zero)
-            if self.motion.choice.method == "taylor":
-                rates += self.motion.taylor_parameters[len(rates) :]
+            rates += pairs
             self._bound[place] = rates, [*quantities, *(values[name] for name in self.more)]
         return self._bound[place]
 

@@ -80,6 +80,8 @@ class SwitchedRun:
         self.released: set[str] = set()  # modes whose guards were held until this very time: they leave zero slowly
         self.left: set[tuple[str, int]] = set()  # modes and their values left at this very time
         self.settled = 0
+        self.spent, self.mark = 0, (0, 0.0)  # SciPy's evaluations; those and the way when the pace was judged last
+        self.interrupt: KeyboardInterrupt | None = None  # that came while SciPy followed the motion, beyond a switch
         self.recent: deque[Instant] = deque(maxlen=CHATTER)
 
     def follow(self, consume: Consumer) -> None:
@@ -87,14 +89,23 @@ class SwitchedRun:
         with progress.within(self.motion.start, self._end.high, lambda: self.zero.high):
             try:
                 self._check_start()
+                if self.interrupt is not None:
+                    raise self.interrupt
                 while self.t != self.end:
                     progress.report(self.t, 0.0, self.end)
                     regime = self.motion.regime(self.held)
                     guard = self._segment(regime, consume)
+                    if self.interrupt is not None:
+                        raise self.interrupt
                     if guard is not None:
                         self._switch(regime, guard)
             except CutOff as error:
                 raise error.later(self.zero.high) from None
+
+    @property
+    def start(self) -> float:
+        """When the motion started, on its present clock, s."""
+        return Instant(self.motion.start) - self.zero
 
     @property
     def now(self) -> float:
