@@ -92,9 +92,10 @@ class SciPyPieces:
                     self.motion.rates, self.rates, y, t, (t, stop), run.motion.tolerance * share, **options
                 )
             except (CutOff, KeyboardInterrupt) as error:
-                recording, ended = getattr(error, "recording", None), error
-                if recording is None:
+                before: fallback.FallbackRecording | None = getattr(error, "recording", None)
+                if before is None:
                     raise
+                recording, ended = before, error
                 stop = recording.span[side > 0.0]
                 if isinstance(error, KeyboardInterrupt):  # a switch before it must not forget it
                     run.interrupt = error
