@@ -134,7 +134,7 @@ CONDITIONAL = {
     "sqrt(1 - sin(x)**2) == cos(x)": "cos(x) >= 0",
     "atan(x) + atan(y) == atan((x + y)/(1 - x*y))": "-x*y + 1 >= 0",
     "asin(sin(x)) == x": "x + pi/2 >= 0 and -x + pi/2 >= 0",
-    "acos(cos(x)) == x": "x >= 0 and -x + pi >= 0",
+    "acos(cos(x)) == x": "x >= 0 and pi - x >= 0",
     "2*atan(tan(x/2)) == x": "x/2 + pi/2 >= 0 and -x/2 + pi/2 >= 0",
 }
 
