@@ -44,7 +44,7 @@ class Whole(NamedTuple):
     spent: int
 
 
-METHODS = {"DOP853": 0.1, "RK45": 0.1, "RK23": 0.1, "Radau": 1.0, "BDF": 0.01, "LSODA": 0.02}
+METHODS = {"DOP853": 0.1, "RK45": 0.1, "RK23": 0.1, "Radau": 1.0, "BDF": 0.01, "LSODA": 0.001}
 """SciPy's methods, and the share of the tolerance that one step of each is given; calibrated as in dop853.py."""
 
 DEFAULT = "DOP853"
