@@ -211,6 +211,7 @@ LONG = (
     "sqrt(1/2/(abs(y) + 1)) == sqrt(1/2/(abs(y + sqrt((1 + 2 - 5*2)/x) - sqrt(1*1/x*log(y)**(1/3)/log(y)**(1/3))) + 1))",
     "sqrt(x/y/asin(x)) == sqrt(x/y/asin((x**2 - 1)/(x - 1) - 1))",
     "tan((x + asin(y) + asin(z) + 1)**4) == 1",
+    "(tan(y)**2)**(1/3) == ((tan(log(exp(y**2 - 1))/(y - 1) - 1)**2)**2)**(1/6)",
 )
 
 

@@ -7,7 +7,7 @@ from itertools import product
 from typing import Any
 
 from mpmath import iv
-from sympy import Expr, I, Mul, Pow, Rational, Symbol, atan2, pi, zeros
+from sympy import Expr, I, Mul, Pow, Rational, Symbol, atan2, pi, preorder_traversal, zeros
 from sympy.polys.rings import PolyElement
 
 from symrot.checker.conditions import Requirement, branch_requirements, requirements, surely_nonnegative
@@ -33,6 +33,9 @@ from symrot.exact.ring import FormulaRing, as_zero
 __all__ = ["Decision", "Problem", "decide_problem", "shown"]
 
 Search = Callable[[FormulaRing, Expr, Expr, tuple[int, int] | None], Witness | None]
+
+MUCH_LARGER = 5
+"""Times the pieces of another formula, from which on the text is longer without a doubt."""
 
 MOST_ON_THE_CUT = 4
 """Symbols of a formula with atan2 that is looked at where some of them are zero."""
@@ -123,11 +126,10 @@ def _decided(
     for divisor in problem.divisors:
         ring.ratios.invert(ring.ratio(divisor), divisor)
     further = [lift for found in proofs if found for lift in found]
-    conditions = _conditions([ring, *further], granted, problem.radicands)
     grounds = Grounds(ring, shown, _needs(problem, lefts, rights))
     grounds.refuse_if_nowhere()
     if not wrong:
-        return _true(grounds, conditions, further)
+        return _true(grounds, _conditions([ring, *further], granted, problem.radicands), further)
     numerators = [ring.reduce(residuals[place].numerator) for place in wrong]
     closed_form = grounds.checked(closed_form_witness)
     nearest = _within(ring, grounds.near_witness) if ring.hypotheses else closed_form
@@ -288,7 +290,7 @@ def _conditions(rings: Sequence[FormulaRing], granted: set[int], radicands: Sequ
     ring, *further = rings
     forms = [*domain.divisors(ring, granted), *(pair for other in further for pair in domain.divisors(other))]
     free = set(domain.divisors(ring)) - set(domain.divisors(ring, granted))
-    found = {f"{shown(min(pair, key=_length))} != 0" for pair in forms if pair not in free}
+    found = {f"{shown(_shorter(*pair))} != 0" for pair in forms if pair not in free}
     found |= {f"{shown(base)} >= 0" for base in (*radicands, *domain.radicands(ring)) if not surely_nonnegative(base)}
     for condition in sorted(found):
         formula, positive = condition.removesuffix(" >= 0"), condition.endswith(" >= 0")
@@ -303,8 +305,16 @@ def _taken_for_granted(branches: Sequence[Requirement], ring: FormulaRing, radic
     return all(sign in known for requirement in branches for sign in requirement.text.split(" and "))
 
 
-def _length(formula: Expr) -> int:
-    return len(str(formula))
+def _shorter(first: Expr, second: Expr) -> Expr:
+    """Return the formula whose text is shorter; a large one is not written out for that."""
+    few, many = sorted((first, second), key=_pieces)
+    if _pieces(many) > MUCH_LARGER * _pieces(few):
+        return few
+    return min(first, second, key=lambda formula: len(str(formula)))
+
+
+def _pieces(formula: Expr) -> int:
+    return sum(1 for _ in preorder_traversal(formula))
 
 
 def _branches(
