@@ -18,6 +18,7 @@ from symrot.propagation.polynomials import Piece
 from symrot.propagation.regimes import Guard, Regime
 from symrot.propagation.smooth_pieces import SOURCES
 from symrot.propagation.stepping import Floats
+from symrot.switches import hold
 
 if TYPE_CHECKING:
     from symrot.propagation.switched import SwitchedMotion
@@ -89,7 +90,7 @@ class SwitchedRun:
                 self._check_start()
                 while self.t != self.end:
                     progress.report(self.t, 0.0, self.end)
-                    regime = self.motion.regime(self.held)
+                    regime = self.motion.regime(self.held, self.modes)
                     guard = self._segment(regime, consume)
                     if guard is not None:
                         self._switch(regime, guard)
@@ -114,11 +115,11 @@ class SwitchedRun:
         """Refuse a start on a switch from which both sides lead away: the motion has more than one way on."""
         for switch in self.motion.switches:
             mode = switch["mode"]
-            inactive = switch["where"] and self.modes[switch["where"][0]] != switch["where"][1]
-            if mode not in self.motion.undecided or inactive or self.t == self.end:
+            if mode not in self.motion.undecided or not hold(switch["where"], self.modes) or self.t == self.end:
                 continue
-            regime, leaving = self.motion.regime(self.held), 0
+            leaving = 0
             for sign in (1, -1):
+                regime = self.motion.regime(self.held, {**self.modes, mode: sign})
                 rates, values = regime.bound({**self.modes, mode: sign}, self.zero)
                 piece, _ = next(self._source(regime, rates).pieces())
                 signs, _ = signs_at_ends(regime.path, [guard.formula for guard in regime.guards], values, piece)
@@ -269,7 +270,7 @@ class SwitchedRun:
         names += [f"q{i} of t" for i in range(4)] if self.motion.plan.structure["attitude"] else []
         quantities = self.motion.evaluate(np.array([t]), y[None], names)[0].tolist()
         values = {name.removesuffix(" of t"): value for name, value in zip(names, quantities, strict=True)}
-        regime = self.motion.regime(self.held)
+        regime = self.motion.regime(self.held, self.modes)
         values |= {**regime.values(self.modes, self.zero), "t": t}
         return float(evaluate(regime.formulas[mode], values, MATH, float))
 
@@ -284,6 +285,7 @@ class SwitchedRun:
         if again > 2 and kind == "sign":
             raise CutOff(self.t, f"the switch {self._name(mode)} leaves no way to go on", self.end)
         self.changes[self.now, self._name(mode)] = "released" if mode in self.held else "passed"
+        asleep = self._asleep()
         if mode in self.held:
             self.held -= {mode}
             self.modes[mode] = guard.change
@@ -298,6 +300,23 @@ class SwitchedRun:
             self.modes[mode] += above if far else guard.change
             if (mode, self.modes[mode]) in self.left:
                 raise CutOff(self.t, f"the motion would slide along the jump of {self._name(mode)}", self.end)
+        for other in asleep - self._asleep():
+            self._wake(other)
+
+    def _asleep(self) -> set[str]:
+        """Return the modes whose guards do not matter."""
+        return {s["mode"] for s in self.motion.switches if s["where"] and not hold(s["where"], self.modes, self.held)}
+
+    def _wake(self, mode: str) -> None:
+        """Give a mode whose guard begins to matter the value that the guard tells, if it tells one."""
+        try:
+            guard = self._guard_value(mode)
+        except (ArithmeticError, ValueError):
+            return
+        if self.by_name[mode]["kind"] == "floor":
+            self.modes[mode] += math.floor(guard)
+        elif guard:
+            self.modes[mode] = 1 if guard > 0.0 else -1
 
     def _hold(self, regime: Regime, mode: str) -> None:
         if self.side < 0.0:
@@ -308,7 +327,7 @@ class SwitchedRun:
         if guard[0] == "symbol" and guard[1] in regime.plan.states:
             self.y[regime.plan.states.index(guard[1])] = 0.0  # exactly, where the guard is a state
         try:
-            self.motion.regime(self.held)
+            self.motion.regime(self.held, self.modes)
         except InputError:
             raise CutOff(
                 self.t, f"the motion would slide along {self._name(mode)}, in no single way", self.end
