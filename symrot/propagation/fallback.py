@@ -310,8 +310,18 @@ class _Task:
             progress.report(float(solver.t), self.t0, self.goal)
             before, y = float(solver.t), solver.y.copy()
             self._judge_pace(before, stretch.stop)
-            message = solver.step()
+            broken = self.broken
+            try:
+                message = solver.step()
+            except ValueError:  # of linear algebra, for numbers that are not finite
+                raise CutOff(before, NOT_FINITE_SENTENCE, stretch.stop) from None
             step = float(solver.t) - before
+            if self.broken > broken and not np.isfinite(self._derivative(float(solver.t), solver.y)).all():
+                if abs(step) <= 4.0 * math.ulp(before):
+                    raise CutOff(before, NOT_FINITE_SENTENCE, stretch.stop)
+                longest = 0.5 * abs(step)  # LSODA goes on where the rates have no value
+                solver = begin(before, y, longest)
+                continue
             # LSODA may say that it went on when it could not
             if message == solver.TOO_SMALL_STEP or (solver.status != "failed" and not step * solver.direction > 0.0):
                 raise CutOff(before, why_stuck(STUCK, before, self.t0, stretch.stop), stretch.stop)
