@@ -30,7 +30,10 @@ from symrot.propagation.stepping import (
     stretches,
 )
 
-__all__ = ["METHODS", "FallbackRecording", "integrate", "method_name", "record"]
+__all__ = [
+    "MAX_EVALUATIONS", "METHODS", "PATIENCE", "FallbackRecording", "Spent", "integrate", "method_name", "record",
+    "record_ahead",
+]  # fmt: skip
 
 Rhs = Callable[[float, Floats, Floats], ArrayLike]
 Piece = tuple[float, float, Any]  # from, to, SciPy's solution between
@@ -53,6 +56,10 @@ MAX_BROKEN = 1000  # derivatives that are not finite, before the motion is given
 _NODES = 0.5 - 0.5 * np.cos(np.pi * np.arange(1, FIT_ORDER + 1) / FIT_ORDER)  # Chebyshev's, without the start
 _FIT = np.linalg.inv(_NODES[:, None] ** np.arange(1, FIT_ORDER + 1))  # from rises there to coefficients
 SMALLEST_RTOL = 100 * float(np.finfo(float).eps)  # SciPy takes no smaller one
+
+
+class Spent(CutOff):
+    """A motion that takes more evaluations than it may."""
 
 
 def method_name(text: str) -> str:
@@ -141,11 +148,40 @@ def record(
     return FallbackRecording(task, min(*span, task.t0), max(*span, task.t0))
 
 
+def record_ahead(
+    rhs: Rhs,
+    p: ArrayLike,
+    y0: ArrayLike,
+    t0: float,
+    end: float,
+    tolerance: float,
+    *,
+    method: str = DEFAULT,
+    blocks: Sequence[int] = (0, 3, 7),
+    scales: Sequence[float] = (0.0, 1.0),
+    max_steps: int = MAX_EVALUATIONS,
+    deviations: Deviations | None = None,
+) -> tuple["FallbackRecording", CutOff | None]:
+    """Return the motion as far as SciPy comes on its way to an end, and what cut it off, if anything did.
+
+    Arguments as :func:`record` takes them. What cuts the motion off before its first step is raised.
+    """
+    task = _Task(rhs, p, y0, t0, tolerance, method, blocks, scales, (), math.inf, max_steps, deviations)
+    low, high, error = min(end, task.t0), max(end, task.t0), None
+    try:
+        task.solutions(end)
+    except CutOff as reason:
+        if not (task.final and task.pieces):
+            raise
+        error, low, high = reason, min(piece[0] for piece in task.pieces), max(piece[1] for piece in task.pieces)
+    return FallbackRecording(task, low, high, task.pieces), error
+
+
 class FallbackRecording(Recording):
     """A motion that SciPy has followed; see :class:`symrot.propagation.stepping.Recording`."""
 
-    def __init__(self, task: "_Task", low: float, high: float) -> None:
-        self._pieces = [*task.solutions(low), *task.solutions(high)]
+    def __init__(self, task: "_Task", low: float, high: float, pieces: list[Piece] | None = None) -> None:
+        self._pieces = [*task.solutions(low), *task.solutions(high)] if pieces is None else pieces
         super().__init__(task.t0, task.y0, (low, high), task.stats())
 
     def edges(self, start: float, end: float) -> list[Floats]:
@@ -314,7 +350,11 @@ class _Task:
             try:
                 message = solver.step()
             except ValueError:  # of linear algebra, for numbers that are not finite
-                raise CutOff(before, NOT_FINITE_SENTENCE, stretch.stop) from None
+                longest = 0.5 * min(float(solver.h_abs), abs(stretch.stop - before), longest)
+                if longest <= 4.0 * math.ulp(before):
+                    raise CutOff(before, NOT_FINITE_SENTENCE, stretch.stop) from None
+                solver = begin(before, y, longest)
+                continue
             step = float(solver.t) - before
             if self.broken > broken and not np.isfinite(self._derivative(float(solver.t), solver.y)).all():
                 if abs(step) <= 4.0 * math.ulp(before):
@@ -361,7 +401,7 @@ class _Task:
     def _derivative(self, t: float, y: Floats) -> Floats:
         self.evaluations += 1
         if self.evaluations > self.max_evaluations:
-            raise CutOff(float(t), f"{self.max_evaluations} evaluations were not enough")
+            raise Spent(float(t), f"{self.max_evaluations} evaluations were not enough")
         dy = np.asarray(self.rhs(t, y, self.p), dtype=np.float64)
         if dy.shape != self.y0.shape:
             raise InputError(f"the right-hand side returns {len(self.y0)} numbers, got an array of shape {dy.shape}")

@@ -8,17 +8,20 @@ import numpy as np
 from symrot.propagation import dop853, taylor
 from symrot.propagation.cut_off import CutOff
 from symrot.propagation.kernels import error_blocks
-from symrot.propagation.polynomials import Piece, fitted, rows_of
+from symrot.propagation.polynomials import ROUGH, Piece, fitted, rows_of
 from symrot.propagation.regimes import Regime
 from symrot.propagation.stepping import Floats
 
 if TYPE_CHECKING:
     from symrot.propagation.switched_run import SwitchedRun
 
-__all__ = ["SOURCES"]
+__all__ = ["LEAST_TURN", "SOURCES"]
 
 ROOM = 4  # steps in the first piece after a switch; twice as many in each piece after it
 WINDOWS = 64  # pieces of the span that SciPy follows at a time, at first
+PER_WINDOW, SHORTER = 20_000, 0.125  # evaluations after which a window ends; the next is that part as long
+LEAST_TURN = 1e-3  # rad over the whole span: slower rates are as good as this one
+FIT = 0.1  # of the tolerance may be lost where polynomials follow SciPy's solution
 
 
 class SteppedPieces:
@@ -72,17 +75,39 @@ class SciPyPieces:
         run, t, y = self.run, self.run.t, self.run.y
         side = 1.0 if run.end >= t else -1.0
         length = run.span / WINDOWS
-        options = self.motion.scipy_options | {"deviations": self.motion.rebound(self.rates)}
+        options = self.motion.scipy_options | {"deviations": self.motion.rebound(self.rates), "max_steps": PER_WINDOW}
+        blocks = error_blocks(self.motion.plan)
         while t != run.end:
             stop = run.end if abs(run.end - t) <= 1.01 * length else t + side * length
             share = max(abs(stop - t) / run.span, 1e-3)
-            recording = fallback.record(
-                self.motion.rates, self.rates, y, t, (t, stop), run.motion.tolerance * share, **options
-            )
+            tolerance = run.motion.tolerance * share
+            try:
+                recording, stuck = fallback.record_ahead(
+                    self.motion.rates, self.rates, y, t, stop, tolerance, **options
+                )
+            except fallback.Spent as error:  # a shorter window may end before what takes so many, at a switch
+                self.counts[2] += PER_WINDOW
+                run.spend(PER_WINDOW, t)
+                length *= SHORTER
+                if t + side * length == t:
+                    raise CutOff(t, error.reason, run.end) from None
+                continue
             self.counts += recording.stats[:3]
             for edges in recording.edges(t, stop):
-                yield fitted(recording, edges, *error_blocks(self.motion.plan)), recording
-            y, t, length = recording(stop), stop, 2.0 * length
+                yield fitted(recording, edges, *blocks, least=self._least(recording, edges, tolerance)), recording
+            if stuck is not None and not isinstance(stuck, fallback.Spent):
+                raise stuck  # beyond a switch, or before one: what was followed may end there
+            reached = stop if stuck is None else recording.span[side > 0.0]
+            run.spend(recording.stats.evaluations, reached)
+            y, t, length = recording(reached), reached, (2.0 if stuck is None else SHORTER) * length
+
+    def _least(self, recording: Any, edges: Floats, tolerance: float) -> float:
+        """Return the rates, rad/s, that polynomials need not follow better than to :data:`ROUGH`."""
+        (_, rates, *_), scales = error_blocks(self.motion.plan)
+        if scales[0] > 0.0:
+            return 0.0
+        largest = float(np.linalg.norm(recording(edges)[:, :rates], axis=1).max())
+        return FIT * tolerance / ROUGH * max(largest, LEAST_TURN / self.run.span)
 
     def cost(self) -> Any:
         return self.counts

@@ -3,20 +3,22 @@
 import math
 from collections import deque
 from collections.abc import Callable, Generator
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from symrot.closed_form.double_double import two_sum
 from symrot.errors import InputError
-from symrot.expression import evaluate
+from symrot.expression import evaluate, parse
 from symrot.propagation import progress
-from symrot.propagation.cut_off import CutOff
+from symrot.propagation.cut_off import CutOff, why_hopeless
 from symrot.propagation.events import search, signs_at_ends
 from symrot.propagation.instant import Instant
+from symrot.propagation.kernels import error_blocks
 from symrot.propagation.polynomials import Piece
 from symrot.propagation.regimes import Guard, Regime
-from symrot.propagation.smooth_pieces import SOURCES
+from symrot.propagation.smooth_pieces import LEAST_TURN, SOURCES
 from symrot.propagation.stepping import Floats
 from symrot.switches import hold
 
@@ -26,6 +28,8 @@ if TYPE_CHECKING:
 __all__ = ["MATH", "Chunk", "SwitchedRun"]
 
 MOST_SWITCHES = 1_000_000
+HOP_BITS = 10  # a hop over a switch is at most so many times two ulps of the clock long
+AWAY = range(50, 400, 10)  # a hop away from a switch is so many times halved a span
 NEARBY, MOST_ULPS = 1e-6, 64.0  # parts of the way since the last switch; last bits of a time that was located
 CHATTER, CHATTERING = 50, 1e-9  # so many switches within that part of the span are endlessly many
 Consumer = Callable[["Chunk"], None]
@@ -80,7 +84,8 @@ class SwitchedRun:
         self.flipped: dict[str, int] = {}  # modes changed at this very time, and how often
         self.released: set[str] = set()  # modes whose guards were held until this very time: they leave zero slowly
         self.left: set[tuple[str, int]] = set()  # modes and their values left at this very time
-        self.settled = 0
+        self.settled, self.hopped = 0, False
+        self.spent, self.mark = 0, (0, self.zero)  # evaluations in Python; those and the time when the pace was judged
         self.recent: deque[Instant] = deque(maxlen=CHATTER)
 
     def follow(self, consume: Consumer) -> None:
@@ -101,6 +106,19 @@ class SwitchedRun:
     def now(self) -> float:
         """The time on the clock of the scene, s."""
         return self.zero.after(self.t).high
+
+    def spend(self, evaluations: int, t: float) -> None:
+        """Count evaluations in Python up to t; give the motion up if the rest would take far more than the limit."""
+        from symrot.propagation.fallback import MAX_EVALUATIONS, PATIENCE
+
+        self.spent += evaluations
+        now = self._at(t)
+        progress.report(t, 0.0, self.end)
+        if self.spent - self.mark[0] >= PATIENCE:
+            way, left = abs(now - self.mark[1]), abs(self.end - t)
+            if reason := why_hopeless(self.spent - self.mark[0], way, left, MAX_EVALUATIONS):
+                raise CutOff(t, reason, self.end)
+            self.mark = (self.spent, now)
 
     def _at(self, t: float) -> Instant:
         return self._end if t == self.end else self.zero.after(t)
@@ -166,6 +184,21 @@ class SwitchedRun:
         watching = watched()
         try:
             found, stop = search(regime.path, events, values, watching, start)
+        except CutOff as error:
+            at = passed[-1]
+            y = current[0][1](np.array([at]))[0] if current else self.y
+            hop = self._hop(regime, active, rates, at, y, error)
+            if hop is None:
+                raise
+            piece, states, hopped = hop
+            stop = float(piece.edges[-1])
+            self.y = states(piece.edges[-1:])[0]
+            instant = self._at(stop) if hopped is None else self._located(regime, hopped, stop)
+            consume(Chunk(self._at(at), instant, self.zero, states, piece))
+            self.t = stop
+            if hopped is not None:
+                self._arrive(instant)
+            return hopped
         finally:
             watching.close()
             self.cost += source.cost()
@@ -184,10 +217,71 @@ class SwitchedRun:
             consume(Chunk(self._at(passed[-1]), instant, self.zero, states, part))
         self.y = states(np.array([stop]))[0]
         self.t = stop
-        if stop != self.end:
-            self._move_clock(instant)
-        self.flipped, self.left, self.released = {}, set(), set()
+        self._arrive(instant)
         return guard
+
+    def _arrive(self, instant: Instant) -> None:
+        """Begin anew at a switch, where the motion is now; the clock shows 0 there, unless it is the end."""
+        if self.t != self.end:
+            self._move_clock(instant)
+        self.flipped, self.left, self.released, self.hopped = {}, set(), set(), False
+
+    def _hop(
+        self, regime: Regime, active: list[bool], rates: list[float], t: float, y: Floats, error: CutOff
+    ) -> tuple[Piece, Callable[[Floats], Floats], Guard | None] | None:
+        """Return a straight piece on from where a stepper is stuck, and the guard that it crosses; or None.
+
+        As sqrt(1 - t) before a switch at 1 s, and sqrt(t - 1) after it: steps shrink to nothing where a torque has no
+        derivative, though it has an impulse. Over a time so short that the impulse is less than the tolerance the
+        motion may go straight on: to the guard if the guard is that near, or away from the last switch.
+        """
+        kernel, motion = regime.motion.kernel, regime.motion
+        p = np.array(rates[: len(kernel.rate_parameters)])
+        edges, scales = error_blocks(regime.plan)
+
+        def rate(t: float) -> Floats:
+            with np.errstate(all="ignore"):
+                return np.asarray(motion.rates(t, y, p), dtype=np.float64)
+
+        def slight(change: Floats) -> bool:
+            return all(
+                float(np.linalg.norm(change[low:high]))
+                <= motion.tolerance * max(float(np.linalg.norm(y[low:high])), scale, LEAST_TURN / self.span)
+                for (low, high), scale in zip(pairwise(edges), scales, strict=True)
+            )
+
+        def straight(h: float, change: Floats) -> tuple[Piece, Callable[[Floats], Floats]]:
+            row = np.concatenate([[t, h, 0.0, h], y, change])
+            return Piece(np.array([t, t + h]), row[None]), lambda times: y + np.outer((times - t) / h, change)
+
+        if t == 0.0:
+            for halvings in () if self.hopped or abs(error.t) > 0.0 else AWAY:
+                h = self.side * math.ldexp(self.span, -halvings)
+                early, late = rate(0.25 * h), rate(0.75 * h)
+                if slight(h * early) and slight(h * late):
+                    self.hopped = True
+                    return *straight(h, 0.5 * h * (early + late)), None
+            return None
+        for bits in range(HOP_BITS + 1):
+            h = self.side * math.ldexp(math.ulp(t), bits)
+            h = t + h - t
+            change = h * rate(t)
+            if not slight(change):
+                return None
+            for guard, on in zip(regime.guards, active, strict=True):
+                if on and guard.mode not in self.held and self._crosses(regime, guard, (t, y), (t + h, y + change)):
+                    return *straight(h, change), guard
+        return None
+
+    def _crosses(self, regime: Regime, guard: Guard, *places: tuple[float, Floats]) -> bool:
+        """Return whether a guard leaves the positive side between two places, a time and a state each."""
+        try:
+            before, after = (
+                float(evaluate(parse(guard.formula), self._values(regime, place), MATH, float)) for place in places
+            )
+        except (ArithmeticError, ValueError):
+            return False
+        return before >= 0.0 >= after and before > after
 
     def _chunk(self, start: float, stop: float, states: Callable[[Floats], Floats], piece: Piece) -> Chunk:
         return Chunk(self._at(start), self._at(stop), self.zero, states, piece)
@@ -265,14 +359,17 @@ class SwitchedRun:
 
         Of a floor, how far the guard is above the whole number that is its mode.
         """
-        t, y = place or (self.t, self.y)
+        regime = self.motion.regime(self.held, self.modes)
+        return float(evaluate(regime.formulas[mode], self._values(regime, place or (self.t, self.y)), MATH, float))
+
+    def _values(self, regime: Regime, place: tuple[float, Floats]) -> dict[str, float]:
+        """Return what the names in guards stand for at a time and a state."""
+        t, y = place
         names = [f"omega_{i} of t" for i in (1, 2, 3)]
         names += [f"q{i} of t" for i in range(4)] if self.motion.plan.structure["attitude"] else []
         quantities = self.motion.evaluate(np.array([t]), y[None], names)[0].tolist()
         values = {name.removesuffix(" of t"): value for name, value in zip(names, quantities, strict=True)}
-        regime = self.motion.regime(self.held, self.modes)
-        values |= {**regime.values(self.modes, self.zero), "t": t}
-        return float(evaluate(regime.formulas[mode], values, MATH, float))
+        return {**values, **regime.values(self.modes, self.zero), "t": t}
 
     def _switch(self, regime: Regime, guard: Guard) -> None:
         """Change the mode of a guard; hold the guard at zero where both sides send the motion back."""
