@@ -2,11 +2,14 @@
 
 import ast
 import json
+import math
 import os
+import re
 import shutil
 import subprocess
 import sys
 from decimal import Context, Decimal, localcontext
+from hashlib import sha256
 from pathlib import Path
 from random import Random
 
@@ -299,6 +302,36 @@ def test_arguments_that_a_kernel_does_not_take_are_refused(kernels):
     resealed(files, spec=files.data["spec"] | {"parameters": {"other": 1}})
     refused(files, "a parameter is no input")
     files.restore()
+
+
+@pytest.mark.parametrize(("name", "term", "huge"), [
+    ("quaternion_dcm", r"2.0\*q1", "1e20"), ("quaternion_dcm", r"2.0\*q1", "4096.0"),
+    ("euler_zyx_body_rates", r"omega\[2\]", "1e20"), ("rotation_vector_body_jacobian", r"v\[2\]", "1e9"),
+])  # fmt: skip
+def test_recheck_refuses_a_text_that_rounds_more_than_it_says(name, term, huge, tmp_path):
+    """``(x + 1e20) - 1e20`` is x in exact arithmetic, and nearly always 0 in C."""
+    files = Files(tmp_path, subject(name), emit(name).certificate)
+    head = files.source.index("{\n", files.source.index(f"void {name}("))
+    place = re.compile(term).search(files.source, head)
+    text = f"{files.source[: place.start()]}(({place[0]} + {huge}) - {huge}){files.source[place.end() :]}"
+    (files.directory / f"{name}.c").write_text(text, encoding="utf-8")
+    hashes = files.data["files"] | {f"{name}.c": sha256(text.encode()).hexdigest()}
+    files.path.write_text(printed(files.data | {"files": hashes}), encoding="utf-8")
+    with pytest.raises(ValueError, match=f"{name} is rounded by more than its bounds"):
+        recheck.check(files.path)
+    bare = {key: value for key, value in files.data.items() if key != "rounding"}
+    files.path.write_text(printed(bare | {"files": hashes}), encoding="utf-8")
+    assert recheck.check(files.path)  # who says nothing of rounding says nothing wrong
+
+
+def test_recheck_computes_as_c_does_in_float():
+    """Sums and products of floats, each rounded: 2^24 + 1 is no float."""
+    floats = recheck.machine("f", recheck.c_float)
+    large, one = floats["at_"]("16777216.0f"), floats["at_"]("1.0f")
+    assert (large + one) - large == 0 != (recheck.machine("", recheck.c_double)["at_"]("16777216.0") + 1.0) - large
+    assert one / 3 == recheck.c_float(1 / 3).value != 1 / 3
+    assert -large + large * one == 0 == floats["fabsf"](-one) - 1
+    assert floats["sinf"](one) == recheck.c_float(math.sin(1)).value
 
 
 def test_bounds_are_those_of_their_box(kernels):

@@ -187,6 +187,29 @@ def test_values_beyond_the_largest_are_values():
     assert fault(f"0*log(-cosh(x)) + {claim}", Verdict("true"), Random(1)).startswith("true of nothing")
 
 
+@pytest.mark.parametrize("formula", [
+    "log(exp(exp(100)))", "sqrt(exp(exp(100)))*log(3 + exp(exp(100)))", "tan(cosh(exp(100)))", "1/exp(-exp(99))", "(-2)**333*exp(99)",
+    "sinh(-exp(99))**2 + 1", "exp(exp(100))**(1/3)", "tanh(-exp(99))",
+])  # fmt: skip
+def test_a_formula_of_large_numbers_has_a_value(formula):
+    with pytest.raises(Large):
+        value(formula)
+
+
+@pytest.mark.parametrize(
+    "formula", ["log(-exp(exp(100)))", "sqrt(-cosh(exp(100)))", "log(sinh(-exp(99)))", "(-exp(exp(9)))**(1/3)"]
+)
+def test_a_formula_of_large_numbers_has_none(formula):
+    with pytest.raises(NoValue):
+        value(formula)
+
+
+def test_a_number_that_only_seems_zero_has_no_root():
+    """cosh(exp(-exp(x))) is larger than 1 by less than 60 digits show."""
+    claim = "acos(cosh(asin(exp(-exp(x))))) == 3"
+    assert fault(claim, "the sides are no real numbers: -1 >= 0 does not hold", Random(1)) == ""
+
+
 # -- runs -------------------------------------------------------------------------------------------------------------
 
 

@@ -153,6 +153,27 @@ def test_an_inverse_function_undoes_its_function_for_principal_values(claim, con
     assert "under its condition" in fault(claim, wider, Random(1))
 
 
+@pytest.mark.parametrize(("claim", "point"), [
+    ("atan2(-y, x) == -atan2(y, x)", {"x": "-1", "y": "0"}), ("atan2(-x, y) + atan2(x, y) == 0", {"x": "0", "y": "-1"}),
+    ("atan2(-x**2, -1) == -atan2(x**2, -1)", {"x": "0"}), ("atan2(1 - y, x) == -atan2(y - 1, x)", {"x": "-1", "y": "1"}),
+    ("atan2(7 - 3*y, x)*z == -atan2(3*y - 7, x)*z", {"x": "-1", "y": "7/3", "z": "-1"}),
+    ("Matrix([x, atan2(-y, x)]) == Matrix([x, -atan2(y, x)])", {"x": "-1", "y": "0"}),
+])  # fmt: skip
+def test_a_claim_that_fails_on_the_cut_of_atan2_is_conditional(claim, point):
+    """atan2(-0, -1) = pi, -atan2(0, -1) = -pi: the divisor of the proof vanishes there, and only there."""
+    found = symrot.check(claim)
+    assert found.verdict == "conditional" and found.counterexample.values == point
+    assert found.diagnosis.code == "principal_value"
+
+
+@pytest.mark.parametrize("claim", [
+    "atan2(y, x) == atan2(2*y, 2*x)", "atan2(y, x) == 2*atan(y/(sqrt(x**2+y**2)+x))", "atan2(x*y, x**2) == atan(y/x)",
+    "2*atan2(y, x + sqrt(x**2 + y**2)) == atan2(y, x)", "atan2(2*x*y, x**2 - y**2) == 2*atan(y/x)", "cos(atan2(y, x)) == x/sqrt(x**2+y**2)",
+])  # fmt: skip
+def test_a_claim_with_atan2_that_holds_on_the_cut_stays_true(claim):
+    assert verdict_of(claim) == "true"
+
+
 @pytest.mark.parametrize(("claim", "verdict"), [
     ("asin(sin(x)) == x + 4", "false"), ("acos(cos(x)) == -x - 1", "false"), ("acos(cos(abs(x))) == x", "false"),
     ("atan(tan(atan(x))) == atan(x)", "true"),

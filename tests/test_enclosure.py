@@ -20,7 +20,7 @@ from symrot.errors import PropagationError
 from symrot.expression import parse
 from symrot.planner import make_plan
 from symrot.propagation import cut_off, dop853, stepping, taylor
-from symrot.propagation.enclosure import FUNCTIONS, Deviations, Disc, longest_followed
+from symrot.propagation.enclosure import FUNCTIONS, Deviations, Disc, deviations_of, longest_followed
 from symrot.propagation.enclosure import _product as product
 from symrot.propagation.kernels import error_blocks, scene_kernel
 from symrot.scene import Scene
@@ -234,8 +234,9 @@ def test_bounds_by_one_function_are_those_disc_by_disc(torque):
     plan, kernel = rates(scene(torque, (0.1, -0.2, 0.3), m=1.5))
     names = [name for name, _ in kernel.rate_parameters]
     numbers = bind(kernel.rate_parameters, plan.constants)
-    first = Deviations(enclosure(recurrences(kernel.rates)), dict(zip(names, [2.0 * x for x in numbers], strict=True)))
-    deviations, finite = first.rebound(dict(zip(names, numbers, strict=True))), 0
+    made = deviations_of(enclosure(recurrences(kernel.rates)))
+    first = made(dict(zip(names, [2.0 * x for x in numbers], strict=True)))
+    deviations, finite = made(dict(zip(names, numbers, strict=True))), 0
     apart = 0
     for _ in range(200):
         reach = 10 ** RANDOM.uniform(-4, 0.5)

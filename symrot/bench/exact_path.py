@@ -52,7 +52,8 @@ class ExactPath:
             self.start = [_as_mpf(given[name]) for name in plan.states]
             self.t0 = _as_mpf(Fraction(plan.scene.span.start))
         self.rates = sum(name.startswith("omega") for name in plan.states)
-        self.deviations = formula_deviations(plan, kernel, [float(value) for value in self.parameters.values()])
+        bounds = formula_deviations(plan, kernel)
+        self.deviations = bounds and bounds({name: float(value) for name, value in self.parameters.items()})
         self.edges = error_blocks(plan)[0]
         self.span = abs(_as_mpf(Fraction(plan.scene.span.stop) - Fraction(plan.scene.span.start)))
         self.slowest = SLOWEST * (max([abs(x) for x in self.start[: self.rates]], default=0) or 1)

@@ -299,7 +299,7 @@ def _grid(problem: Problem) -> list[float]:
     wrong. The grid is refined together with the steps, so that it decides nothing but where they are short.
     """
     motion = Motion(problem.plan, Choice("dop853", ""), GRID_TOLERANCE)
-    if formula_deviations(problem.plan, problem.kernel, problem.p) is None:
+    if formula_deviations(problem.plan, problem.kernel) is None:
         return []
     task, grid = motion.stepping.again(), []
     try:

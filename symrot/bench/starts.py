@@ -6,9 +6,9 @@
 The first table has a row for each scene and method, in microseconds: to read the start, to plan it (its structure is
 known), to bind parameters, to set up the motion (constants of a closed form; the task of a stepper), the motion itself
 (all that is done in C, and the call of it); then whole calls at 101 times with another angular velocity, attitude, or
-both; last what of the dearer of the first two, and of the third, is not the motion itself. The second has microseconds
-per trajectory of 101 samples, in closed form and by steps, with other starts alone and with other constants too, and
-the method that ``auto`` takes. Time of the processor, medians.
+both; last what of the dearer of the first two, and of the third, is not the motion itself (each start has its own:
+printed is that of both). The second has microseconds per trajectory of 101 samples, in closed form and by steps, with
+other starts alone and with other constants too, and the method that ``auto`` takes. Time of the processor, medians.
 """
 
 import argparse
@@ -17,7 +17,7 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from statistics import median
 from time import process_time_ns
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,7 +29,7 @@ from symrot.ensemble.ensemble import propagate_ensemble
 from symrot.errors import InputError
 from symrot.planner import structure_key
 from symrot.propagation.propagator import Propagator, propagator, read_start
-from symrot.scene import Scene, load_scene
+from symrot.scene import Initial, Scene, load_scene
 
 __all__ = ["main"]
 
@@ -109,7 +109,15 @@ def _start(scene: Scene) -> tuple[Floats, Floats]:
     return omega * (1 + SPREAD) + SPREAD * abs(omega).max(), quaternion + SPREAD
 
 
-def _row(found: Propagator, rounds: int) -> tuple[float, ...]:
+class _Row(NamedTuple):
+    """Microseconds of a scene and method; calls and motions with another omega, with another attitude, with both."""
+
+    parts: tuple[float, ...]  # read, plan, bind, set up
+    motions: tuple[float, ...]
+    calls: tuple[float, ...]
+
+
+def _row(found: Propagator, rounds: int) -> _Row:
     scene = found.scene
     (omega, quaternion), times = _start(scene), np.linspace(0.0, float(scene.span.stop), SAMPLES)
     found(times, omega=omega, quaternion=quaternion)
@@ -128,17 +136,22 @@ def _row(found: Propagator, rounds: int) -> tuple[float, ...]:
         one = next(each)
         return one.exact if motion.choice.method == "exact" else one.stepping
 
+    def itself(start: Initial) -> float:
+        own = found.motion_from(start)
+        own.follow(times, True)
+        return _in_c(own, start, times, rounds) + _median(lambda: own.follow(times, True), rounds)
+
     assert parts is not None
-    return (
+    starts = ({"omega": omega}, {"quaternion": quaternion}, {"omega": omega, "quaternion": quaternion})
+    read = [read_start(scene, start.get("omega"), start.get("quaternion")) for start in starts]
+    costs = (
         _median(lambda: read_start(scene, omega, quaternion), rounds),
         _median(lambda: structure_key(scene, initial), rounds) + _median(lambda: motion.from_start(initial), rounds),
         _median(bind, rounds),
         _median(prepare, rounds),
-        _in_c(motion, initial, times, rounds) + _median(lambda: motion.follow(times, True), rounds),
-        _median(lambda: found(times, omega=omega), rounds),
-        _median(lambda: found(times, quaternion=quaternion), rounds),
-        _median(lambda: found(times, omega=omega, quaternion=quaternion), rounds),
     )
+    calls = tuple([_median(partial(found, times, **start), rounds) for start in starts])
+    return _Row(costs, tuple([itself(start) for start in read]), calls)
 
 
 def _in_c(motion: Any, initial: Any, times: Floats, rounds: int) -> float:
@@ -192,8 +205,8 @@ def changed_starts(scenes: list[str], rounds: int) -> None:
                 continue
             if found.method == method:
                 row = _row(found, rounds)
-                motion, *calls = row[4:]
-                cells = (*row, max(calls[:2]) - motion, calls[2] - motion)
+                python = [call - motion for call, motion in zip(row.calls, row.motions, strict=True)]
+                cells = (*row.parts, row.motions[2], *row.calls, max(python[:2]), python[2])
                 print(f"{name:28}{method:>8}" + "".join(f"{cell:9.1f}" for cell in cells))
 
 

@@ -305,7 +305,7 @@ def campaign(count: int, seed: int = 0, real: bool = False, workers: int = 1, lo
     def rest() -> Iterator[tuple[int, Any]]:
         for place, claim in enumerate(real_claims(count, seed) if real else claims(count, seed), start=1):
             row = known.get(place)
-            if row is not None and not row.claim.startswith(claim if real else claim[0]):
+            if row is not None and not row.claim.startswith(str(claim if real else claim[0])):
                 raise InputError(
                     f"expected the log of the claims of seed {seed}; number {place} in {log} is another one"
                 )

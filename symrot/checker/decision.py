@@ -1,10 +1,13 @@
 """Two sides and hypotheses in, a verdict with its evidence out. The mathematics is that of :mod:`symrot.exact`."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import product
 from typing import Any
 
-from sympy import Expr, I, Mul, Pow, Symbol, pi, zeros
+from mpmath import iv
+from sympy import Expr, I, Mul, Pow, Rational, Symbol, atan2, pi, zeros
 from sympy.polys.rings import PolyElement
 
 from symrot.checker.conditions import Requirement, branch_requirements, requirements, surely_nonnegative
@@ -22,6 +25,7 @@ from symrot.exact.counterexample import Counterexample as Witness
 from symrot.exact.counterexample import closed_form_witness, rational_witness
 from symrot.exact.decide import flatten
 from symrot.exact.intervals import enclosure, is_nonnegative_at
+from symrot.exact.known_points import holds
 from symrot.exact.needs import Need, needs_of
 from symrot.exact.ratio import MOST_PRODUCTS, TooLarge
 from symrot.exact.ring import FormulaRing, as_zero
@@ -29,6 +33,9 @@ from symrot.exact.ring import FormulaRing, as_zero
 __all__ = ["Decision", "Problem", "decide_problem", "shown"]
 
 Search = Callable[[FormulaRing, Expr, Expr, tuple[int, int] | None], Witness | None]
+
+MOST_ON_THE_CUT = 4
+"""Symbols of a formula with atan2 that is looked at where some of them are zero."""
 
 LARGEST_DEGREE = 240
 """Of a side in its symbols, sines and cosines; a larger one is refused before anything is expanded."""
@@ -91,7 +98,10 @@ def _decide(problem: Problem) -> Decision:
     except TooLarge as reason:
         return Decision("undecided", reason=str(reason), products=MOST_PRODUCTS)
     try:
-        return replace(_decided(ring, problem, lefts, rights, shape), products=ring.ratios.products)
+        decision = _decided(ring, problem, lefts, rights, shape)
+        if decision.verdict == "true" and not relations and any(side.has(atan2) for side in (*lefts, *rights)):
+            decision = _off_the_cut(decision, _needs(problem, lefts, rights), lefts, rights, shape)
+        return replace(decision, products=ring.ratios.products)
     except TooLarge as reason:
         searches = [_within(ring, rational_witness), closed_form_witness]
         try:
@@ -152,6 +162,45 @@ def _decided(
         conditions = _conditions([ring, *further, *lift], granted, problem.radicands)
         return _true(grounds, conditions, (*further, *lift))
     return Decision("undecided", conditions, (), None, _stopped_by(ring))
+
+
+def _points_on_cuts(symbols: Sequence[Expr], cuts: Sequence[Expr]) -> Iterator[dict[Expr, Rational]]:
+    """Yield simple points, and such at which the first argument of an atan2 is zero, where it is linear in a symbol."""
+    for values in product((0, -1, 1, Rational(-3, 2)), repeat=len(symbols)):
+        point = dict(zip(symbols, map(Rational, values), strict=True))
+        yield point
+        for cut, symbol in product(cuts, symbols):
+            slope = cut.diff(symbol)
+            at_zero, steep = (value.subs({**point, symbol: 0}) for value in (cut, slope))
+            if not slope.has(symbol) and steep.is_Rational and steep and at_zero.is_Rational:
+                yield {**point, symbol: -at_zero / steep}
+
+
+def _off_the_cut(
+    decision: Decision, needs: Sequence[Need], lefts: list[Expr], rights: list[Expr], shape: tuple[int, int] | None
+) -> Decision:
+    """Return a decision that is conditional where the sides differ at a point that its conditions exclude.
+
+    All functions but atan2 are continuous where they are defined, so that sides which are equal where no divisor of the
+    proof vanishes are equal in between too; atan2 jumps where its first argument is zero and the second negative.
+    """
+    symbols = sorted({symbol for side in (*lefts, *rights) for symbol in side.free_symbols}, key=str)
+    cuts = sorted({node.args[0] for side in (*lefts, *rights) for node in side.atoms(atan2)}, key=str)
+    for point in _points_on_cuts(symbols, cuts) if 0 < len(symbols) <= MOST_ON_THE_CUT else ():
+        values = {symbol: Fraction(int(value.p), int(value.q)) for symbol, value in point.items()}
+        for place, sides in enumerate(zip(lefts, rights, strict=True)):
+            left, right = (enclosure(side, values) for side in sides)
+            if left is None or right is None or 0 in iv.mpf(0) + left - right:
+                continue
+            if all(holds(need, values) for need in needs):
+                entry = None if shape is None else (place // shape[1] + 1, place % shape[1] + 1)
+                lhs, rhs = (side.subs(point) for side in sides)
+                required = " and ".join(decision.conditions)
+                return replace(
+                    decision, verdict="conditional", requires=(Requirement("principal_value", required),),
+                    counterexample=_as_text(Witness(tuple(point.items()), entry, lhs, rhs)),
+                )  # fmt: skip
+    return decision
 
 
 def _needs(problem: Problem, lefts: Sequence[Expr], rights: Sequence[Expr]) -> list[Need]:

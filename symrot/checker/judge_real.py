@@ -7,8 +7,10 @@ multiplied by zero must have a value too. Near the edge of a domain, and beyond 
 """
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
+from math import prod
 from random import Random
 from typing import Any
 
@@ -66,28 +68,54 @@ def _context(digits: int) -> Any:
 _CONTEXTS = {digits: _context(digits) for digits in (DIGITS, MORE_DIGITS)}
 
 
-UNKNOWN = object()
-"""A real number, about which nothing else is known."""
+@dataclass(frozen=True)
+class Unknown:
+    """A real number beyond what is computed, or made of one: its sign is 1 or -1 where that is known, else 0."""
 
-_EVERYWHERE = ("abs", "exp", "sinh", "cosh", "tanh", "sin", "cos", "atan")
-"""Functions that have a value of every real number."""
+    sign: int = 0
+
+
+_EVERYWHERE = {"abs": 0, "exp": 1, "sinh": 0, "cosh": 1, "tanh": 0, "sin": 0, "cos": 0, "tan": 0, "atan": 0}
+"""Functions that have a value of every real number, or of nearly every one, and the sign of it."""
+
+
+def _of_unknown(node: Node, parts: Sequence[Any]) -> Unknown:
+    """Return what a piece with parts beyond what is computed is, if it has a value."""
+    signs = [part.sign if isinstance(part, Unknown) else (part > 0) - (part < 0) for part in parts]
+    if node.kind == "sum":
+        return Unknown(signs[0] if len({*signs}) == 1 else 0)
+    if node.kind in ("product", "neg"):
+        return Unknown(prod(signs) if node.kind == "product" else -signs[0])
+    if node.kind == "call" and node.value in _EVERYWHERE:
+        return Unknown(_EVERYWHERE[node.value])
+    if node.kind == "power":
+        exponent = _rational(node.args[1])
+        if exponent.denominator > 1 and signs[0] < 0:
+            raise NoValue
+        if signs[0] > 0 or (exponent.denominator == 1 and exponent >= 0):
+            return Unknown(signs[0] if signs[0] > 0 or exponent.numerator % 2 else 0)
+    if signs[0] and (node.kind == "inv" or node.value in ("log", "sqrt")):
+        if signs[0] < 0 and node.kind == "call":
+            raise NoValue
+        return Unknown(0 if node.value == "log" else signs[0])
+    raise Edge if node.kind == "inv" else Unclear
 
 
 class _Judge:
     """Values at one point, in one precision."""
 
     def __init__(self, point: Point, digits: int) -> None:
-        self.mp = _CONTEXTS[digits]
+        self.mp, self.point = _CONTEXTS[digits], point
         self.values = {name: self.mp.mpf(value.numerator) / value.denominator for name, value in point.items()}
         self.edge = self.mp.mpf(10) ** -EDGE
         self.failed: Node | None = None  # the piece without a value
 
     def value(self, node: Node) -> Any:
-        """Return the value of a tree, or ``UNKNOWN`` for a real number that is too large, or made of one."""
+        """Return the value of a tree, or an ``Unknown`` for a real number that is too large, or made of one."""
         try:
             return self.small_value(node)
-        except Large:
-            return UNKNOWN
+        except Large as large:
+            return large.args[0]
         except (NoValue, Unclear):
             self.failed = self.failed or node
             raise
@@ -100,12 +128,12 @@ class _Judge:
             return +self.mp.pi if node.value == "pi" else self.values[node.value]
         if kind == "power":
             base, exponent = self.value(args[0]), _rational(args[1])
-            if base is UNKNOWN:
-                raise Large if exponent.denominator == 1 and exponent >= 0 else Unclear
+            if isinstance(base, Unknown):
+                raise Large(_of_unknown(node, [base]))
             return self.power(base, exponent)
         parts = [self.value(argument) for argument in args]
-        if any(part is UNKNOWN for part in parts):
-            raise Large if kind in ("sum", "product", "neg") or node.value in _EVERYWHERE else Unclear
+        if any(isinstance(part, Unknown) for part in parts):
+            raise Large(_of_unknown(node, parts))
         if kind == "sum":
             return sum(parts[1:], parts[0])
         if kind == "product":
@@ -147,7 +175,7 @@ class _Judge:
         if base == 0:
             return self.mp.mpf(0 if exponent else 1)
         if abs(self.mp.log(abs(base)) * exponent.numerator / exponent.denominator) > _MOST:
-            raise Large
+            raise Large(Unknown(1 if base > 0 or exponent.numerator % 2 == 0 else -1))
         if exponent.denominator == 1:
             return base**exponent.numerator
         return self.mp.exp(self.mp.log(base) * exponent.numerator / exponent.denominator)
@@ -165,16 +193,20 @@ class _Judge:
 
     def of_exp(self, u: Any) -> Any:
         if abs(u) > _MOST:
-            raise Large
+            raise Large(Unknown(1))
         return self.mp.exp(u)
 
     def of_sinh(self, u: Any) -> Any:
+        if abs(u) > _MOST:
+            raise Large(Unknown(1 if u > 0 else -1))
         return (self.of_exp(u) - self.of_exp(-u)) / 2
 
     def of_cosh(self, u: Any) -> Any:
         return (self.of_exp(u) + self.of_exp(-u)) / 2
 
     def of_tanh(self, u: Any) -> Any:
+        if abs(u) > _MOST:
+            raise Large(Unknown(1 if u > 0 else -1))
         return self.of_sinh(u) / self.of_cosh(u)
 
     def of_sin(self, u: Any) -> Any:
@@ -188,7 +220,7 @@ class _Judge:
 
     def angle(self, u: Any) -> Any:
         if abs(u) > self.mp.mpf(10) ** 20:
-            raise Large
+            raise Large(Unknown())
         return u
 
     def of_asin(self, u: Any) -> Any:
@@ -259,6 +291,9 @@ def has_values(sides: Sequence[Node], count: int) -> bool:
         try:
             for piece in pieces:
                 judge.value(piece)
+            finer = _Judge(judge.point, MORE_DIGITS)  # a number that seems zero in 60 digits may be negative
+            for piece in sides:
+                finer.value(piece)
             return True
         except (NoValue, Unclear, AttributeError, KeyError, TypeError, OverflowError, MemoryError):
             failed = judge.failed
@@ -272,8 +307,8 @@ def has_values(sides: Sequence[Node], count: int) -> bool:
 def _value_or_unknown(node: Node, point: Point, digits: int) -> Any:
     try:
         return real_value(node, point, digits)
-    except Large:
-        return UNKNOWN
+    except Large as large:
+        return large.args[0]
 
 
 def compare(left: Node, right: Node, point: Point) -> bool:
@@ -288,7 +323,7 @@ def compare(left: Node, right: Node, point: Point) -> bool:
     gaps = []
     for digits in (DIGITS, MORE_DIGITS):
         a, b = (_value_or_unknown(side, point, digits) for side in (left, right))
-        if a is UNKNOWN or b is UNKNOWN:
+        if isinstance(a, Unknown) or isinstance(b, Unknown):
             raise Large
         gap = abs(a - b) / (1 + abs(a) + abs(b))
         if gap == 0:

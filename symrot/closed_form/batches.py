@@ -5,7 +5,6 @@ Where all digits of a sum may cancel, integers find it, one motion after the oth
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,9 +47,9 @@ def turned(frame: Frame, quaternions: Floats) -> Floats:
     """Return unit quaternions as :meth:`symrot.closed_form.heavy_top.Frame.start` has them, shape (n, 8)."""
     found = _units(quaternions)
     if frame.before is not None:
-        found = _product(_constant(frame.before), found)
+        found = _product(frame.before, True, found)
     if frame.after is not None:
-        found = _product(found, _constant(frame.after))
+        found = _product(frame.after, False, found)
     return _on_grid(*found, _TURNED, lambda i: frame.start(_unit(quaternions[i])))
 
 
@@ -75,20 +74,21 @@ def _units(quaternions: Floats) -> dd.Pair:
     return high + low, low - ((high + low) - high)
 
 
-def _constant(quaternion: Sequence[Fraction]) -> dd.Pair:
-    high, low = zip(*map(pair, quaternion), strict=True)
-    return np.array([high]), np.array([low])
+def _sign(i: int, j: int) -> float:
+    """Return the sign of the product of two units of the quaternions."""
+    return -1.0 if (i and i == j) or (i, j) in ((1, 3), (2, 1), (3, 2)) else 1.0
 
 
-def _product(a: dd.Pair, b: dd.Pair) -> dd.Pair:
-    """Return products of quaternions, shape (n, 4), to 2^-100: that of a unit quaternion, not of each component."""
-    found: list[Any] = [None] * 4
-    for i, j in np.ndindex(4, 4):
-        k = i ^ j  # the basis of a product
-        sign = -1.0 if (i and i == j) or (i, j) in ((1, 3), (2, 1), (3, 2)) else 1.0
-        term = dd.multiply((sign * a[0][:, i], sign * a[1][:, i]), (b[0][:, j], b[1][:, j]))
-        found[k] = term if found[k] is None else dd.add(found[k], term)
-    return np.column_stack([high for high, _ in found]), np.column_stack([low for _, low in found])
+def _product(constant: Sequence[Fraction], before: bool, q: dd.Pair) -> dd.Pair:
+    """Return the products of one unit quaternion, before or after, with others (n, 4), to 2^-102 of a unit."""
+    found: dd.Pair | None = None
+    for i, (high, low) in enumerate(map(pair, constant)):
+        places = [i ^ k for k in range(4)]  # of which unit i makes unit k
+        signs = np.array([_sign(i, j) if before else _sign(j, i) for j in places])
+        term = dd.multiply((high * signs, low * signs), (q[0][:, places], q[1][:, places]))
+        found = term if found is None else dd.add(found, term)
+    assert found is not None
+    return found
 
 
 def _on_grid(high: Floats, low: Floats, error: float, exactly: Callable[[int], Sequence[float]]) -> Floats:

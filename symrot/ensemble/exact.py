@@ -84,6 +84,9 @@ def _patterns(variation: Variation) -> list[tuple[Hashable, Rows]]:
 ARRAYS_LOSE_BELOW = {"symmetric body driven about its axis, angular velocity alone": 1e4}
 """Up to which angle, rad, steps are faster than arrays of a form whose constants do not vary; see :func:`choose`."""
 
+TILTED_LOSES_BELOW = 50.0
+"""The same of free bodies in axes that are not principal."""
+
 ALONE_LOSES_BELOW = {"free_body": 1e4, "axial": 1e3, "spin_up": 1e3}
 """The same of closed forms that are made one by one, by library."""
 
@@ -104,9 +107,10 @@ def choose(variation: Variation, times: Floats, start: float, faster: bool) -> l
     symrot.bench.starts --ensembles`` prints the same for the scenes' own spans), in microseconds per trajectory:
 
     - Arrays of closed forms take 4 to 18 where starts alone vary and 4 to 29 where constants do; steps take 13 to 46
-      and 33 to 75 up to 10 rad, and more beyond. A body in axes that are not principal takes 23, as steps do up to
-      30 rad.
-    - The one exception is the angular velocity alone of a symmetric body that is damped, from starts alone: 12 as an
+      and 33 to 75 up to 10 rad, and more beyond.
+    - A free body in axes that are not principal takes 20 as an array, for integers, and 14 by steps at 40 rad (10^4
+      trajectories), 30 to 38 at 100 rad.
+    - The other exception is the angular velocity alone of a symmetric body that is damped, from starts alone: 12 as an
       array, 6 to 9 by steps, which are few since the motion ends.
     - Motions made one by one take 1100 with products of inertia that vary, for their principal axes, and 40 to 80 about
       one axis or spun up, with constants so large or small that arrays are not made. Steps take as much at the angles
@@ -121,7 +125,7 @@ def choose(variation: Variation, times: Floats, start: float, faster: bool) -> l
         without_compiler = not loaded(kind.form.library) and library.missing()
         if without_compiler and faster:  # steps are followed by SciPy then
             continue
-        least = ARRAYS_LOSE_BELOW.get(kind.form.name) if faster and not variation.columns else None
+        least = _arrays_lose_below(variation, kind.form) if faster and not variation.columns else None
         if least is not None:
             rows = rows[_angles(variation, times, start)[rows] > least]
         for each, batch, usual in [(rows, None, None)] if without_compiler else _batches(variation, kind, rows):
@@ -130,6 +134,12 @@ def choose(variation: Variation, times: Floats, start: float, faster: bool) -> l
             if len(each):
                 found.append(Solved(kind.form, each, batch, usual))
     return found
+
+
+def _arrays_lose_below(variation: Variation, form: Form) -> float | None:
+    if form.library == "free_body" and not variation.scene.body.principal.given_axes:
+        return TILTED_LOSES_BELOW
+    return ARRAYS_LOSE_BELOW.get(form.name)
 
 
 def _angles(variation: Variation, times: Floats, start: float) -> Floats:

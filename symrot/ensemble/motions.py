@@ -251,7 +251,7 @@ class _Stepped:
 
 def _taylor(stepped: _Stepped, method: str) -> lanes.Outcome:
     problem = stepped.problem
-    if grows_late(stepped.plan) or formula_deviations(*stepped.moved, [0.0] * stepped.p.shape[1]) is not None:
+    if grows_late(stepped.plan) or formula_deviations(*stepped.moved) is not None:
         return _enclosed(stepped)
     path = lane_library(*stepped.moved, problem.tolerance)
     return lanes.follow(
@@ -291,10 +291,13 @@ def _scipy(stepped: _Stepped, method: str) -> lanes.Outcome:
     solver = method.partition(":")[2]
     options: dict[str, Any] = {"blocks": blocks, "scales": scales, **({"method": solver} if solver else {})}
 
+    bounds = formula_deviations(*stepped.moved)
+    names = [name for name, _ in stepped.moved[1].rate_parameters]
+
     def integrate(k: int, times: Floats) -> tuple[Floats, Any]:
         rates = function if stepped.p.shape[1] else lambda t, y, p: function(t, y)
         start = rates, stepped.p[k], stepped.y[k], stepped.t0
-        deviations = formula_deviations(*stepped.moved, stepped.p[k])
+        deviations = bounds and bounds(dict(zip(names, stepped.p[k].tolist(), strict=True)))
         return fallback.integrate(*start, times, problem.tolerance, deviations=deviations, **options)
 
     return stepped.one_by_one(integrate)

@@ -60,6 +60,7 @@ typedef struct {
     double max_step;     /* positive */
     double proven;       /* the last step, if the enclosure held it back, or 0 */
     double epoch;        /* the kernel counts its time from here */
+    double far;          /* pause where the epoch is so many steps away, for it to be moved; 0: never */
     int64_t reach;       /* number of the disc that proved most in the last step */
     int64_t next;        /* first sample not yet written */
     int64_t accepted, rejected, evaluations, recorded;
@@ -335,6 +336,7 @@ SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *
             break;
         }
         if (room > 0 && recorded == room) { status = SYMROT_FULL; break; }
+        if (run->far > 0.0 && fabs(t - epoch) > run->far*fabs(h)) break;
         const double at = t - epoch, last = (t1 == stop ? run->last : t1) - epoch;  /* for the kernel */
 
 #define K(s) k[s][i]

@@ -12,11 +12,12 @@ from symrot.codegen.enclosure import LOW_ORDER, REACHES, Enclosure, value_operan
 from symrot.codegen.recurrences import Series
 from symrot.expression import evaluate
 
-__all__ = ["Deviations", "Disc", "longest_followed"]
+__all__ = ["Deviations", "Disc", "deviations_of", "longest_followed"]
 
 LARGEST_EXPONENT = 700.0  # of e, well within doubles
 LEAST_EXPONENT = -745.0  # what is smaller underflows, and need not be zero
 WEIGHTED = ("clock", "sum")  # rules of series with constants of their own
+SLOWER = 10  # times: how long bounds take disc by disc
 SHRINK = 0.3  # least that a step is shortened to at once
 
 
@@ -203,22 +204,16 @@ class Deviations:
     enclosure : Enclosure
     parameters : mapping of str to number
         Of the right-hand side, by name.
+    bounds : function, optional
+        The enclosure as one function, where it is known.
     """
 
-    def __init__(self, enclosure: Enclosure, parameters: Mapping[str, float]) -> None:
-        self.enclosure, self._bounds = enclosure, _one_function(enclosure)
+    def __init__(
+        self, enclosure: Enclosure, parameters: Mapping[str, float], bounds: Callable[..., list[float]] | None = None
+    ) -> None:
+        self.enclosure, self._bounds = enclosure, bounds or _one_function(enclosure)
         self.likely = 0  # number of the reach that proved the last step
-        self._bind(parameters)
-
-    def rebound(self, parameters: Mapping[str, float]) -> "Deviations":
-        """Return the same for other parameters, without any derivation."""
-        other: Deviations = object.__new__(type(self))
-        other.__dict__.update(self.__dict__)
-        other._bind(parameters)
-        return other
-
-    def _bind(self, parameters: Mapping[str, float]) -> None:
-        enclosure = self.enclosure
+        self.spent = 0  # evaluations, by time
 
         def number(node: Any) -> float:
             return float(evaluate(node, parameters, _MATH, float))
@@ -233,6 +228,7 @@ class Deviations:
 
     def __call__(self, t: float, reach: float, y: Sequence[float], radii: Sequence[float]) -> list[float]:
         """Return the bounds for times within ``reach`` of t and states within ``radii`` of y: infinite at poles."""
+        self.spent += 1
         try:
             bounds = self._bounds(t, reach, y, radii, self._listed, self._sizes)
             if math.isfinite(sum(bounds)):
@@ -243,6 +239,7 @@ class Deviations:
 
     def slowly(self, t: float, reach: float, y: Sequence[float], radii: Sequence[float]) -> list[float]:
         """Return the bounds disc by disc, with the logarithms of sizes that over- and underflow."""
+        self.spent += SLOWER
         discs: dict[int, Disc] = {}
         try:
             for number in self.enclosure.series:
@@ -274,6 +271,12 @@ class Deviations:
             inverse = _inverse(own[-1])
             return _product(own[0], inverse) if len(own) > 1 else inverse
         return FUNCTIONS[series.function](*own)
+
+
+def deviations_of(enclosure: Enclosure) -> Callable[[Mapping[str, float]], Deviations]:
+    """Return what makes deviations of parameters; the function of the enclosure is made once."""
+    bounds = _one_function(enclosure)
+    return lambda parameters: Deviations(enclosure, parameters, bounds)
 
 
 _MATH: dict[str, Callable[..., float]] = {name: getattr(math, name) for name in FUNCTIONS if name != "sech"} | {

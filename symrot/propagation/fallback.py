@@ -9,7 +9,7 @@ import math
 from collections.abc import Callable, Sequence
 from itertools import pairwise
 from time import perf_counter
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -30,15 +30,21 @@ from symrot.propagation.stepping import (
     stretches,
 )
 
-__all__ = [
-    "MAX_EVALUATIONS", "METHODS", "PATIENCE", "FallbackRecording", "Spent", "integrate", "method_name", "record",
-    "record_ahead",
-]  # fmt: skip
+__all__ = ["METHODS", "FallbackRecording", "Whole", "integrate", "method_name", "record"]
 
 Rhs = Callable[[float, Floats, Floats], ArrayLike]
 Piece = tuple[float, float, Any]  # from, to, SciPy's solution between
 
-METHODS = {"DOP853": 0.1, "RK45": 0.1, "RK23": 0.1, "Radau": 1.0, "BDF": 0.01, "LSODA": 0.05}
+
+class Whole(NamedTuple):
+    """The motion of which a part is followed: its two ends, s, and the evaluations spent on it before."""
+
+    start: float
+    end: float
+    spent: int
+
+
+METHODS = {"DOP853": 0.1, "RK45": 0.1, "RK23": 0.1, "Radau": 1.0, "BDF": 0.01, "LSODA": 0.02}
 """SciPy's methods, and the share of the tolerance that one step of each is given; calibrated as in dop853.py."""
 
 DEFAULT = "DOP853"
@@ -56,10 +62,6 @@ MAX_BROKEN = 1000  # derivatives that are not finite, before the motion is given
 _NODES = 0.5 - 0.5 * np.cos(np.pi * np.arange(1, FIT_ORDER + 1) / FIT_ORDER)  # Chebyshev's, without the start
 _FIT = np.linalg.inv(_NODES[:, None] ** np.arange(1, FIT_ORDER + 1))  # from rises there to coefficients
 SMALLEST_RTOL = 100 * float(np.finfo(float).eps)  # SciPy takes no smaller one
-
-
-class Spent(CutOff):
-    """A motion that takes more evaluations than it may."""
 
 
 def method_name(text: str) -> str:
@@ -142,46 +144,33 @@ def record(
     max_step: float = math.inf,
     max_steps: int = MAX_EVALUATIONS,
     deviations: Deviations | None = None,
+    whole: Whole | None = None,
 ) -> "FallbackRecording":
-    """Return the motion over ``span`` as a function of time; see :func:`symrot.propagation.dop853.record`."""
-    task = _Task(rhs, p, y0, t0, tolerance, method, blocks, scales, breaks, max_step, max_steps, deviations)
-    return FallbackRecording(task, min(*span, task.t0), max(*span, task.t0))
+    """Return the motion over ``span`` as a function of time; see :func:`symrot.propagation.dop853.record`.
 
-
-def record_ahead(
-    rhs: Rhs,
-    p: ArrayLike,
-    y0: ArrayLike,
-    t0: float,
-    end: float,
-    tolerance: float,
-    *,
-    method: str = DEFAULT,
-    blocks: Sequence[int] = (0, 3, 7),
-    scales: Sequence[float] = (0.0, 1.0),
-    max_steps: int = MAX_EVALUATIONS,
-    deviations: Deviations | None = None,
-) -> tuple["FallbackRecording", CutOff | None]:
-    """Return the motion as far as SciPy comes on its way to an end, and what cut it off, if anything did.
-
-    Arguments as :func:`record` takes them. What cuts the motion off before its first step is raised.
+    A motion that is cut off or interrupted has what was computed in the ``recording`` of the exception, if anything
+    was. Of a part of a motion, ``max_steps`` is that of the ``whole``.
     """
-    task = _Task(rhs, p, y0, t0, tolerance, method, blocks, scales, (), math.inf, max_steps, deviations)
-    low, high, error = min(end, task.t0), max(end, task.t0), None
+    task = _Task(rhs, p, y0, t0, tolerance, method, blocks, scales, breaks, max_step, max_steps, deviations, whole)
+    low, high = min(*span, task.t0), max(*span, task.t0)
+    finished: list[Piece] = []
     try:
-        task.solutions(end)
-    except CutOff as reason:
-        if not (task.final and task.pieces):
-            raise
-        error, low, high = reason, min(piece[0] for piece in task.pieces), max(piece[1] for piece in task.pieces)
-    return FallbackRecording(task, low, high, task.pieces), error
+        for end in (low, high):
+            finished += task.solutions(end)
+    except (CutOff, KeyboardInterrupt) as error:
+        finished += task.pieces if task.final else []
+        if finished:
+            reached = [time for low, high, _ in finished for time in (low, high)]
+            error.recording = FallbackRecording(task, finished, min(reached), max(reached))  # type: ignore[union-attr]
+        raise
+    return FallbackRecording(task, finished, low, high)
 
 
 class FallbackRecording(Recording):
     """A motion that SciPy has followed; see :class:`symrot.propagation.stepping.Recording`."""
 
-    def __init__(self, task: "_Task", low: float, high: float, pieces: list[Piece] | None = None) -> None:
-        self._pieces = [*task.solutions(low), *task.solutions(high)] if pieces is None else pieces
+    def __init__(self, task: "_Task", pieces: list[Piece], low: float, high: float) -> None:
+        self._pieces = pieces
         super().__init__(task.t0, task.y0, (low, high), task.stats())
 
     def edges(self, start: float, end: float) -> list[Floats]:
@@ -223,6 +212,7 @@ class _Task:
         max_step: float,
         max_steps: int,
         deviations: Deviations | None,
+        whole: Whole | None = None,
     ) -> None:
         self.began = perf_counter()
         self.method = method_name(method)
@@ -242,9 +232,15 @@ class _Task:
         self.steps = self.evaluations = self.broken = 0
         self.pieces: list[Piece] = []  # of the pass that runs
         self.final = False  # whether that is the pass that counts
-        self.mark = (0, self.t0)  # evaluations and time when the pace was judged last
+        self.mark = (0, self.t0)  # work and time when the pace was judged last
+        self.whole, self.before = whole, deviations.spent if deviations else 0
         if not np.isfinite(self._derivative(self.t0, self.y0)).all():
             raise CutOff(self.t0, NOT_FINITE_SENTENCE)
+
+    @property
+    def work(self) -> int:
+        """Evaluations of the rates and of what bounds them, which take as long: by these the effort is limited."""
+        return self.evaluations + (self.deviations.spent - self.before if self.deviations else 0)
 
     def stats(self) -> Stats:
         return Stats(self.steps, 0, self.evaluations, perf_counter() - self.began)
@@ -271,6 +267,7 @@ class _Task:
 
         Where the coarse pass is cut off, the motion is followed as far as that came, so that its samples are not lost.
         """
+        self.final, self.pieces = False, []
         if end == self.t0:
             return []
         slowest = PILOT_TURN / abs(end - self.t0)  # rad/s: nothing turns the body that turns it less
@@ -278,11 +275,11 @@ class _Task:
             SLACK * PILOT_TOLERANCE * (scale if scale > 0.0 else max(float(np.linalg.norm(self.y0[block])), slowest))
             for block, scale in self.blocks
         ]
-        self.final, early = False, None
+        early: CutOff | None = None
         try:
             self._stretches(end, PILOT_TOLERANCE, np.full(len(self.y0), PILOT_TOLERANCE), bars)
         except CutOff as error:
-            if not self.pieces or self.evaluations >= self.max_evaluations:
+            if not self.pieces or self._spent >= self.max_evaluations:
                 raise
             early, end = error, float(self.pieces[-1][2].ts[-1])
         way = abs(end - self.t0) * (1.0 if early is None else BEFORE_POLE)
@@ -306,7 +303,7 @@ class _Task:
         return pieces
 
     def _stretches(self, end: float, rtol: float, atol: Floats, bars: list[float]) -> list[Piece]:
-        y, self.pieces, self.mark, self.goal = self.y0, [], (self.evaluations, self.t0), end
+        y, self.pieces, self.mark, self.goal = self.y0, [], (self.work, self.t0), end
         for stretch in stretches(self.t0, end, self.breaks):
             with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
                 self._follow_stretch(stretch, y, rtol, atol, bars)
@@ -343,35 +340,36 @@ class _Task:
         longest = self.max_step
         solver = begin(stretch.start, y, longest)
         while solver.status == "running":
-            progress.report(float(solver.t), self.t0, self.goal)
+            start, end = (self.whole.start, self.whole.end) if self.whole else (self.t0, stretch.stop)
+            progress.report(float(solver.t) if self.final else self.t0, start, end if self.whole else self.goal)
             before, y = float(solver.t), solver.y.copy()
-            self._judge_pace(before, stretch.stop)
+            self._judge_pace(before, end if self.final else stretch.stop)  # a coarse pass is no part of the whole
             broken = self.broken
             try:
                 message = solver.step()
             except ValueError:  # of linear algebra, for numbers that are not finite
                 longest = 0.5 * min(float(solver.h_abs), abs(stretch.stop - before), longest)
                 if longest <= 4.0 * math.ulp(before):
-                    raise CutOff(before, NOT_FINITE_SENTENCE, stretch.stop) from None
+                    raise CutOff(before, NOT_FINITE_SENTENCE, end) from None
                 solver = begin(before, y, longest)
                 continue
             step = float(solver.t) - before
             if self.broken > broken and not np.isfinite(self._derivative(float(solver.t), solver.y)).all():
                 if abs(step) <= 4.0 * math.ulp(before):
-                    raise CutOff(before, NOT_FINITE_SENTENCE, stretch.stop)
+                    raise CutOff(before, NOT_FINITE_SENTENCE, end)
                 longest = 0.5 * abs(step)  # LSODA goes on where the rates have no value
                 solver = begin(before, y, longest)
                 continue
             # LSODA may say that it went on when it could not
             if message == solver.TOO_SMALL_STEP or (solver.status != "failed" and not step * solver.direction > 0.0):
-                raise CutOff(before, why_stuck(STUCK, before, self.t0, stretch.stop), stretch.stop)
+                raise CutOff(before, why_stuck(STUCK, before, start, end), end)
             if solver.status == "failed" or not np.isfinite(solver.y).all():
-                raise CutOff(float(solver.t), message or NOT_FINITE_SENTENCE, stretch.stop)
+                raise CutOff(float(solver.t), message or NOT_FINITE_SENTENCE, end)
             dense = solver.dense_output()
             proven = step if self.deviations is None else self._proven(before, y, dense, step, bars)
             if proven != step:
                 if abs(proven) <= 4.0 * math.ulp(before):
-                    raise CutOff(before, why_stuck(STUCK, before, self.t0, stretch.stop), stretch.stop)
+                    raise CutOff(before, why_stuck(STUCK, before, start, end), end)
                 longest = abs(proven)
                 solver = begin(before, y, longest)
                 continue
@@ -380,16 +378,26 @@ class _Task:
             self.steps += 1
             if longest < self.max_step and abs(step) > HELD * longest and solver.status == "running":
                 longest = min(REGAIN * longest, self.max_step)
-                solver = begin(solver.t, solver.y.copy(), longest)
+                if self.method == "LSODA":
+                    solver = begin(solver.t, solver.y.copy(), longest)
+                else:  # the others read it before every step
+                    solver.max_step = longest
 
     def _judge_pace(self, t: float, stop: float) -> None:
         """Give the motion up if the rest would take far more evaluations than the limit."""
-        spent = self.evaluations - self.mark[0]
+        work = self.work
+        spent = work - self.mark[0]
         if spent >= PATIENCE:
             reason = why_hopeless(spent, abs(t - self.mark[1]), abs(stop - t), self.max_evaluations)
             if reason:
                 raise CutOff(t, reason, stop)
-            self.mark = (self.evaluations, t)
+            self.mark = (work, t)
+        if self._spent > self.max_evaluations:
+            raise CutOff(t, f"{self.max_evaluations} evaluations were not enough", stop)
+
+    @property
+    def _spent(self) -> int:
+        return self.work + (self.whole.spent if self.whole else 0)
 
     def _proven(self, t: float, y: Floats, dense: Any, step: float, bars: list[float]) -> float:
         """Return the longest part of a step that is proven to miss nothing."""
@@ -401,7 +409,7 @@ class _Task:
     def _derivative(self, t: float, y: Floats) -> Floats:
         self.evaluations += 1
         if self.evaluations > self.max_evaluations:
-            raise Spent(float(t), f"{self.max_evaluations} evaluations were not enough")
+            raise CutOff(float(t), f"{self.max_evaluations} evaluations were not enough")
         dy = np.asarray(self.rhs(t, y, self.p), dtype=np.float64)
         if dy.shape != self.y0.shape:
             raise InputError(f"the right-hand side returns {len(self.y0)} numbers, got an array of shape {dy.shape}")

@@ -1,6 +1,6 @@
 """A plan bound to numbers: the states at any times by the chosen method, and quantities of them."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
@@ -52,7 +52,7 @@ def unreduced(plan: Plan, form: Form) -> Plan:
 
 OF_START = (
     "rate_parameters", "taylor_parameters", "stepping", "exact", "_quantity_values", "_initial", "_on_own_clock",
-    "_clock", "deviations",
+    "_clock",
 )  # fmt: skip
 """What a motion keeps that depends on its start."""
 
@@ -208,7 +208,7 @@ class Motion:
         from symrot.codegen.numpy_kernel import load_numpy_kernel
 
         function = load_numpy_kernel(self.kernel.rates)
-        return function if self.rate_parameters else lambda t, y, p: function(t, y)
+        return function if self.kernel.rate_parameters else lambda t, y, p: function(t, y)
 
     @cached_property
     def exact(self) -> Exact:
@@ -258,29 +258,28 @@ class Motion:
         recording.epoch = self.epoch
         return recording
 
-    @cached_property
-    def deviations(self) -> "Deviations | None":
-        """What steps in Python are held to."""
-        if self.first:
-            return self.first.rebound(self.rate_parameters)
-        return formula_deviations(self.plan, self.kernel, self.rate_parameters)
-
-    def rebound(self, parameters: Sequence[float]) -> "Deviations | None":
-        """Return what steps in Python are held to, for other parameters of the rates."""
+    def deviations(self, parameters: Sequence[float]) -> "Deviations | None":
+        """Return what steps in Python are held to, for parameters of the rates; derived when first asked for."""
+        if self._deviations is None:
+            return None
         names = [name for name, _ in self.kernel.rate_parameters]
-        return self.deviations and self.deviations.rebound(dict(zip(names, parameters, strict=True)))
+        return self._deviations(dict(zip(names, parameters, strict=True)))
+
+    @cached_property
+    def _deviations(self) -> "Callable[[Mapping[str, float]], Deviations] | None":
+        return self.first._deviations if self.first else formula_deviations(self.plan, self.kernel)
 
     @property
     def scipy_options(self) -> dict[str, Any]:
         """How the fallback judges errors, and by which of SciPy's methods it steps."""
+        return self.scipy_options_for(self.rate_parameters)
+
+    def scipy_options_for(self, parameters: Sequence[float]) -> dict[str, Any]:
+        """Return the options of the fallback for parameters of the rates."""
         blocks, scales = error_blocks(self.plan)
         solver = self.choice.method.partition(":")[2]
-        return {
-            "blocks": blocks,
-            "scales": scales,
-            "deviations": self.deviations,
-            **({"method": solver} if solver else {}),
-        }
+        named = {"method": solver} if solver else {}
+        return {"blocks": blocks, "scales": scales, "deviations": self.deviations(parameters), **named}
 
 
 def on_own_clock(plan: Plan, choice: Choice, tolerance: float) -> Motion:

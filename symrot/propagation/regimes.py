@@ -7,16 +7,16 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from symrot.codegen import library
-from symrot.codegen.epoch import moved_formulas
+from symrot.codegen.epoch import moved, moved_formulas
 from symrot.expression import Node, names, parse, rename, text
 from symrot.kernel import Argument, Program
-from symrot.propagation.binding import folded
+from symrot.propagation.binding import folded, two_doubles, value_of
 from symrot.propagation.epoch import Following
 from symrot.propagation.events import Event, guard_library_source
 from symrot.propagation.instant import Instant
 from symrot.propagation.kernels import error_blocks
 from symrot.propagation.motion import Motion
-from symrot.scene_kernel import Parameters, bind
+from symrot.scene_kernel import Parameters
 from symrot.switches import Conditions, hold
 
 if TYPE_CHECKING:
@@ -49,10 +49,10 @@ class Regime:
         self.switches = switched.switches
         modes = [switch["mode"] for switch in switches]
         distances = [_distance(switch) for switch in switches]
-        moved, parameters = moved_formulas(distances, {*self.constants, *modes})
+        formulas, parameters = moved_formulas(distances, {*self.constants, *modes})
         names_of_clock = {name: f"since_{name}" for name, _ in parameters if name not in {*self.constants, *modes}}
         self.parameters = tuple((names_of_clock.get(name, name), formula) for name, formula in parameters)
-        self.formulas = {mode: rename(node, names_of_clock) for mode, node in zip(modes, moved, strict=True)}
+        self.formulas = {mode: rename(node, names_of_clock) for mode, node in zip(modes, formulas, strict=True)}
         known = {"t", "pi", *(name for name, _ in self.parameters)}
         self.of_time = {mode for mode, formula in self.formulas.items() if names(formula) <= known}
         self.guards = [guard for switch in switches for guard in self._guards(switch)]
@@ -62,11 +62,15 @@ class Regime:
         self.events = [Event(guard.formula, terminal=True, direction=-1) for guard in self.guards]
         columns = {name: f"{name} of the scene" for name in self.more}  # a kernel has names of its own for constants
         columns |= {f"{mode}_of_t": f"{mode} of t" for mode in held}
-        program = _with_parameters(motion.kernel.quantities, [columns[name] for name in self.more])
-        formulas = [rename(node, columns) for node in nodes]
-        source = guard_library_source(program, formulas, self.plan.states, *error_blocks(self.plan))
+        quantities, self.quantity_parameters = motion.kernel.quantities, motion.kernel.quantity_parameters
+        if quantities.uses("t"):  # as the value of a mode that holds its guard at zero
+            quantities, self.quantity_parameters = moved(quantities, self.quantity_parameters)
+        program = _with_parameters(quantities, [columns[name] for name in self.more])
+        source = guard_library_source(
+            program, [rename(node, columns) for node in nodes], self.plan.states, *error_blocks(self.plan)
+        )
         self.path = library.build(source, "events")
-        self._following: dict[tuple[int, ...], tuple[Following, Following, list[float]]] = {}
+        self._following: dict[tuple[int, ...], tuple[Following, Following, Following, list[float]]] = {}
         self._active: dict[tuple[int, ...], list[bool]] = {}
         self._bound: dict[tuple[tuple[int, ...], Instant | None], tuple[list[float], list[float]]] = {}
 
@@ -82,13 +86,22 @@ class Regime:
             yield Guard(mode, guard, -1, where)
             yield Guard(mode, f"1 - ({guard})", 1, where)
 
-    def _follow(self, modes: Modes) -> tuple[Following, Following, list[float]]:
-        """Return the parameters of rates and guards for one clock after another, and those of the quantities."""
+    def _follow(self, modes: Modes) -> tuple[Following, Following, Following, list[float]]:
+        """Return the parameters of rates, guards and quantities for one clock after another, and those of invariants.
+
+        The last are pairs of doubles, for Taylor steps; under other modes some of them have no value.
+        """
         key = tuple(modes.values())
         if key not in self._following:
             values = {name: Fraction(value) for name, value in modes.items()}
             rates, guards, quantities = self._with_constants
-            self._following[key] = Following(rates, values), Following(guards, values), bind(quantities, values)
+            taylor = self.motion.choice.method == "taylor"
+            invariants = self.motion.kernel.quantity_parameters if taylor else ()
+            constants = {**self.constants, **values}
+            ratios = [value_of(node, constants).as_integer_ratio() for _, node in invariants]
+            pairs = [part for ratio in ratios for part in two_doubles(*ratio)]
+            following = Following(rates, values), Following(guards, values), Following(quantities, values)
+            self._following[key] = *following, pairs
         return self._following[key]
 
     def values(self, modes: Modes, zero: Instant) -> dict[str, float]:
@@ -100,15 +113,15 @@ class Regime:
 
     def bound(self, modes: Modes, zero: Instant) -> tuple[list[float], list[float]]:
         """Return the parameters of the stepper's library and of the guards', on a clock that shows 0 at an instant."""
-        following, guards, quantities = self._follow(modes)
-        place = tuple(modes.values()), None if following.fixed and guards.fixed else zero
+        following, guards, quantities, pairs = self._follow(modes)
+        fixed = following.fixed and guards.fixed and quantities.fixed
+        place = tuple(modes.values()), None if fixed else zero
         if place not in self._bound:
             if place[1] is not None:
                 self._bound = {key: value for key, value in self._bound.items() if key[1] in (None, zero)}
             rates, values = following.parameters(zero.exact), self.values(modes, zero)
-            if self.motion.choice.method == "taylor":
-                rates += self.motion.taylor_parameters[len(rates) :]
-            self._bound[place] = rates, [*quantities, *(values[name] for name in self.more)]
+            rates += pairs
+            self._bound[place] = rates, [*quantities.parameters(zero.exact), *(values[name] for name in self.more)]
         return self._bound[place]
 
     @cached_property
@@ -119,7 +132,7 @@ class Regime:
         kernel = self.motion.kernel
         rates, guards, quantities = (
             tuple((name, folded(formula, known)) for name, formula in parameters)
-            for parameters in (kernel.rate_parameters, self.parameters, kernel.quantity_parameters)
+            for parameters in (kernel.rate_parameters, self.parameters, self.quantity_parameters)
         )
         return rates, guards, quantities
 

@@ -1,27 +1,31 @@
 """The pieces of a smooth motion on its way to the next switch, by each stepper: polynomials, and states at any time."""
 
 from collections.abc import Callable, Iterator
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from symrot.propagation import dop853, taylor
-from symrot.propagation.cut_off import CutOff
+from symrot.propagation.cut_off import CutOff, why_hopeless
+from symrot.propagation.instant import Instant
 from symrot.propagation.kernels import error_blocks
-from symrot.propagation.polynomials import ROUGH, Piece, fitted, rows_of
+from symrot.propagation.polynomials import Piece, fitted, rows_of
 from symrot.propagation.regimes import Regime
 from symrot.propagation.stepping import Floats
 
 if TYPE_CHECKING:
     from symrot.propagation.switched_run import SwitchedRun
 
-__all__ = ["LEAST_TURN", "SOURCES"]
+__all__ = ["SOURCES"]
 
 ROOM = 4  # steps in the first piece after a switch; twice as many in each piece after it
-WINDOWS = 64  # pieces of the span that SciPy follows at a time, at first
-PER_WINDOW, SHORTER = 20_000, 0.125  # evaluations after which a window ends; the next is that part as long
-LEAST_TURN = 1e-3  # rad over the whole span: slower rates are as good as this one
-FIT = 0.1  # of the tolerance may be lost where polynomials follow SciPy's solution
+WINDOWS, FEWEST = 64, 8  # pieces of the span that SciPy follows at a time, at first and later
+JOIN = 0.01  # of the tolerance: how far the ends of LSODA's steps may be apart
+RECENT = 4  # smooth parts before, whose lengths tell how long the next may be
+FIRST_ANGLE = 30.0  # rad
+SHORTEST = 1e-6  # of the span
+OVERHEAD = 200  # evaluations: how long a window takes beside them
 
 
 class SteppedPieces:
@@ -74,40 +78,63 @@ class SciPyPieces:
 
         run, t, y = self.run, self.run.t, self.run.y
         side = 1.0 if run.end >= t else -1.0
-        length = run.span / WINDOWS
-        options = self.motion.scipy_options | {"deviations": self.motion.rebound(self.rates), "max_steps": PER_WINDOW}
-        blocks = error_blocks(self.motion.plan)
+        length = self._first_length()
+        options = self.motion.scipy_options_for(self.rates)
         while t != run.end:
             stop = run.end if abs(run.end - t) <= 1.01 * length else t + side * length
             share = max(abs(stop - t) / run.span, 1e-3)
-            tolerance = run.motion.tolerance * share
+            self._judge_pace(t)
+            options["whole"] = fallback.Whole(run.start, run.end, run.spent)
+            ended: CutOff | KeyboardInterrupt | None = None
+            recording: Any
             try:
-                recording, stuck = fallback.record_ahead(
-                    self.motion.rates, self.rates, y, t, stop, tolerance, **options
+                recording = fallback.record(
+                    self.motion.rates, self.rates, y, t, (t, stop), run.motion.tolerance * share, **options
                 )
-            except fallback.Spent as error:  # a shorter window may end before what takes so many, at a switch
-                self.counts[2] += PER_WINDOW
-                run.spend(PER_WINDOW, t)
-                length *= SHORTER
-                if t + side * length == t:
-                    raise CutOff(t, error.reason, run.end) from None
-                continue
+            except (CutOff, KeyboardInterrupt) as error:
+                before: fallback.FallbackRecording | None = getattr(error, "recording", None)
+                if before is None:
+                    raise
+                recording, ended = before, error
+                stop = recording.span[side > 0.0]
+                if isinstance(error, KeyboardInterrupt):  # a switch before it must not forget it
+                    run.interrupt = error
             self.counts += recording.stats[:3]
+            run.spent += recording.stats.evaluations + OVERHEAD
             for edges in recording.edges(t, stop):
-                yield fitted(recording, edges, *blocks, least=self._least(recording, edges, tolerance)), recording
-            if stuck is not None and not isinstance(stuck, fallback.Spent):
-                raise stuck  # beyond a switch, or before one: what was followed may end there
-            reached = stop if stuck is None else recording.span[side > 0.0]
-            run.spend(recording.stats.evaluations, reached)
-            y, t, length = recording(reached), reached, (2.0 if stuck is None else SHORTER) * length
+                accuracy = JOIN * run.motion.tolerance * share
+                yield fitted(recording, edges, *error_blocks(self.motion.plan), accuracy=accuracy), recording
+            if ended is not None:
+                raise ended
+            y, t, length = recording(stop), stop, min(2.0 * length, run.span / FEWEST)
 
-    def _least(self, recording: Any, edges: Floats, tolerance: float) -> float:
-        """Return the rates, rad/s, that polynomials need not follow better than to :data:`ROUGH`."""
-        (_, rates, *_), scales = error_blocks(self.motion.plan)
-        if scales[0] > 0.0:
-            return 0.0
-        largest = float(np.linalg.norm(recording(edges)[:, :rates], axis=1).max())
-        return FIT * tolerance / ROUGH * max(largest, LEAST_TURN / self.run.span)
+    def _first_length(self) -> float:
+        """Return how far to go at first, s: no farther than twice the longest smooth part of late, nor many rotations.
+
+        What is followed beyond the next switch is wasted.
+        """
+        run = self.run
+        (_, rates, *_), _ = error_blocks(self.motion.plan)
+        turning = float(np.linalg.norm(run.y[:rates]))  # rad/s, or 1 where omega is no state
+        instants = [Instant(run.motion.start), *run.recent][-RECENT - 1 :]
+        longest = max((abs(after - before) for before, after in pairwise(instants)), default=run.span)
+        likely = min(longest, FIRST_ANGLE / max(turning, FIRST_ANGLE / run.span))
+        return min(max(2.0 * likely, SHORTEST * run.span), run.span / WINDOWS)
+
+    def _judge_pace(self, t: float) -> None:
+        """Give the whole motion up if the rest would take far more than the limit."""
+        from symrot.propagation.fallback import MAX_EVALUATIONS, PATIENCE
+
+        run = self.run
+        spent = run.spent - run.mark[0]
+        if spent >= PATIENCE:
+            way = abs(t - run.start)
+            reason = why_hopeless(spent, way - run.mark[1], abs(run.end - t), MAX_EVALUATIONS)
+            if reason:
+                raise CutOff(t, reason, run.end)
+            run.mark = (run.spent, way)
+        if run.spent > MAX_EVALUATIONS:
+            raise CutOff(t, f"{MAX_EVALUATIONS} evaluations were not enough", run.end)
 
     def cost(self) -> Any:
         return self.counts

@@ -12,13 +12,13 @@ from symrot.closed_form.double_double import two_sum
 from symrot.errors import InputError
 from symrot.expression import evaluate, parse
 from symrot.propagation import progress
-from symrot.propagation.cut_off import CutOff, why_hopeless
+from symrot.propagation.cut_off import CutOff
 from symrot.propagation.events import search, signs_at_ends
 from symrot.propagation.instant import Instant
 from symrot.propagation.kernels import error_blocks
 from symrot.propagation.polynomials import Piece
 from symrot.propagation.regimes import Guard, Regime
-from symrot.propagation.smooth_pieces import LEAST_TURN, SOURCES
+from symrot.propagation.smooth_pieces import SOURCES
 from symrot.propagation.stepping import Floats
 from symrot.switches import hold
 
@@ -29,6 +29,7 @@ __all__ = ["MATH", "Chunk", "SwitchedRun"]
 
 MOST_SWITCHES = 1_000_000
 HOP_BITS = 10  # a hop over a switch is at most so many times two ulps of the clock long
+LEAST_TURN = 1e-3  # rad over the whole span: slower rates are as good as this one
 AWAY = range(50, 400, 10)  # a hop away from a switch is so many times halved a span
 NEARBY, MOST_ULPS = 1e-6, 64.0  # parts of the way since the last switch; last bits of a time that was located
 CHATTER, CHATTERING = 50, 1e-9  # so many switches within that part of the span are endlessly many
@@ -85,7 +86,8 @@ class SwitchedRun:
         self.released: set[str] = set()  # modes whose guards were held until this very time: they leave zero slowly
         self.left: set[tuple[str, int]] = set()  # modes and their values left at this very time
         self.settled, self.hopped = 0, False
-        self.spent, self.mark = 0, (0, self.zero)  # evaluations in Python; those and the time when the pace was judged
+        self.spent, self.mark = 0, (0, 0.0)  # SciPy's evaluations; those and the way when the pace was judged last
+        self.interrupt: KeyboardInterrupt | None = None  # that came while SciPy followed the motion, beyond a switch
         self.recent: deque[Instant] = deque(maxlen=CHATTER)
 
     def follow(self, consume: Consumer) -> None:
@@ -93,32 +95,28 @@ class SwitchedRun:
         with progress.within(self.motion.start, self._end.high, lambda: self.zero.high):
             try:
                 self._check_start()
+                if self.interrupt is not None:
+                    raise self.interrupt
                 while self.t != self.end:
                     progress.report(self.t, 0.0, self.end)
                     regime = self.motion.regime(self.held, self.modes)
                     guard = self._segment(regime, consume)
+                    if self.interrupt is not None:
+                        raise self.interrupt
                     if guard is not None:
                         self._switch(regime, guard)
             except CutOff as error:
                 raise error.later(self.zero.high) from None
 
     @property
+    def start(self) -> float:
+        """When the motion started, on its present clock, s."""
+        return Instant(self.motion.start) - self.zero
+
+    @property
     def now(self) -> float:
         """The time on the clock of the scene, s."""
         return self.zero.after(self.t).high
-
-    def spend(self, evaluations: int, t: float) -> None:
-        """Count evaluations in Python up to t; give the motion up if the rest would take far more than the limit."""
-        from symrot.propagation.fallback import MAX_EVALUATIONS, PATIENCE
-
-        self.spent += evaluations
-        now = self._at(t)
-        progress.report(t, 0.0, self.end)
-        if self.spent - self.mark[0] >= PATIENCE:
-            way, left = abs(now - self.mark[1]), abs(self.end - t)
-            if reason := why_hopeless(self.spent - self.mark[0], way, left, MAX_EVALUATIONS):
-                raise CutOff(t, reason, self.end)
-            self.mark = (self.spent, now)
 
     def _at(self, t: float) -> Instant:
         return self._end if t == self.end else self.zero.after(t)
