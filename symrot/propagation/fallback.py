@@ -234,7 +234,9 @@ class _Task:
         self.final = False  # whether that is the pass that counts
         self.mark = (0, self.t0)  # work and time when the pace was judged last
         self.whole, self.before = whole, deviations.spent if deviations else 0
-        if not np.isfinite(self._derivative(self.t0, self.y0)).all():
+        with np.errstate(all="ignore"):  # the sentence says it
+            first = self._derivative(self.t0, self.y0)
+        if not np.isfinite(first).all():
             raise CutOff(self.t0, NOT_FINITE_SENTENCE)
 
     @property
