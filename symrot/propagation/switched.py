@@ -74,6 +74,15 @@ class SwitchedMotion(Motion):
         return listed
 
     @cached_property
+    def settled(self) -> set[str]:
+        """The modes whose guards never change: they hold neither the time, nor a state, nor a mode that does."""
+        settled = set[str]()
+        for switch in self.switches:
+            if names(switch["guard"]) <= self.constants.keys() - ({each["mode"] for each in self.switches} - settled):
+                settled.add(switch["mode"])
+        return settled
+
+    @cached_property
     def constants(self) -> dict[str, Fraction]:
         return {"pi": PI, **self.plan.constants}
 
@@ -88,6 +97,13 @@ class SwitchedMotion(Motion):
 
     @cached_property
     def _initial_modes(self) -> tuple[Modes, set[str]]:
+        return self._modes_at_start({})
+
+    def beside_start(self, mode: str, sign: int) -> Modes:
+        """Return the modes on one side of a guard that is zero at the start: those with it in their guards follow."""
+        return self._modes_at_start({mode: sign})[0]
+
+    def _modes_at_start(self, given: Modes) -> tuple[Modes, set[str]]:
         start, modes, undecided = self.plan.scene.initial, Modes(), set[str]()
         values: dict[str, float] = {name: float(value) for name, value in self.constants.items()}
         values |= {"t": self.start, **{f"omega_{i + 1}": float(value) for i, value in enumerate(start.omega_b)}}
@@ -102,6 +118,9 @@ class SwitchedMotion(Motion):
             except (ArithmeticError, ValueError):
                 raise CutOff(self.start, f"{switch['label']} has no value there") from None
             modes[switch["mode"]] = math.floor(guard) if switch["kind"] == "floor" else -1 if guard < 0.0 else 1
+            if guard == 0.0 and switch["mode"] in self.settled:
+                modes[switch["mode"]] = 0 if switch["kind"] == "floor" else switch["at_zero"]
+            modes[switch["mode"]] = given.get(switch["mode"], modes[switch["mode"]])
             values[switch["mode"]] = float(modes[switch["mode"]])
             if guard == 0.0 and switch["kind"] == "sign" and names(switch["guard"]) & STATES:
                 undecided.add(switch["mode"])
@@ -121,7 +140,7 @@ class SwitchedMotion(Motion):
                 switches = [
                     {**switch, "guard": chosen(switch["guard"], modes, held)}
                     for switch in self.switches
-                    if not self._chooses or hold(switch["where"], modes, held)
+                    if switch["mode"] not in self.settled and (not self._chooses or hold(switch["where"], modes, held))
                 ]
                 own = on_own_clock(plan, self.choice, self.tolerance)
                 self._regime_of[content] = Regime(self, own, held, switches)

@@ -10,14 +10,14 @@ import numpy as np
 
 from symrot.closed_form.double_double import two_sum
 from symrot.errors import InputError
-from symrot.expression import evaluate, parse
+from symrot.expression import evaluate, names, parse
 from symrot.propagation import progress
 from symrot.propagation.cut_off import CutOff
 from symrot.propagation.events import search, signs_at_ends
 from symrot.propagation.instant import Instant
 from symrot.propagation.kernels import error_blocks
 from symrot.propagation.polynomials import Piece
-from symrot.propagation.regimes import Guard, Regime
+from symrot.propagation.regimes import Guard, Modes, Regime
 from symrot.propagation.smooth_pieces import SOURCES
 from symrot.propagation.stepping import Floats
 from symrot.switches import hold
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 __all__ = ["MATH", "Chunk", "SwitchedRun"]
 
-MOST_SWITCHES = 1_000_000
+MOST_SWITCHES, MOST_AT_ONCE = 1_000_000, 1000
 HOP_BITS = 10  # a hop over a switch is at most so many times two ulps of the clock long
 LEAST_TURN = 1e-3  # rad over the whole span: slower rates are as good as this one
 AWAY = range(50, 400, 10)  # a hop away from a switch is so many times halved a span
@@ -84,6 +84,7 @@ class SwitchedRun:
         self.changes: dict[tuple[float, str], str] = {}  # what each function with a switch did at a time
         self.flipped: dict[str, int] = {}  # modes changed at this very time, and how often
         self.released: set[str] = set()  # modes whose guards were held until this very time: they leave zero slowly
+        self.order: list[str] = []  # the same in the order of the changes
         self.left: set[tuple[str, int]] = set()  # modes and their values left at this very time
         self.settled, self.hopped = 0, False
         self.spent, self.mark = 0, (0, 0.0)  # SciPy's evaluations; those and the way when the pace was judged last
@@ -135,8 +136,9 @@ class SwitchedRun:
                 continue
             leaving = 0
             for sign in (1, -1):
-                regime = self.motion.regime(self.held, {**self.modes, mode: sign})
-                rates, values = regime.bound({**self.modes, mode: sign}, self.zero)
+                modes = self.motion.beside_start(mode, sign)
+                regime = self.motion.regime(self.held, modes)
+                rates, values = regime.bound(modes, self.zero)
                 piece, _ = next(self._source(regime, rates).pieces())
                 signs, _ = signs_at_ends(regime.path, [guard.formula for guard in regime.guards], values, piece)
                 leaving += all(s > 0 for s, guard in zip(signs, regime.guards, strict=True) if guard.mode == mode)
@@ -173,7 +175,7 @@ class SwitchedRun:
                     violated.extend(last)
                     if passed[-1] != start:
                         self.t, self.y = passed[-1], states(np.array(passed[-1:]))[0]
-                        self.flipped, self.left, self.released = {}, set(), set()
+                        self.flipped, self.order, self.left, self.released = {}, [], set(), set()
                     return
                 consume(self._chunk(passed[-1], float(piece.edges[-1]), states, piece))
                 passed.append(float(piece.edges[-1]))
@@ -222,7 +224,7 @@ class SwitchedRun:
         """Begin anew at a switch, where the motion is now; the clock shows 0 there, unless it is the end."""
         if self.t != self.end:
             self._move_clock(instant)
-        self.flipped, self.left, self.released, self.hopped = {}, set(), set(), False
+        self.flipped, self.order, self.left, self.released, self.hopped = {}, [], set(), set(), False
 
     def _hop(
         self, regime: Regime, active: list[bool], rates: list[float], t: float, y: Floats, error: CutOff
@@ -324,9 +326,11 @@ class SwitchedRun:
         A mode that is 0 takes the sign of its guard as soon as that is other than zero.
         """
         formulas, settled = [guard.formula for guard in regime.guards], dict(self.modes)
-        resting = {s["mode"]: 1 for s in self.motion.switches if s["kind"] == "sign" and self.modes[s["mode"]] == 0}
-        alive = {**self.modes, **resting}
-        signs, _ = signs_at_ends(regime.path, formulas, regime.bound(alive, self.zero)[1], piece)
+
+        def signs_under(modes: Modes) -> list[int]:
+            return signs_at_ends(regime.path, formulas, regime.bound(modes, self.zero)[1], piece)[0]
+
+        signs_now = signs_under(self.modes)
         end = float(piece.edges[-1])
         later = end, states(np.array([end]))[0]  # a guard may leave zero more slowly than rounding shows
         for switch in self.motion.switches:
@@ -334,6 +338,8 @@ class SwitchedRun:
             numbers = [n for n, guard in enumerate(regime.guards) if guard.mode == mode and active[n]]
             if mode in self.held or not numbers:
                 continue
+            resting = switch["kind"] == "sign" and self.modes[mode] == 0  # so that its mode times its guard is zero
+            signs = signs_under({**self.modes, mode: 1}) if resting else signs_now
             sign = signs[numbers[0]]
             if switch["kind"] == "floor":  # closed on the left: at n + 1 it is n + 1
                 upper = signs[numbers[1]]
@@ -374,6 +380,11 @@ class SwitchedRun:
         mode, kind = guard.mode, self.by_name[guard.mode]["kind"]
         self.left.add((mode, self.modes[mode]))
         again = self.flipped.get(mode, 0)
+        if again and self._jumped(mode):  # with a mode inside its guard: that it changes again says nothing
+            again = 0
+        self.order.append(mode)
+        if len(self.order) > MOST_AT_ONCE:
+            raise CutOff(self.t, f"the switch {self._name(mode)} leaves no way to go on", self.end)
         if again == 0:
             self._count()
         self.flipped[mode] = again + 1
@@ -397,6 +408,12 @@ class SwitchedRun:
                 raise CutOff(self.t, f"the motion would slide along the jump of {self._name(mode)}", self.end)
         for other in asleep - self._asleep():
             self._wake(other)
+
+    def _jumped(self, mode: str) -> bool:
+        """Return whether a mode inside a mode's guard has changed at this very time since that mode did."""
+        inside = names(self.by_name[mode]["guard"])
+        last = len(self.order) - self.order[::-1].index(mode)
+        return any(other in inside for other in self.order[last:])
 
     def _asleep(self) -> set[str]:
         """Return the modes whose guards do not matter."""
