@@ -15,7 +15,7 @@ from symrot import expression
 from symrot.errors import InputError
 from symrot.number import equal
 from symrot.scene import Initial, Scene
-from symrot.switches import has_switches, smooth
+from symrot.switches import Switch, blended, has_choices, has_switches, smooth
 
 __all__ = [
     "ATTITUDE_QUANTITIES", "RULES", "START_CONSTANTS", "STATES", "Plan", "Row", "general_structure", "make_plan",
@@ -232,12 +232,11 @@ def _general_torque(number: int, torque: Any, taken: set[str], switched: bool) -
         if switched and any(has_switches(expression.parse(text, switching=True)) for text in formulas):
             form = smooth(tuple(formulas))
             names += [switch.mode for switch in form.switches]
+            choices = any(map(has_choices, (*form.formulas, *(switch.guard for switch in form.switches))))
             found |= {
-                "formulas": [expression.text(node) for node in form.formulas],
-                "switches": [
-                    {**each._asdict(), "guard": expression.text(each.guard), "where": each.where and [*each.where]}
-                    for each in form.switches
-                ],
+                "formulas": [expression.text(blended(node)) for node in form.formulas],
+                "switches": [_switch(switch) for switch in form.switches],
+                **({"choices": [expression.text(node) for node in form.formulas]} if choices else {}),
             }
     else:
         fields = {
@@ -251,6 +250,13 @@ def _general_torque(number: int, torque: Any, taken: set[str], switched: bool) -
         prefix = f"{prefix}_" if prefix else f"torque{number}_"
     taken |= {f"{prefix}{name}" for name in names}
     return {"kind": torque.kind, "prefix": prefix, **found}
+
+
+def _switch(switch: Switch) -> Structure:
+    where = [[expression.text(share), value] for share, value in switch.where]
+    guard = expression.text(blended(switch.guard))
+    choices = {"choices": expression.text(switch.guard)} if has_choices(switch.guard) else {}
+    return {**switch._asdict(), "guard": guard, "where": where, **choices}
 
 
 def _component_names(name: str, pattern: str | list[str]) -> list[str]:

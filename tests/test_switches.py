@@ -296,3 +296,25 @@ def test_the_event_at_which_friction_stops_a_wheel_is_reported(method):
 def test_a_guard_without_a_value_ends_in_a_sentence():
     with pytest.raises(PropagationError, match=r"mod\(t, 0\) has no value"):
         symrot.propagator(scene("mod(t, 0)"))([1.0])
+
+
+@needs_compiler
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize(
+    ("torque", "omega"),
+    [
+        ("sign(sign(step(-3/5)))", 0), ("abs(sign(abs(0)))", 0), ("where(-2 < -2, t, 3)", 12), ("where(k <= 2, t, 3)", 8),
+        ("floor(k)*step(k - 2) + floor(k)", 8), ("sign(mod(2 - 9/5*t, 11/15))", 4), ("abs(mod(2 - t, 2))", 4),
+        ("sign(floor(t))", 3), ("abs(floor(t - 3/2))", 4), ("step(t - 1)*sign(t - 1) + sign(step(1 - t))", 4),
+    ],
+)  # fmt: skip
+def test_switches_in_switches_switch_together(torque, omega, method):
+    """A guard that jumps onto zero and off again, as mod at its jumps, and guards that never change, zero or not."""
+    made = symrot.propagator(scene(torque, stop=4.0, principal=(1, 1, 1), **({"k": 2} if "k" in torque else {})), method)
+    assert made([4.0]).omega[0, 2] == pytest.approx(omega, abs=1e-10)
+
+
+@needs_compiler
+def test_a_start_on_a_switch_inside_a_switch_has_more_than_one_future():
+    with pytest.raises(PropagationError, match="more than one future"):
+        symrot.propagator(scene("sign(sign(omega_3))"), "taylor")([1.0])

@@ -256,7 +256,7 @@ static SYMROT_APART double symrot_defect(double at, double h, const double *y, c
         EACH_STATE(i) slope[i] -= h*rate[i];
         for (int b = 0; b < SYMROT_COUNT; ++b) {
             const double defect = sqrt(symrot_square_sum(slope, b)/symrot_scale_squared(y, y1, h, b));
-            if (!(defect <= worst)) worst = defect;
+            if (worst == worst && !(defect <= worst)) worst = defect;  /* a NaN stays one */
         }
     }
     return worst;
@@ -374,7 +374,7 @@ SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *
         for (int b = 0; b < SYMROT_COUNT; ++b) {
             const double e5 = symrot_square_sum(error5, b), e3 = symrot_square_sum(error3, b);
             const double error = e5*e5/((e5 + 0.01*e3)*symrot_scale_squared(y, y1, h, b) + DBL_MIN)*weight;
-            worst = worst > error ? worst : error;  /* keeps a NaN once error is one */
+            if (worst == worst && !(error <= worst)) worst = error;  /* a NaN stays one, whatever other blocks say */
         }
         const double factor = SYMROT_SAFETY*symrot_inverse_root_16(worst);
 

@@ -234,7 +234,9 @@ class _Task:
         self.final = False  # whether that is the pass that counts
         self.mark = (0, self.t0)  # work and time when the pace was judged last
         self.whole, self.before = whole, deviations.spent if deviations else 0
-        if not np.isfinite(self._derivative(self.t0, self.y0)).all():
+        with np.errstate(all="ignore"):  # the sentence says it
+            first = self._derivative(self.t0, self.y0)
+        if not np.isfinite(first).all():
             raise CutOff(self.t0, NOT_FINITE_SENTENCE)
 
     @property
@@ -344,8 +346,22 @@ class _Task:
             progress.report(float(solver.t) if self.final else self.t0, start, end if self.whole else self.goal)
             before, y = float(solver.t), solver.y.copy()
             self._judge_pace(before, end if self.final else stretch.stop)  # a coarse pass is no part of the whole
-            message = solver.step()
+            broken = self.broken
+            try:
+                message = solver.step()
+            except ValueError:  # of linear algebra, for numbers that are not finite
+                longest = 0.5 * min(float(solver.h_abs), abs(stretch.stop - before), longest)
+                if longest <= 4.0 * math.ulp(before):
+                    raise CutOff(before, NOT_FINITE_SENTENCE, end) from None
+                solver = begin(before, y, longest)
+                continue
             step = float(solver.t) - before
+            if self.broken > broken and not np.isfinite(self._derivative(float(solver.t), solver.y)).all():
+                if abs(step) <= 4.0 * math.ulp(before):
+                    raise CutOff(before, NOT_FINITE_SENTENCE, end)
+                longest = 0.5 * abs(step)  # LSODA goes on where the rates have no value
+                solver = begin(before, y, longest)
+                continue
             # LSODA may say that it went on when it could not
             if message == solver.TOO_SMALL_STEP or (solver.status != "failed" and not step * solver.direction > 0.0):
                 raise CutOff(before, why_stuck(STUCK, before, start, end), end)

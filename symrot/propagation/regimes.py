@@ -1,6 +1,6 @@
 """The smooth motions between switches, and the guards that end them; see :mod:`symrot.propagation.switched`."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
@@ -17,6 +17,7 @@ from symrot.propagation.instant import Instant
 from symrot.propagation.kernels import error_blocks
 from symrot.propagation.motion import Motion
 from symrot.scene_kernel import Parameters
+from symrot.switches import Conditions, hold
 
 if TYPE_CHECKING:
     from symrot.propagation.switched import SwitchedMotion
@@ -32,7 +33,7 @@ class Guard(NamedTuple):
     mode: str
     formula: str
     change: int  # 0: to the opposite sign; 1, -1: to that side, or by that much
-    where: tuple[str, int] | None
+    where: Conditions
 
 
 class Regime:
@@ -41,18 +42,20 @@ class Regime:
     Its clock shows 0 wherever the motion enters it: the parameters of rates and guards are those of that instant.
     """
 
-    def __init__(self, switched: "SwitchedMotion", motion: Motion, held: frozenset[str]) -> None:
+    def __init__(
+        self, switched: "SwitchedMotion", motion: Motion, held: frozenset[str], switches: Sequence[Mapping[str, Any]]
+    ) -> None:
         self.motion, self.plan, self.held, self.constants = motion, motion.plan, held, switched.constants
         self.switches = switched.switches
-        modes = [switch["mode"] for switch in switched.switches]
-        distances = [_distance(switch) for switch in switched.switches]
+        modes = [switch["mode"] for switch in switches]
+        distances = [_distance(switch) for switch in switches]
         formulas, parameters = moved_formulas(distances, {*self.constants, *modes})
         names_of_clock = {name: f"since_{name}" for name, _ in parameters if name not in {*self.constants, *modes}}
         self.parameters = tuple((names_of_clock.get(name, name), formula) for name, formula in parameters)
         self.formulas = {mode: rename(node, names_of_clock) for mode, node in zip(modes, formulas, strict=True)}
         known = {"t", "pi", *(name for name, _ in self.parameters)}
         self.of_time = {mode for mode, formula in self.formulas.items() if names(formula) <= known}
-        self.guards = [guard for switch in switched.switches for guard in self._guards(switch)]
+        self.guards = [guard for switch in switches for guard in self._guards(switch)]
         nodes = [parse(guard.formula) for guard in self.guards]
         known = {name for name, _ in self.parameters} | set(modes)
         self.more = sorted(known & set().union(*map(names, nodes)))
@@ -68,6 +71,7 @@ class Regime:
         )
         self.path = library.build(source, "events")
         self._following: dict[tuple[int, ...], tuple[Following, Following, Following, list[float]]] = {}
+        self._active: dict[tuple[int, ...], list[bool]] = {}
         self._bound: dict[tuple[tuple[int, ...], Instant | None], tuple[list[float], list[float]]] = {}
 
     def _guards(self, switch: Mapping[str, Any]) -> Iterator[Guard]:
@@ -134,7 +138,10 @@ class Regime:
 
     def active(self, modes: Modes) -> list[bool]:
         """Return which guards matter."""
-        return [guard.where is None or modes[guard.where[0]] == guard.where[1] for guard in self.guards]
+        key = tuple(modes.values())
+        if key not in self._active:
+            self._active[key] = [hold(guard.where, modes, self.held) for guard in self.guards]
+        return self._active[key]
 
 
 def _distance(switch: Mapping[str, Any]) -> Node:

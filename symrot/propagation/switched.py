@@ -9,6 +9,7 @@ value leaves the range of the switch.
 Source: A. F. Filippov, Differential Equations with Discontinuous Righthand Sides, Kluwer 1988, sections 4 and 8.
 """
 
+import json
 import math
 from dataclasses import replace
 from fractions import Fraction
@@ -19,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from symrot.errors import PropagationError
-from symrot.expression import evaluate, names, parse, rename
+from symrot.expression import evaluate, names, parse, rename, text
 from symrot.number import PI
 from symrot.planner import Plan, make_plan
 from symrot.propagation.cut_off import CutOff, add_samples
@@ -31,6 +32,7 @@ from symrot.propagation.regimes import Modes, Regime
 from symrot.propagation.stepping import Floats, Recording, Stats, Switching, both_sides, stats_of
 from symrot.propagation.switched_run import MATH, Chunk, SwitchedRun
 from symrot.scene import Initial
+from symrot.switches import chosen, hold
 
 __all__ = ["SwitchedMotion", "SwitchedPropagator"]
 
@@ -56,7 +58,7 @@ class SwitchedMotion(Motion):
     def __init__(self, plan: Plan, choice: Choice, tolerance: float) -> None:
         self.plan, self.choice, self.tolerance, self.library = plan, choice, tolerance, None
         self.start = float(plan.scene.span.start)
-        self.regime(frozenset())
+        self.regime(frozenset(), self.initial_modes())
 
     @cached_property
     def switches(self) -> list[dict[str, Any]]:
@@ -66,10 +68,19 @@ class SwitchedMotion(Motion):
             prefix = torque["prefix"]
             own = {name: f"{prefix}{name}" for name in torque.get("parameters", ())}
             for switch in torque.get("switches", ()):
-                where = switch["where"] and (own[switch["where"][0]], switch["where"][1])
-                guard = rename(parse(switch["guard"]), own)
+                where = tuple((rename(parse(share), own), value) for share, value in switch["where"])
+                guard = rename(parse(switch.get("choices", switch["guard"]), switching=True), own)
                 listed.append({**switch, "mode": own[switch["mode"]], "guard": guard, "where": where})
         return listed
+
+    @cached_property
+    def settled(self) -> set[str]:
+        """The modes whose guards never change: they hold neither the time, nor a state, nor a mode that does."""
+        settled = set[str]()
+        for switch in self.switches:
+            if names(switch["guard"]) <= self.constants.keys() - ({each["mode"] for each in self.switches} - settled):
+                settled.add(switch["mode"])
+        return settled
 
     @cached_property
     def constants(self) -> dict[str, Fraction]:
@@ -86,36 +97,68 @@ class SwitchedMotion(Motion):
 
     @cached_property
     def _initial_modes(self) -> tuple[Modes, set[str]]:
+        return self._modes_at_start({})
+
+    def beside_start(self, mode: str, sign: int) -> Modes:
+        """Return the modes on one side of a guard that is zero at the start: those with it in their guards follow."""
+        return self._modes_at_start({mode: sign})[0]
+
+    def _modes_at_start(self, given: Modes) -> tuple[Modes, set[str]]:
         start, modes, undecided = self.plan.scene.initial, Modes(), set[str]()
         values: dict[str, float] = {name: float(value) for name, value in self.constants.items()}
         values |= {"t": self.start, **{f"omega_{i + 1}": float(value) for i, value in enumerate(start.omega_b)}}
         values |= {f"q{i}": float(value) for i, value in enumerate(start.quaternion)}
         for switch in self.switches:
+            if not hold(switch["where"], modes):
+                modes[switch["mode"]] = 0 if switch["kind"] == "floor" else 1
+                values[switch["mode"]] = float(modes[switch["mode"]])
+                continue
             try:
-                guard = float(evaluate(switch["guard"], values, MATH, float))
+                guard = float(evaluate(chosen(switch["guard"], modes), values, MATH, float))
             except (ArithmeticError, ValueError):
                 raise CutOff(self.start, f"{switch['label']} has no value there") from None
             modes[switch["mode"]] = math.floor(guard) if switch["kind"] == "floor" else -1 if guard < 0.0 else 1
+            if guard == 0.0 and switch["mode"] in self.settled:
+                modes[switch["mode"]] = 0 if switch["kind"] == "floor" else switch["at_zero"]
+            modes[switch["mode"]] = given.get(switch["mode"], modes[switch["mode"]])
             values[switch["mode"]] = float(modes[switch["mode"]])
             if guard == 0.0 and switch["kind"] == "sign" and names(switch["guard"]) & STATES:
                 undecided.add(switch["mode"])
         return modes, undecided
 
-    def regime(self, held: frozenset[str]) -> Regime:
-        """Return the smooth motion while the guards of some modes stay at zero; derived when first asked for."""
-        if held not in self._regimes:
-            plan = self.plan
-            if held:
-                torques = [
-                    {**torque, "held": sorted(m for m in torque.get("parameters", ()) if torque["prefix"] + m in held)}
-                    for torque in plan.structure["torques"]
+    def regime(self, held: frozenset[str], modes: Modes) -> Regime:
+        """Return the smooth motion while the guards of some modes stay at zero; derived when first asked for.
+
+        The other modes count where they choose between the parts of a ``where``.
+        """
+        key = held, tuple(modes.values()) if self._chooses else ()
+        if key not in self._regimes:
+            torques = [_chosen(torque, modes, held) for torque in self.plan.structure["torques"]]
+            content = held, json.dumps(torques, sort_keys=True)
+            if content not in self._regime_of:
+                plan = replace(self.plan, structure=self.plan.structure | {"torques": torques})
+                switches = [
+                    {**switch, "guard": chosen(switch["guard"], modes, held)}
+                    for switch in self.switches
+                    if switch["mode"] not in self.settled and (not self._chooses or hold(switch["where"], modes, held))
                 ]
-                plan = replace(plan, structure=plan.structure | {"torques": torques})
-            self._regimes[held] = Regime(self, on_own_clock(plan, self.choice, self.tolerance), held)
-        return self._regimes[held]
+                own = on_own_clock(plan, self.choice, self.tolerance)
+                self._regime_of[content] = Regime(self, own, held, switches)
+            self._regimes[key] = self._regime_of[content]
+        return self._regimes[key]
 
     @cached_property
-    def _regimes(self) -> dict[frozenset[str], Regime]:
+    def _chooses(self) -> bool:
+        """Whether a ``where`` has a part that must not be evaluated where it does not hold."""
+        torques = self.plan.structure["torques"]
+        return any("choices" in part for torque in torques for part in (torque, *torque.get("switches", ())))
+
+    @cached_property
+    def _regimes(self) -> dict[tuple[frozenset[str], tuple[int, ...]], Regime]:
+        return {}
+
+    @cached_property
+    def _regime_of(self) -> dict[tuple[frozenset[str], str], Regime]:
         return {}
 
     def integrate(self, times: Floats, rise: bool = False) -> tuple[Floats, Stats]:
@@ -172,6 +215,36 @@ class SwitchedMotion(Motion):
             changes |= run.changes
         stats = stats_of(cost, perf_counter() - began, _switchings(changes))
         return SwitchedRecording(self.start, self.plan.initial_state, span, stats, chunks)
+
+
+def _chosen(torque: dict[str, Any], modes: Modes, held: frozenset[str]) -> dict[str, Any]:
+    """Return a torque with the parts of its formulas that hold under some modes, and those of its modes that are held.
+
+    Its guards that do not matter are left out.
+    """
+    prefix, names = torque["prefix"], torque.get("parameters", ())
+    if own := sorted(name for name in names if prefix + name in held):
+        torque = {**torque, "held": own}
+    switches = torque.get("switches", ())
+    if not any("choices" in part for part in (torque, *switches)):
+        return torque
+    values = {name: modes[prefix + name] for name in names if prefix + name in modes}
+
+    def read(formula: str) -> str:
+        return text(chosen(parse(formula, switching=True), values, own))
+
+    return {
+        **{key: value for key, value in torque.items() if key != "choices"},
+        "formulas": list(map(read, torque.get("choices", torque["formulas"]))),
+        "switches": [
+            {
+                **{key: value for key, value in switch.items() if key != "choices"},
+                "guard": read(switch.get("choices", switch["guard"])),
+            }
+            for switch in switches
+            if hold([(parse(share), value) for share, value in switch["where"]], values, own)
+        ],
+    }
 
 
 def _switchings(changes: dict[tuple[float, str], str]) -> list[Switching]:

@@ -3,28 +3,34 @@
 import math
 from collections import deque
 from collections.abc import Callable, Generator
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from symrot.closed_form.double_double import two_sum
 from symrot.errors import InputError
-from symrot.expression import evaluate
+from symrot.expression import evaluate, names, parse
 from symrot.propagation import progress
 from symrot.propagation.cut_off import CutOff
 from symrot.propagation.events import search, signs_at_ends
 from symrot.propagation.instant import Instant
+from symrot.propagation.kernels import error_blocks
 from symrot.propagation.polynomials import Piece
-from symrot.propagation.regimes import Guard, Regime
+from symrot.propagation.regimes import Guard, Modes, Regime
 from symrot.propagation.smooth_pieces import SOURCES
 from symrot.propagation.stepping import Floats
+from symrot.switches import hold
 
 if TYPE_CHECKING:
     from symrot.propagation.switched import SwitchedMotion
 
 __all__ = ["MATH", "Chunk", "SwitchedRun"]
 
-MOST_SWITCHES = 1_000_000
+MOST_SWITCHES, MOST_AT_ONCE = 1_000_000, 1000
+HOP_BITS = 10  # a hop over a switch is at most so many times two ulps of the clock long
+LEAST_TURN = 1e-3  # rad over the whole span: slower rates are as good as this one
+AWAY = range(50, 400, 10)  # a hop away from a switch is so many times halved a span
 NEARBY, MOST_ULPS = 1e-6, 64.0  # parts of the way since the last switch; last bits of a time that was located
 CHATTER, CHATTERING = 50, 1e-9  # so many switches within that part of the span are endlessly many
 Consumer = Callable[["Chunk"], None]
@@ -78,8 +84,9 @@ class SwitchedRun:
         self.changes: dict[tuple[float, str], str] = {}  # what each function with a switch did at a time
         self.flipped: dict[str, int] = {}  # modes changed at this very time, and how often
         self.released: set[str] = set()  # modes whose guards were held until this very time: they leave zero slowly
+        self.order: list[str] = []  # the same in the order of the changes
         self.left: set[tuple[str, int]] = set()  # modes and their values left at this very time
-        self.settled = 0
+        self.settled, self.hopped = 0, False
         self.spent, self.mark = 0, (0, 0.0)  # SciPy's evaluations; those and the way when the pace was judged last
         self.interrupt: KeyboardInterrupt | None = None  # that came while SciPy followed the motion, beyond a switch
         self.recent: deque[Instant] = deque(maxlen=CHATTER)
@@ -93,7 +100,7 @@ class SwitchedRun:
                     raise self.interrupt
                 while self.t != self.end:
                     progress.report(self.t, 0.0, self.end)
-                    regime = self.motion.regime(self.held)
+                    regime = self.motion.regime(self.held, self.modes)
                     guard = self._segment(regime, consume)
                     if self.interrupt is not None:
                         raise self.interrupt
@@ -125,12 +132,13 @@ class SwitchedRun:
         """Refuse a start on a switch from which both sides lead away: the motion has more than one way on."""
         for switch in self.motion.switches:
             mode = switch["mode"]
-            inactive = switch["where"] and self.modes[switch["where"][0]] != switch["where"][1]
-            if mode not in self.motion.undecided or inactive or self.t == self.end:
+            if mode not in self.motion.undecided or not hold(switch["where"], self.modes) or self.t == self.end:
                 continue
-            regime, leaving = self.motion.regime(self.held), 0
+            leaving = 0
             for sign in (1, -1):
-                rates, values = regime.bound({**self.modes, mode: sign}, self.zero)
+                modes = self.motion.beside_start(mode, sign)
+                regime = self.motion.regime(self.held, modes)
+                rates, values = regime.bound(modes, self.zero)
                 piece, _ = next(self._source(regime, rates).pieces())
                 signs, _ = signs_at_ends(regime.path, [guard.formula for guard in regime.guards], values, piece)
                 leaving += all(s > 0 for s, guard in zip(signs, regime.guards, strict=True) if guard.mode == mode)
@@ -167,7 +175,7 @@ class SwitchedRun:
                     violated.extend(last)
                     if passed[-1] != start:
                         self.t, self.y = passed[-1], states(np.array(passed[-1:]))[0]
-                        self.flipped, self.left, self.released = {}, set(), set()
+                        self.flipped, self.order, self.left, self.released = {}, [], set(), set()
                     return
                 consume(self._chunk(passed[-1], float(piece.edges[-1]), states, piece))
                 passed.append(float(piece.edges[-1]))
@@ -176,6 +184,21 @@ class SwitchedRun:
         watching = watched()
         try:
             found, stop = search(regime.path, events, values, watching, start)
+        except CutOff as error:
+            at = passed[-1]
+            y = current[0][1](np.array([at]))[0] if current else self.y
+            hop = self._hop(regime, active, rates, at, y, error)
+            if hop is None:
+                raise
+            piece, states, hopped = hop
+            stop = float(piece.edges[-1])
+            self.y = states(piece.edges[-1:])[0]
+            instant = self._at(stop) if hopped is None else self._located(regime, hopped, stop)
+            consume(Chunk(self._at(at), instant, self.zero, states, piece))
+            self.t = stop
+            if hopped is not None:
+                self._arrive(instant)
+            return hopped
         finally:
             watching.close()
             self.cost += source.cost()
@@ -194,10 +217,71 @@ class SwitchedRun:
             consume(Chunk(self._at(passed[-1]), instant, self.zero, states, part))
         self.y = states(np.array([stop]))[0]
         self.t = stop
-        if stop != self.end:
-            self._move_clock(instant)
-        self.flipped, self.left, self.released = {}, set(), set()
+        self._arrive(instant)
         return guard
+
+    def _arrive(self, instant: Instant) -> None:
+        """Begin anew at a switch, where the motion is now; the clock shows 0 there, unless it is the end."""
+        if self.t != self.end:
+            self._move_clock(instant)
+        self.flipped, self.order, self.left, self.released, self.hopped = {}, [], set(), set(), False
+
+    def _hop(
+        self, regime: Regime, active: list[bool], rates: list[float], t: float, y: Floats, error: CutOff
+    ) -> tuple[Piece, Callable[[Floats], Floats], Guard | None] | None:
+        """Return a straight piece on from where a stepper is stuck, and the guard that it crosses; or None.
+
+        As sqrt(1 - t) before a switch at 1 s, and sqrt(t - 1) after it: steps shrink to nothing where a torque has no
+        derivative, though it has an impulse. Over a time so short that the impulse is less than the tolerance the
+        motion may go straight on: to the guard if the guard is that near, or away from the last switch.
+        """
+        kernel, motion = regime.motion.kernel, regime.motion
+        p = np.array(rates[: len(kernel.rate_parameters)])
+        edges, scales = error_blocks(regime.plan)
+
+        def rate(t: float) -> Floats:
+            with np.errstate(all="ignore"):
+                return np.asarray(motion.rates(t, y, p), dtype=np.float64)
+
+        def slight(change: Floats) -> bool:
+            return all(
+                float(np.linalg.norm(change[low:high]))
+                <= motion.tolerance * max(float(np.linalg.norm(y[low:high])), scale, LEAST_TURN / self.span)
+                for (low, high), scale in zip(pairwise(edges), scales, strict=True)
+            )
+
+        def straight(h: float, change: Floats) -> tuple[Piece, Callable[[Floats], Floats]]:
+            row = np.concatenate([[t, h, 0.0, h], y, change])
+            return Piece(np.array([t, t + h]), row[None]), lambda times: y + np.outer((times - t) / h, change)
+
+        if t == 0.0:
+            for halvings in () if self.hopped or abs(error.t) > 0.0 else AWAY:
+                h = self.side * math.ldexp(self.span, -halvings)
+                early, late = rate(0.25 * h), rate(0.75 * h)
+                if slight(h * early) and slight(h * late):
+                    self.hopped = True
+                    return *straight(h, 0.5 * h * (early + late)), None
+            return None
+        for bits in range(HOP_BITS + 1):
+            h = self.side * math.ldexp(math.ulp(t), bits)
+            h = t + h - t
+            change = h * rate(t)
+            if not slight(change):
+                return None
+            for guard, on in zip(regime.guards, active, strict=True):
+                if on and guard.mode not in self.held and self._crosses(regime, guard, (t, y), (t + h, y + change)):
+                    return *straight(h, change), guard
+        return None
+
+    def _crosses(self, regime: Regime, guard: Guard, *places: tuple[float, Floats]) -> bool:
+        """Return whether a guard leaves the positive side between two places, a time and a state each."""
+        try:
+            before, after = (
+                float(evaluate(parse(guard.formula), self._values(regime, place), MATH, float)) for place in places
+            )
+        except (ArithmeticError, ValueError):
+            return False
+        return before >= 0.0 >= after and before > after
 
     def _chunk(self, start: float, stop: float, states: Callable[[Floats], Floats], piece: Piece) -> Chunk:
         return Chunk(self._at(start), self._at(stop), self.zero, states, piece)
@@ -242,9 +326,11 @@ class SwitchedRun:
         A mode that is 0 takes the sign of its guard as soon as that is other than zero.
         """
         formulas, settled = [guard.formula for guard in regime.guards], dict(self.modes)
-        resting = {s["mode"]: 1 for s in self.motion.switches if s["kind"] == "sign" and self.modes[s["mode"]] == 0}
-        alive = {**self.modes, **resting}
-        signs, _ = signs_at_ends(regime.path, formulas, regime.bound(alive, self.zero)[1], piece)
+
+        def signs_under(modes: Modes) -> list[int]:
+            return signs_at_ends(regime.path, formulas, regime.bound(modes, self.zero)[1], piece)[0]
+
+        signs_now = signs_under(self.modes)
         end = float(piece.edges[-1])
         later = end, states(np.array([end]))[0]  # a guard may leave zero more slowly than rounding shows
         for switch in self.motion.switches:
@@ -252,6 +338,8 @@ class SwitchedRun:
             numbers = [n for n, guard in enumerate(regime.guards) if guard.mode == mode and active[n]]
             if mode in self.held or not numbers:
                 continue
+            resting = switch["kind"] == "sign" and self.modes[mode] == 0  # so that its mode times its guard is zero
+            signs = signs_under({**self.modes, mode: 1}) if resting else signs_now
             sign = signs[numbers[0]]
             if switch["kind"] == "floor":  # closed on the left: at n + 1 it is n + 1
                 upper = signs[numbers[1]]
@@ -275,26 +363,35 @@ class SwitchedRun:
 
         Of a floor, how far the guard is above the whole number that is its mode.
         """
-        t, y = place or (self.t, self.y)
+        regime = self.motion.regime(self.held, self.modes)
+        return float(evaluate(regime.formulas[mode], self._values(regime, place or (self.t, self.y)), MATH, float))
+
+    def _values(self, regime: Regime, place: tuple[float, Floats]) -> dict[str, float]:
+        """Return what the names in guards stand for at a time and a state."""
+        t, y = place
         names = [f"omega_{i} of t" for i in (1, 2, 3)]
         names += [f"q{i} of t" for i in range(4)] if self.motion.plan.structure["attitude"] else []
         quantities = self.motion.evaluate(np.array([t]), y[None], names)[0].tolist()
         values = {name.removesuffix(" of t"): value for name, value in zip(names, quantities, strict=True)}
-        regime = self.motion.regime(self.held)
-        values |= {**regime.values(self.modes, self.zero), "t": t}
-        return float(evaluate(regime.formulas[mode], values, MATH, float))
+        return {**values, **regime.values(self.modes, self.zero), "t": t}
 
     def _switch(self, regime: Regime, guard: Guard) -> None:
         """Change the mode of a guard; hold the guard at zero where both sides send the motion back."""
         mode, kind = guard.mode, self.by_name[guard.mode]["kind"]
         self.left.add((mode, self.modes[mode]))
         again = self.flipped.get(mode, 0)
+        if again and self._jumped(mode):  # with a mode inside its guard: that it changes again says nothing
+            again = 0
+        self.order.append(mode)
+        if len(self.order) > MOST_AT_ONCE:
+            raise CutOff(self.t, f"the switch {self._name(mode)} leaves no way to go on", self.end)
         if again == 0:
             self._count()
         self.flipped[mode] = again + 1
         if again > 2 and kind == "sign":
             raise CutOff(self.t, f"the switch {self._name(mode)} leaves no way to go on", self.end)
         self.changes[self.now, self._name(mode)] = "released" if mode in self.held else "passed"
+        asleep = self._asleep()
         if mode in self.held:
             self.held -= {mode}
             self.modes[mode] = guard.change
@@ -309,6 +406,29 @@ class SwitchedRun:
             self.modes[mode] += above if far else guard.change
             if (mode, self.modes[mode]) in self.left:
                 raise CutOff(self.t, f"the motion would slide along the jump of {self._name(mode)}", self.end)
+        for other in asleep - self._asleep():
+            self._wake(other)
+
+    def _jumped(self, mode: str) -> bool:
+        """Return whether a mode inside a mode's guard has changed at this very time since that mode did."""
+        inside = names(self.by_name[mode]["guard"])
+        last = len(self.order) - self.order[::-1].index(mode)
+        return any(other in inside for other in self.order[last:])
+
+    def _asleep(self) -> set[str]:
+        """Return the modes whose guards do not matter."""
+        return {s["mode"] for s in self.motion.switches if s["where"] and not hold(s["where"], self.modes, self.held)}
+
+    def _wake(self, mode: str) -> None:
+        """Give a mode whose guard begins to matter the value that the guard tells, if it tells one."""
+        try:
+            guard = self._guard_value(mode)
+        except (ArithmeticError, ValueError):
+            return
+        if self.by_name[mode]["kind"] == "floor":
+            self.modes[mode] += math.floor(guard)
+        elif guard:
+            self.modes[mode] = 1 if guard > 0.0 else -1
 
     def _hold(self, regime: Regime, mode: str) -> None:
         if self.side < 0.0:
@@ -319,7 +439,7 @@ class SwitchedRun:
         if guard[0] == "symbol" and guard[1] in regime.plan.states:
             self.y[regime.plan.states.index(guard[1])] = 0.0  # exactly, where the guard is a state
         try:
-            self.motion.regime(self.held)
+            self.motion.regime(self.held, self.modes)
         except InputError:
             raise CutOff(
                 self.t, f"the motion would slide along {self._name(mode)}, in no single way", self.end
