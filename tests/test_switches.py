@@ -310,7 +310,9 @@ def test_a_guard_without_a_value_ends_in_a_sentence():
 )  # fmt: skip
 def test_switches_in_switches_switch_together(torque, omega, method):
     """A guard that jumps onto zero and off again, as mod at its jumps, and guards that never change, zero or not."""
-    made = symrot.propagator(scene(torque, stop=4.0, principal=(1, 1, 1), **({"k": 2} if "k" in torque else {})), method)
+    made = symrot.propagator(
+        scene(torque, stop=4.0, principal=(1, 1, 1), **({"k": 2} if "k" in torque else {})), method
+    )
     assert made([4.0]).omega[0, 2] == pytest.approx(omega, abs=1e-10)
 
 
