@@ -244,7 +244,7 @@ class _Writer:
         if name == "less":
             left, right = map(self.smooth, parts)
             self.label = text(condition)
-            return self._step(("-", right, left))
+            return self._step(_difference(right, left))
         shares = [self.share(part) for part in parts]
         if name == "not":
             return ("-", ONE, shares[0])
@@ -263,12 +263,12 @@ class _Writer:
     def _max(self, a: Node, b: Node) -> Node:
         if a == b:
             return a
-        return _blend(self._step(("-", a, b)), a, b)
+        return _blend(self._step(_difference(a, b)), a, b)
 
     def _min(self, a: Node, b: Node) -> Node:
         if a == b:
             return a
-        return _blend(self._step(("-", a, b)), b, a)
+        return _blend(self._step(_difference(a, b)), b, a)
 
     def _clip(self, u: Node, low: Node, high: Node) -> Node:
         return self._max(low, self._min(u, high))
@@ -284,6 +284,11 @@ class _Writer:
         above = self.mode("sign", y, ((right, -1),))
         angle: Node = ("*", right, ("call", "atan2", (y, ("*", right, x))))
         return ("+", angle, ("*", ("*", HALF, ("-", ONE, right)), ("*", above, PI)))
+
+
+def _difference(a: Node, b: Node) -> Node:
+    """Return a - b; less zero it is a, the guard of other functions of a too."""
+    return a if b == ("number", 0) else ("-", a, b)
 
 
 def _blend(share: Node, yes: Node, no: Node) -> Node:

@@ -320,3 +320,24 @@ def test_switches_in_switches_switch_together(torque, omega, method):
 def test_a_start_on_a_switch_inside_a_switch_has_more_than_one_future():
     with pytest.raises(PropagationError, match="more than one future"):
         symrot.propagator(scene("sign(sign(omega_3))"), "taylor")([1.0])
+
+
+FRICTIONS = {  # torque -> omega_3 from 1 rad/s, for a moment of inertia of 1
+    "-sign(omega_3) - step(omega_3)": lambda t: np.maximum(1 - 2 * t, 0),
+    "-where(omega_3 > 0, 1, -1) - sign(omega_3)": lambda t: np.maximum(1 - 2 * t, 0),
+    "-abs(omega_3)*sign(omega_3) - sign(omega_3)/4": lambda t: np.maximum(1.25 * np.exp(-t) - 0.25, 0),
+    "-max(omega_3, 0) - sign(omega_3)/4": lambda t: np.maximum(1.25 * np.exp(-t) - 0.25, 0),
+    # exp(omega) + 1 falls as exp(-t) times what it was, for u = exp(omega): du/dt = -(1 + 1/u) u
+    "-(1 + exp(-abs(omega_3)))*sign(omega_3)": lambda t: np.log(np.maximum((math.e + 1) * np.exp(-t) - 1, 1)),
+}
+
+
+@needs_compiler
+@pytest.mark.parametrize("method", [*METHODS, "scipy:Radau", "scipy:BDF", "scipy:LSODA"])
+@pytest.mark.parametrize("torque", FRICTIONS)
+def test_friction_of_several_parts_stops_and_holds_the_body(torque, method):
+    """Their guards are the same: they switch together, and one of them holds the body for all."""
+    times = np.linspace(0, 3, 31)
+    omega = symrot.propagator(scene(torque, (0, 0, 1), 3.0, (1, 1, 1)), method, 1e-9)(times).omega[:, 2]
+    assert abs(omega - FRICTIONS[torque](times)).max() < 20e-9
+    assert not omega[-5:].any()

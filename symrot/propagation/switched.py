@@ -11,6 +11,7 @@ Source: A. F. Filippov, Differential Equations with Discontinuous Righthand Side
 
 import json
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
@@ -70,8 +71,20 @@ class SwitchedMotion(Motion):
             for switch in torque.get("switches", ()):
                 where = tuple((rename(parse(share), own), value) for share, value in switch["where"])
                 guard = rename(parse(switch.get("choices", switch["guard"]), switching=True), own)
-                listed.append({**switch, "mode": own[switch["mode"]], "guard": guard, "where": where})
+                listed.append({**switch, "mode": own[switch["mode"]], "guard": guard, "where": where, "prefix": prefix})
         return listed
+
+    @cached_property
+    def twins(self) -> dict[str, list[str]]:
+        """The modes of one torque that have the same guard as a mode, itself included: those that jump come first.
+
+        As of sign(omega_3) and abs(omega_3) in the friction of a bearing that is greater at rest.
+        """
+        alike: dict[Any, list[str]] = {}
+        for switch in sorted(self.switches, key=_bends):
+            if switch["kind"] == "sign":
+                alike.setdefault((switch["prefix"], switch["guard"], switch["where"]), []).append(switch["mode"])
+        return {mode: modes for modes in alike.values() for mode in modes}
 
     @cached_property
     def settled(self) -> set[str]:
@@ -133,14 +146,17 @@ class SwitchedMotion(Motion):
         """
         key = held, tuple(modes.values()) if self._chooses else ()
         if key not in self._regimes:
-            torques = [_chosen(torque, modes, held) for torque in self.plan.structure["torques"]]
+            tied = {twin: mode for mode in held for twin in self.twins[mode][1:]}
+            torques = [_chosen(torque, modes, held, tied) for torque in self.plan.structure["torques"]]
             content = held, json.dumps(torques, sort_keys=True)
             if content not in self._regime_of:
                 plan = replace(self.plan, structure=self.plan.structure | {"torques": torques})
                 switches = [
                     {**switch, "guard": chosen(switch["guard"], modes, held)}
                     for switch in self.switches
-                    if switch["mode"] not in self.settled and (not self._chooses or hold(switch["where"], modes, held))
+                    if switch["mode"] not in self.settled
+                    and switch["mode"] not in tied
+                    and (not self._chooses or hold(switch["where"], modes, held))
                 ]
                 own = on_own_clock(plan, self.choice, self.tolerance)
                 self._regime_of[content] = Regime(self, own, held, switches)
@@ -217,21 +233,29 @@ class SwitchedMotion(Motion):
         return SwitchedRecording(self.start, self.plan.initial_state, span, stats, chunks)
 
 
-def _chosen(torque: dict[str, Any], modes: Modes, held: frozenset[str]) -> dict[str, Any]:
+def _bends(switch: Mapping[str, Any]) -> bool:
+    """Return whether a formula bends at a switch, and does not jump: where its guard is zero its mode is at will."""
+    return bool(switch["at_zero"] == 1)
+
+
+def _chosen(torque: dict[str, Any], modes: Modes, held: frozenset[str], tied: Mapping[str, str]) -> dict[str, Any]:
     """Return a torque with the parts of its formulas that hold under some modes, and those of its modes that are held.
 
-    Its guards that do not matter are left out.
+    Its guards that do not matter are left out. Modes with the guard of a held one are ``tied`` to that: where the
+    formula jumps there they take its value.
     """
     prefix, names = torque["prefix"], torque.get("parameters", ())
     if own := sorted(name for name in names if prefix + name in held):
         torque = {**torque, "held": own}
     switches = torque.get("switches", ())
-    if not any("choices" in part for part in (torque, *switches)):
+    jumping = [switch["mode"] for switch in switches if not _bends(switch)]
+    same = {name: tied[prefix + name].removeprefix(prefix) for name in jumping if prefix + name in tied}
+    if not same and not any("choices" in part for part in (torque, *switches)):
         return torque
     values = {name: modes[prefix + name] for name in names if prefix + name in modes}
 
     def read(formula: str) -> str:
-        return text(chosen(parse(formula, switching=True), values, own))
+        return text(chosen(rename(parse(formula, switching=True), same), values, own))
 
     return {
         **{key: value for key, value in torque.items() if key != "choices"},

@@ -394,8 +394,8 @@ class SwitchedRun:
         asleep = self._asleep()
         if mode in self.held:
             self.held -= {mode}
-            self.modes[mode] = guard.change
-            self.released.add(mode)
+            self.modes |= dict.fromkeys(self.motion.twins[mode], guard.change)
+            self.released.update(self.motion.twins[mode])
         elif again and kind == "sign":
             self._hold(regime, mode)
         elif kind == "sign":
@@ -433,6 +433,7 @@ class SwitchedRun:
     def _hold(self, regime: Regime, mode: str) -> None:
         if self.side < 0.0:
             raise CutOff(self.t, "a motion that slides along a switch has more than one past", self.end)
+        mode = self.motion.twins[mode][0]
         self.held |= {mode}
         self.changes[self.now, self._name(mode)] = "held"
         guard = self.by_name[mode]["guard"]
