@@ -145,7 +145,7 @@ static inline double symrot_scale_squared(const double *y, const double *y1, dou
     if (fixed > 0.0) return fixed*fixed;
     const double before = symrot_square_sum(y, block), after = symrot_square_sum(y1, block);
     const double larger = before > after ? before : after, least = SYMROT_RATE_FLOOR/h*(SYMROT_RATE_FLOOR/h);
-    return larger > least ? larger : least;
+    return fmin(larger > least ? larger : least, DBL_MAX);  /* finite in the shortest of steps, too */
 }
 
 /* Return the size of a block at the start: of a rate no less than it has when it has turned the body from rest. */
