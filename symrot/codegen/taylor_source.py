@@ -157,7 +157,7 @@ class _Jet:
 
     # -------------------------------------------------------------------------------------------- rows
 
-    def sum(self, row: Row, phase: str, sums: str, factor: str = "") -> str:
+    def sum(self, row: Row, phase: str, sums: str, factor: str = "", fused: str = "V_FMA") -> str:
         """Return a row of sums, times a factor. The terms that come last to hand are added last."""
         value = ""
         parts = [(self.picked(term.pack), term.weights) for term in row.terms]
@@ -170,7 +170,7 @@ class _Jet:
                 if not scale:
                     value = f"V_ADD({part}, {value})" if value else part
                 else:
-                    value = f"V_FMA({part}, {scale}, {value})" if value else f"V_MUL({part}, {scale})"
+                    value = f"{fused}({part}, {scale}, {value})" if value else f"V_MUL({part}, {scale})"
         return value or "V_ALL(0.0)"
 
     def _rest_of_time(self, row: Row) -> str:
@@ -200,7 +200,7 @@ class _Jet:
             return [f"{name} = {total};"]
         if row.rule == "sum":
             rest = self._rest_of_time(row) if phase == "first" else ""
-            value = self.sum(row, phase, sums)
+            value = self.sum(row, phase, sums, fused="symrot_fused" if rest else "V_FMA")
             return [f"{name} = {f'V_FMA(V_ALL(t_low), {rest}, {value})' if rest else value};"]
         if row.rule == "time":
             value = {"first": "t", "second": "step[1]"}.get(phase, "0.0")

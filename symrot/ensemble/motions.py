@@ -27,6 +27,7 @@ from symrot.propagation.kernels import (
     taylor_library,
 )
 from symrot.propagation.method import METHODS, choose_method
+from symrot.propagation.motion import python_rates
 from symrot.propagation.smoothness import roughness
 from symrot.propagation.stepping import NOT_FINITE_SENTENCE, Floats
 from symrot.propagation.trajectory import ARRAY_FUNCTIONS, Trajectory
@@ -195,15 +196,15 @@ class _Stepped:
         """Return times on the clock of the steppers, which shows 0 at the epoch."""
         return times - self.epoch if self.epoch else times
 
-    def clock(self, k: int) -> dop853.Clock | None:
-        """Return the clock of the rates of one motion, see :mod:`symrot.propagation.dop853`."""
+    def clock(self, k: int, make: Callable[[Plan, SceneKernel], Any] = epoch.compiled) -> Any:
+        """Return the clock of the rates of one motion; arguments as of :func:`symrot.propagation.epoch.clock`."""
         if not self.kernel.rates.uses("t"):
             return None
 
         def moving() -> tuple[Plan, SceneKernel]:
             return self.moved if self.epoch else epoch.moved(self.plan, self.kernel)
 
-        return epoch.clock(moving, self.numbers.constants(k), self.epoch)
+        return epoch.clock(moving, self.numbers.constants(k), self.epoch, make)
 
     def read(self, states: Floats, omega: Floats, quaternion: Floats | None) -> None:
         """Write angular velocity and attitude of the states into their places."""
@@ -283,10 +284,9 @@ def _dop853(stepped: _Stepped, method: str) -> lanes.Outcome:
 
 
 def _scipy(stepped: _Stepped, method: str) -> lanes.Outcome:
-    from symrot.codegen.numpy_kernel import load_numpy_kernel
     from symrot.propagation import fallback
 
-    problem, function = stepped.problem, load_numpy_kernel(stepped.moved[1].rates)
+    problem, rates = stepped.problem, python_rates(*stepped.moved)
     blocks, scales = error_blocks(stepped.plan)
     solver = method.partition(":")[2]
     options: dict[str, Any] = {"blocks": blocks, "scales": scales, **({"method": solver} if solver else {})}
@@ -295,10 +295,10 @@ def _scipy(stepped: _Stepped, method: str) -> lanes.Outcome:
     names = [name for name, _ in stepped.moved[1].rate_parameters]
 
     def integrate(k: int, times: Floats) -> tuple[Floats, Any]:
-        rates = function if stepped.p.shape[1] else lambda t, y, p: function(t, y)
         start = rates, stepped.p[k], stepped.y[k], stepped.t0
         deviations = bounds and bounds(dict(zip(names, stepped.p[k].tolist(), strict=True)))
-        return fallback.integrate(*start, times, problem.tolerance, deviations=deviations, **options)
+        clock = stepped.clock(k, python_rates)
+        return fallback.integrate(*start, times, problem.tolerance, deviations=deviations, clock=clock, **options)
 
     return stepped.one_by_one(integrate)
 

@@ -4,10 +4,11 @@ Steppers then never see the large numbers: neither phases such as ``a*t + b`` no
 them. The clock is moved only where all differences of times are exact, for times between half the start and twice the
 start; a motion that goes farther loses no more than one that starts at 0 and goes as far. Such a one keeps its phases
 too: Taylor steps have the time in two parts, and under those of DOP853 the clock of the rates alone is moved again and
-again (:mod:`symrot.propagation.dop853`). Those of SciPy lose ``1e-16*|a*t|`` rad, as below.
+again (:mod:`symrot.propagation.dop853`), and SciPy starts anew on a moved clock where its steps
+are short (:mod:`symrot.propagation.fallback`).
 
-Motions under a torque that is no formula, which is asked for at the times of the scene, and those in Euler angles keep
-the clock of the scene: there a phase ``a*t`` is off by up to ``1e-16*|a*t|`` rad.
+Motions under a torque that is no formula, which is asked for at the times of the scene, keep the clock of the scene:
+there a phase ``a*t`` is off by up to ``1e-16*|a*t|`` rad. Those in Euler angles start on it, wherever that is.
 """
 
 import json
@@ -17,13 +18,13 @@ from fractions import Fraction
 from functools import cache
 from math import lcm
 from pathlib import Path
+from typing import Any
 
 from symrot import number
 from symrot.codegen import library
 from symrot.expression import Node, children, evaluate, names
 from symrot.planner import Plan
 from symrot.propagation.cut_off import CutOff
-from symrot.propagation.dop853 import Clock
 from symrot.propagation.kernels import kernel_key, motion_library
 from symrot.propagation.stepping import NOT_FINITE_SENTENCE
 from symrot.scene_kernel import EPOCH, EXACT_FUNCTIONS, Parameters, SceneKernel
@@ -127,18 +128,27 @@ def _coefficients(node: Node) -> tuple[Fraction, Fraction] | None:
     return (a / c, b / c) if node[0] == "/" and not d else None
 
 
-def clock(
-    moving: Callable[[], tuple[Plan, SceneKernel]], constants: Mapping[str, Fraction], start: float = 0.0
-) -> Clock:
-    """Return the clock of what ``moving`` returns as :func:`moved` does; it is compiled when it is first moved.
+def compiled(plan: Plan, kernel: SceneKernel) -> Path:
+    """Return the library of a moved plan: kernel and stepper of DOP853."""
+    return motion_library(plan, kernel)
 
-    ``constants`` and ``start`` are those of :class:`Following`.
+
+def clock(
+    moving: Callable[[], tuple[Plan, SceneKernel]],
+    constants: Mapping[str, Fraction],
+    start: float = 0.0,
+    make: Callable[[Plan, SceneKernel], Any] = compiled,
+) -> Callable[[float], tuple[Any, list[float]]]:
+    """Return the clock of what ``moving`` returns as :func:`moved` does, once it is first moved.
+
+    ``constants`` and ``start`` are those of :class:`Following`; ``make`` returns what the stepper calls: the library of
+    DOP853, or a function of Python.
     """
 
     @cache
-    def following() -> tuple[Path, Following]:
+    def following() -> tuple[Any, Following]:
         plan, kernel = moving()
-        return compiled(plan, kernel), Following(kernel.rate_parameters, constants, start)
+        return make(plan, kernel), Following(kernel.rate_parameters, constants, start)
 
     return lambda since: (following()[0], following()[1].parameters(since))
 
@@ -152,8 +162,3 @@ def _folded(node: Node, known: Mapping[str, Fraction]) -> Node:
     if node[0] == "call":
         return ("call", node[1], tuple(_folded(child, known) for child in node[2]))
     return (node[0], *(_folded(child, known) for child in children(node)), *(node[2:] if node[0] == "**" else ()))
-
-
-def compiled(plan: Plan, kernel: SceneKernel) -> Path:
-    """Return the library of a moved plan: kernel and stepper of DOP853."""
-    return motion_library(plan, kernel)

@@ -3,6 +3,9 @@
 For where there is no C compiler, and for those who want LSODA. The tolerance means the same as far as SciPy allows: the
 error of every block of states against the largest size the block has on the way, found by a first coarse pass, and
 shared out over the length of the motion. SciPy is imported when a motion is first followed.
+
+Time: where steps are short beside the time, a double keeps too few digits of it. Where the clock of the right-hand side
+can be moved (a :data:`Clock`), SciPy then starts anew on one that shows 0 nearby.
 """
 
 import math
@@ -14,6 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from symrot.closed_form.double_double import two_sum
 from symrot.errors import InputError
 from symrot.propagation import progress
 from symrot.propagation.cut_off import CutOff, add_samples, why_hopeless, why_stuck
@@ -33,6 +37,8 @@ from symrot.propagation.stepping import (
 __all__ = ["METHODS", "FallbackRecording", "Whole", "integrate", "method_name", "record"]
 
 Rhs = Callable[[float, Floats, Floats], ArrayLike]
+Clock = Callable[[float], tuple[Rhs, Sequence[float]]]
+"""From an epoch, s, to a right-hand side that counts its time from there, and its parameters."""
 Piece = tuple[float, float, Any]  # from, to, SciPy's solution between
 
 
@@ -51,6 +57,7 @@ DEFAULT = "DOP853"
 FIT_ORDER = 7  # of the polynomial that tells how the states move in a step
 SLACK = 1e4  # as in dop853.c
 HELD, REGAIN = 0.5, 1.5  # a step of that part of the longest allowed was held back; the next may be so much longer
+FAR = 1e4  # steps from the epoch: farther on, the time would be rounded to more than 1e-12 of a step
 STUCK = "the step shrank to nothing, as it does before a singularity"
 PILOT_TURN = 1e-3  # rad over the whole span
 PILOT_TOLERANCE = 1e-3  # of the coarse pass
@@ -58,6 +65,7 @@ BEFORE_POLE = 0.5  # of the way to where the coarse pass is cut off: further on,
 PILOT_STEPS = 10  # a motion of so many coarse steps may spend the whole share in every step
 MAX_EVALUATIONS = 1_000_000  # unless another limit is given: half a minute
 PATIENCE = 50_000  # evaluations after each of which the pace is judged
+MAX_IDLE = 100  # steps too short for the clock of the scene, one after the other, as where LSODA starts anew
 MAX_BROKEN = 1000  # derivatives that are not finite, before the motion is given up
 _NODES = 0.5 - 0.5 * np.cos(np.pi * np.arange(1, FIT_ORDER + 1) / FIT_ORDER)  # Chebyshev's, without the start
 _FIT = np.linalg.inv(_NODES[:, None] ** np.arange(1, FIT_ORDER + 1))  # from rises there to coefficients
@@ -93,6 +101,7 @@ def integrate(
     max_step: float = math.inf,
     max_steps: int = MAX_EVALUATIONS,
     deviations: Deviations | None = None,
+    clock: Clock | None = None,
 ) -> tuple[Floats, Stats]:
     """Return the states at the sample times, shape (n, N), and what it cost.
 
@@ -110,11 +119,14 @@ def integrate(
         Most evaluations of ``rhs``.
     deviations : Deviations, optional
         Of the terms of ``rhs`` that may hide a feature: steps are held to what they prove.
+    clock : callable, optional
+        Of ``rhs``, where it can be moved: see :data:`Clock`.
     """
     times = np.asarray(times, dtype=np.float64)
     if times.ndim != 1 or not np.isfinite(times).all():
         raise InputError(f"sample times are a sequence of finite numbers, got {times!r}")
-    task = _Task(rhs, p, y0, t0, tolerance, method, blocks, scales, breaks, max_step, max_steps, deviations)
+    limits = breaks, max_step, max_steps, deviations, clock
+    task = _Task(rhs, p, y0, t0, tolerance, method, blocks, scales, *limits)
     states = np.empty((len(times), len(task.y0)))
     done = np.empty(0, dtype=np.intp)
     for part in both_sides(times, task.t0):
@@ -144,6 +156,7 @@ def record(
     max_step: float = math.inf,
     max_steps: int = MAX_EVALUATIONS,
     deviations: Deviations | None = None,
+    clock: Clock | None = None,
     whole: Whole | None = None,
 ) -> "FallbackRecording":
     """Return the motion over ``span`` as a function of time; see :func:`symrot.propagation.dop853.record`.
@@ -151,7 +164,8 @@ def record(
     A motion that is cut off or interrupted has what was computed in the ``recording`` of the exception, if anything
     was. Of a part of a motion, ``max_steps`` is that of the ``whole``.
     """
-    task = _Task(rhs, p, y0, t0, tolerance, method, blocks, scales, breaks, max_step, max_steps, deviations, whole)
+    limits = breaks, max_step, max_steps, deviations, clock
+    task = _Task(rhs, p, y0, t0, tolerance, method, blocks, scales, *limits, whole)
     low, high = min(*span, task.t0), max(*span, task.t0)
     finished: list[Piece] = []
     try:
@@ -195,6 +209,17 @@ def _evaluate(pieces: list[Piece], times: Floats, states: Floats) -> None:
             states[chosen] = solution(times[chosen]).T
 
 
+class _Moved:
+    """SciPy's solution over a step on a clock that shows 0 at an epoch, as a function of time on the first clock."""
+
+    def __init__(self, solution: Any, epoch: float) -> None:
+        self._solution, self._epoch = solution, epoch
+
+    def __call__(self, t: Floats) -> Floats:
+        found: Floats = self._solution(t - self._epoch)
+        return found
+
+
 class _Task:
     """One motion to follow with SciPy."""
 
@@ -212,11 +237,13 @@ class _Task:
         max_step: float,
         max_steps: int,
         deviations: Deviations | None,
+        clock: Clock | None,
         whole: Whole | None = None,
     ) -> None:
         self.began = perf_counter()
         self.method = method_name(method)
-        self.rhs, self.p = rhs, np.array(p, dtype=np.float64)
+        self.rhs, self.p, self.clock, self.epoch = rhs, np.array(p, dtype=np.float64), clock, 0.0
+        self.unmoved = self.rhs, self.p
         self.y0, self.t0 = np.array(y0, dtype=np.float64), float(t0)
         if self.y0.ndim != 1 or not all(np.isfinite(given).all() for given in (self.t0, self.y0, self.p)):
             raise InputError(f"initial time, state and parameters are finite numbers, got {t0!r}, {y0!r}, {p!r}")
@@ -306,6 +333,7 @@ class _Task:
 
     def _stretches(self, end: float, rtol: float, atol: Floats, bars: list[float]) -> list[Piece]:
         y, self.pieces, self.mark, self.goal = self.y0, [], (self.work, self.t0), end
+        self.epoch, (self.rhs, self.p) = 0.0, self.unmoved
         for stretch in stretches(self.t0, end, self.breaks):
             with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
                 self._follow_stretch(stretch, y, rtol, atol, bars)
@@ -320,10 +348,12 @@ class _Task:
         new_solver: Any = getattr(scipy.integrate, self.method)
 
         def begin(t: float, y: Floats, longest: float) -> Any:
-            def rate(t: float, y: Floats) -> Floats:
-                return self._derivative(min(max(t, earliest), latest), y)
+            low, high = earliest - self.epoch, latest - self.epoch
 
-            return new_solver(rate, t, y, stretch.stop, rtol=rtol, atol=atol, max_step=longest)
+            def rate(t: float, y: Floats) -> Floats:
+                return self._derivative(min(max(t, low), high), y)
+
+            return new_solver(rate, t, y, stretch.stop - self.epoch, rtol=rtol, atol=atol, max_step=longest)
 
         times: list[float] = [stretch.start]
         interpolants: list[Any] = []
@@ -339,12 +369,13 @@ class _Task:
     def _steps(
         self, begin: Any, y: Floats, stretch: Stretch, bars: list[float], times: list[float], interpolants: list[Any]
     ) -> None:
-        longest = self.max_step
-        solver = begin(stretch.start, y, longest)
+        longest, idle = self.max_step, 0
+        solver = begin(stretch.start - self.epoch, y, longest)
         while solver.status == "running":
             start, end = (self.whole.start, self.whole.end) if self.whole else (self.t0, stretch.stop)
-            progress.report(float(solver.t) if self.final else self.t0, start, end if self.whole else self.goal)
-            before, y = float(solver.t), solver.y.copy()
+            shown, y = float(solver.t), solver.y.copy()  # what the present clock shows
+            before = self.epoch + shown
+            progress.report(before if self.final else self.t0, start, end if self.whole else self.goal)
             self._judge_pace(before, end if self.final else stretch.stop)  # a coarse pass is no part of the whole
             broken = self.broken
             try:
@@ -353,37 +384,51 @@ class _Task:
                 longest = 0.5 * min(float(solver.h_abs), abs(stretch.stop - before), longest)
                 if longest <= 4.0 * math.ulp(before):
                     raise CutOff(before, NOT_FINITE_SENTENCE, end) from None
-                solver = begin(before, y, longest)
+                solver = begin(shown, y, longest)
                 continue
-            step = float(solver.t) - before
+            step = float(solver.t) - shown
             if self.broken > broken and not np.isfinite(self._derivative(float(solver.t), solver.y)).all():
                 if abs(step) <= 4.0 * math.ulp(before):
                     raise CutOff(before, NOT_FINITE_SENTENCE, end)
                 longest = 0.5 * abs(step)  # LSODA goes on where the rates have no value
-                solver = begin(before, y, longest)
+                solver = begin(shown, y, longest)
                 continue
-            # LSODA may say that it went on when it could not
-            if message == solver.TOO_SMALL_STEP or (solver.status != "failed" and not step * solver.direction > 0.0):
+            after = stretch.stop if solver.status == "finished" else self.epoch + float(solver.t)
+            moves = solver.status != "failed" and step * solver.direction > 0.0  # LSODA may say so when it could not
+            if self.clock is not None and abs(shown) > FAR * abs(step) and abs(shown) > math.ulp(before):
+                shown = self._move_clock(self.clock, shown)
+                solver = begin(shown, y, longest)
+                continue
+            idle = idle + 1 if after == before else 0
+            if message == solver.TOO_SMALL_STEP or (solver.status != "failed" and not moves) or idle > MAX_IDLE:
                 raise CutOff(before, why_stuck(STUCK, before, start, end), end)
             if solver.status == "failed" or not np.isfinite(solver.y).all():
-                raise CutOff(float(solver.t), message or NOT_FINITE_SENTENCE, end)
+                raise CutOff(after, message or NOT_FINITE_SENTENCE, end)
             dense = solver.dense_output()
-            proven = step if self.deviations is None else self._proven(before, y, dense, step, bars)
+            proven = step if self.deviations is None else self._proven(before, y, dense, shown, step, bars)
             if proven != step:
                 if abs(proven) <= 4.0 * math.ulp(before):
                     raise CutOff(before, why_stuck(STUCK, before, start, end), end)
                 longest = abs(proven)
-                solver = begin(before, y, longest)
+                solver = begin(shown, y, longest)
                 continue
-            times.append(solver.t)
-            interpolants.append(dense)
             self.steps += 1
+            if after != before:
+                times.append(after)
+                interpolants.append(_Moved(dense, self.epoch) if self.epoch else dense)
             if longest < self.max_step and abs(step) > HELD * longest and solver.status == "running":
                 longest = min(REGAIN * longest, self.max_step)
                 if self.method == "LSODA":
                     solver = begin(solver.t, solver.y.copy(), longest)
                 else:  # the others read it before every step
                     solver.max_step = longest
+
+    def _move_clock(self, clock: Clock, shown: float) -> float:
+        """Have the clock show about 0 where it now shows another time, and return what it shows instead, exactly."""
+        self.epoch, rest = two_sum(self.epoch, shown)
+        self.rhs, p = clock(self.epoch)
+        self.p = np.array(p, dtype=np.float64)
+        return float(rest)
 
     def _judge_pace(self, t: float, stop: float) -> None:
         """Give the motion up if the rest would take far more evaluations than the limit."""
@@ -401,22 +446,22 @@ class _Task:
     def _spent(self) -> int:
         return self.work + (self.whole.spent if self.whole else 0)
 
-    def _proven(self, t: float, y: Floats, dense: Any, step: float, bars: list[float]) -> float:
-        """Return the longest part of a step that is proven to miss nothing."""
+    def _proven(self, t: float, y: Floats, dense: Any, shown: float, step: float, bars: list[float]) -> float:
+        """Return the longest part of a step, from ``shown`` on the present clock, that is proven to miss nothing."""
         assert self.deviations is not None
-        path = np.abs(_FIT @ (dense(t + _NODES * step).T - y)).T.tolist()
+        path = np.abs(_FIT @ (dense(shown + _NODES * step).T - y)).T.tolist()
         edges = [0, *(block.stop for block, _ in self.blocks)]
         return longest_followed(self.deviations, t, y.tolist(), path, step, bars, edges, FIT_ORDER)
 
     def _derivative(self, t: float, y: Floats) -> Floats:
         self.evaluations += 1
         if self.evaluations > self.max_evaluations:
-            raise CutOff(float(t), f"{self.max_evaluations} evaluations were not enough")
+            raise CutOff(self.epoch + float(t), f"{self.max_evaluations} evaluations were not enough")
         dy = np.asarray(self.rhs(t, y, self.p), dtype=np.float64)
         if dy.shape != self.y0.shape:
             raise InputError(f"the right-hand side returns {len(self.y0)} numbers, got an array of shape {dy.shape}")
         if not math.isfinite(dy.sum()):
             self.broken += 1
             if self.broken > MAX_BROKEN:
-                raise CutOff(float(t), NOT_FINITE_SENTENCE)
+                raise CutOff(self.epoch + float(t), NOT_FINITE_SENTENCE)
         return dy

@@ -27,7 +27,7 @@ from symrot.scene_kernel import EPOCH, SceneKernel
 if TYPE_CHECKING:
     from symrot.propagation.enclosure import Deviations
 
-__all__ = ["Motion", "on_own_clock", "unreduced"]
+__all__ = ["Motion", "on_own_clock", "python_rates", "unreduced"]
 
 Floats = NDArray[np.float64]
 
@@ -36,6 +36,14 @@ UNREDUCED: dict[str, Any] = {
     "initial_quaternion": None,
     "constant": {},
 }  # what an exact motion returns: all of it
+
+
+def python_rates(plan: Plan, kernel: SceneKernel) -> Callable[..., Any]:
+    """Return the emitted NumPy kernel of the rates of a plan as ``f(t, y, p)``."""
+    from symrot.codegen.numpy_kernel import load_numpy_kernel
+
+    function = load_numpy_kernel(kernel.rates)
+    return function if kernel.rate_parameters else lambda t, y, p: function(t, y)
 
 
 def unreduced(plan: Plan, form: Form) -> Plan:
@@ -52,7 +60,7 @@ def unreduced(plan: Plan, form: Form) -> Plan:
 
 OF_START = (
     "rate_parameters", "taylor_parameters", "stepping", "exact", "_quantity_values", "_initial", "_on_own_clock",
-    "_clock",
+    "_clock", "_python_clock",
 )  # fmt: skip
 """What a motion keeps that depends on its start."""
 
@@ -107,6 +115,11 @@ class Motion:
         """Whether the time stands in the rates."""
         return self.first._timed if self.first else self.kernel.rates.uses("t")
 
+    @property
+    def _on_clocks(self) -> bool:
+        """Whether the clock of the rates is moved along with the steps."""
+        return bool(self.movable or self.epoch) and self._timed
+
     @cached_property
     def _rates_binding(self) -> Binding:
         return self.first._rates_binding if self.first else Binding(self.kernel.rate_parameters, self.plan)
@@ -129,8 +142,7 @@ class Motion:
         if self.choice.method == "taylor":
             start = (self.taylor_parameters, self.plan.initial_state, self.start)
             return taylor.task(self.library, *start, self.tolerance)
-        timed = (self.movable or self.epoch) and self._timed
-        clock = (lambda since: self._clock(since)) if timed else None
+        clock = (lambda since: self._clock(since)) if self._on_clocks else None
         start = (self.rate_parameters, self.plan.initial_state, self.start)
         return dop853.task(self.library, *start, self.tolerance, clock=clock)
 
@@ -203,12 +215,12 @@ class Motion:
     @cached_property
     def rates(self) -> Callable[..., Any]:
         """The emitted NumPy kernel as ``f(t, y, p)``."""
-        if self.first:
-            return self.first.rates
-        from symrot.codegen.numpy_kernel import load_numpy_kernel
+        return self.first.rates if self.first else python_rates(self.plan, self.kernel)
 
-        function = load_numpy_kernel(self.kernel.rates)
-        return function if self.kernel.rate_parameters else lambda t, y, p: function(t, y)
+    @cached_property
+    def _python_clock(self) -> Callable[[float], Any]:
+        """The clock of :attr:`rates`, once it is moved."""
+        return epoch.clock(self._moved, self.plan.constants, self.epoch, python_rates)
 
     @cached_property
     def exact(self) -> Exact:
@@ -279,7 +291,8 @@ class Motion:
         blocks, scales = error_blocks(self.plan)
         solver = self.choice.method.partition(":")[2]
         named = {"method": solver} if solver else {}
-        return {"blocks": blocks, "scales": scales, "deviations": self.deviations(parameters), **named}
+        limits = {"deviations": self.deviations(parameters), "clock": self._python_clock if self._on_clocks else None}
+        return {"blocks": blocks, "scales": scales, **limits, **named}
 
 
 def on_own_clock(plan: Plan, choice: Choice, tolerance: float) -> Motion:

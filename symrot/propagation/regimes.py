@@ -1,6 +1,6 @@
 """The smooth motions between switches, and the guards that end them; see :mod:`symrot.propagation.switched`."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
@@ -123,6 +123,11 @@ class Regime:
             rates += pairs
             self._bound[place] = rates, [*quantities.parameters(zero.exact), *(values[name] for name in self.more)]
         return self._bound[place]
+
+    def rates_since(self, modes: Modes, zero: Instant) -> Callable[[float], list[float]] | None:
+        """Return the parameters of the rates as a function of an epoch, s, on a clock that shows 0 at an instant."""
+        following = self._follow(modes)[0]
+        return None if following.fixed else lambda since: following.parameters(zero.exact + Fraction(since))
 
     @cached_property
     def _with_constants(self) -> tuple[Parameters, Parameters, Parameters]:

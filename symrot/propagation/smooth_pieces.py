@@ -37,7 +37,9 @@ class SteppedPieces:
         if not np.isfinite(run.y).all():
             raise CutOff(run.t, "its states are not finite there", run.end)
         stepping = taylor if motion.choice.method == "taylor" else dop853
-        self.task = stepping.task(motion.library, rates, run.y, run.t, motion.tolerance)
+        moved = run.clock(regime, motion.library) if stepping is dop853 else None
+        options = {"clock": moved} if moved else {}
+        self.task = stepping.task(motion.library, rates, run.y, run.t, motion.tolerance, **options)
         self.task.way, self.end = run.span, run.end
 
     def pieces(self) -> Iterator[tuple[Piece, Callable[[Floats], Floats]]]:
@@ -72,6 +74,7 @@ class SciPyPieces:
 
     def __init__(self, run: "SwitchedRun", regime: Regime, rates: list[float]) -> None:
         self.run, self.motion, self.rates, self.counts = run, regime.motion, rates, np.zeros(3, dtype=np.int64)
+        self.clock = run.clock(regime, self.motion.rates)
 
     def pieces(self) -> Iterator[tuple[Piece, Callable[[Floats], Floats]]]:
         from symrot.propagation import fallback
@@ -79,7 +82,7 @@ class SciPyPieces:
         run, t, y = self.run, self.run.t, self.run.y
         side = 1.0 if run.end >= t else -1.0
         length = self._first_length()
-        options = self.motion.scipy_options_for(self.rates)
+        options = self.motion.scipy_options_for(self.rates) | {"clock": self.clock}
         while t != run.end:
             stop = run.end if abs(run.end - t) <= 1.01 * length else t + side * length
             share = max(abs(stop - t) / run.span, 1e-3)

@@ -146,6 +146,11 @@ class SwitchedRun:
                 way = "past" if self.side < 0.0 else "future"
                 raise CutOff(self.t, f"the motion starts on {self._name(mode)} and has more than one {way}", self.end)
 
+    def clock(self, regime: Regime, stepped: Any) -> Callable[[float], tuple[Any, list[float]]] | None:
+        """Return the clock of a regime from now on, with what is stepped; None where no time stands in its rates."""
+        parameters = regime.rates_since(self.modes, self.zero)
+        return (lambda since: (stepped, parameters(since))) if parameters else None
+
     def _source(self, regime: Regime, rates: list[float]) -> Any:
         return SOURCES[self.motion.choice.method.partition(":")[0]](self, regime, rates)
 
