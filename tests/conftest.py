@@ -1,22 +1,91 @@
-"""What all tests share: a cache of compiled kernels of their own, and a precision of mpmath that none may change."""
+"""What all tests share: one cache of compiled kernels, the order of work, and a precision of mpmath that none may change."""
 
+import gc
 import os
+import shlex
 from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
 
 import pytest
 from mpmath import mp
 
+from symrot.build import cache as library
+
+
+@pytest.hookimpl(optionalhook=True, tryfirst=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """Give each process a run of neighbouring tests, so that what a module derives and compiles is made in one process.
+
+    A process that is done takes over the last part of what another one has left. ``--dist`` chooses another scheduler.
+    """
+    if config.getoption("dist") != "load":
+        return None
+    from xdist.scheduler import WorkStealingScheduling
+
+    return WorkStealingScheduling(config, log)
+
+
+def pytest_collection_finish() -> None:
+    """Keep the garbage collector from walking through all modules and tests again and again while SymPy derives."""
+    gc.collect()
+    gc.freeze()
+    gc.set_threshold(50_000, 20, 50)
+
+
+@pytest.fixture(scope="session")
+def shared_directory(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a directory that all processes of this session share."""
+    own = tmp_path_factory.getbasetemp()
+    shared = own.parent if "PYTEST_XDIST_WORKER" in os.environ else own
+    directory = shared / "shared"
+    directory.mkdir(mode=0o700, exist_ok=True)
+    return directory
+
 
 @pytest.fixture(scope="session", autouse=True)
-def session_cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """Point SYMROT_CACHE, for this process and those it starts, at a directory of this session."""
+def session_cache(shared_directory: Path) -> Iterator[None]:
+    """Point SYMROT_CACHE, for all processes of this session and those they start, at one directory of this session."""
     before = os.environ.get("SYMROT_CACHE")
-    os.environ["SYMROT_CACHE"] = str(tmp_path_factory.mktemp("cache"))
+    os.environ["SYMROT_CACHE"] = str(shared_directory / "cache")
     yield
     if before is None:
         del os.environ["SYMROT_CACHE"]
     else:
         os.environ["SYMROT_CACHE"] = before
+
+
+@pytest.fixture(scope="session")
+def quick_compiler_words(shared_directory: Path) -> str | None:
+    """Return a compiler that compiles the kernels of scenes at -Og, or None where there is no compiler.
+
+    It takes 40 % of the time of -O2. Closed forms (-ffp-contract=off), which all tests load, keep their own flags.
+    """
+    if library.missing() or os.name != "posix":
+        return None
+    command = " ".join(map(shlex.quote, library.compiler().command))
+    script = shared_directory / "quick_cc"
+    own = shared_directory / f"quick_cc.{os.getpid()}"
+    own.write_text(
+        "#!/bin/sh\n"
+        'case " $* " in\n'
+        f'*" -ffp-contract=fast "*) exec {command} "$@" -Og -fno-schedule-insns ;;\n'
+        f'*) exec {command} "$@" ;;\n'
+        "esac\n"
+    )
+    own.chmod(0o755)
+    with suppress(FileExistsError):  # another process was first
+        script.hardlink_to(own)
+    own.unlink()
+    return str(script)
+
+
+@pytest.fixture
+def quick_compiler(quick_compiler_words: str | None, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Compile for a test that judges motions and messages; others judge speed and bits under the flags that ship."""
+    if quick_compiler_words is not None:
+        monkeypatch.setenv("CC", quick_compiler_words)
 
 
 @pytest.fixture(autouse=True)

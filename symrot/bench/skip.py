@@ -145,7 +145,7 @@ def _scaled(value: float | None, unit: float) -> str:
 
 def lines(found: Mapping[str, Any]) -> list[str]:
     """Return the lines for people; the first is the title."""
-    from symrot.report.layout import columns
+    from symrot.report.layout import columns, fields, room
 
     rows = [["motion", "states", "operations", "ns", "motion us", "auto us", "", "ends apart"]]
     for row in found["rows"]:
@@ -166,4 +166,4 @@ def lines(found: Mapping[str, Any]) -> list[str]:
         f"microseconds of the whole motion by Taylor series at {found['tolerance']:g}, and those of what auto takes"
     )
     return ["What is saved by leaving out what a motion does not need", "",
-            *columns(rows, right=(1, 2, 3, 4, 5, 7), width=140), "", legend]  # fmt: skip
+            *columns(rows, right=(1, 2, 3, 4, 5, 7), width=room(140)), "", *fields([("", legend)])]  # fmt: skip

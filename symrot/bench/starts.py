@@ -6,38 +6,91 @@
 The first table has a row for each scene and method, in microseconds: to read the start, to plan it (its structure is
 known), to bind parameters, to set up the motion (constants of a closed form; the task of a stepper), the motion itself
 (all that is done in C, and the call of it); then whole calls at 101 times with another angular velocity, attitude, or
-both; last what of the dearer of the first two, and of the third, is not the motion itself. The second has microseconds
-per trajectory of 101 samples, in closed form and by steps, with other starts alone and with other constants too, and
-the method that ``auto`` takes. Time of the processor, medians.
+both; last what of the dearer of the first two, and of the third, is not the motion itself (each start has its own:
+printed is that of both). The second has microseconds per trajectory of 101 samples, in closed form and by steps, with
+other starts alone and with other constants too, and the method that ``auto`` takes. Time of the processor, medians.
 """
 
 import argparse
+import ctypes
 from collections.abc import Callable, Iterator
 from functools import partial
 from statistics import median
 from time import process_time_ns
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from symrot.build.address import address
 from symrot.closed_form import motion as forms
+from symrot.closed_form.spin_up import compiled as spin_up_compiled
 from symrot.ensemble.ensemble import propagate_ensemble
 from symrot.errors import InputError
 from symrot.planning.plan import structure_key
 from symrot.propagation.propagator import Propagator, propagator, read_start
-from symrot.scene.scene import Scene, load_scene
+from symrot.scene.scene import Initial, Scene, load_scene
 
 __all__ = ["main"]
 
 SCENES = ("t_handle", "heavy_top_loops", "gyrostat", "damped_disk", "gravity_gradient_satellite")
-ENSEMBLES = ("t_handle", "heavy_top_loops", "axisymmetric_satellite", "spin_up")
+ENSEMBLES = ("t_handle", "axisymmetric_satellite", "heavy_top_loops", "spin_up")
 METHODS = ("exact", "taylor", "dop853")
 SAMPLES = 101
 SIZES = (10, 100, 1_000, 10_000, 100_000)
 SPREAD = 0.01
 
 Floats = NDArray[np.float64]
+
+
+def _made(name: str, torques: list[dict[str, Any]], inertia: Any, omega: list[str], **more: Any) -> Scene:
+    body: dict[str, Any] = {"inertia": inertia} if isinstance(inertia, dict) else {"principal": inertia}
+    if any(torque["kind"] == "gravity" for torque in torques):
+        body["about"] = "fixed_point"
+    given = {"omega": omega, "attitude": {"quaternion": [1, "1/3", "-1/5", "2/7"]}}
+    span = {"t": [0, 20], "samples": SAMPLES}
+    return Scene.from_dict(
+        {"schema": 1, "title": name, "body": body, "torque": torques, "initial": given, "span": span, **more}
+    )
+
+
+_BRAKE = {"kind": "damping", "linear": ["1/10", "1/10", "1/5"]}
+_PUSH = {"kind": "constant_body", "torque": [0, 0, "1/9"]}
+MADE: dict[str, Callable[[], Scene]] = {
+    "tilted free body": lambda: _made(
+        "tilted free body",
+        [],
+        {"xx": 3, "yy": 4, "zz": 5, "xy": "-1/10", "xz": "1/5", "yz": "1/7"},
+        ["1/3", "-1/7", "2"],
+    ),
+    "turned heavy top": lambda: _made(
+        "turned heavy top",
+        [{"kind": "gravity", "weight": "13/10", "center_of_mass": ["-1/5", 0, 0], "direction": [1, 2, 2]}],
+        [1, 2, 2],
+        ["2", "1/7", "1/3"],
+    ),
+    "symmetric gyrostat": lambda: _made(
+        "symmetric gyrostat",
+        [{"kind": "rotor", "angular_momentum": [0, 0, "3/7"]}],
+        [2, 2, 1],
+        ["1/3", "-1/7", "2"],
+    ),
+    "driven about one axis": lambda: _made("driven about one axis", [_PUSH], [2, 3, 4], ["0", "0", "1/2"]),
+    "braked about one axis": lambda: _made("braked about one axis", [_PUSH, _BRAKE], [2, 3, 4], ["0", "0", "1/2"]),
+    "braked symmetric body": lambda: _made(
+        "braked symmetric body", [_PUSH, _BRAKE], [2, 2, 1], ["1/3", "-1/7", "2"], output={"quantities": ["omega"]}
+    ),
+    "spun up far off": lambda: _made("spun up far off", [_PUSH], [2, 2, 1], ["1/3", "-1/7", "20"]),
+}
+"""Families of motions in closed form of which no scene is shipped."""
+
+
+def _scene(name: str) -> Scene:
+    return MADE[name]() if name in MADE else load_scene(name)
+
+
+VARIED = (("weight", "weight", None), ("torque_3", "torque", 2), ("angular_momentum_3", "angular_momentum", 2))
+"""Constants that vary, where the first torque has them."""
 
 
 def _median(run: Callable[[], object], rounds: int) -> float:
@@ -56,7 +109,15 @@ def _start(scene: Scene) -> tuple[Floats, Floats]:
     return omega * (1 + SPREAD) + SPREAD * abs(omega).max(), quaternion + SPREAD
 
 
-def _row(found: Propagator, rounds: int) -> tuple[float, ...]:
+class _Row(NamedTuple):
+    """Microseconds of a scene and method; calls and motions with another omega, with another attitude, with both."""
+
+    parts: tuple[float, ...]  # read, plan, bind, set up
+    motions: tuple[float, ...]
+    calls: tuple[float, ...]
+
+
+def _row(found: Propagator, rounds: int) -> _Row:
     scene = found.scene
     (omega, quaternion), times = _start(scene), np.linspace(0.0, float(scene.span.stop), SAMPLES)
     found(times, omega=omega, quaternion=quaternion)
@@ -75,22 +136,31 @@ def _row(found: Propagator, rounds: int) -> tuple[float, ...]:
         one = next(each)
         return one.exact if motion.choice.method == "exact" else one.stepping
 
+    def itself(start: Initial) -> float:
+        own = found.motion_from(start)
+        own.follow(times, True)
+        return _in_c(own, start, times, rounds) + _median(lambda: own.follow(times, True), rounds)
+
     assert parts is not None
-    return (
+    starts = ({"omega": omega}, {"quaternion": quaternion}, {"omega": omega, "quaternion": quaternion})
+    read = [read_start(scene, start.get("omega"), start.get("quaternion")) for start in starts]
+    costs = (
         _median(lambda: read_start(scene, omega, quaternion), rounds),
         _median(lambda: structure_key(scene, initial), rounds) + _median(lambda: motion.from_start(initial), rounds),
         _median(bind, rounds),
         _median(prepare, rounds),
-        _in_c(motion, initial, rounds) + _median(lambda: motion.follow(times, True), rounds),
-        _median(lambda: found(times, omega=omega), rounds),
-        _median(lambda: found(times, quaternion=quaternion), rounds),
-        _median(lambda: found(times, omega=omega, quaternion=quaternion), rounds),
     )
+    calls = tuple([_median(partial(found, times, **start), rounds) for start in starts])
+    return _Row(costs, tuple([itself(start) for start in read]), calls)
 
 
-def _in_c(motion: Any, initial: Any, rounds: int) -> float:
+def _in_c(motion: Any, initial: Any, times: Floats, rounds: int) -> float:
     """Return what the constants of a closed form take in C; steppers have none."""
-    functions = forms._bound.get(motion.form.library) if motion.choice.method == "exact" else None
+    if motion.choice.method != "exact":
+        return 0.0
+    if motion.form.library == "spin_up":
+        return _spin_up_in_c(motion.exact._source, times, rounds)
+    functions = forms._bound.get(motion.form.library)
     if functions is None:
         return 0.0
     calls: list[tuple[Any, ...]] = []
@@ -107,6 +177,22 @@ def _in_c(motion: Any, initial: Any, rounds: int) -> float:
     return _median(lambda kept=alive: functions[0](*calls[0]), rounds)  # type: ignore[misc]  # whose memory is written
 
 
+def _spin_up_in_c(source: Any, times: Floats, rounds: int) -> float:
+    """Return the same of a spin-up: without polynomials, and with them where samples asked for them."""
+    found, total = spin_up_compiled.functions(), 0.0
+    record, table = found.record(), np.empty(spin_up_compiled.TABLE)
+    given = source._numbers, found.limits(*spin_up_compiled.limits())
+    omega, quaternion = np.empty((SAMPLES, 3)), np.empty((SAMPLES, 4))
+    samples = len(times), address(times), address(omega), address(quaternion)
+    lacking = source._known[2] is not None
+    for room in (None, table) if lacking else (None,):
+        place = address(room), ctypes.addressof(record)
+        total += _median(lambda place=place: found.prepare(source._axis, *given, *place), rounds)  # type: ignore[misc]
+        if lacking and room is None:  # samples are asked for before it is known
+            total += _median(lambda: found.evaluate(ctypes.addressof(record), None, *samples), rounds)
+    return total
+
+
 def changed_starts(scenes: list[str], rounds: int) -> None:
     """Print the first table."""
     heads = ("read", "plan", "bind", "set up", "motion", "omega", "attitude", "both", "Python", "of both")
@@ -119,31 +205,37 @@ def changed_starts(scenes: list[str], rounds: int) -> None:
                 continue
             if found.method == method:
                 row = _row(found, rounds)
-                motion, *calls = row[4:]
-                cells = (*row, max(calls[:2]) - motion, calls[2] - motion)
+                python = [call - motion for call, motion in zip(row.calls, row.motions, strict=True)]
+                cells = (*row.parts, row.motions[2], *row.calls, max(python[:2]), python[2])
                 print(f"{name:28}{method:>8}" + "".join(f"{cell:9.1f}" for cell in cells))
 
 
 def _ensemble(scene: Scene, n: int, random: np.random.Generator) -> Iterator[tuple[str, dict[str, Any]]]:
     omega, quaternion = _start(scene)
+    if sum(w == 0 for w in scene.initial.omega_b) == 2 and scene.torques:
+        omega = omega * [w != 0 for w in scene.initial.omega_b]  # about one axis it stays
     given: dict[str, Any] = {
         "omega": omega * (1 + SPREAD * random.standard_normal((n, 3))),
         "quaternion": quaternion + SPREAD * random.standard_normal((n, 4)),
         "t": np.linspace(0.0, float(scene.span.stop), SAMPLES),
     }
     yield "starts", given
+    if not scene.body.principal.given_axes:
+        return
     moments = np.array([float(scene.body.inertia[k][k]) for k in range(3)])
     varied = {"principal": moments * (1 + SPREAD * random.random((n, 1)))}
-    if scene.torques and "weight" in scene.torques[0].values:
-        varied["weight"] = float(scene.torques[0].values["weight"]) * (1 + SPREAD * random.random(n))
+    for name, field, entry in VARIED:
+        if scene.torques and field in scene.torques[0].values:
+            value: Any = scene.torques[0].values[field]
+            varied[name] = float(value if entry is None else value[entry]) * (1 + SPREAD * random.random(n))
     yield "and " + ", ".join(varied), {**given, "parameters": varied}
 
 
 def ensembles(scenes: list[str], rounds: int, most: int) -> None:
     """Print the second table."""
-    print(f"{'us per trajectory':26}{'varied':26}{'n':>8}{'exact':>9}{'taylor':>9}   auto takes")
+    print(f"{'us per trajectory':26}{'varied':36}{'n':>8}{'exact':>9}{'taylor':>9}   auto takes")
     for name in scenes:
-        scene = load_scene(name)
+        scene = _scene(name)
         for n in (size for size in SIZES if size <= most):
             for varied, given in _ensemble(scene, n, np.random.default_rng(1)):
                 auto = propagate_ensemble(scene, **given).methods[0]
@@ -152,7 +244,7 @@ def ensembles(scenes: list[str], rounds: int, most: int) -> None:
                     run = partial(propagate_ensemble, scene, method=method, **given)
                     run()
                     cells.append(_median(run, rounds) / n)
-                print(f"{name:26}{varied:26}{n:8d}{cells[0]:9.1f}{cells[1]:9.1f}   {auto}")
+                print(f"{name:26}{varied:36}{n:8d}{cells[0]:9.1f}{cells[1]:9.1f}   {auto}")
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -164,7 +256,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--most", type=int, default=SIZES[-1], help="trajectories of the largest ensemble")
     options = parser.parse_args(arguments)
     if options.ensembles:
-        ensembles(options.scenes or list(ENSEMBLES), options.rounds or 5, options.most)
+        ensembles(options.scenes or [*ENSEMBLES, *MADE], options.rounds or 5, options.most)
     else:
         changed_starts(options.scenes or list(SCENES), options.rounds or 300)
 

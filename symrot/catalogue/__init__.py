@@ -3,6 +3,7 @@
 Importing this package derives nothing and imports no SymPy; :func:`derivation` does both for the one asked for.
 """
 
+from collections.abc import Callable
 from difflib import unified_diff
 from functools import cache
 from importlib import import_module
@@ -114,9 +115,20 @@ def derivation(name: str) -> "Derivation":
     return page
 
 
-def pages() -> dict[str, str]:
+Say = Callable[[str], object]
+"""Hears what is being derived."""
+
+
+def _quiet(text: str) -> None:
+    """Say nothing."""
+
+
+def pages(say: Say = _quiet) -> dict[str, str]:
     """Return file name -> text of every printed page, the table of contents (``README.md``) first."""
-    derived = {name: derivation(name) for name in names()}
+    derived = {}
+    for name in names():
+        say(f"deriving {name} ..")
+        derived[name] = derivation(name)
     lines = [
         "# Derivations",
         "",
@@ -157,7 +169,7 @@ def write_pages(directory: Path | str, form: str) -> list[Path]:
     return written
 
 
-def derive_all(directory: Path | str) -> list[Path]:
+def derive_all(directory: Path | str, say: Say = _quiet) -> list[Path]:
     """Print every page into a directory and return the files that changed.
 
     A page that an earlier catalogue printed, of a derivation that is no more, is removed; other files are left alone.
@@ -165,7 +177,7 @@ def derive_all(directory: Path | str) -> list[Path]:
     directory = Path(directory)
     directory.mkdir(parents=True, exist_ok=True)
     changed = []
-    printed = pages()
+    printed = pages(say)
     for name, text in printed.items():
         path = directory / name
         if not path.is_file() or path.read_bytes() != text.encode():
@@ -179,10 +191,10 @@ def derive_all(directory: Path | str) -> list[Path]:
     return changed
 
 
-def check(directory: Path | str) -> list[tuple[Path, str]]:
+def check(directory: Path | str, say: Say = _quiet) -> list[tuple[Path, str]]:
     """Return the pages that are not what would be printed now, each with a unified diff; none when all are current."""
     directory = Path(directory)
-    printed = pages()
+    printed = pages(say)
     stale = []
     for path in [*(directory / name for name in printed), *_left_over(directory, printed)]:
         old = path.read_bytes().decode(errors="replace") if path.is_file() else ""

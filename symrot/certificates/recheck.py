@@ -3,10 +3,11 @@
 Every hash. Link 3, C text = formulas: exactly, at a random point of fractions, where functions are any functions and
 choices any means of their two ways; what series leave out is computed at 64 random points. Link 1, formulas obey laws:
 to 60 digits at 8 random points where what is given holds, of numbers up to 1000, at 64 if they choose. What fails by
-less, or only near few points or far out, is not noticed: `symrot audit` proves. Headers hold known macros and
-prototypes alone, and symrot_math.h is the one below by its hash; NumPy texts are known by hash alone. That a kernel
-is what its name says, and what else is said (proofs, titles, operations, flags, theorems, object code), is not looked
-at, nor rounding errors, however large, nor where C is defined. Names that end in _ are of this file alone.
+less, or only near few points or far out, is not noticed: `symrot audit` proves. Link 4, rounding errors within their
+bounds: at a random point of a box without holes, so that `(x + 1e20) - 1e20` is refused; not after conversions whose
+box has holes. Headers hold known macros and prototypes alone, and symrot_math.h is the one below by its hash; NumPy
+texts are known by hash alone. That a kernel is what its name says, and what else is said (proofs, titles, operations,
+flags, theorems, object code), is not looked at, nor where C is defined. Names that end in _ are of this file alone.
 """
 
 # mypy: ignore-errors
@@ -116,6 +117,44 @@ def point(given, formulas, functions, number=Decimal):
         return point(given, formulas, functions, number)
 
 
+def machine(end, nearest):
+    """Return the arithmetic of C, by name: each operation and function rounded to the nearest number of a type."""
+
+    def rounded(function):
+        return lambda *x: kind(nearest(function(*x)).value)
+
+    kind = type("rounded", (float,), {})
+    for each in ("add", "radd", "sub", "rsub", "mul", "rmul", "truediv", "rtruediv", "neg", "abs"):
+        setattr(kind, f"__{each}__", rounded(getattr(float, f"__{each}__")))
+    names = {f: rounded(getattr(math, f)) for f in ("sin", "cos", "sqrt", "fabs", "copysign", "atan2", *OTHERS)}
+    ways = {"lt": lambda x, y, z, w: z if x < y else w, "eq": lambda x, y, z, w: z if x == y else w}
+    names |= {f"symrot_{f}": names[f] for f in ("sin", "cos", "atan2")} | {"symrot_far": lambda x: 0}
+    names |= {f"symrot_select_{f}": way for f, way in ways.items()}
+    names |= {"symrot_choose_ge": lambda x, y, z, w: z if x >= y else w}
+    choose = {"<": ways["lt"], "==": ways["eq"], ">=": names["symrot_choose_ge"]}
+    return {f + end: names[f] for f in names} | {
+        "at_": lambda text: kind(nearest(float(text.removesuffix("f") if isinstance(text, str) else text)).value),
+        "if_": lambda sign, *x: choose[sign](*x), "n": None, "k": None,
+    }  # fmt: skip
+
+
+def sample(data, bits, nearest, formulas, functions):
+    """Return a random point of the box of rounding errors, the values there, and their bounds; none if it has holes."""
+    bounds = data.get("rounding", {"clearance": "1", "precisions": []})
+    if float.fromhex(bounds["clearance"]) or data["spec"]["parameters"]:
+        return {}, {}
+    names, symbols = point([], [], functions), {place: symbol for place, symbol, _ in data["inputs"]}
+    for place, ends in bounds["box"].items():
+        low, high = map(float.fromhex, ends)
+        value = nearest(low + (high - low) * randbelow(2**53 + 1) / 2**53).value
+        names[place] = names[symbols[place]] = Decimal(min(max(value, low), high))
+    for *_, symbol, text in formulas[len(data["inputs"]) :]:
+        names[symbol] = formula(text)(names)
+    names |= {place: names[symbol] for place, symbol, _ in data["spec"]["formulas"]}
+    found = [each["outputs"] for each in bounds["precisions"] if each["precision"] == f"binary{bits}"]
+    return names, {each["output"]: Decimal(float.fromhex(each["absolute"])) for outputs in found for each in outputs}
+
+
 def check_c(name, said, real, data, formulas, functions, found):
     """Link 3: refuse a function, of one sample and of many, that is not its formulas."""
     end, bits, nearest, least = {"double": ("", "64", c_double, 2**-55), "float": ("f", "32", c_float, 2**-26)}[real]
@@ -136,24 +175,29 @@ def check_c(name, said, real, data, formulas, functions, found):
         need(re.fullmatch(rf"(\d+\.\d*|\d+(?=e))(e[-+]?\d+)?{end}", text), f"{text} is no {real}")
         return constants.get(written := nearest(float(text.removesuffix("f"))).value, Fraction(written))
 
-    def run(body, places):
+    def run(body, places, own):
         """Return what statements give to places, or return."""
-        local, given = own | places | {"at_": lambda text: local[text] if text in local else number(text)}, {}
+        local, given = own | places | {"at_": lambda text: local[text] if text in local else own["at_"](text)}, {}
         for kind, goal, text in re.findall(STATEMENT, body):
             need(kind in ("", real) and goal not in local | given, f"{goal} is no new {real}")
             (local if kind else given)[goal] = formula(text)(local)
         need(not re.sub(STATEMENT, "", body).strip(), f"no statement: {re.sub(STATEMENT, '', body)[:60]!r}")
         return given
 
-    def call(listed, body, *x):
-        return run(body, dict(zip(re.findall(rf"{real} (\w+)", listed), x, strict=True)))["return"]
+    def call(own, listed, body, *x):
+        return run(body, dict(zip(re.findall(rf"{real} (\w+)", listed), x, strict=True)), own)["return"]
 
     own = {f + end: names[f] for f in (*PLAIN, *MEANS, *OTHERS)} | {"n": None, "k": None, "if_": names["if_"]}
     own |= {f"symrot_{f}{end}": names[f] for f in ("select_lt", "select_eq", "atan2")}
     own |= {f"symrot_{f}{end}": lambda x, f=f: near.add(x) or names[f](x) for f in ("sin", "cos")}
     own |= {f"symrot_choose_ge{end}": names["select_ge"], f"symrot_far{end}": lambda x: [x]}
     need(not own.keys() & found.keys() and name == data["kernel"] + end, "a function has another meaning, or type")
-    own |= {f: partial(call, *found[f][1:]) for f in found if found[f][0] == f"static inline {real}"}
+    own |= {"at_": number}
+    doubles, exact, limits = machine(end, nearest), *sample(data, bits, nearest, formulas, functions)
+    placed = {place: doubles["at_"](exact[place]) for place in inputs if limits}
+    for each in (own, doubles):
+        each |= {f: partial(call, each, *found[f][1:]) for f in found if found[f][0] == f"static inline {real}"}
+    far = f"{name} is rounded by more than its bounds"
     places = [f"const {place}" for place in inputs] + [place for place, *_ in data["spec"]["formulas"]]
     sizes = Counter(place.partition("[")[0] for place in places)
     need(places == [b if b in places else f"{b}[{k}]" for b in sizes for k in range(sizes[b])], "arguments are others")
@@ -167,7 +211,10 @@ def check_c(name, said, real, data, formulas, functions, found):
         for loop in loops:
             near = set()
             need(not frame or not re.search(r"(?<!\bp)\[\d+\]|\bp\[\d+\*", loop), f"{name} takes one sample alone")
-            results.append(run(loop.replace("*n + k]", "]").replace("[k]", "") if frame else loop, inputs))
+            loop = loop.replace("*n + k]", "]").replace("[k]", "") if frame else loop
+            results.append(run(loop, inputs, own))
+            rounded = run(loop, placed, doubles) if limits else {}
+            need(all(abs(Decimal(rounded.get(p, 0)) - exact[p]) <= limits[p] for p in limits.keys() & rounded), far)
             need(near <= {*results[0].pop("beyond", [])}, f"functions of {name} take angles beyond their range")
         for result in [results[0] | results[1]] if frame == PARTS else results:
             need(result == {p: names[s] for p, s, _ in data["spec"]["formulas"]}, f"{name} is not its formulas")

@@ -203,11 +203,14 @@ def _derive(options: Namespace) -> int:
     if options.check:
         if not directory.is_dir():
             raise InputError(f"{str(directory)!r}: expected the folder that `symrot derive --all` writes, got none")
-        different = catalogue.check(directory)
+        different = catalogue.check(directory, progress)
+        progress("")
         sys.stdout.write("".join(diff for _, diff in different))
         return FAILED if different else GOOD
     if options.all:
-        say(str(path) for path in catalogue.derive_all(directory))
+        written = catalogue.derive_all(directory, progress)
+        progress("")
+        say(str(path) for path in written)
     elif options.name:
         whole = catalogue.derivation(options.name)
         page = whole if options.step is None else whole.part(options.step, options.detail)

@@ -1,5 +1,6 @@
 """What commands print with, and their exit codes; stdout is data, stderr is progress."""
 
+import os
 import sys
 from argparse import ArgumentParser, Namespace
 from collections.abc import Callable, Iterable
@@ -27,7 +28,11 @@ def say_json(found: Any) -> None:
 def progress(text: str) -> None:
     """Show what takes its time, on one line of a terminal; an empty text clears it."""
     if sys.stderr.isatty():
-        sys.stderr.write(f"\r\x1b[K{text}")
+        try:
+            room = os.get_terminal_size(sys.stderr.fileno()).columns - 1 or len(text)
+        except (OSError, ValueError, AttributeError):
+            room = len(text)
+        sys.stderr.write(f"\r\x1b[K{text[:room]}")  # a longer line would go on below, where nothing clears it
         sys.stderr.flush()
 
 

@@ -3,23 +3,27 @@
 Where all digits of a sum may cancel, integers find it, one motion after the other; pairs of doubles do the rest.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 
 import numpy as np
 from numpy.typing import NDArray
 
 from symrot.closed_form.arithmetic import double_double as dd
-from symrot.closed_form.arithmetic.pairs import GRID, LARGEST, SMALLEST, attitude, pair, quotient
+from symrot.closed_form.arithmetic.pairs import GRID, LARGEST, SMALLEST, attitude, common, pair, quotient
+from symrot.closed_form.axial.compiled import Constants
+from symrot.closed_form.axial.motion import turned_about
 from symrot.closed_form.build import Floats
-from symrot.closed_form.free_body.motion import NEGLIGIBLE, Body, Defect
-from symrot.closed_form.gyrostat.motion import Gyrostat
-from symrot.closed_form.heavy_top.motion import Top
+from symrot.closed_form.free_body.motion import NEGLIGIBLE, Body, Defect, gaps
+from symrot.closed_form.heavy_top.motion import Frame
 from symrot.closed_form.many import Batch
+from symrot.closed_form.spin_up.compiled import limits
 from symrot.formula import exact_numbers as number
-from symrot.inertia.principal import Principal
 
-__all__ = ["Column", "attitudes", "free_bodies", "free_bodies_of_moments", "gyrostats", "tops", "tops_of", "usual"]
+__all__ = [
+    "Column", "attitudes", "driven", "free_bodies", "free_bodies_of_moments", "gyrostats", "spin_ups", "tops",
+    "turned", "usual",
+]  # fmt: skip
 
 Column = Floats | Fraction
 """A constant: of each motion, shape (n,), or the same of all."""
@@ -27,6 +31,7 @@ Column = Floats | Fraction
 _SPREAD = 2.0**-300  # components of a quaternion farther apart are left to fractions
 _DOUBT = 2.0**-12  # of a step of the grid: pairs of doubles err by less than a quarter of it
 _TIE = 2.0**-40  # of the last bit
+_TURNED = 2.0**-99  # by which products of unit quaternions may err: units by 2^-100, two products by 2^-102 each
 
 
 def attitudes(quaternions: Floats) -> Floats:
@@ -34,6 +39,26 @@ def attitudes(quaternions: Floats) -> Floats:
 
     Pairs of doubles settle all but one of some thousand; exact numbers settle that one.
     """
+    high, low = _units(quaternions)
+    return _on_grid(high, low, 0.0, lambda i: attitude(_unit(quaternions[i])))
+
+
+def turned(frame: Frame, quaternions: Floats) -> Floats:
+    """Return unit quaternions as :meth:`symrot.closed_form.heavy_top.motion.Frame.start` has them, shape (n, 8)."""
+    found = _units(quaternions)
+    if frame.before is not None:
+        found = _product(frame.before, True, found)
+    if frame.after is not None:
+        found = _product(frame.after, False, found)
+    return _on_grid(*found, _TURNED, lambda i: frame.start(_unit(quaternions[i])))
+
+
+def _unit(quaternion: Floats) -> Sequence[Fraction]:
+    return number.unit(list(map(Fraction, quaternion.tolist())))
+
+
+def _units(quaternions: Floats) -> dd.Pair:
+    """Return unit quaternions as pairs of doubles, to less than a quarter of :data:`_DOUBT` of each component."""
     scaled = np.ldexp(quaternions, -np.frexp(abs(quaternions).max(axis=1))[1][:, None])
     square = dd.two_product(scaled, scaled)
     total = (square[0][:, 0], square[1][:, 0])
@@ -46,15 +71,41 @@ def attitudes(quaternions: Floats) -> Floats:
     high = scaled / root
     back = dd.two_product(high, root)
     low = (((scaled - back[0]) - back[1]) - high * rest) / root
-    high, low = high + low, low - ((high + low) - high)
+    return high + low, low - ((high + low) - high)
+
+
+def _sign(i: int, j: int) -> float:
+    """Return the sign of the product of two units of the quaternions."""
+    return -1.0 if (i and i == j) or (i, j) in ((1, 3), (2, 1), (3, 2)) else 1.0
+
+
+def _product(constant: Sequence[Fraction], before: bool, q: dd.Pair) -> dd.Pair:
+    """Return the products of one unit quaternion, before or after, with others (n, 4), to 2^-102 of a unit."""
+    found: dd.Pair | None = None
+    for i, (high, low) in enumerate(map(pair, constant)):
+        places = [i ^ k for k in range(4)]  # of which unit i makes unit k
+        signs = np.array([_sign(i, j) if before else _sign(j, i) for j in places])
+        term = dd.multiply((high * signs, low * signs), (q[0][:, places], q[1][:, places]))
+        found = term if found is None else dd.add(found, term)
+    assert found is not None
+    return found
+
+
+def _on_grid(high: Floats, low: Floats, error: float, exactly: Callable[[int], Sequence[float]]) -> Floats:
+    """Return pairs as :func:`symrot.closed_form.arithmetic.pairs.on_grid` does, and rows that it doubts exactly.
+
+    The pairs err by a quarter of :data:`_DOUBT` of a step of the grid of each component, and by ``error``.
+    """
     last = np.where(abs(high) > _SPREAD, np.spacing(abs(high)), 1.0)
     part, steps = abs(low) / last, low / (last * GRID)
-    doubtful = abs(abs(steps - np.floor(steps)) - 0.5) < _DOUBT
-    doubtful |= (abs(part - 0.5) < _TIE) | (abs(part - 0.25) < _TIE) | ((high != 0) & (abs(high) <= _SPREAD))
+    wide = error / last
+    doubtful = abs(abs(steps - np.floor(steps)) - 0.5) < _DOUBT + wide / GRID
+    doubtful |= (abs(part - 0.5) < _TIE + wide) | (abs(part - 0.25) < _TIE + wide)
+    doubtful |= ((high != 0) | (error > 0)) & (abs(high) <= _SPREAD)
     found = np.empty((len(high), 8))
     found[:, ::2], found[:, 1::2] = high + 0.0, np.rint(steps) * (last * GRID) + 0.0  # zeros without a sign
     for i in np.flatnonzero(doubtful.any(axis=1)).tolist():
-        found[i] = attitude(number.unit(list(map(Fraction, quaternions[i].tolist()))))
+        found[i] = exactly(i)
     return found
 
 
@@ -76,6 +127,11 @@ def _columns(values: Sequence[Column], n: int) -> Floats:
     return found
 
 
+def _together(values: Sequence[Column], n: int) -> Floats:
+    """Return constants as pairs, shape (2 k,) where all motions share them."""
+    return _columns(values, n)[0] if all(isinstance(value, Fraction) for value in values) else _columns(values, n)
+
+
 def usual(omega: Floats) -> NDArray[np.bool_]:
     """Return which angular velocities (n, 3) lie where these arrays are exact; others are a matter for one motion."""
     largest = abs(omega).max(axis=1)
@@ -88,9 +144,9 @@ def _noticed(omega: Floats) -> Floats:
     return np.where(abs(omega) < np.ldexp(abs(omega).max(axis=1), -NEGLIGIBLE)[:, None], 0.0, omega)
 
 
-def free_bodies(principal: Principal, omega: Floats, start: Floats) -> Batch:
+def free_bodies(body: Body, omega: Floats, start: Floats) -> Batch:
     """Return the motions of one free body from :func:`usual` angular velocities and attitudes (8,) or (n, 8)."""
-    body, rates, exact = Body(principal), _pairs(_noticed(omega)), np.empty((len(omega), 8))
+    rates, exact = _pairs(_noticed(omega)), np.empty((len(omega), 8))
     exact[:, :6] = body.gaps
     for i, given in enumerate(rates[:, ::2].tolist() if body.axes is None else omega.tolist()):
         integers = _integers(given)
@@ -102,14 +158,26 @@ def free_bodies(principal: Principal, omega: Floats, start: Floats) -> Batch:
     return Batch("free_body", (np.array(body.moments), rates, start, exact, axes))
 
 
-def free_bodies_of_moments(moments: Floats, omega: Floats, start: Floats) -> Batch:
-    """Return the motions of free bodies in their principal axes: moments (n, 3), the rest as :func:`free_bodies`."""
-    omega, exact = _noticed(omega), np.empty((len(omega), 8))
-    for k in range(3):
-        exact[:, 2 * k], exact[:, 2 * k + 1] = dd.two_sum(moments[:, (k + 1) % 3], -moments[:, (k + 2) % 3])
-    for i, (own, given) in enumerate(zip(moments.tolist(), omega.tolist(), strict=True)):
-        exact[i, 6:] = Defect(_integers(own))(_integers(given))
-    return Batch("free_body", (_pairs(moments), _pairs(omega), start, exact, None))
+def free_bodies_of_moments(moments: Sequence[Column], omega: Floats, start: Floats) -> Batch:
+    """Return the motions of free bodies in their principal axes: three moments, the rest as :func:`free_bodies`."""
+    omega, n = _noticed(omega), len(omega)
+    exact, pairs = np.empty((n, 8)), _columns(moments, n)
+    plain = not pairs[:, 1::2].any()  # moments are doubles
+    if plain:
+        table = np.ascontiguousarray(pairs[:, ::2])
+        own = table.tolist()
+        for k in range(3):
+            exact[:, 2 * k], exact[:, 2 * k + 1] = dd.two_sum(table[:, (k + 1) % 3], -table[:, (k + 2) % 3])
+    else:
+        own = list(zip(*([x] * n if isinstance(x, Fraction) else x.tolist() for x in moments), strict=True))
+    for i, (row, given) in enumerate(zip(own, omega.tolist(), strict=True)):
+        if plain:
+            integers = _integers(row)
+        else:
+            integers, shared = common(row)
+            exact[i, :6] = gaps(integers, shared)
+        exact[i, 6:] = Defect(integers)(_integers(given))
+    return Batch("free_body", (pairs, _pairs(omega), start, exact, None))
 
 
 def _integers(values: list[float]) -> list[int]:
@@ -121,19 +189,51 @@ def _integers(values: list[float]) -> list[int]:
     return [a * (shared // over_a), b * (shared // over_b), c * (shared // over_c)]
 
 
-def tops(top: Top, omega: Floats, start: Floats) -> Batch:
-    """Return the motions of one plain heavy top; arguments as :func:`free_bodies`."""
-    space = np.array(top.space)
-    return Batch("heavy_top", (np.array(top.moments), np.array(top.pull), _pairs(omega), start, space, None))
+def tops(
+    across: Column, own: Column, pull: Floats, frame: Frame, omega: Floats, start: Floats,
+) -> Batch:  # fmt: skip
+    """Return the motions of heavy tops: weight times height as pairs (2,) or (n, 2), the rest as :func:`free_bodies`.
+
+    ``start`` holds attitudes between the axes of the frame, see :func:`turned`.
+    """
+    rates = _pairs(np.ascontiguousarray(omega[:, frame.named]))
+    axes = None if frame.axes is None else np.array(frame.axes)
+    return Batch("heavy_top", (_together([across, own], len(omega)), pull, rates, start, np.array(frame.space), axes))
 
 
-def tops_of(across: Column, own: Column, pull: Floats, space: Floats, omega: Floats, start: Floats) -> Batch:
-    """Return the motions of plain heavy tops: weight times height as pairs (n, 2), the rest as :func:`tops`."""
-    return Batch("heavy_top", (_columns([across, own], len(omega)), pull, _pairs(omega), start, space, None))
+def gyrostats(across: Column, own: Column, rotor: Column, axis: int, omega: Floats, start: Floats) -> Batch:
+    """Return the motions of gyrostats with a rotor along an axis, the rest as :func:`free_bodies`."""
+    named = [(axis + 1) % 3, (axis + 2) % 3, axis]
+    rates = _pairs(np.ascontiguousarray(omega[:, named]))
+    given = [_together([across, own], len(omega)), _together([rotor], len(omega))]
+    return Batch("gyrostat", (*given, rates, start, np.array([*map(float, named), 0.0])))
 
 
-def gyrostats(body: Gyrostat, omega: Floats, start: Floats) -> Batch:
-    """Return the motions of one gyrostat; arguments as :func:`free_bodies`."""
-    named = np.array([*map(float, body.named), 0.0])
-    rates = _pairs(np.ascontiguousarray(omega[:, body.named]))
-    return Batch("gyrostat", (np.array(body.moments), np.array(body.rotor), rates, start, named))
+def spin_ups(across: Column, own: Column, torque: Column, axis: int, omega: Floats, start: Floats) -> Batch:
+    """Return the motions of symmetric bodies under a torque about their axis, the rest as :func:`free_bodies`."""
+    numbers = np.empty((len(omega), 20))
+    numbers[:, :6] = _columns([across, own, torque], len(omega))
+    numbers[:, 6:12] = _pairs(omega[:, [axis - 2, axis - 1, axis]])
+    numbers[:, 12:] = start
+    return Batch("spin_up", (numbers, np.array([axis, *limits()])))
+
+
+def driven(constants: Constants | Sequence[Constants], omega: Floats, start: Floats) -> Batch:
+    """Return the rotations of one driven body, or of a body each; the rest as :func:`free_bodies`.
+
+    The constants are elementary, and found in integers.
+    """
+    bodies = [constants] * len(omega) if isinstance(constants, Constants) else constants
+    axis = bodies[0].axis
+    turned: NDArray[np.bool_] = (omega[:, [axis - 2, axis - 1]] != 0).any(axis=1)
+    moving = zip(bodies, omega[:, axis].tolist(), turned.tolist(), strict=True)
+    found = np.zeros((len(omega), 65))  # `axial` of axial.h
+    found[:, 8:26] = [each.moving(rate, across) for each, rate, across in moving]
+    found[turned, 26:40], found[turned, 12:26] = found[turned, 12:26], 0.0
+    found[:, :8] = constants.head(False) if isinstance(constants, Constants) else [c.head(False) for c in constants]
+    found[:, 2] = turned
+    for k, value in enumerate(bodies[0].shapes(omega[:, axis - 2], omega[:, axis - 1])):
+        found[:, 40 + k] = value
+    attitude = start.reshape(-1, 8)[:, ::2]
+    found[:, 49::4], found[:, 50::4] = attitude, np.column_stack(turned_about(axis, list(attitude.T)))
+    return Batch("axial", (found,))

@@ -20,7 +20,7 @@ from symrot.build import cache as library
 from symrot.errors import CompilerError, InputError
 from symrot.formula.exact_numbers import show
 
-__all__ = ["FLAGS", "PARTS", "Floats", "begin", "load", "source", "times_of"]
+__all__ = ["FLAGS", "PARTS", "Floats", "begin", "load", "loaded", "source", "times_of"]
 
 Floats = NDArray[np.float64]
 
@@ -81,6 +81,11 @@ def begin(name: str) -> list[library.Building]:
             if f"{name}{part}.c" in _files()
         ]
     return _begun[name]
+
+
+def loaded(name: str) -> bool:
+    """Return whether a closed form is at hand, so that no compiler is needed for it."""
+    return name in _loaded
 
 
 def load(name: str) -> tuple[Any, ...]:

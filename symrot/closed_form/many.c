@@ -3,25 +3,13 @@
  *
  * The functions are those of name.c and name_at.c, by their addresses: every motion comes out as it does alone.
  */
-#include <stddef.h>
+#include "many.h"
 
 typedef const double *numbers;
 typedef int (*of_five)(numbers, numbers, numbers, numbers, numbers, void *);
 typedef int (*of_six)(numbers, numbers, numbers, numbers, numbers, numbers, void *);
 typedef void (*samples_of)(const void *, ptrdiff_t, const double *, double *, double *);
-
-/* Everything as others lay it out; a stride is a number of doubles from one motion to the next, 0 for what all share. */
-typedef struct {
-    void *prepare, *at;
-    void *record;          /* room for the constants of one motion */
-    ptrdiff_t arguments;   /* of prepare, before the record: 5 or 6 */
-    const double *given[6];
-    ptrdiff_t strides[6];
-    const double *times;   /* s, from the start */
-    ptrdiff_t times_stride, samples;
-    double *omega;         /* (n, samples, 3) */
-    double *quaternion;    /* (n, samples, 4), or NULL */
-} symrot_many_motions;
+typedef int (*axial_samples_of)(const void *, ptrdiff_t, const double *, double *, double *);
 
 /* Write the samples of the motions first to last - 1; return the first that prepare refuses, or last. */
 ptrdiff_t symrot_many(const symrot_many_motions *m, ptrdiff_t first, ptrdiff_t last)
@@ -39,5 +27,16 @@ ptrdiff_t symrot_many(const symrot_many_motions *m, ptrdiff_t first, ptrdiff_t l
             m->record, m->samples, m->times + i*m->times_stride, m->omega + 3*i*m->samples,
             m->quaternion == NULL ? NULL : m->quaternion + 4*i*m->samples);
     }
+    return last;
+}
+
+/* The same of rotations about one axis, whose constants are given: the first whose samples lack something, or last. */
+ptrdiff_t symrot_many_axial(const symrot_many_motions *m, ptrdiff_t first, ptrdiff_t last)
+{
+    for (ptrdiff_t i = first; i < last; ++i)
+        if (((axial_samples_of)m->at)(
+                m->given[0] + i*m->strides[0], m->samples, m->times + i*m->times_stride, m->omega + 3*i*m->samples,
+                m->quaternion == NULL ? NULL : m->quaternion + 4*i*m->samples))
+            return i;
     return last;
 }

@@ -22,7 +22,9 @@ AT_ONCE = 1024  # motions to a call: some 10 ms, after which Python can see an i
 class Batch(NamedTuple):
     """Motions of the closed form ``name``, from what its `prepare` takes.
 
-    Each argument is an array of shape (k,) that all motions share, of shape (n, k), or None.
+    Each argument is an array of shape (k,) that all motions share, of shape (n, k), or None. Of ``axial`` the one
+    argument is the record of constants itself; of ``spin_up``
+    there are two, its numbers, and the axis with the limits that all share.
     """
 
     name: str
@@ -33,7 +35,7 @@ class _Motions(ctypes.Structure):
     """``symrot_many_motions`` of many.c."""
 
     _fields_ = (
-        ("prepare", ctypes.c_void_p), ("at", ctypes.c_void_p), ("record", ctypes.c_void_p),
+        ("prepare", ctypes.c_void_p), ("at", ctypes.c_void_p), ("record", ctypes.c_void_p), ("table", ctypes.c_void_p),
         ("arguments", ctypes.c_ssize_t), ("given", ctypes.c_void_p * 6), ("strides", ctypes.c_ssize_t * 6),
         ("times", ctypes.c_void_p), ("times_stride", ctypes.c_ssize_t), ("samples", ctypes.c_ssize_t),
         ("omega", ctypes.c_void_p), ("quaternion", ctypes.c_void_p),
@@ -57,10 +59,7 @@ def evaluate(batch: Batch, times: Floats, omega: Floats, quaternion: Floats | No
     workers : int
         Threads; each does its share.
     """
-    prepare, at, record = functions(batch.name, len(batch.arguments))
-    (library,) = load("many")
-    run, size = library.symrot_many, ctypes.c_ssize_t
-    run.argtypes, run.restype = (ctypes.c_void_p, size, size), size
+    run, prepare, at, record, table = _linked(batch)
     given = [None if values is None else np.ascontiguousarray(values) for values in batch.arguments]
     times = np.ascontiguousarray(times)
     n, samples = omega.shape[:2]
@@ -69,8 +68,9 @@ def evaluate(batch: Batch, times: Floats, omega: Floats, quaternion: Floats | No
 
     def share(first: int, last: int, stop: Any = bool) -> list[int]:
         room, refused = record(), []
+        polynomials = np.empty(table) if table else None
         motions = _Motions(
-            _place(prepare), _place(at), ctypes.addressof(room), len(given), times=address(times),
+            prepare, at, ctypes.addressof(room), address(polynomials), len(given), times=address(times),
             times_stride=samples if times.ndim == 2 else 0, samples=samples, omega=address(omega),
             quaternion=address(quaternion),
         )  # fmt: skip
@@ -90,6 +90,41 @@ def evaluate(batch: Batch, times: Floats, omega: Floats, quaternion: Floats | No
     told = omega if quaternion is None else quaternion
     ends = told[:, 0, 0] + told[:, -1, -1]  # as a motion alone tells that it leaves the doubles
     return sorted({*odd, *np.flatnonzero(np.isnan(ends)).tolist()})
+
+
+class _Linked(NamedTuple):
+    """The loop over motions, and where the functions of a form are that it calls."""
+
+    run: Any
+    prepare: int
+    at: int
+    record: Any
+    table: int  # doubles
+
+
+def _loop(name: str, library_name: str = "many") -> Any:
+    (library,) = load(library_name)
+    run, size = getattr(library, name), ctypes.c_ssize_t
+    run.argtypes, run.restype = (ctypes.c_void_p, size, size), size
+    return run
+
+
+def _linked(batch: Batch) -> _Linked:
+    if batch.name == "axial":
+        from symrot.closed_form.axial import compiled as axial_compiled
+
+        at, record = axial_compiled.functions()
+        return _Linked(_loop("symrot_many_axial"), 0, _place(at), record, 0)
+    if batch.name == "spin_up":
+        from symrot.closed_form.spin_up import compiled as spin_up_compiled
+
+        found = spin_up_compiled.functions()
+        places = _place(found.prepare), _place(found.evaluate)
+        together = load("spin_up_many")[0].symrot_many_spin_ups_at_once()
+        room = ctypes.c_double * (ctypes.sizeof(found.record) // 8 * together)
+        return _Linked(_loop("symrot_many_spin_ups", "spin_up_many"), *places, room, spin_up_compiled.TABLE * together)
+    prepare, at, record = functions(batch.name, len(batch.arguments))
+    return _Linked(_loop("symrot_many"), _place(prepare), _place(at), record, 0)
 
 
 def _shared(share: Any, n: int, workers: int) -> Sequence[int]:

@@ -12,7 +12,7 @@ from symrot.formula.exact_numbers import equal
 from symrot.planning.plan import ATTITUDE_QUANTITIES
 from symrot.scene.scene import Initial, Scene
 
-__all__ = ["FORMS", "Exact", "Form", "exact_form"]
+__all__ = ["FORMS", "Exact", "Form", "exact_form", "push_and_drag"]
 
 
 class Exact(Protocol):
@@ -36,6 +36,7 @@ class Form(NamedTuple):
     starts: Callable[[Scene], Starts]  # with all that motions from different starts share
     library: str  # what it evaluates, see symrot.closed_form.build; "" for none
     derivation: str  # what proves it
+    axis: Callable[[Scene], int | None] = lambda scene: None  # of the body, that the motion is about, if any
 
     def motion(self, scene: Scene) -> Exact:
         """Return the motion of a scene."""
@@ -106,7 +107,7 @@ def _gyrostat(scene: Scene) -> Starts:
     return gyrostat.starts(_moments(scene), scene.torques[0].values["angular_momentum"])
 
 
-def _push_and_drag(scene: Scene) -> tuple[Vector, Vector]:
+def push_and_drag(scene: Scene) -> tuple[Vector, Vector]:
     """Return the constant torque in the body and the coefficients of linear damping."""
     found = []
     for kind, field in (("constant_body", "torque"), ("damping", "linear")):
@@ -125,9 +126,11 @@ def _driven_axis(scene: Scene) -> int | None:
     """Return the principal axis that constant torques and linear damping keep a rotation to."""
     if not _is_driven(scene):
         return None
-    push, turning = _push_and_drag(scene)[0], _only_axis(scene.initial.omega_b)
+    push, turning = push_and_drag(scene)[0], _only_axis(scene.initial.omega_b)
     axis = turning if turning is not None else _only_axis(push)
     across = [*scene.initial.omega_b, *push]
+    if not any(across):
+        return 0  # at rest for ever
     return None if any(x for i, x in enumerate(across) if i % 3 != axis) else axis
 
 
@@ -135,7 +138,7 @@ def _driven_symmetry_axis(scene: Scene) -> int | None:
     """Return the symmetry axis that a constant torque acts about; undamped, where an attitude is asked for."""
     if not _is_driven(scene):
         return None
-    push, drag = _push_and_drag(scene)
+    push, drag = push_and_drag(scene)
     if any(drag) and set(scene.output.quantities) & ATTITUDE_QUANTITIES:
         return None
     for axis in range(3):
@@ -149,14 +152,23 @@ def _driven_symmetry_axis(scene: Scene) -> int | None:
     return None
 
 
+def _turning_axis(scene: Scene) -> int | None:
+    axis = _driven_axis(scene)
+    return _driven_symmetry_axis(scene) if axis is None else axis
+
+
 def _axial(scene: Scene) -> Starts:
     from symrot.closed_form.axial import motion as axial
 
-    axis = _driven_axis(scene)
-    axis = _driven_symmetry_axis(scene) if axis is None else axis
+    axis = _turning_axis(scene)
     assert axis is not None
-    push, drag = _push_and_drag(scene)
+    push, drag = push_and_drag(scene)
     return axial.starts(_moments(scene), axis, push[axis], drag[axis], drag[axis - 1])
+
+
+def _field_axis(name: str) -> Callable[[Scene], int | None]:
+    """Return what finds the axis that a field of the only torque lies along."""
+    return lambda scene: _only_axis(scene.torques[0].values[name])
 
 
 def _is_spun_up(scene: Scene) -> bool:
@@ -168,27 +180,42 @@ def _spin_up(scene: Scene) -> Starts:
 
     axis = _driven_symmetry_axis(scene)
     assert axis is not None
-    moments, torque = _moments(scene), _push_and_drag(scene)[0][axis]
-    return lambda start: spin_up.motion(moments, axis, torque, start.omega_b, start.quaternion)
+    return spin_up.starts(_moments(scene), axis, push_and_drag(scene)[0][axis])
 
 
 FORMS = (
     Form("free body, theta functions", _is_free, _free_body, "free_body", "free_body_attitude"),
-    Form("symmetric heavy top, theta functions", _is_symmetric_top, _heavy_top, "heavy_top", "heavy_top_motion"),
+    Form(
+        "symmetric heavy top, theta functions",
+        _is_symmetric_top,
+        _heavy_top,
+        "heavy_top",
+        "heavy_top_motion",
+        _field_axis("center_of_mass"),
+    ),
     Form(
         "symmetric gyrostat, two steady rotations",
         _is_symmetric_gyrostat,
         _gyrostat,
         "gyrostat",
         "symmetric_gyrostat",
+        _field_axis("angular_momentum"),
     ),
-    Form("rotation about one axis", lambda scene: _driven_axis(scene) is not None, _axial, "axial", "driven_rotation"),
+    Form(
+        "rotation about one axis",
+        lambda scene: _driven_axis(scene) is not None,
+        _axial,
+        "axial",
+        "driven_rotation",
+        _driven_axis,
+    ),
     Form(
         "symmetric body driven about its axis, parabolic cylinder functions",
         _is_spun_up,
         _spin_up,
         "spin_up",
         "driven_rotation",
+        _driven_symmetry_axis,
     ),
     Form(
         "symmetric body driven about its axis, angular velocity alone",
@@ -196,6 +223,7 @@ FORMS = (
         _axial,
         "axial",
         "driven_rotation",
+        _driven_symmetry_axis,
     ),
 )
 """The motions in closed form, in the order in which they are looked for."""

@@ -94,7 +94,7 @@ def propagate_ensemble(
     Each comes out bit by bit the same whatever the others are, in whatever order and number, and on how many threads.
     ``auto`` follows each by the faster method: in closed form where there is one, with the very bits that
     :func:`symrot.propagate` gives alone; by Taylor series with one trajectory in each SIMD lane where there is none, or
-    where it would be made one by one and the body turns little (see :func:`symrot.ensemble.exact.choose`). A motion
+    where steps were measured to be faster (see :func:`symrot.ensemble.exact.choose`). A motion
     that cannot be followed to its last time does not disturb the others: its ``status`` and message say so.
 
     Parameters

@@ -1,10 +1,10 @@
 """Ensembles in closed form: which trajectories have one, and all of a form in one call.
 
-Trajectories whose numbers are unusual (beyond 1e205, a top that is turned first, an axis that is driven) are made one
-by one, each as a motion alone; where no constant varies, they share what the body and its torques give.
+Trajectories whose numbers are unusual (beyond 1e205, products of inertia that vary) are made one by one, each as a
+motion alone; where no constant varies, they share what the body and its torques give.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Hashable, Iterator, Sequence
 from fractions import Fraction
 from itertools import combinations
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -15,52 +15,80 @@ from numpy.typing import NDArray
 from symrot.build import cache as library
 from symrot.closed_form.arithmetic import double_double as dd
 from symrot.closed_form.arithmetic.pairs import LARGEST, SMALLEST, attitude, pair
+from symrot.closed_form.build import loaded
 from symrot.closed_form.registry import Exact, Form, exact_form
 from symrot.ensemble.variation import PRINCIPAL, PRODUCTS, Variation
+from symrot.errors import InputError
 from symrot.propagation.steppers.stepping import Floats
 from symrot.scene.scene import Initial
 
 if TYPE_CHECKING:
     from symrot.closed_form.many import Batch
 
-__all__ = ["STEPS_BELOW", "Solved", "choose", "follow_exact", "forms_of"]
+__all__ = ["ALONE_LOSES_BELOW", "ARRAYS_LOSE_BELOW", "Solved", "choose", "follow_exact", "forms_of"]
 
 Rows = NDArray[np.intp]
-MOST_BITS = 62  # of a pattern
+MOST_BITS = 59  # of a pattern, beside those of angular velocity
 
 
-def forms_of(variation: Variation) -> list[tuple[Form | None, Rows]]:
+class Kind(NamedTuple):
+    """The form of a motion, and the axis of the body that it is about, if there is one."""
+
+    form: Form | None
+    axis: int | None
+
+
+def forms_of(variation: Variation) -> list[tuple[Kind, Rows]]:
     """Return the forms of an ensemble, each with its trajectories; one look at a scene for each pattern of zeros.
 
     A form is chosen by which components are zero and which moments and coefficients are equal: never by other numbers.
     """
-    chosen: dict[Form | None, list[Rows]] = {}
-    for rows in _patterns(variation):
-        chosen.setdefault(exact_form(variation.scene_of(int(rows[0]))), []).append(rows)
-    return [(form, np.sort(np.concatenate(parts))) for form, parts in chosen.items()]
+    chosen: dict[Kind, list[Rows]] = {}
+    known: dict[Hashable, Kind] = variation.kept("forms", dict)
+    for pattern, rows in _patterns(variation):
+        kind = known.get(pattern)
+        if kind is None:
+            scene = variation.scene_of(int(rows[0]))
+            form = exact_form(scene)
+            kind = Kind(form, form and form.axis(scene))
+            if pattern is not None:
+                known[pattern] = kind
+        chosen.setdefault(kind, []).append(rows)
+    return [(kind, parts[0] if len(parts) == 1 else np.sort(np.concatenate(parts))) for kind, parts in chosen.items()]
 
 
-def _patterns(variation: Variation) -> list[Rows]:
-    """Return the trajectories in groups with the same zeros and the same equal constants."""
+def _patterns(variation: Variation) -> list[tuple[Hashable, Rows]]:
+    """Return the trajectories in groups with the same zeros and the same equal constants, each with what they share."""
     columns, n = variation.columns, len(variation)
-    bits = [variation.omega[:, k] != 0 for k in range(3)]
-    bits += [column != 0 for column in columns.values()]
+    code = (variation.omega != 0) @ np.array([1, 2, 4])
+    if not columns:
+        if (code == code[0]).all():
+            return [(int(code[0]), np.arange(n))]
+        return [(k, rows) for k in range(8) if len(rows := np.flatnonzero(code == k))]
+    bits = [column != 0 for column in columns.values()]
     bits += [one == other for one, other in combinations(columns.values(), 2)]
     bits += [abs(columns[name]) <= variation.negligible for name in columns if name in PRODUCTS]
     bits += [columns[name] == value for name in columns for value in variation.constants_beside(name)]
-    summed = len(variation.scene.torques) > 1 and any(variation.places[name].torque >= 0 for name in columns)
+    kinds = [torque.kind for torque in variation.scene.torques]
+    varied = [kinds[place] for name in columns if (place := variation.places[name].torque) >= 0]
+    summed = any(kinds.count(kind) > 1 for kind in varied)
     if summed or len(bits) > MOST_BITS:  # sums of constants may vanish too
-        return [np.array([i]) for i in range(n)]
-    code = np.zeros(n, dtype=np.int64)
-    for k, bit in enumerate(bits):
-        code |= bit.astype(np.int64) << k
+        return [(None, np.array([i])) for i in range(n)]
+    code = code + np.array(bits).T @ (8 << np.arange(len(bits)))
     order = np.argsort(code, kind="stable")
     edges = np.flatnonzero(np.diff(code[order])) + 1
-    return np.split(order, edges)
+    names = tuple(columns)
+    return [((names, int(code[rows[0]])), rows) for rows in np.split(order, edges)]
 
 
-STEPS_BELOW = {"axial": 1000.0, "spin_up": 1500.0, "heavy_top": 100.0}
-"""Up to which angle, rad, steps are faster than closed forms that are made one by one; see :func:`choose`."""
+ARRAYS_LOSE_BELOW = {"symmetric body driven about its axis, angular velocity alone": 1e4}
+"""Up to which angle, rad, steps are faster than arrays of a form whose constants do not vary; see :func:`choose`."""
+
+TILTED_LOSES_BELOW = 50.0
+"""The same of free bodies in axes that are not principal."""
+
+ALONE_LOSES_BELOW = {"free_body": 1e4, "axial": 1e3, "spin_up": 1e3}
+"""The same of closed forms that are made one by one, by library."""
 
 
 class Solved(NamedTuple):
@@ -75,22 +103,43 @@ class Solved(NamedTuple):
 def choose(variation: Variation, times: Floats, start: float, faster: bool) -> list[Solved]:
     """Return the trajectories to be followed in closed form: with ``faster``, those for which steps take longer.
 
-    Measured by ``python -m symrot.bench.starts --ensembles``, for spans of 0.1 to 1000 s and tolerances of 1e-6 and
-    1e-12: a closed form made as an array takes 3 to 14 us, less than any steps, which take 5 to 30 us and 0.05 us for
-    each rad. Made one by one it takes 40 us (a top whose axes are turned first), 60 us (a rotation about one axis) or
-    90 us (a spin-up): then steps are faster up to the angles of :data:`STEPS_BELOW`. The angle is that of the
-    trajectory itself, so that its method does not depend on the others.
+    Measured for 0.01 to 10^4 rad, tolerances of 1e-6 and 1e-12 and 400 trajectories of 101 samples (``python -m
+    symrot.bench.starts --ensembles`` prints the same for the scenes' own spans), in microseconds per trajectory:
+
+    - Arrays of closed forms take 4 to 18 where starts alone vary and 4 to 29 where constants do; steps take 13 to 46
+      and 33 to 75 up to 10 rad, and more beyond.
+    - A free body in axes that are not principal takes 20 as an array, for integers, and 14 by steps at 40 rad (10^4
+      trajectories), 30 to 38 at 100 rad.
+    - The other exception is the angular velocity alone of a symmetric body that is damped, from starts alone: 12 as an
+      array, 6 to 9 by steps, which are few since the motion ends.
+    - Motions made one by one take 1100 with products of inertia that vary, for their principal axes, and 40 to 80 about
+      one axis or spun up, with constants so large or small that arrays are not made. Steps take as much at the angles
+      of :data:`ALONE_LOSES_BELOW`.
+
+    The angle is that of the trajectory itself, so that its method does not depend on the others.
     """
-    found, without_compiler = [], bool(not faster and library.missing())  # steps need one too
-    for form, rows in forms_of(variation):
-        if form is None:
+    found: list[Solved] = []
+    for kind, rows in forms_of(variation):
+        if kind.form is None:
             continue
-        batch, usual = (None, None) if without_compiler else _batch(variation, form, rows)
-        if batch is None and faster:
-            rows = rows[_angles(variation, times, start)[rows] > STEPS_BELOW.get(form.library, 0.0)]
-        if len(rows):
-            found.append(Solved(form, rows, batch, usual))
+        without_compiler = not loaded(kind.form.library) and library.missing()
+        if without_compiler and faster:  # steps are followed by SciPy then
+            continue
+        least = _arrays_lose_below(variation, kind.form) if faster and not variation.columns else None
+        if least is not None:
+            rows = rows[_angles(variation, times, start)[rows] > least]
+        for each, batch, usual in [(rows, None, None)] if without_compiler else _batches(variation, kind, rows):
+            if batch is None and faster:
+                each = each[_angles(variation, times, start)[each] > ALONE_LOSES_BELOW.get(kind.form.library, 0.0)]
+            if len(each):
+                found.append(Solved(kind.form, each, batch, usual))
     return found
+
+
+def _arrays_lose_below(variation: Variation, form: Form) -> float | None:
+    if form.library == "free_body" and not variation.scene.body.principal.given_axes:
+        return TILTED_LOSES_BELOW
+    return ARRAYS_LOSE_BELOW.get(form.name)
 
 
 def _angles(variation: Variation, times: Floats, start: float) -> Floats:
@@ -148,7 +197,12 @@ def _put_starts(
         return
     states = variation.initial_states
     if at_start.ndim == 1:
-        at_start = np.broadcast_to(at_start, (len(variation), len(at_start)))
+        own = slice(None) if len(rows) == len(variation) else rows
+        for k in np.flatnonzero(at_start).tolist():
+            omega[own, k] = states[own, :3]
+            if quaternion is not None:
+                quaternion[own, k] = states[own, 3:]
+        return
     chosen, sample = np.nonzero(at_start[rows])
     omega[rows[chosen], sample] = states[rows[chosen], :3]
     if quaternion is not None:
@@ -174,90 +228,187 @@ class _Alone:
 
 # ------------------------------------------------------------------------------------------------ arrays of each form
 
+_FAR = 1e100  # moments, torques and damping up to it, and moments down to its inverse, have quotients within bounds
+Usual = NDArray[np.bool_] | bool
 
-def _batch(variation: Variation, form: Form, rows: Rows) -> tuple["Batch | None", Any]:
-    """Return the motions as arrays, or None where they are made one by one; and which rows the arrays are good for."""
-    make = BATCHES.get(form.library)
+
+class _Part(NamedTuple):
+    """Trajectories of one form about one axis, with what all forms take of them."""
+
+    variation: Variation
+    axis: int | None
+    rows: Rows
+    omega: Floats  # (n, 3)
+
+    @property
+    def start(self) -> Floats:
+        """Unit quaternions as pairs of doubles, (n, 8) or (8,)."""
+        variation, found = self.variation, self.variation.attitudes
+        if found is None:
+            own = variation.kept("attitude", lambda: np.array(attitude(variation.scene.initial.quaternion)))
+            return own  # type: ignore[no-any-return]
+        return found if len(self.rows) == len(variation) else found[self.rows]
+
+    def constant(self, name: str) -> Any:
+        """Return a constant as a Fraction, or of each trajectory."""
+        value = self.variation.constant(name)
+        return value if isinstance(value, Fraction) else value[self.rows]
+
+    def moments(self) -> tuple[Any, Any]:
+        """Return the moments across the axis and about it."""
+        assert self.axis is not None
+        return self.constant(PRINCIPAL[self.axis - 2]), self.constant(PRINCIPAL[self.axis])
+
+
+def _batches(variation: Variation, kind: Kind, rows: Rows) -> Iterator[tuple[Rows, "Batch | None", Any]]:
+    """Yield motions as arrays, or None where they are made one by one; and which rows the arrays are good for."""
+    make = BATCHES.get(kind.form.library) if kind.form else None
     if make is None:
-        return None, None
+        yield rows, None, None
+        return
     from symrot.closed_form.batches import usual
 
-    omega = np.ascontiguousarray(variation.omega[rows])
-    start = variation.attitudes
-    start = np.array(attitude(variation.scene.initial.quaternion)) if start is None else start[rows]
-    batch, fine = make(variation, rows, omega, start)
-    if batch is None:
-        return None, None
-    for name in variation.columns:
-        size = abs(variation.columns[name][rows])
-        fine = fine & (size <= LARGEST) & ((size >= SMALLEST) | (size == 0))
-    return batch, fine & usual(omega)
+    for part in _parts(variation, kind, rows):
+        batch, fine = make(part)
+        if batch is not None:
+            for name in variation.columns:
+                size = abs(variation.columns[name][part.rows])
+                fine = fine & (size <= LARGEST) & ((size >= SMALLEST) | (size == 0))
+            fine = fine & usual(part.omega)
+        yield part.rows, batch, fine
 
 
-def _free(variation: Variation, rows: Rows, omega: Floats, start: Floats) -> tuple["Batch | None", Any]:
+def _parts(variation: Variation, kind: Kind, rows: Rows) -> Iterator[_Part]:
+    """Yield the trajectories of a form; of tops, those whose centre lies on either side of the fixed point apart."""
+    groups = [rows]
+    if kind.form and kind.form.library == "heavy_top" and variation.columns:
+        height = variation.constant(f"{variation.prefix(0)}center_of_mass_{(kind.axis or 0) + 1}")
+        if not isinstance(height, Fraction):
+            groups = [rows[height[rows] > 0], rows[height[rows] <= 0]]
+    for group in groups:
+        if len(group):
+            yield _Part(variation, kind.axis, group, np.ascontiguousarray(variation.omega[group]))
+
+
+def _free(part: _Part) -> tuple["Batch | None", Usual]:
     from symrot.closed_form import batches
+    from symrot.closed_form.free_body.motion import Body
 
+    variation = part.variation
     if not variation.columns:
-        return batches.free_bodies(variation.scene.body.principal, omega, start), True
+        body = variation.kept("free body", lambda: Body(variation.scene.body.principal))
+        return batches.free_bodies(body, part.omega, part.start), True
     if not variation.in_principal_axes:
-        return None, None
-    if any(isinstance(x, Fraction) and Fraction(float(x)) != x for x in map(variation.constant, PRINCIPAL)):
-        return None, None
-    table = variation.moments[rows]
-    return batches.free_bodies_of_moments(table, omega, start), table.min(axis=1) > 0
+        return None, False
+    moments = [part.constant(name) for name in PRINCIPAL]
+    fine = variation.moments[part.rows].min(axis=1) > 0
+    return batches.free_bodies_of_moments(moments, part.omega, part.start), fine
 
 
-def _doubles(value: Any, rows: Rows) -> Any:
-    return float(value) if isinstance(value, Fraction) else value[rows]
+def _doubles(value: Any) -> Any:
+    return float(value) if isinstance(value, Fraction) else value
 
 
-def _top(variation: Variation, rows: Rows, omega: Floats, start: Floats) -> tuple["Batch | None", Any]:
+def _top(part: _Part) -> tuple["Batch | None", Usual]:
     from symrot.closed_form import batches
-    from symrot.closed_form.heavy_top.motion import Top
+    from symrot.closed_form.heavy_top.motion import Frame
 
-    torque, body = variation.scene.torques[0].values, variation.scene.body
-    if not variation.columns:
-        moments = [body.inertia[k][k] for k in range(3)]
-        top = Top(moments, torque["weight"], torque["center_of_mass"], torque["direction"])
-        return (batches.tops(top, omega, start), True) if top.plain else (None, None)
-    prefix = variation.prefix(0)
-    names = ("weight", *(f"center_of_mass_{k}" for k in (1, 2, 3)))
-    constants = {name: variation.constant(f"{prefix}{name}") for name in names}
-    direction = torque["direction"]
-    sizes = {name: np.broadcast_to(_doubles(x, rows), len(rows)) for name, x in constants.items()}
-    if direction[0] or direction[1]:
-        return None, None
-    pull = np.zeros((len(rows), 2))
-    if all(not isinstance(x, Fraction) or Fraction(float(x)) == x for x in constants.values()):
-        pull[:, 0], pull[:, 1] = dd.two_product(sizes["weight"], sizes["center_of_mass_3"])
+    assert part.axis is not None
+    variation = part.variation
+    prefix, torque = variation.prefix(0), variation.scene.torques[0].values
+    weight, height = (part.constant(f"{prefix}{name}") for name in ("weight", f"center_of_mass_{part.axis + 1}"))
+    fine: Any = True
+    if isinstance(weight, Fraction) and isinstance(height, Fraction):
+        pull = np.array(pair(weight * height))
     else:
-        weight, height = (constants[name] for name in ("weight", "center_of_mass_3"))
-        for k, i in enumerate(rows.tolist()):
-            factors = [x if isinstance(x, Fraction) else Fraction(float(x[i])) for x in (weight, height)]
-            pull[k] = pair(factors[0] * factors[1])
-    plain = (sizes["center_of_mass_1"] == 0) & (sizes["center_of_mass_2"] == 0) & (abs(pull[:, 0]) > SMALLEST)
-    plain &= (pull[:, 0] > 0) if direction[2] < 0 else (pull[:, 0] < 0)
-    plain &= np.all([(abs(x) < 1e120) & ((x == 0) | (abs(x) > 1e-120)) for x in sizes.values()], axis=0)
-    across, own = (variation.constant(name) for name in ("I_xx", "I_zz"))
-    across, own = (x if isinstance(x, Fraction) else x[rows] for x in (across, own))
-    upright = np.array([1.0, *[0.0] * 7])
-    return batches.tops_of(across, own, pull * np.sign(pull[:, :1]), upright, omega, start), plain
+        pull = np.empty((len(part.rows), 2))
+        if all(not isinstance(x, Fraction) or Fraction(float(x)) == x for x in (weight, height)):
+            pull[:, 0], pull[:, 1] = dd.two_product(_doubles(weight), _doubles(height))
+        else:
+            for k in range(len(part.rows)):
+                factors = [x if isinstance(x, Fraction) else Fraction(float(x[k])) for x in (weight, height)]
+                pull[k] = pair(factors[0] * factors[1])
+        fine = abs(pull[:, 0]) > SMALLEST
+        for size in (abs(_doubles(weight)), abs(_doubles(height))):
+            fine = fine & (size < 1e120) & (size > 1e-120)
+    sign = 1 if pull.flat[0] > 0 else -1
+    axis, key = part.axis, (part.axis, sign)
+    frame = variation.kept(("frame", key), lambda: Frame(axis, [-sign * x for x in torque["direction"]]))
+    if frame.plain:
+        start = part.start
+    elif variation.quaternion is None:
+        own = variation.scene.initial.quaternion
+        start = variation.kept(("turned attitude", key), lambda: np.array(frame.start(own)))
+    else:
+        start = batches.turned(frame, variation.quaternion[part.rows])
+    return batches.tops(*part.moments(), sign * pull, frame, part.omega, start), fine
 
 
-def _gyrostat(variation: Variation, rows: Rows, omega: Floats, start: Floats) -> tuple["Batch | None", Any]:
+def _gyrostat(part: _Part) -> tuple["Batch | None", Usual]:
     from symrot.closed_form import batches
-    from symrot.closed_form.gyrostat.motion import Gyrostat
 
-    if variation.columns:
-        return None, None
-    scene = variation.scene
-    body = Gyrostat([scene.body.inertia[k][k] for k in range(3)], scene.torques[0].values["angular_momentum"])
-    return batches.gyrostats(body, omega, start), True
+    assert part.axis is not None
+    rotor = part.constant(f"{part.variation.prefix(0)}angular_momentum_{part.axis + 1}")
+    return batches.gyrostats(*part.moments(), rotor, part.axis, part.omega, part.start), True
 
 
-BATCHES: dict[str, Callable[[Variation, Rows, Floats, Floats], tuple["Batch | None", Any]]] = {
+def _driving(part: _Part, kind: str, field: str, axis: int) -> Any:
+    """Return the sum of a component of the torques of a kind; None if it is one of several that vary."""
+    variation = part.variation
+    found = [
+        part.constant(f"{variation.prefix(k)}{field}_{axis % 3 + 1}")
+        for k, torque in enumerate(variation.scene.torques)
+        if torque.kind == kind
+    ]
+    if all(isinstance(value, Fraction) for value in found):
+        return sum(found, Fraction(0))
+    return found[0] if len(found) == 1 else None
+
+
+def _driven(part: _Part) -> tuple["Batch | None", Usual]:
+    from symrot.closed_form import batches
+    from symrot.closed_form.axial.compiled import Constants
+    from symrot.closed_form.axial.motion import Driven
+
+    axis = part.axis
+    assert axis is not None
+    push = _driving(part, "constant_body", "torque", axis)
+    drags = [_driving(part, "damping", "linear", k) for k in (axis, axis - 1)]
+    if any(value is None for value in (push, *drags)):
+        return None, False
+    given = [*part.moments(), push, *drags]
+    try:
+        if all(isinstance(value, Fraction) for value in given):
+            moments = [part.constant(name) for name in PRINCIPAL]
+            return batches.driven(Driven(moments, axis, push, *drags).constants, part.omega, part.start), True
+        bounds = [_doubles(value) for value in given]
+        if any((np.abs(x) > _FAR).any() for x in bounds) or any(
+            (x < 1 / _FAR).any() for x in map(np.array, bounds[:2])
+        ):
+            return None, False
+        columns = [[value] * len(part.rows) if isinstance(value, Fraction) else value.tolist() for value in given]
+        ratios = [[x.as_integer_ratio() for x in column] for column in columns]
+        bodies = [Constants(axis, (a, c), *rest) for a, c, *rest in zip(*ratios, strict=True)]
+        return batches.driven(bodies, part.omega, part.start), True
+    except InputError:  # of one trajectory, which says so alone
+        return None, False
+
+
+def _spin_up(part: _Part) -> tuple["Batch | None", Usual]:
+    from symrot.closed_form import batches
+
+    assert part.axis is not None
+    torque = _driving(part, "constant_body", "torque", part.axis)
+    if torque is None:
+        return None, False
+    return batches.spin_ups(*part.moments(), torque, part.axis, part.omega, part.start), True
+
+
+BATCHES: dict[str, Callable[[_Part], tuple["Batch | None", Usual]]] = {
     "free_body": _free,
     "heavy_top": _top,
     "gyrostat": _gyrostat,
+    "axial": _driven,
+    "spin_up": _spin_up,
 }
-"""How the trajectories of a form become arrays; those of other forms are made one by one."""
+"""How the trajectories of a form become arrays."""

@@ -27,6 +27,7 @@ from symrot.propagation.compiled_models import (
     taylor_library,
 )
 from symrot.propagation.method import METHODS, choose_method
+from symrot.propagation.motion import python_rates
 from symrot.propagation.steppers import dop853, taylor
 from symrot.propagation.steppers.cut_off import CutOff
 from symrot.propagation.steppers.smoothness import roughness
@@ -145,7 +146,7 @@ def _switched(
 
 def _solved(problem: Problem, method: str) -> list[Solved]:
     """Return the trajectories that a method follows in closed form."""
-    if method == "exact" or (method == "auto" and not missing_compiler()):
+    if method in ("exact", "auto"):
         return choose(problem.variation, problem.times, problem.t0, faster=method == "auto")
     return []
 
@@ -196,15 +197,15 @@ class _Stepped:
         """Return times on the clock of the steppers, which shows 0 at the epoch."""
         return times - self.epoch if self.epoch else times
 
-    def clock(self, k: int) -> dop853.Clock | None:
-        """Return the clock of the rates of one motion, see :mod:`symrot.propagation.steppers.dop853`."""
+    def clock(self, k: int, make: Callable[[Plan, SceneKernel], Any] = epoch.compiled) -> Any:
+        """Return the clock of the rates of one motion; arguments as of :func:`symrot.propagation.time_shift.clock`."""
         if not self.kernel.rates.uses("t"):
             return None
 
         def moving() -> tuple[Plan, SceneKernel]:
             return self.moved if self.epoch else epoch.moved(self.plan, self.kernel)
 
-        return epoch.clock(moving, self.numbers.constants(k), self.epoch)
+        return epoch.clock(moving, self.numbers.constants(k), self.epoch, make)
 
     def read(self, states: Floats, omega: Floats, quaternion: Floats | None) -> None:
         """Write angular velocity and attitude of the states into their places."""
@@ -252,7 +253,7 @@ class _Stepped:
 
 def _taylor(stepped: _Stepped, method: str) -> lanes.Outcome:
     problem = stepped.problem
-    if grows_late(stepped.plan) or formula_deviations(*stepped.moved, [0.0] * stepped.p.shape[1]) is not None:
+    if grows_late(stepped.plan) or formula_deviations(*stepped.moved) is not None:
         return _enclosed(stepped)
     path = lane_library(*stepped.moved, problem.tolerance)
     return lanes.follow(
@@ -284,19 +285,21 @@ def _dop853(stepped: _Stepped, method: str) -> lanes.Outcome:
 
 
 def _scipy(stepped: _Stepped, method: str) -> lanes.Outcome:
-    from symrot.codegen.numpy_kernel import load_numpy_kernel
     from symrot.propagation.steppers import fallback
 
-    problem, function = stepped.problem, load_numpy_kernel(stepped.moved[1].rates)
+    problem, rates = stepped.problem, python_rates(*stepped.moved)
     blocks, scales = error_blocks(stepped.plan)
     solver = method.partition(":")[2]
     options: dict[str, Any] = {"blocks": blocks, "scales": scales, **({"method": solver} if solver else {})}
 
+    bounds = formula_deviations(*stepped.moved)
+    names = [name for name, _ in stepped.moved[1].rate_parameters]
+
     def integrate(k: int, times: Floats) -> tuple[Floats, Any]:
-        rates = function if stepped.p.shape[1] else lambda t, y, p: function(t, y)
         start = rates, stepped.p[k], stepped.y[k], stepped.t0
-        deviations = formula_deviations(*stepped.moved, stepped.p[k])
-        return fallback.integrate(*start, times, problem.tolerance, deviations=deviations, **options)
+        deviations = bounds and bounds(dict(zip(names, stepped.p[k].tolist(), strict=True)))
+        clock = stepped.clock(k, python_rates)
+        return fallback.integrate(*start, times, problem.tolerance, deviations=deviations, clock=clock, **options)
 
     return stepped.one_by_one(integrate)
 

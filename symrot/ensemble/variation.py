@@ -1,10 +1,11 @@
 """What differs between the trajectories of an ensemble, read and checked, and the least structure that covers all."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from typing import Any, NamedTuple
+from weakref import finalize
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -34,7 +35,13 @@ GENERAL_START = Initial(  # with no component that any rule of the planner could
     (Fraction(3, 7), Fraction(5, 11), Fraction(7, 13)),
     (Fraction(1, 5), Fraction(2, 5), Fraction(4, 5), Fraction(2, 5)),
 )
+BY_ZEROS = {"gravity", "rotor", "constant_body", "damping"}
+"""Torques of whose constants a plan depends on nothing but which are zero."""
+
 DISTINCT = (Fraction(4), Fraction(5), Fraction(6))  # admissible moments of a body of any class
+
+
+_rooms: dict[int, dict[Hashable, Any]] = {}  # of scenes by their ids, as long as they live
 
 
 class _Place(NamedTuple):
@@ -68,6 +75,17 @@ class Variation:
         if self.quaternion is None:
             return Initial((x, y, z), self.scene.initial.quaternion)
         return Initial((x, y, z), _unit(self.quaternion[i].tolist()))
+
+    def kept(self, key: Hashable, make: Callable[[], Any]) -> Any:
+        """Return what the scene alone gives: found once, for all ensembles of the same scene."""
+        place = id(self.scene)
+        room = _rooms.get(place)
+        if room is None:
+            room = _rooms[place] = {}
+            finalize(self.scene, _rooms.pop, place, None)
+        if key not in room:
+            room[key] = make()
+        return room[key]
 
     @cached_property
     def attitudes(self) -> Floats | None:
@@ -105,7 +123,7 @@ class Variation:
 
     def prefix(self, torque: int) -> str:
         """Return what stands before the names of the constants of a torque."""
-        found: str = general_structure(self.scene)["torques"][torque]["prefix"]
+        found: str = self.kept("structure", lambda: general_structure(self.scene))["torques"][torque]["prefix"]
         return found
 
     def constants_beside(self, name: str) -> list[float]:
@@ -154,6 +172,18 @@ class Variation:
         values = {name: _representative(column) for name, column in self.columns.items()}
         if not PLACES.keys().isdisjoint(values):
             values |= self._representative_inertia()
+        if not {self.scene.torques[place.torque].kind for place in self._varied if place.torque >= 0} <= BY_ZEROS:
+            return self._planned(values)
+        moments = [(name, values[name]) for name in PLACES if name in values]
+        zeros = [(name, not values[name]) for name in self.columns if name not in PLACES]
+        found: Plan = self.kept(("plan", *moments, *zeros), lambda: self._planned(values))
+        return found
+
+    @property
+    def _varied(self) -> list[_Place]:
+        return [self.places[name] for name in self.columns]
+
+    def _planned(self, values: Mapping[str, Fraction]) -> Plan:
         return make_plan(self._with(GENERAL_START, values), switched=switched(self.scene))
 
     def _representative_inertia(self) -> dict[str, Fraction]:
@@ -249,13 +279,17 @@ def read_variation(
 def _check_bodies(variation: Variation) -> None:
     """Refuse moments of inertia that no body has, or that leave its motion undetermined.
 
-    Doubles settle it where principal moments are given and clearly fulfil their inequalities; the rest is looked at
-    exactly.
+    Doubles settle it where principal moments clearly fulfil their inequalities; the rest is looked at exactly.
     """
-    doubtful = np.ones(len(variation), dtype=bool)
-    if variation.in_principal_axes:
-        small, middle, large = np.sort(variation.moments, axis=1).T
-        doubtful = ~((small > CLEARLY * large) & (small + middle > (1 + CLEARLY) * large))
+    moments: Any = variation.moments
+    if not variation.in_principal_axes:
+        tensors = np.empty((len(variation), 3, 3))
+        for name, (i, j) in PLACES.items():
+            value = variation.constant(name)
+            tensors[:, i, j] = tensors[:, j, i] = float(value) if isinstance(value, Fraction) else value
+        moments = np.linalg.eigvalsh(tensors)  # to some 1e-15 of the largest
+    small, middle, large = np.sort(moments, axis=1).T
+    doubtful = ~((small > CLEARLY * large) & (small + middle > (1 + CLEARLY) * large))
     for i in np.flatnonzero(doubtful).tolist():
         principal = variation.scene_of(i).body.principal
         require_admissible(principal, f"parameters, trajectory {i}")
@@ -288,7 +322,7 @@ def _array(values: ArrayLike, shape: tuple[int, ...], name: str, unit: str) -> F
         raise InputError(
             f"{name}: expected finite numbers in {unit}, got {array[tuple(place)]} in trajectory {place[0]}"
         )
-    return array
+    return array + 0.0  # zeros without a sign, as exact numbers have them
 
 
 def _places(scene: Scene) -> dict[str, _Place]:

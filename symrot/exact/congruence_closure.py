@@ -4,12 +4,13 @@
 each is a symbol. A pair with ``f - g = 0``, or ``f + g = pi/2``, is put into the formula, and it is read again.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import combinations
 
 from sympy import Expr, log, pi
 
 from symrot.exact.angles.inverse import INVERSE
+from symrot.exact.floats import seems_zero
 from symrot.exact.inverse_sums import proof
 from symrot.exact.ring.ring import FormulaRing
 
@@ -32,22 +33,26 @@ def proof_by_congruence(
         if found is not None:
             return (*rings, ring, *found)
         names: list[Expr] = [leaf for leaf in ring.symbols if type(leaf) in _NAMES and leaf.free_symbols]
-        replaced = _replaced(names, hypotheses, domain) if len(names) <= MOST_SYMBOLS else None
-        if replaced is None:
+        for old, new, further in _equal_pairs(names, hypotheses, domain) if len(names) <= MOST_SYMBOLS else ():
+            replaced = left.xreplace({old: new}), right.xreplace({old: new})
+            if replaced != (left, right):  # the ring may name what the sides do not show
+                left, right = replaced
+                domain = [formula.xreplace({old: new}) for formula in domain]
+                rings += further
+                break
+        else:
             return None
-        old, new, further = replaced
-        rings += further
-        left, right = left.xreplace({old: new}), right.xreplace({old: new})
 
 
-def _replaced(
+def _equal_pairs(
     names: Sequence[Expr], hypotheses: Sequence[Expr], domain: Sequence[Expr]
-) -> tuple[Expr, Expr, tuple[FormulaRing, ...]] | None:
-    """Return a symbol, what it is in terms of another, and the rings that prove it."""
+) -> Iterator[tuple[Expr, Expr, tuple[FormulaRing, ...]]]:
+    """Yield symbols, each with what it is in terms of another, and the rings that prove it."""
     for first, second in combinations(names, 2):
         for other in (first, pi / 2 - first):
+            if not hypotheses and not seems_zero(second - other, domain):
+                continue
             ring = FormulaRing([second, other], hypotheses, domain)
             found = proof(ring, ring.difference(second, other).numerator)
             if found is not None:
-                return second, other, (ring, *found)
-    return None
+                yield second, other, (ring, *found)

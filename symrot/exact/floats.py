@@ -1,13 +1,20 @@
 """Formulas in double precision: a quick look at many points, of which nothing is concluded."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from random import Random
 from typing import Any
 
 import sympy
 from sympy import Expr, S, pi
 
-__all__ = ["NoValue", "float_at"]
+__all__ = ["NoValue", "float_at", "seems_zero"]
+
+LOOKS = 40
+DIFFERENCES = 3
+"""Points at which a formula is clearly not zero, and after which nobody tries to prove that it is."""
+CLEARLY = 1e-4
+"""Of the size of its terms: far above what rounding and cancellation leave."""
 
 
 class NoValue(ArithmeticError):
@@ -69,3 +76,26 @@ def _computed(node: Expr, values: Mapping[Expr, float], known: dict[Expr, float]
     if node.is_Pow:
         return parts[0] ** parts[1]
     return _FUNCTIONS[type(node)](*parts)
+
+
+def seems_zero(formula: Expr, domain: Sequence[Expr] = ()) -> bool:
+    """Return whether a formula may be zero at all points where ``domain`` is not negative, as far as a few points show.
+
+    To skip proofs that cannot succeed: False costs at most a proof, True costs time.
+    """
+    source, differences = Random(11), 0
+    leaves = sorted(formula.free_symbols.union(*(each.free_symbols for each in domain)), key=str)
+    for look in range(LOOKS):
+        reach = (1.0, 0.3, 5.0)[look % 3]
+        values = {leaf: source.uniform(-reach, reach) for leaf in leaves}
+        known: dict[Expr, float] = {}
+        try:
+            if any(float_at(each, values, known) < 0 for each in domain):
+                continue
+            terms = [float_at(term, values, known) for term in (formula.args if formula.is_Add else (formula,))]
+        except NoValue:
+            continue
+        differences += abs(math.fsum(terms)) > CLEARLY * (1 + sum(map(abs, terms)))
+        if differences == DIFFERENCES:
+            return False
+    return True

@@ -13,15 +13,16 @@ from fractions import Fraction
 from typing import Any
 
 from mpmath import iv
-from sympy import Expr, Integer, Rational, cos, exp, log, pi, sin
+from sympy import Expr, Integer, Rational, acos, asin, atan, cos, exp, log, pi, sin, tan
 from sympy.polys.rings import PolyElement
 
 from symrot.errors import InputError
 from symrot.exact.angles.inverse import INVERSE, range_of
+from symrot.exact.floats import seems_zero
 from symrot.exact.intervals import enclosure
 from symrot.exact.ring.ring import FormulaRing
 
-__all__ = ["Lift", "lifts", "proof", "vanishes"]
+__all__ = ["Lift", "Principal", "lifts", "principal", "proof", "vanishes"]
 
 MOST_TERMS = 60
 """Of a residual that is still factored."""
@@ -50,21 +51,24 @@ def proof(ring: FormulaRing, numerator: PolyElement) -> tuple[FormulaRing, ...] 
     numerator = ring.reduce(numerator)
     if not numerator:
         return ()
-    for lift in lifts(ring, numerator):
+    for lift in lifts(ring, numerator, only_zero=not ring.hypotheses):
         further = [proof(lift.ring, poly) for poly in lift.numerators]
         if None not in further:
             return (lift.ring, *(other for found in further if found for other in found))
     return None
 
 
-def lifts(ring: FormulaRing, numerator: PolyElement) -> Iterator[Lift]:
-    """Yield, for factors of a reduced numerator, what suffices for them to vanish."""
+def lifts(ring: FormulaRing, numerator: PolyElement, only_zero: bool = False) -> Iterator[Lift]:
+    """Yield, for factors of a reduced numerator, what suffices for them to vanish.
+
+    With ``only_zero``, factors that are not zero at a few points in double precision are left out.
+    """
     places = {number for leaf, number in ring.symbols.items() if isinstance(leaf, _NAMES)}
     if not places or len(numerator) > MOST_TERMS or not any(mono[n] for mono in numerator for n in places):
         return
     for factor, _ in numerator.factor_list()[1]:
         used = {number for number in places if any(mono[number] for mono in factor)}
-        if used:
+        if used and (not only_zero or seems_zero(factor.as_expr(*ring.generators), ring.domain)):
             with suppress(InputError):  # a lift that cannot be read proves nothing
                 yield from _lifts_of(ring, factor, used)
 
@@ -82,6 +86,46 @@ def _lifts_of(ring: FormulaRing, factor: PolyElement, used: set[int]) -> Iterato
             for part, period in ((Integer(1), 2), (Rational(1, 2), 4)):
                 if _keeps_within(terms, period):
                     yield _lifted(ring, [(sin(part * difference), Integer(0)), (cos(part * difference), Integer(1))])
+
+
+@dataclass(frozen=True)
+class Principal:
+    """A residual is zero where ``least`` and ``most``, formulas, are not negative, as ``rings`` prove."""
+
+    least: Expr
+    most: Expr
+    rings: tuple[FormulaRing, ...]
+
+
+def principal(ring: FormulaRing, numerator: PolyElement) -> Principal | None:
+    """Return where a residual is zero that says ``asin(S) = w`` for a proven ``S = sin w``, and so of acos and atan.
+
+    That is so exactly where w is a principal value: between -pi/2 and pi/2 for asin and atan, 0 and pi for acos.
+    """
+    names = {number: leaf for leaf, number in ring.symbols.items() if type(leaf) in _PRINCIPAL}
+    if not names or len(numerator) > MOST_TERMS:
+        return None
+    for factor, _ in numerator.factor_list()[1]:
+        used = [number for number in names if any(mono[number] for mono in factor)]
+        if len(used) != 1 or factor.degrees()[used[0]] != 1:
+            continue
+        (place,) = used
+        slope = factor.diff(ring.ring.gens[place])
+        if not slope.is_ground:
+            continue
+        leaf, number = names[place], slope.as_expr(*ring.generators)
+        angle = (leaf - factor.as_expr(*ring.generators) / number).expand()
+        function, least, most = _PRINCIPAL[type(leaf)]
+        with suppress(InputError):  # an angle that cannot be read proves nothing
+            other = FormulaRing([function(angle), leaf.args[0]], ring.hypotheses, ring.domain)
+            further = proof(other, other.difference(function(angle), leaf.args[0]).numerator)
+            if further is not None:
+                return Principal(angle - least, most - angle, (other, *further))
+    return None
+
+
+_PRINCIPAL = {asin: (sin, -pi / 2, pi / 2), acos: (cos, Integer(0), pi), atan: (tan, -pi / 2, pi / 2)}
+"""Inverse function -> what it inverts, and its least and greatest value, or their bounds."""
 
 
 def _lifted(ring: FormulaRing, equations: Sequence[tuple[Expr, Expr]]) -> Lift:

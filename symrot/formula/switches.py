@@ -11,6 +11,7 @@ formula                smooth formula                 guard
 ``abs(u)``             ``s u``                        ``u``
 ``max(a, b)``          ``b + (1 + s)/2 (a - b)``      ``a - b``
 ``where(c, a, b)``     ``b + p (a - b)``              those of the condition, p = 1 or 0
+                       or a or b alone (see below)
 ``floor(u)``           ``n``                          ``u - n`` and ``n + 1 - u``, n whole
 ``mod(a, b)``          ``a - b n``                    of ``floor(a/b)``
 ``atan2(y, x)``        where it is cut (see below)    ``x``, and ``y`` where x < 0
@@ -19,16 +20,24 @@ formula                smooth formula                 guard
 The arc tangent of two arguments jumps across the negative x axis; on that side it is ``s pi - atan2(y, -x)``, with s
 the sign of y, which is smooth there.
 
+In ``where(t > 1, sqrt(t - 1), 0)`` the root has no value before t = 1, and zero times no value is none. So a ``where``
+with such a part, or with one whose features could shorten steps, stays in the formulas until the modes are known:
+:func:`chosen` then leaves the part that holds alone, and guards inside the other part do not matter.
+
 Standard library only.
 """
 
+from collections.abc import Collection, Iterable, Mapping
 from fractions import Fraction
 from functools import lru_cache
 from typing import NamedTuple
 
-from symrot.formula.tree import SWITCHING, Node, children, names, parse, text
+from symrot.formula.tree import SWITCHING, Node, children, evaluate, names, parse, text
 
-__all__ = ["CHANGING", "MODES", "Smooth", "Switch", "condition_error", "has_switches", "smooth"]
+__all__ = [
+    "CHANGING", "MODES", "Conditions", "Smooth", "Switch", "blended", "chosen", "condition_error", "has_choices",
+    "has_switches", "hold", "smooth",
+]  # fmt: skip
 
 ONE: Node = ("number", Fraction(1))
 HALF: Node = ("number", Fraction(1, 2))
@@ -37,6 +46,11 @@ CHANGING = frozenset({"t", *(f"omega_{i}" for i in (1, 2, 3)), *(f"q{i}" for i i
 BENDING = {*SWITCHING, "abs", "atan2"}
 CONDITIONS = {"less", "and", "or", "not"}
 MODES = "switch_"  # how the names of modes begin
+HARMLESS_DEGREE = 6  # of polynomials, which have a value everywhere and no narrow feature: they may stay unchosen
+RISKY = HARMLESS_DEGREE + 1
+
+Conditions = tuple[tuple[Node, int], ...]
+"""Formulas of modes, and the values that all of them must have."""
 
 
 class Switch(NamedTuple):
@@ -50,8 +64,8 @@ class Switch(NamedTuple):
         ``"sign"``: the mode is the sign of the guard; ``"floor"``: it is the whole number below the guard.
     guard : Node
         A smooth formula, which may hold modes.
-    where : tuple of (str, int) or None
-        A mode and the value of it without which the guard does not matter.
+    where : Conditions
+        Without them the guard does not matter.
     label : str
         The function that switches, as it was written.
     at_zero : int
@@ -61,13 +75,16 @@ class Switch(NamedTuple):
     mode: str
     kind: str
     guard: Node
-    where: tuple[str, int] | None
+    where: Conditions
     label: str
     at_zero: int = 1
 
 
 class Smooth(NamedTuple):
-    """Formulas without switches, and the switches that were in them, each after those that stand in its guard."""
+    """Formulas without switches, and the switches that were in them, each after those that stand in its guard.
+
+    Formulas and guards may hold ``where(p, a, b)``, with p a formula of modes that is 1 or 0, see :func:`chosen`.
+    """
 
     formulas: tuple[Node, ...]
     switches: tuple[Switch, ...]
@@ -90,6 +107,8 @@ def condition_error(node: Node) -> str:
             if condition:
                 return "a comparison such as omega_3 < 1 as the condition of where"
             asked = [node[0] == "call" and node[1] == "where" and k == 0 for k, _ in enumerate(children(node))]
+        elif node[1] == "less" and any(part[0] == "call" and part[1] in ("less", "not") for part in node[2]):
+            return "one comparison at a time, such as 1 < t and t < 2"
         elif not condition:
             return "comparisons only in the condition of where"
         else:
@@ -98,6 +117,69 @@ def condition_error(node: Node) -> str:
         return next((error for error in errors if error), "")
 
     return wrong(node, False)
+
+
+def hold(conditions: Iterable[tuple[Node, int]], modes: Mapping[str, int], held: Collection[str] = ()) -> bool:
+    """Return whether conditions hold under some modes; one with a mode that is held between its values always does."""
+    return all(names(share) & set(held) or evaluate(share, modes) == value for share, value in conditions)
+
+
+def has_choices(node: Node) -> bool:
+    """Return whether a smooth formula holds a ``where`` whose part is chosen when the modes are known."""
+    return node[:2] == ("call", "where") or any(map(has_choices, children(node)))
+
+
+def chosen(node: Node, modes: Mapping[str, int], held: Collection[str] = ()) -> Node:
+    """Return a smooth formula with the one part of each ``where`` that holds under some modes.
+
+    Where a mode of the condition is held between its values, both parts hold in shares.
+    """
+    if not has_choices(node):
+        return node
+    if node[:2] == ("call", "where"):
+        share, yes, no = node[2]
+        if names(share) & set(held):
+            return _blend(share, chosen(yes, modes, held), chosen(no, modes, held))
+        return chosen(yes if evaluate(share, modes) == 1 else no, modes, held)
+    parts = tuple(chosen(child, modes, held) for child in children(node))
+    return ("call", node[1], parts) if node[0] == "call" else (node[0], *parts, *(node[2:] if node[0] == "**" else ()))
+
+
+def blended(node: Node) -> Node:
+    """Return a smooth formula in which both parts of each ``where`` stand, times their shares."""
+    return chosen(node, {}, names(node))
+
+
+def _degree(node: Node) -> int:
+    """Return the degree of a formula between its switches as a polynomial, in sines and cosines of the time too.
+
+    RISKY for what may have no value, a pole or a narrow feature.
+    """
+    kind = node[0]
+    if kind in ("number", "symbol"):
+        return int(kind == "symbol" and node[1] in CHANGING)
+    if kind == "call" and not names(node) & CHANGING:
+        return 0
+    degrees = [_degree(child) for child in children(node)]
+    most = max(degrees)
+    if most >= RISKY:
+        return RISKY
+    if kind == "*":
+        return min(sum(degrees), RISKY)
+    if kind == "/":
+        return degrees[0] if not names(node[2]) & CHANGING else RISKY
+    if kind == "**":
+        return min(most * node[2], RISKY) if node[2] >= 0 or not most else RISKY
+    if kind != "call":
+        return most
+    function, operands = node[1], node[2]
+    if function in ("sin", "cos"):
+        return 1 if most <= 1 and names(node) & CHANGING == {"t"} else RISKY
+    if function == "mod":
+        return most if not names(operands[1]) & CHANGING else RISKY
+    if function in ("sign", "step", "floor") or function in CONDITIONS:
+        return 0
+    return most if function in ("abs", "min", "max", "clip", "where") else RISKY
 
 
 @lru_cache(maxsize=256)
@@ -115,17 +197,28 @@ def smooth(sources: tuple[str, ...]) -> Smooth:
 class _Writer:
     def __init__(self, prefix: str) -> None:
         self.prefix, self.switches = prefix, list[Switch]()
-        self.known: dict[tuple[str, Node, tuple[str, int] | None, int], Node] = {}
+        self.known: dict[tuple[str, Node, Conditions, int], Node] = {}
         self.label = ""  # the function that is being rewritten
+        self.conditions: Conditions = ()  # under which what is being rewritten matters
 
-    def mode(self, kind: str, guard: Node, where: tuple[str, int] | None = None, at_zero: int = 1) -> Node:
+    def mode(self, kind: str, guard: Node, where: Conditions = (), at_zero: int = 1) -> Node:
         """Return the mode of a guard, made when it is first asked for."""
-        key = (kind, guard, where, at_zero)
-        if key not in self.known:
-            name = f"{self.prefix}{len(self.switches) + 1}"
-            self.switches.append(Switch(name, kind, guard, where, self.label, at_zero))
-            self.known[key] = ("symbol", name)
-        return self.known[key]
+        where = self.conditions + where
+        for count in range(len(where) + 1):  # one that matters wherever this one does will do
+            if (mode := self.known.get((kind, guard, where[:count], at_zero))) is not None:
+                return mode
+        name = f"{self.prefix}{len(self.switches) + 1}"
+        self.switches.append(Switch(name, kind, guard, where, self.label, at_zero))
+        self.known[kind, guard, where, at_zero] = ("symbol", name)
+        return ("symbol", name)
+
+    def part(self, node: Node, share: Node, value: int) -> Node:
+        """Return a part of a ``where`` as a smooth formula; its guards matter where the share has that value alone."""
+        outside = self.conditions
+        self.conditions = (*outside, (share, value))
+        smooth = self.smooth(node)
+        self.conditions = outside
+        return smooth
 
     def smooth(self, node: Node) -> Node:
         kind = node[0]
@@ -133,7 +226,10 @@ class _Writer:
             return node
         if kind == "call" and node[1] == "where":
             condition, yes, no = node[2]
-            return _blend(self.share(condition), self.smooth(yes), self.smooth(no))
+            share = self.share(condition)
+            if max(_degree(yes), _degree(no)) < RISKY:
+                return _blend(share, self.smooth(yes), self.smooth(no))
+            return ("call", "where", (share, self.part(yes, share, 1), self.part(no, share, 0)))
         parts = tuple(map(self.smooth, children(node)))
         if kind != "call":
             return (kind, *parts, *(node[2:] if kind == "**" else ()))
@@ -148,7 +244,7 @@ class _Writer:
         if name == "less":
             left, right = map(self.smooth, parts)
             self.label = text(condition)
-            return self._step(("-", right, left))
+            return self._step(_difference(right, left))
         shares = [self.share(part) for part in parts]
         if name == "not":
             return ("-", ONE, shares[0])
@@ -167,12 +263,12 @@ class _Writer:
     def _max(self, a: Node, b: Node) -> Node:
         if a == b:
             return a
-        return _blend(self._step(("-", a, b)), a, b)
+        return _blend(self._step(_difference(a, b)), a, b)
 
     def _min(self, a: Node, b: Node) -> Node:
         if a == b:
             return a
-        return _blend(self._step(("-", a, b)), b, a)
+        return _blend(self._step(_difference(a, b)), b, a)
 
     def _clip(self, u: Node, low: Node, high: Node) -> Node:
         return self._max(low, self._min(u, high))
@@ -185,9 +281,14 @@ class _Writer:
 
     def _atan2(self, y: Node, x: Node) -> Node:
         right = self.mode("sign", x)
-        above = self.mode("sign", y, (right[1], -1))
+        above = self.mode("sign", y, ((right, -1),))
         angle: Node = ("*", right, ("call", "atan2", (y, ("*", right, x))))
         return ("+", angle, ("*", ("*", HALF, ("-", ONE, right)), ("*", above, PI)))
+
+
+def _difference(a: Node, b: Node) -> Node:
+    """Return a - b; less zero it is a, the guard of other functions of a too."""
+    return a if b == ("number", 0) else ("-", a, b)
 
 
 def _blend(share: Node, yes: Node, no: Node) -> Node:

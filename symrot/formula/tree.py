@@ -59,9 +59,14 @@ class _Reader:
         self.tokens = list(self._split())
         self.index = 0
 
-    def fail(self, expected: str, position: int) -> InputError:
+    def fail(self, expected: str, position: int, function: str = "") -> InputError:
+        from symrot.formula.advice import function_advice, mark_advice  # only on the way to an error
+
         shown = self.source if len(self.source) <= 60 else self.source[:57] + "..."
-        return InputError(f"{self.where}expected {expected} at position {position + 1} of {shown!r}")
+        known = self.functions
+        advice = function_advice(function, known) if function else mark_advice(self.source, position, known)
+        reason = f" ({advice})" if advice else ""
+        return InputError(f"{self.where}expected {expected} at position {position + 1} of {shown!r}{reason}")
 
     def _split(self) -> Iterator[tuple[str, str, int]]:
         position = 0
@@ -129,7 +134,7 @@ class _Reader:
         if self.peek() != "(":
             return ("symbol", found)
         if found not in self.functions:
-            raise self.fail(f"one of the functions {', '.join(self.functions)} instead of '{found}'", position)
+            raise self.fail(f"one of the functions {', '.join(self.functions)} instead of '{found}'", position, found)
         self.next()
         arguments = [self.expression()]
         while self.peek() == ",":
@@ -139,7 +144,8 @@ class _Reader:
         if found in ("min", "max") and len(arguments) > 2:
             return reduce(lambda left, right: ("call", found, (left, right)), arguments)
         if len(arguments) != self.functions[found]:
-            raise self.fail(f"{self.functions[found]} argument(s) for '{found}' instead of {len(arguments)}", position)
+            count = self.functions[found]
+            raise self.fail(f"{count} argument(s) for '{found}' instead of {len(arguments)}", position, found)
         return ("call", found, tuple(arguments))
 
     def number(self, found: str, position: int) -> Fraction:
@@ -163,6 +169,8 @@ class _Reader:
             raise self.fail(f"a whole exponent up to {LARGEST_POWER} (write sqrt(x) for a root)", at)
         if self.peek() == "**":
             raise self.fail("brackets around a repeated power", self.tokens[self.index][2])
+        if brackets and self.peek() != ")":
+            raise self.fail(f"a whole exponent up to {LARGEST_POWER} (write sqrt(x) for a root)", at)
         if brackets:
             self.expect(")")
         return sign * int(found)

@@ -58,8 +58,7 @@ class Projection:
 
     def dcm(self, values: Sequence[Any] | Matrix | None = None) -> ImmutableMatrix:
         """Return ``dcm_sb`` of the parameters, shape (3, 3), rational in them."""
-        h = self.homogeneous(values)
-        return ImmutableMatrix(dcm_of(h, "normalised").applyfunc(factor))
+        return _dcm(self, expressions(self.parameters if values is None else values, 3, self.name))
 
     def rate_matrix(self, frame: str = "body") -> RateMatrix:
         """Return B(p), shape (3, 3), with ``omega = B(p) * dp/dt``; never singular.
@@ -81,6 +80,11 @@ class Projection:
             unreached=self.centre + q0,
             about=self.about,
         )
+
+
+@cache
+def _dcm(which: Projection, p: tuple[Any, ...]) -> ImmutableMatrix:
+    return ImmutableMatrix(dcm_of(which.homogeneous(p), "normalised").applyfunc(factor))
 
 
 @cache

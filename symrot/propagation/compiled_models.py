@@ -6,7 +6,7 @@ compiler works on the rates, the invariants are proven.
 
 import json
 import os
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -188,20 +188,22 @@ def _degree(node: Node) -> int:
     return sum(degrees) if node[0] == "*" else max(degrees, default=0)
 
 
-def formula_deviations(plan: Plan, kernel: SceneKernel, parameters: Iterable[float]) -> "Deviations | None":
-    """Return what steps in Python must be held to, or None where no torque is given by formulas that hide something."""
+def formula_deviations(plan: Plan, kernel: SceneKernel) -> "Callable[[Mapping[str, float]], Deviations] | None":
+    """Return what makes, of parameters of the rates, that which steps in Python must be held to.
+
+    None where no torque is given by formulas that hide something.
+    """
     if not has_formulas(plan):
         return None
     from symrot.codegen.enclosure.terms import enclosure
     from symrot.codegen.taylor.recurrences import recurrences
-    from symrot.propagation.enclosures.step_limit import Deviations
+    from symrot.propagation.enclosures.step_limit import deviations_of
 
     try:
         terms = enclosure(recurrences(kernel.rates))
     except InputError:  # no Taylor series, as of abs
         return None
-    names = [name for name, _ in kernel.rate_parameters]
-    return None if terms is None else Deviations(terms, dict(zip(names, parameters, strict=True)))
+    return None if terms is None else deviations_of(terms)
 
 
 def enclosure_text(plan: Plan, rates: Callable[[], Program], edges: Sequence[int]) -> str:

@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import closing
 from dataclasses import replace
 from functools import cached_property
+from pathlib import Path
 from time import perf_counter
 from typing import Any, NamedTuple
 
@@ -25,6 +26,7 @@ from symrot.errors import InputError, PropagationError
 from symrot.kinematics import conversions
 from symrot.planning.plan import Plan
 from symrot.planning.scene_kernel import SceneKernel, bind
+from symrot.propagation import time_shift as epoch
 from symrot.propagation.compiled_models import ATTITUDE_SCALE, RATE_SCALE, has_formulas, kernel_key
 from symrot.propagation.method import Choice
 from symrot.propagation.motion import Motion
@@ -83,6 +85,7 @@ class _Kernel(NamedTuple):
 
     library: Any
     parameters: list[float]
+    clock: dop853.Clock | None
 
 
 class _Block(NamedTuple):
@@ -96,7 +99,7 @@ class _Block(NamedTuple):
 class EulerMotion(Motion):
     """The motion of a scene with Euler angles in place of the quaternion."""
 
-    movable = False  # angles start anew on the way, each time on the clock of the scene
+    movable = False  # angles start anew on the way, each time at a time of the scene
 
     def __init__(self, plan: Plan, method: str, tolerance: float, sequence: str, switching: bool) -> None:
         if plan.structure["planar"] is not None:
@@ -129,27 +132,42 @@ class EulerMotion(Motion):
             if saved is None:
                 saved = json.dumps(_derived(structure))
                 library.store(key, saved)
-            kernel, count = SceneKernel(json.loads(saved)), self._moving
-            edges, scales = [0, *([count] if count else []), count + 3], [RATE_SCALE] * (count > 0) + [ATTITUDE_SCALE]
-            if self.choice.method == "taylor":
-                order = taylor.order_for(self.tolerance, kernel.rates)
-                text = taylor.translation_unit(kernel.rates, edges, scales, order, enclosed=has_formulas(self.plan))
-            else:
-                sizes = count + 3, len(kernel.rate_parameters)
-                bounds = dop853.NO_ENCLOSURE
-                if has_formulas(self.plan):
-                    from symrot.codegen.enclosure.source import enclosure_source
-
-                    bounds = enclosure_source(kernel.rates, dop853.DENSE_ORDER, edges)
-                text = dop853.translation_unit(kernel.source, "symrot_rates", *sizes, edges, scales, bounds)
-            found = _Kernel(library.build(text, "angles"), bind(kernel.rate_parameters, self.plan.constants))
-            self._kernels[sequence] = found
+            kernel = SceneKernel(json.loads(saved))
+            parameters = bind(kernel.rate_parameters, self.plan.constants)
+            self._kernels[sequence] = _Kernel(self._library_of(self.plan, kernel), parameters, self._clock_of(kernel))
         return self._kernels[sequence]
+
+    def _library_of(self, plan: Plan, kernel: SceneKernel) -> Path:
+        count = self._moving
+        edges, scales = [0, *([count] if count else []), count + 3], [RATE_SCALE] * (count > 0) + [ATTITUDE_SCALE]
+        if self.choice.method == "taylor":
+            order = taylor.order_for(self.tolerance, kernel.rates)
+            text = taylor.translation_unit(kernel.rates, edges, scales, order, enclosed=has_formulas(plan))
+        else:
+            sizes = count + 3, len(kernel.rate_parameters)
+            bounds = dop853.NO_ENCLOSURE
+            if has_formulas(plan):
+                from symrot.codegen.enclosure.source import enclosure_source
+
+                bounds = enclosure_source(kernel.rates, dop853.DENSE_ORDER, edges)
+            text = dop853.translation_unit(kernel.source, "symrot_rates", *sizes, edges, scales, bounds)
+        return library.build(text, "angles")
+
+    def _clock_of(self, kernel: SceneKernel) -> dop853.Clock | None:
+        if not kernel.rates.uses("t"):
+            return None
+
+        def moving() -> tuple[Plan, SceneKernel]:
+            from symrot.codegen.taylor.time_shift import from_epoch
+
+            return self.plan, from_epoch(kernel)
+
+        return epoch.clock(moving, self.plan.constants, make=self._library_of)
 
     def _task(self, sequence: str, t: float, state: Floats) -> Task:
         kernel = self._kernel_of(sequence)
-        follow = taylor.task if self.choice.method == "taylor" else dop853.task
-        return follow(kernel.library, kernel.parameters, state, t, self.tolerance)
+        start = kernel.library, kernel.parameters, state, t, self.tolerance
+        return taylor.task(*start) if self.choice.method == "taylor" else dop853.task(*start, clock=kernel.clock)
 
     def _blocks(self, end: float) -> Iterator[_Block]:
         """Yield the motion from its start to an end, piece by piece; what it costs is added to the counts."""

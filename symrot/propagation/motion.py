@@ -1,12 +1,12 @@
 """A plan bound to numbers: the states at any times by the chosen method, and quantities of them."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
 from pathlib import Path
 from time import perf_counter
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -25,7 +25,10 @@ from symrot.propagation.steppers.stepping import NOT_FINITE_SENTENCE, Recording,
 from symrot.propagation.trajectory import ARRAY_FUNCTIONS, Trajectory
 from symrot.scene.scene import Initial
 
-__all__ = ["Motion", "unreduced"]
+if TYPE_CHECKING:
+    from symrot.propagation.enclosures.step_limit import Deviations
+
+__all__ = ["Motion", "on_own_clock", "python_rates", "unreduced"]
 
 Floats = NDArray[np.float64]
 
@@ -34,6 +37,14 @@ UNREDUCED: dict[str, Any] = {
     "initial_quaternion": None,
     "constant": {},
 }  # what an exact motion returns: all of it
+
+
+def python_rates(plan: Plan, kernel: SceneKernel) -> Callable[..., Any]:
+    """Return the emitted NumPy kernel of the rates of a plan as ``f(t, y, p)``."""
+    from symrot.codegen.numpy_kernel import load_numpy_kernel
+
+    function = load_numpy_kernel(kernel.rates)
+    return function if kernel.rate_parameters else lambda t, y, p: function(t, y)
 
 
 def unreduced(plan: Plan, form: Form) -> Plan:
@@ -50,6 +61,7 @@ def unreduced(plan: Plan, form: Form) -> Plan:
 
 OF_START = (
     "rate_parameters", "taylor_parameters", "stepping", "exact", "_quantity_values", "_initial", "_on_own_clock",
+    "_clock", "_python_clock",
 )  # fmt: skip
 """What a motion keeps that depends on its start."""
 
@@ -104,6 +116,11 @@ class Motion:
         """Whether the time stands in the rates."""
         return self.first._timed if self.first else self.kernel.rates.uses("t")
 
+    @property
+    def _on_clocks(self) -> bool:
+        """Whether the clock of the rates is moved along with the steps."""
+        return bool(self.movable or self.epoch) and self._timed
+
     @cached_property
     def _rates_binding(self) -> Binding:
         return self.first._rates_binding if self.first else Binding(self.kernel.rate_parameters, self.plan)
@@ -126,10 +143,14 @@ class Motion:
         if self.choice.method == "taylor":
             start = (self.taylor_parameters, self.plan.initial_state, self.start)
             return taylor.task(self.library, *start, self.tolerance)
-        timed = (self.movable or self.epoch) and self._timed
-        clock = epoch.clock(self._moved, self.plan.constants, self.epoch) if timed else None
+        clock = (lambda since: self._clock(since)) if self._on_clocks else None
         start = (self.rate_parameters, self.plan.initial_state, self.start)
         return dop853.task(self.library, *start, self.tolerance, clock=clock)
+
+    @cached_property
+    def _clock(self) -> dop853.Clock:
+        """The clock of the rates, once it is moved."""
+        return epoch.clock(self._moved, self.plan.constants, self.epoch)
 
     def _moved(self) -> tuple[Plan, SceneKernel]:
         """Return plan and kernel on a clock that can be moved."""
@@ -195,12 +216,12 @@ class Motion:
     @cached_property
     def rates(self) -> Callable[..., Any]:
         """The emitted NumPy kernel as ``f(t, y, p)``."""
-        if self.first:
-            return self.first.rates
-        from symrot.codegen.numpy_kernel import load_numpy_kernel
+        return self.first.rates if self.first else python_rates(self.plan, self.kernel)
 
-        function = load_numpy_kernel(self.kernel.rates)
-        return function if self.rate_parameters else lambda t, y, p: function(t, y)
+    @cached_property
+    def _python_clock(self) -> Callable[[float], Any]:
+        """The clock of :attr:`rates`, once it is moved."""
+        return epoch.clock(self._moved, self.plan.constants, self.epoch, python_rates)
 
     @cached_property
     def exact(self) -> Exact:
@@ -250,13 +271,40 @@ class Motion:
         recording.epoch = self.epoch
         return recording
 
+    def deviations(self, parameters: Sequence[float]) -> "Deviations | None":
+        """Return what steps in Python are held to, for parameters of the rates; derived when first asked for."""
+        if self._deviations is None:
+            return None
+        names = [name for name, _ in self.kernel.rate_parameters]
+        return self._deviations(dict(zip(names, parameters, strict=True)))
+
+    @cached_property
+    def _deviations(self) -> "Callable[[Mapping[str, float]], Deviations] | None":
+        return self.first._deviations if self.first else formula_deviations(self.plan, self.kernel)
+
     @property
     def scipy_options(self) -> dict[str, Any]:
         """How the fallback judges errors, and by which of SciPy's methods it steps."""
+        return self.scipy_options_for(self.rate_parameters)
+
+    def scipy_options_for(self, parameters: Sequence[float]) -> dict[str, Any]:
+        """Return the options of the fallback for parameters of the rates."""
         blocks, scales = error_blocks(self.plan)
         solver = self.choice.method.partition(":")[2]
-        deviations = formula_deviations(self.plan, self.kernel, self.rate_parameters)
-        return {"blocks": blocks, "scales": scales, "deviations": deviations, **({"method": solver} if solver else {})}
+        named = {"method": solver} if solver else {}
+        limits = {"deviations": self.deviations(parameters), "clock": self._python_clock if self._on_clocks else None}
+        return {"blocks": blocks, "scales": scales, **limits, **named}
+
+
+def on_own_clock(plan: Plan, choice: Choice, tolerance: float) -> Motion:
+    """Return the motion of a plan on a clock that shows 0 at its start; its rates may take another epoch each time.
+
+    Where no time stands in the rates, there is but one clock.
+    """
+    motion: Motion = object.__new__(Motion)
+    motion.plan, motion.choice, motion.tolerance, motion.library = plan, choice, tolerance, None
+    motion.start = float(plan.scene.span.start)
+    return _OnOwnClock(motion) if motion.kernel.rates.uses("t") else Motion(plan, choice, tolerance)
 
 
 class _OnOwnClock(Motion):
@@ -306,8 +354,12 @@ def _exact_parts(motion: Motion, times: Floats, rise: bool) -> tuple[tuple[Float
     omega, quaternion = exact.evaluate(times - start if start else times, quaternion=attitude)
     assert omega is not None
     if not (rise and len(times) and times.item(0) > start):  # to the last bit, as every method has it
-        at_start: Any = times == start
-        if rise:
+        at_start: Any
+        if not rise:
+            at_start = times == start
+        elif len(times) > 1 and times.item(0) == start < times.item(1):
+            at_start = 0
+        else:
             at_start = slice(times.searchsorted(start, "left"), times.searchsorted(start, "right"))
         omega[at_start] = motion.plan.initial_state[:3]
         if quaternion is not None:

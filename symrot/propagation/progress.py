@@ -4,19 +4,37 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 
-__all__ = ["report", "reporting"]
+__all__ = ["report", "reporting", "within"]
 
 Reporter = Callable[[float, float, float], object]
 """Gets the time reached, the start and the end, s, every few hundredths of a second."""
 
+_whole: ContextVar[tuple[float, float, Callable[[], float]] | None] = ContextVar("whole", default=None)
 _reporter: ContextVar[Reporter | None] = ContextVar("reporter", default=None)
 
 
 def report(t: float, start: float, stop: float) -> None:
-    """Tell the reporter, if there is one."""
+    """Tell the reporter, if there is one; of a motion that is part of another one, by the span of the whole."""
     reporter = _reporter.get()
     if reporter is not None:
-        reporter(t, start, stop)
+        whole = _whole.get()
+        if whole is None:
+            reporter(t, start, stop)
+        else:
+            reporter(whole[2]() + t, whole[0], whole[1])
+
+
+@contextmanager
+def within(start: float, stop: float, zero: Callable[[], float] = lambda: 0.0) -> Iterator[None]:
+    """Have motions report how far they have come on the way from ``start`` to ``stop``, s, of which they are parts.
+
+    ``zero`` returns what the clock of the whole shows where that of the part shows 0.
+    """
+    token = _whole.set(_whole.get() or (start, stop, zero))
+    try:
+        yield
+    finally:
+        _whole.reset(token)
 
 
 @contextmanager

@@ -4,10 +4,11 @@ Steppers then never see the large numbers: neither phases such as ``a*t + b`` no
 them. The clock is moved only where all differences of times are exact, for times between half the start and twice the
 start; a motion that goes farther loses no more than one that starts at 0 and goes as far. Such a one keeps its phases
 too: Taylor steps have the time in two parts, and under those of DOP853 the clock of the rates alone is moved again and
-again (:mod:`symrot.propagation.steppers.dop853`). Those of SciPy lose ``1e-16*|a*t|`` rad, as below.
+again (:mod:`symrot.propagation.steppers.dop853`), and SciPy starts anew on a moved clock where its steps
+are short (:mod:`symrot.propagation.steppers.fallback`).
 
-Motions under a torque that is no formula, which is asked for at the times of the scene, and those in Euler angles keep
-the clock of the scene: there a phase ``a*t`` is off by up to ``1e-16*|a*t|`` rad.
+Motions under a torque that is no formula, which is asked for at the times of the scene, keep the clock of the scene:
+there a phase ``a*t`` is off by up to ``1e-16*|a*t|`` rad. Those in Euler angles start on it, wherever that is.
 """
 
 import json
@@ -15,16 +16,17 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
+from math import lcm
 from pathlib import Path
+from typing import Any
 
 from symrot.build import cache as library
 from symrot.formula import exact_numbers as number
 from symrot.formula.tree import Node, children, evaluate, names
 from symrot.planning.plan import Plan
-from symrot.planning.scene_kernel import EPOCH, EXACT_FUNCTIONS, SceneKernel
+from symrot.planning.scene_kernel import EPOCH, EXACT_FUNCTIONS, Parameters, SceneKernel
 from symrot.propagation.compiled_models import kernel_key, motion_library
 from symrot.propagation.steppers.cut_off import CutOff
-from symrot.propagation.steppers.dop853 import Clock
 from symrot.propagation.steppers.stepping import NOT_FINITE_SENTENCE
 
 __all__ = ["Following", "clock", "compiled", "far", "moved", "moved_parameters"]
@@ -53,48 +55,100 @@ def moved(plan: Plan, kernel: SceneKernel) -> tuple[Plan, SceneKernel]:
 
 def moved_parameters(kernel: SceneKernel, constants: Mapping[str, Fraction], epoch: float) -> list[float]:
     """Return the parameters of moved rates for the constants of a scene: exact arithmetic, one rounding each."""
-    return Following(kernel, constants).parameters(epoch)
+    return Following(kernel.rate_parameters, constants).parameters(Fraction(epoch))
 
 
 class Following:
-    """The parameters of moved rates for one epoch after another; what does not depend on it is found once.
+    """The parameters of formulas with a moved clock, for one epoch after another.
+
+    What does not depend on the epoch is computed once.
 
     Parameters
     ----------
-    kernel : SceneKernel
-        Of :func:`moved`.
+    parameters : pairs of name and formula
+        Such as those of the rates of a kernel that :func:`moved` returns.
     constants : mapping
         Of the scene.
     start : float
         What the clock of the scene shows, s, where that of the motion shows 0.
     """
 
-    def __init__(self, kernel: SceneKernel, constants: Mapping[str, Fraction], start: float = 0.0) -> None:
+    def __init__(self, parameters: Parameters, constants: Mapping[str, Fraction], start: float = 0.0) -> None:
         known = {"pi": number.PI, **constants}
         self._start = Fraction(start)
-        self._formulas = [_folded(node, known) for _, node in kernel.rate_parameters]
+        self._formulas = [_folded(node, known) for _, node in parameters]
+        self.fixed = all(node[0] == "number" for node in self._formulas)
+        self._lines = [_line(node) for node in self._formulas]
 
-    def parameters(self, epoch: float) -> list[float]:
+    def parameters(self, epoch: float | Fraction) -> list[float]:
         """Return them for an epoch, s, on the clock of the motion: exact arithmetic, one rounding each."""
-        values = {EPOCH: self._start + Fraction(epoch)}
+        time = self._start + Fraction(epoch)
+        top, bottom, values = time.numerator, time.denominator, {EPOCH: time}
         try:
-            return [float(evaluate(node, values, EXACT_FUNCTIONS)) for node in self._formulas]
+            return [
+                float(evaluate(node, values, EXACT_FUNCTIONS))
+                if line is None
+                else (line[0] * bottom + line[1] * top) / (line[2] * bottom)
+                for node, line in zip(self._formulas, self._lines, strict=True)
+            ]
         except OverflowError:
-            raise CutOff(epoch, NOT_FINITE_SENTENCE) from None
+            raise CutOff(float(epoch), NOT_FINITE_SENTENCE) from None
+
+
+def _line(node: Node) -> tuple[int, int, int] | None:
+    """Return integers a, b, c where a formula is (a + b*epoch)/c, or None; integers are divided with one rounding."""
+    values = _coefficients(node)
+    if values is None:
+        return None
+    constant, slope = values
+    shared = lcm(constant.denominator, slope.denominator)
+    return int(constant * shared), int(slope * shared), shared
+
+
+def _coefficients(node: Node) -> tuple[Fraction, Fraction] | None:
+    """Return a and b where a formula is a + b*epoch, or None."""
+    if node[0] == "number":
+        return Fraction(node[1]), Fraction(0)
+    if node == ("symbol", EPOCH):
+        return Fraction(0), Fraction(1)
+    parts = [_coefficients(child) for child in children(node)]
+    if node[0] == "call" or any(part is None for part in parts):
+        return None
+    (a, b), *others = (part for part in parts if part is not None)
+    if node[0] == "neg":
+        return -a, -b
+    if node[0] == "**":
+        return (a, b) if node[2] == 1 else None
+    ((c, d),) = others
+    if node[0] in "+-":
+        sign = 1 if node[0] == "+" else -1
+        return a + sign * c, b + sign * d
+    if node[0] == "*" and not (b and d):
+        return a * c, a * d + b * c
+    return (a / c, b / c) if node[0] == "/" and not d else None
+
+
+def compiled(plan: Plan, kernel: SceneKernel) -> Path:
+    """Return the library of a moved plan: kernel and stepper of DOP853."""
+    return motion_library(plan, kernel)
 
 
 def clock(
-    moving: Callable[[], tuple[Plan, SceneKernel]], constants: Mapping[str, Fraction], start: float = 0.0
-) -> Clock:
-    """Return the clock of what ``moving`` returns as :func:`moved` does; it is compiled when it is first moved.
+    moving: Callable[[], tuple[Plan, SceneKernel]],
+    constants: Mapping[str, Fraction],
+    start: float = 0.0,
+    make: Callable[[Plan, SceneKernel], Any] = compiled,
+) -> Callable[[float], tuple[Any, list[float]]]:
+    """Return the clock of what ``moving`` returns as :func:`moved` does, once it is first moved.
 
-    ``constants`` and ``start`` are those of :class:`Following`.
+    ``constants`` and ``start`` are those of :class:`Following`; ``make`` returns what the stepper calls: the library of
+    DOP853, or a function of Python.
     """
 
     @cache
-    def following() -> tuple[Path, Following]:
+    def following() -> tuple[Any, Following]:
         plan, kernel = moving()
-        return compiled(plan, kernel), Following(kernel, constants, start)
+        return make(plan, kernel), Following(kernel.rate_parameters, constants, start)
 
     return lambda since: (following()[0], following()[1].parameters(since))
 
@@ -108,8 +162,3 @@ def _folded(node: Node, known: Mapping[str, Fraction]) -> Node:
     if node[0] == "call":
         return ("call", node[1], tuple(_folded(child, known) for child in node[2]))
     return (node[0], *(_folded(child, known) for child in children(node)), *(node[2:] if node[0] == "**" else ()))
-
-
-def compiled(plan: Plan, kernel: SceneKernel) -> Path:
-    """Return the library of a moved plan: kernel and stepper of DOP853."""
-    return motion_library(plan, kernel)

@@ -4,7 +4,7 @@ from collections import Counter
 from typing import Any
 
 from symrot.planning.plan import Plan
-from symrot.report.layout import apart, columns, one_line
+from symrot.report.layout import apart, columns, one_line, room
 from symrot.scene.scene import QUANTITIES
 
 __all__ = ["explanation", "facts", "lines"]
@@ -61,10 +61,57 @@ def _others(plan: Plan) -> list[dict[str, Any]]:
         _row("states", not plan.states, f"{', '.join(plan.states) or 'none changes'}"),
         _row("stepping", form is not None or not plan.states, stepped, form.derivation if form else ""),
         *_samples(plan),
+        *_formulas(plan, choice.method),
         _row("outputs asked for", False, ", ".join(asked)),
         *([_row("other outputs", True, f"not asked for: {', '.join(missing)}")] if missing else []),
         _row("deriving the kernel", known, kernel),
     ]
+
+
+BENDS = frozenset({"abs", "min", "max", "clip"})
+
+
+def _formulas(plan: Plan, method: str) -> list[dict[str, Any]]:
+    """Return the rows of what is done so that no narrow feature and no switch of a formula is stepped over."""
+    from symrot.propagation.compiled_models import has_formulas
+
+    if not has_formulas(plan):
+        return []
+    if method in ("exact", "constant"):
+        return [_row("narrow features", True, "no steps are taken that could pass one")]
+    return [_narrow_features(plan), *([_switches(plan.switches)] if plan.switches else [])]
+
+
+def _narrow_features(plan: Plan) -> dict[str, Any]:
+    from symrot.codegen.enclosure.terms import enclosure
+    from symrot.codegen.taylor.recurrences import recurrences
+    from symrot.errors import InputError
+    from symrot.propagation.compiled_models import scene_kernel
+
+    try:
+        terms = enclosure(recurrences(scene_kernel(plan).rates))
+    except InputError as reason:  # no Taylor series, and so no bound of what a step leaves out
+        return _row("narrow features", False, f"NOT looked for: {reason}")
+    if terms is None:
+        why = "the formulas are polynomials of low degree, or sines and cosines of time: as broad as they look"
+        return _row("narrow features", True, why)
+    why = "each step is held to an enclosure of the formulas, which no pulse, switch or pole escapes"
+    return _row("narrow features", False, why)
+
+
+def _switches(functions: list[str]) -> dict[str, Any]:
+    """Return the row of functions that jump or bend."""
+    named = [(text, text.partition("(")[0] in BENDS) for text in dict.fromkeys(functions)]
+    parts = [
+        f"{', '.join(text for text, bent in named if bent is bends)} {verb}"
+        for bends, verb in ((False, "jump"), (True, "bend"))
+        if any(bent is bends for _, bent in named)
+    ]
+    why = (
+        f"{'; '.join(parts)}: their times are located to the last bits by enclosures and stepped to exactly; where "
+        "both sides of a jump lead back to it, the motion slides along it"
+    )
+    return _row("switches", False, one_line(why))
 
 
 def _samples(plan: Plan) -> list[dict[str, Any]]:
@@ -110,7 +157,7 @@ def lines(found: dict[str, Any]) -> list[str]:
         verdict = "skipped" if row["skipped"] else "kept"
         left = _spoken(row["operations"]) if changed else ""
         rows.append((row["item"], verdict, one_line(row["why"]), row["derivation"], left, saved))
-    table = columns(rows, width=118, wrap=2, right=(5,))
+    table = columns(rows, width=room(118), wrap=2, right=(5,))
     counts = found["operations"]
     rule = "-" * max(map(len, table))
     last = f"One evaluation of the rates costs {counts['specialised']} operations instead of {counts['general']}."

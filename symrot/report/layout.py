@@ -2,14 +2,18 @@
 
 import math
 import os
+import sys
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from itertools import pairwise
 from typing import TextIO
 
-__all__ = ["WIDTH", "apart", "columns", "duration", "emphasis", "exact", "fields", "one_line", "shown"]
+__all__ = ["WIDTH", "apart", "columns", "duration", "emphasis", "exact", "fields", "one_line", "room", "shown"]
 
 WIDTH = 110
+NARROWEST = 40  # no text is wrapped to less
+MARGIN = 2  # of a terminal: by so much lines may be indented afterwards
+LEAST = 20  # letters of the column that is wrapped first, before others are
 LONGEST_DENOMINATOR = 10**12
 DIGITS = 17  # which tell any two doubles apart
 SEEN = 0.001  # of a distance: to so much of it its ends are shown
@@ -54,15 +58,24 @@ def emphasis(text: str, stream: TextIO) -> str:
     return f"\x1b[1m{text}\x1b[0m" if wanted else text
 
 
+def room(most: int = WIDTH) -> int:
+    """Return how wide lines may be: the width of the terminal, at most ``most``, which a pipe or a file always gets."""
+    if not sys.stdout.isatty():
+        return most
+    from shutil import get_terminal_size  # slow to import, and a pipe needs none
+
+    return max(NARROWEST, min(most, get_terminal_size((most, 24)).columns - MARGIN))
+
+
 def _wrapped(text: str, width: int) -> list[str]:
     from textwrap import wrap
 
     return wrap(text, width, break_long_words=False, break_on_hyphens=False) or [""]
 
 
-def fields(rows: Iterable[tuple[str, str]], width: int = WIDTH) -> list[str]:
+def fields(rows: Iterable[tuple[str, str]], width: int | None = None) -> list[str]:
     """Return lines of (name, text), the texts aligned and wrapped; an empty name continues the one above."""
-    rows = list(rows)
+    rows, width = list(rows), room() if width is None else width
     first = max((len(name) for name, _ in rows), default=0) + 2
     return [
         f"{name if number == 0 else '':<{first}}{line}".rstrip()
@@ -71,32 +84,67 @@ def fields(rows: Iterable[tuple[str, str]], width: int = WIDTH) -> list[str]:
     ]
 
 
-def columns(rows: Sequence[Sequence[str]], width: int = WIDTH, wrap: int = -1, right: Sequence[int] = ()) -> list[str]:
+def columns(
+    rows: Sequence[Sequence[str]], width: int | None = None, wrap: int = -1, right: Sequence[int] = ()
+) -> list[str]:
     """Return a table as lines, columns aligned and two blanks apart.
 
     Parameters
     ----------
     rows : sequence of rows of text
         The first may be the head.
-    width : int
-        Of a line, kept by wrapping one column.
+    width : int, optional
+        Of a line, kept by wrapping columns of text; a table of numbers that is wider goes on below itself. Default:
+        what :func:`room` says.
     wrap : int
-        The column that is wrapped; the others are as wide as their widest text.
+        The column that is wrapped first; others only where that is not enough.
     right : sequence of int
-        Columns that are set flush right.
+        Columns that are set flush right: numbers, which are never wrapped.
     """
     if not rows:
         return []
-    count = len(rows[0])
+    count, width = len(rows[0]), room() if width is None else width
     wrap %= count
-    widths = [max(len(row[i]) for row in rows) for i in range(count)]
-    room = width - 2 * (count - 1) - sum(size for i, size in enumerate(widths) if i != wrap)
-    widths[wrap] = max(1, min(widths[wrap], max(room, 20)))
+    widths = _widths(rows, width, wrap, right)
     lines = []
-    for row in rows:
-        pieces = _wrapped(row[wrap], widths[wrap])
-        for number, piece in enumerate(pieces):
-            cells = [piece if i == wrap else cell if number == 0 else "" for i, cell in enumerate(row)]
-            aligned = [cell.rjust(widths[i]) if i in right else cell.ljust(widths[i]) for i, cell in enumerate(cells)]
-            lines.append("  ".join(aligned).rstrip())
+    for number, part in enumerate(_parts(widths, width, right)):
+        lines += [""] * (number > 0)
+        for row in rows:
+            cells = [_wrapped(row[i], widths[i]) if len(row[i]) > widths[i] else [row[i]] for i in part]
+            for line in range(max(map(len, cells))):
+                texts = [cell[line] if line < len(cell) else "" for cell in cells]
+                aligned = [
+                    text.rjust(widths[i]) if i in right else text.ljust(widths[i])
+                    for i, text in zip(part, texts, strict=True)
+                ]
+                lines.append("  ".join(aligned).rstrip())
     return lines
+
+
+def _widths(rows: Sequence[Sequence[str]], width: int, wrap: int, right: Sequence[int]) -> list[int]:
+    """Return the widths of columns: that of their widest text, less for those that are wrapped."""
+    count = len(rows[0])
+    widths = [max(len(row[i]) for row in rows) for i in range(count)]
+    left = width - 2 * (count - 1) - sum(size for i, size in enumerate(widths) if i != wrap)
+    widths[wrap] = max(1, min(widths[wrap], max(left, LEAST)))
+    words = [max((len(word) for row in rows for word in row[i].split()), default=1) for i in range(count)]
+    narrowest = [widths[i] if i in right else min(widths[i], words[i]) for i in range(count)]
+    if sum(narrowest) + 2 * (count - 1) > width and len(right) > 1:
+        return widths  # too many numbers for one line: the table goes on below itself
+    while sum(widths) + 2 * (count - 1) > width:
+        wide = [i for i in range(count) if i not in right and widths[i] > words[i]]
+        if not wide:
+            break
+        widths[max(wide, key=lambda i: widths[i])] -= 1
+    return widths
+
+
+def _parts(widths: Sequence[int], width: int, right: Sequence[int]) -> list[list[int]]:
+    """Return the columns in the parts of a table that stand below one another; each has the first column."""
+    parts = [[0]]
+    for i in range(1, len(widths)):
+        full = sum(widths[j] + 2 for j in parts[-1]) + widths[i] > width
+        if full and i in right and len(parts[-1]) > 1:
+            parts.append([0])
+        parts[-1].append(i)
+    return parts

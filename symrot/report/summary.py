@@ -8,6 +8,7 @@ from symrot.report.layout import apart, columns, duration, exact, fields, one_li
 __all__ = ["facts", "summary"]
 
 SWITCHES_SHOWN = 6
+HOW = {"passed": "", "held": " (held from there on)", "released": " (released)"}
 ABOUT = {"center_of_mass": "its centre of mass", "fixed_point": "a fixed point"}
 
 
@@ -56,6 +57,7 @@ def facts(propagator: Any, trajectory: Any, preparation: float) -> dict[str, Any
             "preparation_seconds": preparation,
         },
         "switching_times": list(stats.switching_times),
+        "switchings": [each._asdict() for each in stats.switchings],
         "warnings": list(trajectory.warnings),
         "invariants": [
             {
@@ -124,17 +126,29 @@ def _settings(found: dict[str, Any]) -> list[tuple[str, str]]:
         ("tolerance", f"{method['tolerance']:g}"),
         ("states", (not exact and _states(found["states"])) or "none to integrate"),
         ("cost", _steps(found["cost"], exact)),
-        *_switches(found["switching_times"]),
+        *_switches(found["switching_times"], found["switchings"], span["start"], span["stop"]),
         *(("warning", text) for text in found["warnings"]),
     ]  # fmt: skip
 
 
-def _switches(times: list[float]) -> list[tuple[str, str]]:
-    if not times:
-        return []
-    listed = ", ".join(shown(time) for time in times[:SWITCHES_SHOWN])
-    more = f", .. ({len(times)} in all)" if len(times) > SWITCHES_SHOWN else ""
-    return [("switches", f"at t = {listed}{more} s")]
+def _switches(times: list[float], switchings: list[dict[str, Any]], start: str, stop: str) -> list[tuple[str, str]]:
+    """Return a row of each function that switches: when it is passed, holds the motion, lets it go."""
+    by_function: dict[str, list[tuple[float, str]]] = {}
+    for item in switchings:
+        by_function.setdefault(f"{one_line(item['function'])} ", []).append((item["t"], HOW[item["how"]]))
+    if times and not by_function:  # of a table of samples
+        by_function[""] = [(t, "") for t in times]
+    listed = dict(list(by_function.items())[:SWITCHES_SHOWN])
+    seen = [t for own in listed.values() for t, _ in own[:SWITCHES_SHOWN]]
+    spoken = dict(zip(seen, apart(_value(start), _value(stop), *seen)[2:], strict=True))
+    rows = []
+    for function, own in listed.items():
+        said = ", ".join(f"{spoken[t]}{how}" for t, how in own[:SWITCHES_SHOWN])
+        more = f", .. ({len(own)} times in all)" if len(own) > SWITCHES_SHOWN else ""
+        rows.append(f"{function}at t = {said}{more} s")
+    if len(by_function) > len(listed):
+        rows.append(f".. ({len(by_function)} functions in all; --json lists them)")
+    return [("switches" if number == 0 else "", row) for number, row in enumerate(rows)]
 
 
 def _skipped(found: dict[str, Any]) -> list[tuple[str, str]]:

@@ -7,7 +7,7 @@ from textwrap import wrap
 
 from symrot.checker.verdict import Verdict
 from symrot.errors import InputError
-from symrot.report.layout import WIDTH, duration, one_line
+from symrot.report.layout import duration, one_line, room
 
 __all__ = ["check", "lines"]
 
@@ -74,6 +74,6 @@ def lines(found: Sequence[Verdict], source: str) -> list[str]:
 def _full(verdict: Verdict, head: str) -> list[str]:
     rows = [head]
     for name, text in verdict.facts():
-        rows += wrap(one_line(text), WIDTH, initial_indent=f"  {name + ':':<16}", subsequent_indent=" " * 18,
+        rows += wrap(one_line(text), room(), initial_indent=f"  {name + ':':<16}", subsequent_indent=" " * 18,
                      break_long_words=False, break_on_hyphens=False)  # fmt: skip
     return rows

@@ -9,7 +9,7 @@ from typing import Any
 
 from symrot.errors import InputError
 from symrot.files.reading import read_input
-from symrot.report.layout import apart, columns, duration, fields, one_line
+from symrot.report.layout import apart, columns, duration, fields, one_line, room
 
 __all__ = ["compared", "lines", "lines_of_comparison", "read_study"]
 
@@ -33,7 +33,7 @@ def _decades(found: Mapping[str, Any]) -> list[str]:
     for name in names:
         cells = [_short(row["methods"][name]["ratio"]) if name in row["methods"] else "-" for row in table]
         rows.append([name, *("1" if name == row["fastest"] else cell for cell, row in zip(cells, table, strict=True))])
-    return columns(rows, width=200, wrap=0, right=range(1, len(rows[0])))
+    return columns(rows, width=room(200), wrap=0, right=range(1, len(rows[0])))
 
 
 def _short(value: float) -> str:
@@ -89,12 +89,13 @@ def lines(found: Mapping[str, Any]) -> list[str]:
     )  # fmt: skip
     skipped = fields([(f"{item['method']}:", one_line(item["why"])) for item in found["skipped"]])
     parts: list[Iterable[str]] = [[title], [f"  {line}" for line in head]]
-    parts += [["for each decade of the error: time of the fastest (1), and how many times as long the others take"]]
-    parts[-1] = [*parts[-1], *(f"  {line}" for line in _decades(found))]
+    title = "for each decade of the error: time of the fastest (1), and how many times as long the others take"
+    parts += [[line.strip() for line in fields([("", title)])]]
+    parts[-1] = [*parts[-1], *(f"  {line}".rstrip() for line in _decades(found))]
     for name, table in (("how many times longer, median over the decades", _against(found)),
                         ("where each method ends", _floors(found["runs"])), ("left out", skipped)):  # fmt: skip
         if table:
-            parts.append([name, *(f"  {line}" for line in table)])
+            parts.append([name, *(f"  {line}".rstrip() for line in table)])
     return [line for number, part in enumerate(parts) for line in ([] if number == 0 else [""]) + list(part)]
 
 
@@ -192,4 +193,5 @@ def lines_of_comparison(found: Mapping[str, Any]) -> list[str]:
     title = f"{one_line(found['scene']['title'])} [{one_line(found['scene']['name'])}]: time of the second study over"
     same = found["machines"][0]["processor"] == found["machines"][1]["processor"]
     note = [] if same else ["", "The studies are of two machines."]
-    return [f"{title} that of the first", "", *columns(rows, width=200, wrap=0, right=range(1, len(rows[0]))), *note]
+    table = columns(rows, width=room(200), wrap=0, right=range(1, len(rows[0])))
+    return [f"{title} that of the first", "", *table, *note]

@@ -8,6 +8,8 @@ from typing import Any
 from symrot.dynamics.torque_kinds import TABLE_KIND
 from symrot.errors import InputError
 from symrot.files.reading import read_input
+from symrot.formula.switches import has_switches
+from symrot.formula.tree import parse
 from symrot.scene.reader import nearest
 
 __all__ = ["LARGEST_FILE", "SHIPPED", "find_scene", "names_with_kernels", "read_toml", "shipped_names"]
@@ -26,12 +28,21 @@ def shipped_names() -> list[str]:
 
 
 def names_with_kernels() -> list[str]:
-    """Return those whose torques are all formulas: a table of samples has no kernel to emit or certify."""
+    """Return those with one set of equations, which can be emitted and certified.
 
-    def kinds(name: str) -> list[str]:
-        return [torque["kind"] for torque in read_toml(SHIPPED / f"{name}.toml", name).get("torque", [])]
+    A table of samples has none, and functions that jump or bend have one in each of their modes.
+    """
+    return [name for name in shipped_names() if all(map(_has_kernel, _torques(name)))]
 
-    return [name for name in shipped_names() if TABLE_KIND.kind not in kinds(name)]
+
+def _torques(name: str) -> list[dict[str, Any]]:
+    return list(read_toml(SHIPPED / f"{name}.toml", name).get("torque", []))
+
+
+def _has_kernel(torque: dict[str, Any]) -> bool:
+    if torque["kind"] != "expression":
+        return str(torque["kind"]) != TABLE_KIND.kind
+    return not any(has_switches(parse(str(formula), switching=True)) for formula in torque["torque"])
 
 
 def find_scene(source: str | Path) -> Path:

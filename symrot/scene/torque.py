@@ -1,5 +1,6 @@
 """The torques of a scene: read by the table of :mod:`symrot.dynamics.torque_kinds`, and fitted to the body."""
 
+import math
 from collections.abc import Callable, Mapping
 from fractions import Fraction
 from typing import Any, NamedTuple
@@ -11,7 +12,7 @@ from symrot.formula.exact_numbers import PI, read, show, sqrt
 from symrot.formula.switches import condition_error
 from symrot.scene.attitude import Vector, read_attitude
 from symrot.scene.body import Body
-from symrot.scene.reader import Entry, Reader, choice, expected, nearest, number, read_table, table, under, vector
+from symrot.scene.reader import Entry, Reader, choice, expected, number, read_table, table, under, vector
 
 __all__ = ["Torque", "read_torque"]
 
@@ -181,12 +182,38 @@ def _fit_expression(values: dict[str, Any], body: Body, where: str) -> dict[str,
         for name in sorted(expression.names(node)):
             if name not in known:
                 allowed = ", ".join([*EXPRESSION_NAMES, *parameters])
-                reason = ", ".join(filter(None, (f"'{name}' has no number in parameters", nearest(name, known))))
+                from symrot.formula.advice import name_advice  # only on the way to an error
+
+                reason = ", ".join(filter(None, (f"'{name}' has no number in parameters", name_advice(name, known))))
                 expected(f"{where}.torque[{index}]", f"a formula in {allowed}", formula, reason)
             if name == "pi":
                 parameters["pi"] = PI
+        _check_clips(node, {name: float(value) for name, value in parameters.items()} | {"pi": math.pi}, where, index)
     return {**values, "parameters": parameters}
 
+
+def _check_clips(node: expression.Node, values: Mapping[str, float], where: str, index: int) -> None:
+    """Refuse a clip whose limits are numbers, or parameters, of which the lower one is above the upper one."""
+    for child in expression.children(node):
+        _check_clips(child, values, where, index)
+    if node[0] != "call" or node[1] != "clip":
+        return
+    low, high = node[2][1:]
+    if not (expression.names(low) | expression.names(high)) <= set(values):
+        return
+    try:
+        bounds = [expression.evaluate(limit, values, _MATH, float) for limit in (low, high)]
+    except (KeyError, ArithmeticError, ValueError):  # a function that jumps; no value
+        return
+    if bounds[0] > bounds[1]:
+        expected(f"{where}.torque[{index}]", "clip(u, low, high) with low <= high", expression.text(node),
+                 f"low is {show(bounds[0])}, high is {show(bounds[1])}")  # fmt: skip
+
+
+_MATH: dict[str, Callable[..., float]] = {
+    "abs": abs, "min": min, "max": max, "floor": math.floor,
+    **{name: getattr(math, name) for name in expression.FUNCTIONS if name != "abs"},
+}  # fmt: skip
 
 _FITS: dict[str, Callable[[dict[str, Any], Body, str], dict[str, Any]]] = {
     "gravity": _fit_gravity,

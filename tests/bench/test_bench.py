@@ -18,6 +18,7 @@ from symrot.bench import command, kernels, skip
 from symrot.bench.comparison import reference as reference_module
 from symrot.bench.comparison import suite
 from symrot.bench.comparison.contestants import CONTESTANTS, chosen
+from symrot.bench.comparison.exact_path import ExactPath
 from symrot.bench.comparison.peers import scalar_kernel
 from symrot.bench.comparison.problem import Problem, State
 from symrot.bench.comparison.race import Measured, race
@@ -27,6 +28,7 @@ from symrot.cli.main import main
 from symrot.codegen.numpy_kernel import load_numpy_kernel
 from symrot.errors import InputError, SymrotError
 from symrot.planning.plan import make_plan
+from symrot.propagation.propagator import propagator
 from symrot.report.work_precision import compared, lines, lines_of_comparison, read_study
 from symrot.scene.scene import Scene, load_scene
 
@@ -94,6 +96,48 @@ def test_a_motion_without_series_has_two_references_that_share_no_coefficient():
     ((name, difference),) = result.others
     assert "midpoints" in name
     assert difference < 1e-15
+
+
+PULSE = {"kind": "expression", "torque": ["0", "0", "exp(-((t - 2)/w)**2)/w"], "parameters": {"w": "1/1000"}}
+AT_REST = {"initial": {"omega": [0, 0, 0]}, "span": {"t": [0, 5], "samples": 2}}
+
+
+@pytest.mark.parametrize("computed", [item[1] for item in REFERENCES if item[0] != "closed form"],
+                         ids=["taylor", "dop853", "midpoints"])  # fmt: skip
+def test_no_reference_steps_over_a_pulse(computed):
+    """The momentum of a body at rest after a Gauss pulse is its area, sqrt(pi), and only after the pulse."""
+    problem = Problem(scene(torque=[PULSE], **AT_REST))
+    states = computed(problem, lambda text: None, 60.0)
+    assert [problem.ends[0] < 1.99, problem.ends[1] > 2.01] == [True, True]
+    assert abs(states[0].omega[2]) < 1e-300
+    for state in states[1:]:
+        assert state.omega[2] == pytest.approx(math.sqrt(math.pi) / 3, rel=1e-15)
+
+
+def test_two_fixed_step_references_do_not_agree_on_having_missed_a_pulse():
+    """With air drag there is no series: both references left take fixed steps, and neither may pass the pulse."""
+    air = {"kind": "damping", "quadratic": "1/10"}
+    problem = Problem(scene(torque=[{**PULSE, "parameters": {"w": "1/100000"}}, air], **AT_REST))
+    result = reference(problem)
+    assert "long double" in result.name
+    assert result.doubt < 1e-12
+    spin = [state.omega[2] for state in result.states]
+    begin, end = problem.ends[1], problem.ends[3]
+    assert 1 / spin[3] - 1 / spin[1] == pytest.approx((end - begin) / 30, rel=1e-12)  # d(1/omega)/dt is k/C
+
+
+def test_the_path_of_the_stability_study_does_not_step_over_a_pulse():
+    motion = propagator(scene(torque=[PULSE], **AT_REST), "taylor")._motion
+    assert ExactPath(motion).states(np.array([1.9, 5.0]))[:, 2] == pytest.approx([0, math.sqrt(math.pi) / 3], rel=1e-15)
+
+
+def test_a_body_that_a_pulse_has_yet_to_set_going_is_measured_by_its_later_motion():
+    """Before the pulse it moves at 1e-40 rad/s, of which no digit matters; a wrong motion after it is seen."""
+    slow, fast = (State(np.array([0, 0, omega]), None) for omega in (1e-40, 1.0))
+    off = State(np.array([0, 0, 2e-40]), None)
+    assert Problem.worst([off, fast], [slow, fast]) < 1e-30
+    assert Problem.worst([slow, slow], [slow, fast]) == 1.0
+    assert Problem.worst([State(np.array([0, 0, 1.5]), None), fast], [slow, fast]) > 1.0
 
 
 @pytest.mark.parametrize("wrong", [0, 1])

@@ -13,6 +13,7 @@ from symrot.bench.error_growth import growth, points, stability
 from symrot.cli import main as cli
 from symrot.errors import InputError
 from symrot.propagation.propagator import propagator
+from symrot.scene.scene import load_scene
 from tests.reference import free_body as reference
 from tests.reference.figures import GRAVITY, body, largest
 from tests.reference.figures import TILT as TILTED
@@ -131,3 +132,10 @@ def test_the_report_of_a_scene(tmp_path, capsys, monkeypatch):
     assert {curve["method"] for curve in found["growth"]["curves"]} == {method.name for method in growth.METHODS}
     said = "\n".join(stability.lines(found))
     assert "proven: tangent" in said and "the lock itself" in said and "NOT PROVEN" not in said
+
+
+@pytest.mark.parametrize("name", ["friction_wheel", "thruster_train"])
+def test_a_motion_with_switches_is_refused(name):
+    """Series go on beyond a switch with the equations before it: a truth that would call every right motion wrong."""
+    with pytest.raises(InputError, match="expected torques without switches"):
+        stability.stability(load_scene(name))

@@ -1,5 +1,7 @@
 """The campaign over real functions: a slice of it, and judges that refuse wrong verdicts."""
 
+import json
+from dataclasses import asdict, replace
 from fractions import Fraction
 from pathlib import Path
 from random import Random
@@ -11,9 +13,20 @@ from symrot.checker.claim.reader import read_expression
 from symrot.checker.verdict import Counterexample, Verdict
 from symrot.errors import InputError
 from tests.campaigns.checker import real_identities as module
-from tests.campaigns.checker.identities import main
-from tests.campaigns.checker.judge_real import Edge, NoValue, Unclear, compare, drawn_point, generic_point, real_value
-from tests.campaigns.checker.real_identities import REAL_RULES, TRAPS, fault, real_campaign, real_claims
+from tests.campaigns.checker import run as campaign_run
+from tests.campaigns.checker.identities import campaign, main
+from tests.campaigns.checker.judge_real import (
+    Edge,
+    Large,
+    NoValue,
+    Unclear,
+    compare,
+    drawn_point,
+    generic_point,
+    real_value,
+)
+from tests.campaigns.checker.real_identities import REAL_RULES, TRAPS, fault, judged_real, real_claims
+from tests.campaigns.checker.run import Judged, judged_claims, read_log
 
 HALF = {"x": Fraction(1, 2), "y": Fraction(3), "z": Fraction(-2)}
 
@@ -23,9 +36,9 @@ def value(text, point=HALF):
 
 
 def test_a_slice_of_the_campaign_has_no_wrong_verdict():
-    found = real_campaign(24, seed=5)
-    assert found.wrong == ()
-    assert sum(found.counts.values()) == 24
+    found = campaign(24, seed=5, real=True)
+    assert found.wrong == found.late == []
+    assert found.count == 24
     assert set(found.counts) >= {"true", "false", "refused"}
     assert found.slowest_claim
 
@@ -146,16 +159,115 @@ def test_a_wrong_engine_is_caught(monkeypatch, answer):
         return Verdict("true")
 
     monkeypatch.setattr(module, "check", wrong)
-    found = real_campaign(16, seed=1)
+    found = campaign(16, seed=1, real=True)
     assert len(found.wrong) >= 3
     assert main(["--real", "--count", "4"]) == 1
 
 
 def test_a_late_answer_fails_the_command(monkeypatch):
-    monkeypatch.setattr("tests.campaigns.checker.identities.LONGEST_SECONDS", 0.0)
+    monkeypatch.setattr("tests.campaigns.checker.run.LONGEST_SECONDS", 0.0)
     assert main(["--real", "--count", "2"]) == 1
     monkeypatch.undo()
     assert main(["--real", "--count", "2"]) == 0
+
+
+def test_an_answer_that_never_comes_is_given_up(monkeypatch):
+    def endless(claim, repair):
+        while True:
+            try:
+                for number in range(10**6):
+                    number**2
+            except Exception:  # what a formula's code may do to any error
+                continue
+
+    monkeypatch.setattr(module, "check", endless)
+    monkeypatch.setattr(campaign_run, "GIVEN_UP_SECONDS", 0.2)
+    found = campaign(2, seed=1, real=True)
+    assert found.counts == {"no answer": 2}
+    assert all("no answer in" in sentence for sentence in found.wrong)
+
+
+def test_values_beyond_the_largest_are_values():
+    """The judge cannot compare exp(exp(100)), but knows that it is there."""
+    with pytest.raises(Large):
+        value("sin(exp(exp(100)))")
+    claim = "sin(exp(sinh(exp(x**4 - x + 5)))) == sin(2*exp(sinh(exp(x**4 - x + 5))) - exp(sinh(exp(x**4 - x + 5))))"
+    assert fault(claim, Verdict("true"), Random(1)) == ""
+    assert fault(f"0*log(-cosh(x)) + {claim}", Verdict("true"), Random(1)).startswith("true of nothing")
+
+
+@pytest.mark.parametrize("formula", [
+    "log(exp(exp(100)))", "sqrt(exp(exp(100)))*log(3 + exp(exp(100)))", "tan(cosh(exp(100)))", "1/exp(-exp(99))", "(-2)**333*exp(99)",
+    "sinh(-exp(99))**2 + 1", "exp(exp(100))**(1/3)", "tanh(-exp(99))",
+])  # fmt: skip
+def test_a_formula_of_large_numbers_has_a_value(formula):
+    with pytest.raises(Large):
+        value(formula)
+
+
+@pytest.mark.parametrize(
+    "formula", ["log(-exp(exp(100)))", "sqrt(-cosh(exp(100)))", "log(sinh(-exp(99)))", "(-exp(exp(9)))**(1/3)"]
+)
+def test_a_formula_of_large_numbers_has_none(formula):
+    with pytest.raises(NoValue):
+        value(formula)
+
+
+def test_a_number_that_only_seems_zero_has_no_root():
+    """cosh(exp(-exp(x))) is larger than 1 by less than 60 digits show."""
+    claim = "acos(cosh(asin(exp(-exp(x))))) == 3"
+    assert fault(claim, "the sides are no real numbers: -1 >= 0 does not hold", Random(1)) == ""
+
+
+# -- runs -------------------------------------------------------------------------------------------------------------
+
+
+def test_an_interrupted_run_goes_on_and_asks_again_for_what_was_wrong(monkeypatch, tmp_path):
+    log = tmp_path / "claims.jsonl"
+    asked = []
+    ask = module.check
+    monkeypatch.setattr(module, "check", lambda claim, repair: asked.append(claim) or ask(claim, repair=repair))
+    whole = campaign(8, seed=2, real=True)
+    claims = list(real_claims(8, 2))
+    asked.clear()
+    first = campaign(5, seed=2, real=True, log=log)
+    assert (first.count, asked) == (5, claims[:5])
+    rows = read_log(log)
+    log.write_text(log.read_text() + '{"number": 6, "cla')  # cut off in the middle of a line
+    second = campaign(8, seed=2, real=True, log=log)
+    assert (second.counts, asked) == (whole.counts, claims)
+    monkeypatch.setattr(module, "check", lambda claim, repair: Verdict("false"))
+    wrong = judged_real(2, 3, claims[2])
+    assert wrong.wrong
+    with log.open("a") as file:
+        file.write(f"{json.dumps(asdict(wrong))}\n{json.dumps(asdict(replace(rows[4], seconds=61.0)))}\n")
+    monkeypatch.setattr(module, "check", lambda claim, repair: asked.append(claim) or ask(claim, repair=repair))
+    assert campaign(8, seed=2, real=True, log=log).counts == whole.counts
+    assert asked == [*claims, claims[2], claims[3]]
+    with pytest.raises(InputError, match="expected the log of the claims of seed 3"):
+        campaign(8, seed=3, real=True, log=log)
+    log.write_text("[1]\n")
+    assert main(["--real", "--log", str(log)]) == 2
+
+
+def test_two_processes_find_what_one_finds(capsys):
+    one, two = (campaign(10, seed=6, real=True, workers=workers) for workers in (1, 2))
+    assert (one.counts, one.wrong) == (two.counts, two.wrong)
+
+
+def test_wrong_answers_are_shown_as_they_come(capsys, tmp_path):
+    rows = judged_claims(_wrong_at_three, enumerate("abcd", 1), 1, tmp_path / "log")
+    tally = campaign_run.Tally()
+    for row in rows:
+        tally.add(row)
+        tally.show(4, row)
+        assert len(read_log(tmp_path / "log")) == row.number
+    assert capsys.readouterr().err == "\r3: not so: c\n"
+    assert (tally.wrong, tally.counts) == (["not so: c"], {"true": 4})
+
+
+def _wrong_at_three(number, claim):
+    return Judged(number, claim, "true", 0.0, "not so" if number == 3 else "")
 
 
 def test_the_document_on_soundness_is_beside_the_modules_that_cite_it():

@@ -154,7 +154,7 @@ def test_the_committed_pages_are_current(printed):
 
 
 def test_check_finds_what_is_stale_missing_and_left_over(tmp_path, printed, monkeypatch):
-    monkeypatch.setattr(catalogue, "pages", lambda: printed)
+    monkeypatch.setattr(catalogue, "pages", lambda say: printed)
     assert len(catalogue.derive_all(tmp_path)) == len(printed)
     assert catalogue.check(tmp_path) == [] and catalogue.derive_all(tmp_path) == []
     (tmp_path / "spherical_body.md").write_text(printed["spherical_body.md"].replace("**1.** The", "**1.** No"))

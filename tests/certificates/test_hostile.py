@@ -84,6 +84,7 @@ def changed_somewhere(data, chance):
     return data
 
 
+@pytest.mark.parametrize(("seed", "count"), [("", 10), pytest.param("more", 200, marks=pytest.mark.campaign)])
 @pytest.mark.parametrize(
     "name",
     [
@@ -94,10 +95,10 @@ def changed_somewhere(data, chance):
         "scenes/heavy_top_loops_rates",
     ],
 )
-def test_a_strange_value_anywhere_in_a_certificate_gets_one_sentence(name, tmp_path, capsys):
+def test_a_strange_value_anywhere_in_a_certificate_gets_one_sentence(name, seed, count, tmp_path, capsys):
     """Whatever it is: no other error gets out of the audit, of certify, or of ``recheck.py``."""
     source = KERNELS / f"{name}.cert.json"
-    chance, data = random.Random(name), json.loads(source.read_text(encoding="utf-8"))
+    chance, data = random.Random(name + seed), json.loads(source.read_text(encoding="utf-8"))
     for file in (
         source.with_suffix("").with_suffix(".c"),
         source.with_suffix("").with_suffix(".h"),
@@ -106,7 +107,7 @@ def test_a_strange_value_anywhere_in_a_certificate_gets_one_sentence(name, tmp_p
         shutil.copy(file, tmp_path)
     path = tmp_path / source.name
     refused = 0
-    for _ in range(40):
+    for _ in range(count):
         path.write_text(printed(changed_somewhere(data, chance)), encoding="utf-8")
         words = chance.choice([["audit"], ["audit"], ["audit", "--rerun-bounds"], ["certify", "--no-bounds"]])
         code = cli.main([*words, str(path)])
@@ -117,4 +118,4 @@ def test_a_strange_value_anywhere_in_a_certificate_gets_one_sentence(name, tmp_p
             recheck.check(path)
         except Exception as reason:
             assert "\n" not in str(reason)
-    assert refused > 30
+    assert refused > 0.75 * count

@@ -43,14 +43,20 @@ def test_one_sample_and_batch_are_the_same_operations(path):
     assert Operations.from_json(one.to_json()) == one
 
 
-@pytest.mark.parametrize("path", KERNELS[::4], ids=lambda path: path.stem)
-def test_what_is_read_is_what_the_compiler_makes_of_it(path, tmp_path):
-    """Without contraction, the same bits at random points."""
-    library = tmp_path / "kernel.so"
+@pytest.fixture(scope="module")
+def compiled(tmp_path_factory):
+    """Return one library of every fourth kernel, without contraction."""
+    library = tmp_path_factory.mktemp("readback") / "kernels.so"
     flags = ["-O2", "-ffp-contract=off", "-shared", "-fPIC"]
-    subprocess.run(["cc", *flags, str(path), "-o", str(library), "-lm"], check=True)
+    subprocess.run(["cc", *flags, *map(str, KERNELS[::4]), "-o", str(library), "-lm"], check=True)
+    return ctypes.CDLL(str(library))
+
+
+@pytest.mark.parametrize("path", KERNELS[::4], ids=lambda path: path.stem)
+def test_what_is_read_is_what_the_compiler_makes_of_it(path, compiled):
+    """Without contraction, the same bits at random points."""
     operations = read_kernel(path.read_text(encoding="utf-8"), path.stem, path.name)
-    function = getattr(ctypes.CDLL(str(library)), path.stem)
+    function = getattr(compiled, path.stem)
     sizes = {}
     for place in (*operations.inputs, *(place for place, _ in operations.outputs)):
         name = place.partition("[")[0]

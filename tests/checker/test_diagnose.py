@@ -31,6 +31,7 @@ CASES = (  # claim, verdict, code, a repair that must be among the first three
     ("A*w == B*w", "conditional", "requires_symmetric_top", None),
     ("det(dcm_of(q0, q1, q2, q3)) == 1", "conditional", "requires_unit_norm", None),
     ("sqrt(x**2) == x", "conditional", "sign_branch", None),
+    ("acos(cos(x)) == x", "conditional", "principal_value", None),
     ("m*v**2/3 == m*v*v/2", "false", "factor", "m*v**2/2 == m*v*v/2"),
 )  # fmt: skip
 

@@ -49,6 +49,7 @@ PRINTED = {  # code: what is printed, what would be right (None: the claim holds
     "requires_symmetric_top": ("A*w == B*w", None),
     "requires_condition": ("I_xx*w + I_xy*u == I_xx*w", None),
     "sign_branch": ("sqrt(x**2) == x", None),
+    "principal_value": ("asin(sin(x)) == x", None),
 }  # fmt: skip
 ELSEWHERE = {"none", "domain", "dimension"}
 """No diagnosis, and those that come without an edit."""

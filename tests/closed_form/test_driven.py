@@ -16,6 +16,8 @@ from symrot.closed_form.axial import motion as axial
 from symrot.closed_form.free_body import motion as free_body
 from symrot.closed_form.gyrostat import motion as gyrostat
 from symrot.errors import CompilerError, InputError
+from symrot.propagation.propagator import propagator
+from tests.propagation.test_changed_start import scene
 
 Q0 = (0.1, 0.7, -0.5, 0.5)
 BAR = 1e-15
@@ -242,6 +244,32 @@ def test_c_and_numpy_agree_on_bodies_that_turn_across_the_axis(request):
     request.getfixturevalue("no_compiler")
     second = axial.motion(*arguments).evaluate(times, quaternion=False)[0]
     assert (np.abs(first - second) <= BAR * np.abs(second).max(axis=1)[:, None]).all()
+
+
+@pytest.mark.parametrize("inertia", [(2, 2, 1), (2, 3, 4)])
+@pytest.mark.parametrize("torque", [{"kind": "constant_body", "torque": [0, 0, 0]}, {"kind": "damping", "linear": 1}])
+def test_a_body_at_rest_that_nothing_drives_stays(inertia, torque):
+    """No axis is marked: any will do."""
+    found = propagator(scene([torque], inertia=inertia, omega=(0, 0, 0), attitude=(1, 2, 3, 4)))([0.0, 1e6])
+    assert found.method == "exact" and not found.omega.any()
+    assert np.abs(found.quaternion - np.array([1.0, 2.0, 3.0, 4.0]) / np.sqrt(30.0)).max() <= BAR
+
+
+@pytest.mark.parametrize("damping", [0, 1e-3])
+def test_rates_beyond_the_turns_that_loops_know_are_right(damping):
+    """2^200 stands for what is larger where whole turns are left out: never for the angular velocity itself."""
+    found = axial.motion((2, 2, 2), 2, 0.25, (0, 0, 1e100), damping=damping).evaluate([0.5, 1.0], quaternion=False)[0]
+    assert np.abs(found[:, 2] / (1e100 * np.exp(-damping / 2 * np.array([0.5, 1.0]))) - 1).max() <= BAR
+
+
+def test_constants_of_equal_ratios_are_equal():
+    """Whatever integers a ratio is given in, its parts have the same bits."""
+    chance = random.Random(3)
+    for _ in range(3000):
+        bits = chance.randrange(1, 400)
+        top, bottom = chance.getrandbits(bits) - (1 << bits - 1), 1 + chance.getrandbits(chance.randrange(1, 400))
+        factor = 1 + chance.getrandbits(chance.randrange(1, 200))
+        assert axial_compiled.parts(top, bottom, 4) == axial_compiled.parts(top * factor, bottom * factor, 4)
 
 
 def test_constants_in_parts():

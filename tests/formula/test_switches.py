@@ -12,6 +12,7 @@ from symrot.formula.tree import evaluate, parse
 from symrot.scene.scene import Scene
 from tests.needs import needs_compiler
 
+pytestmark = pytest.mark.usefixtures("quick_compiler")
 METHODS = ["taylor", "dop853", "scipy:DOP853"]
 RANDOM = np.random.default_rng(5)
 
@@ -295,3 +296,48 @@ def test_the_event_at_which_friction_stops_a_wheel_is_reported(method):
 def test_a_guard_without_a_value_ends_in_a_sentence():
     with pytest.raises(PropagationError, match=r"mod\(t, 0\) has no value"):
         symrot.propagator(scene("mod(t, 0)"))([1.0])
+
+
+@needs_compiler
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize(
+    ("torque", "omega"),
+    [
+        ("sign(sign(step(-3/5)))", 0), ("abs(sign(abs(0)))", 0), ("where(-2 < -2, t, 3)", 12), ("where(k <= 2, t, 3)", 8),
+        ("floor(k)*step(k - 2) + floor(k)", 8), ("sign(mod(2 - 9/5*t, 11/15))", 4), ("abs(mod(2 - t, 2))", 4),
+        ("sign(floor(t))", 3), ("abs(floor(t - 3/2))", 4), ("step(t - 1)*sign(t - 1) + sign(step(1 - t))", 4),
+    ],
+)  # fmt: skip
+def test_switches_in_switches_switch_together(torque, omega, method):
+    """A guard that jumps onto zero and off again, as mod at its jumps, and guards that never change, zero or not."""
+    made = symrot.propagator(
+        scene(torque, stop=4.0, principal=(1, 1, 1), **({"k": 2} if "k" in torque else {})), method
+    )
+    assert made([4.0]).omega[0, 2] == pytest.approx(omega, abs=1e-10)
+
+
+@needs_compiler
+def test_a_start_on_a_switch_inside_a_switch_has_more_than_one_future():
+    with pytest.raises(PropagationError, match="more than one future"):
+        symrot.propagator(scene("sign(sign(omega_3))"), "taylor")([1.0])
+
+
+FRICTIONS = {  # torque -> omega_3 from 1 rad/s, for a moment of inertia of 1
+    "-sign(omega_3) - step(omega_3)": lambda t: np.maximum(1 - 2 * t, 0),
+    "-where(omega_3 > 0, 1, -1) - sign(omega_3)": lambda t: np.maximum(1 - 2 * t, 0),
+    "-abs(omega_3)*sign(omega_3) - sign(omega_3)/4": lambda t: np.maximum(1.25 * np.exp(-t) - 0.25, 0),
+    "-max(omega_3, 0) - sign(omega_3)/4": lambda t: np.maximum(1.25 * np.exp(-t) - 0.25, 0),
+    # exp(omega) + 1 falls as exp(-t) times what it was, for u = exp(omega): du/dt = -(1 + 1/u) u
+    "-(1 + exp(-abs(omega_3)))*sign(omega_3)": lambda t: np.log(np.maximum((math.e + 1) * np.exp(-t) - 1, 1)),
+}
+
+
+@needs_compiler
+@pytest.mark.parametrize("method", [*METHODS, "scipy:Radau", "scipy:BDF", "scipy:LSODA"])
+@pytest.mark.parametrize("torque", FRICTIONS)
+def test_friction_of_several_parts_stops_and_holds_the_body(torque, method):
+    """Their guards are the same: they switch together, and one of them holds the body for all."""
+    times = np.linspace(0, 3, 31)
+    omega = symrot.propagator(scene(torque, (0, 0, 1), 3.0, (1, 1, 1)), method, 1e-9)(times).omega[:, 2]
+    assert abs(omega - FRICTIONS[torque](times)).max() < 20e-9
+    assert not omega[-5:].any()

@@ -21,14 +21,6 @@ from symrot.propagation.steppers import dop853
 from tests.reference.tops import MOTIONS, RIGID_BODY, TIMES, error, parameters, state, taylor, wave
 
 
-@pytest.fixture(scope="module", autouse=True)
-def own_cache(tmp_path_factory):
-    """Build into a directory of this test run."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("SYMROT_CACHE", str(tmp_path_factory.mktemp("cache")))
-        yield
-
-
 @cache
 def built(kernel, name, states, parameters, blocks, scales):
     return library.build(dop853.translation_unit(kernel, name, states, parameters, blocks, scales), name)

@@ -22,12 +22,13 @@ from symrot.formula.tree import parse
 from symrot.planning.plan import make_plan
 from symrot.planning.scene_kernel import bind
 from symrot.propagation.compiled_models import error_blocks, scene_kernel
-from symrot.propagation.enclosures.step_limit import FUNCTIONS, Deviations, Disc, longest_followed
+from symrot.propagation.enclosures.step_limit import FUNCTIONS, Deviations, Disc, deviations_of, longest_followed
 from symrot.propagation.enclosures.step_limit import _product as product
 from symrot.propagation.steppers import cut_off, dop853, stepping, taylor
 from symrot.scene.scene import Scene
 from tests.needs import needs_compiler
 
+pytestmark = pytest.mark.usefixtures("quick_compiler")
 RANDOM = np.random.default_rng(12)
 COMPLEX = {name: getattr(cmath, name) for name in FUNCTIONS if name not in ("sech", "atan2")}
 COMPLEX["sech"] = lambda z: 1 / cmath.cosh(z)
@@ -221,6 +222,46 @@ def test_coefficients_obey_the_bound(torque):
         for n in range(12, 39):
             rate = abs(omega_3[n + 1]) * (n + 1)
             assert rate <= (bound + smooth * rho) / rho**n
+
+
+TERMS = [
+    "exp(-m*(t-1)**2)*sin(3*t+m)**9", "tanh(3*omega_3 + t)/cosh(m*t)", "q1/(3 + omega_3*cos(m*t)**9)",
+    "atan2(1 + q1, 2 + t) + exp(m*cos(2*t))", "log(2 + t*m)*sqrt(4 + omega_1)", "exp(900*m*t)*exp(-700*t)/(1 + q2**8)",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("torque", TERMS)
+def test_bounds_by_one_function_are_those_disc_by_disc(torque):
+    plan, kernel = rates(scene(torque, (0.1, -0.2, 0.3), m=1.5))
+    names = [name for name, _ in kernel.rate_parameters]
+    numbers = bind(kernel.rate_parameters, plan.constants)
+    made = deviations_of(enclosure(recurrences(kernel.rates)))
+    first = made(dict(zip(names, [2.0 * x for x in numbers], strict=True)))
+    deviations, finite = made(dict(zip(names, numbers, strict=True))), 0
+    apart = 0
+    for _ in range(200):
+        reach = 10 ** RANDOM.uniform(-4, 0.5)
+        y = (np.array(plan.initial_state) + RANDOM.uniform(-0.3, 0.3, len(plan.states))).tolist()
+        radii = (reach * RANDOM.uniform(0, 1, len(y))).tolist()
+        start = (RANDOM.uniform(-1, 2), reach, y, radii)
+        bounds = deviations(*start)
+        assert bounds == pytest.approx(deviations.slowly(*start), rel=1e-12, abs=1e-300)
+        finite += math.isfinite(sum(bounds))
+        apart += sum(bounds) != pytest.approx(sum(first(*start)), rel=1e-3)
+    assert finite > 20 and apart > 20
+
+
+def test_the_reach_that_is_tried_first_changes_no_step():
+    plan, kernel = rates(scene("exp(-((t-5)/w)**2)", w=0.3))
+    names = [name for name, _ in kernel.rate_parameters]
+    numbers = dict(zip(names, bind(kernel.rate_parameters, plan.constants), strict=True))
+    deviations, edges = Deviations(enclosure(recurrences(kernel.rates)), numbers), error_blocks(plan)[0]
+    rest = (plan.initial_state, [[0.0] * 20 for _ in plan.states], 1.0, [1e-9] * (len(edges) - 1), edges, 20)
+    lengths = set()
+    for likely in range(8):
+        deviations.likely = likely
+        lengths.add(longest_followed(deviations, 3.5, *rest))
+    assert len(lengths) == 1 and 0.0 < lengths.pop() < 1.0
 
 
 def test_a_bound_that_is_too_small_would_let_a_pulse_pass():

@@ -13,6 +13,7 @@ from symrot.kinematics import conversions
 from symrot.kinematics.euler import sequences_at_lock
 from symrot.propagation.euler_state import SWITCH, partner, regularity
 
+pytestmark = pytest.mark.usefixtures("quick_compiler")
 T = np.linspace(-3, 8, 111)
 
 

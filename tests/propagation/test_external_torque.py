@@ -13,13 +13,7 @@ from symrot.errors import InputError, PropagationError
 from symrot.propagation import external_torque as driven
 from symrot.scene.scene import Scene
 
-
-@pytest.fixture(scope="module", autouse=True)
-def own_cache(tmp_path_factory):
-    """Build into a directory of this test run."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("SYMROT_CACHE", str(tmp_path_factory.mktemp("cache")))
-        yield
+pytestmark = pytest.mark.usefixtures("quick_compiler")
 
 
 def scene(omega=(0, 0, 0), moments=(1, 1, 1), stop=3, **more):

@@ -6,7 +6,10 @@ import numpy as np
 import pytest
 
 from symrot.errors import InputError, PropagationError
+from symrot.propagation import progress
+from symrot.propagation.propagator import propagator
 from symrot.propagation.steppers import fallback
+from symrot.scene.scene import Scene
 from tests.reference.tops import MOTIONS, TIMES, error, parameters, rigid_body, taylor, wave
 
 
@@ -80,3 +83,104 @@ def test_the_fallback_restarts_at_a_switching_time():
 def test_the_fallback_says_what_is_wrong(rate, options, kind, sentence):
     with pytest.raises(kind, match=sentence):
         fallback.integrate(rate, [], [1.0], 0.0, [1.0], 1e-6, blocks=(0, 1), scales=(1.0,), **options)
+
+
+def pole(t, y, p):
+    return [0.1 * math.tan(t)]
+
+
+@pytest.mark.parametrize("method", list(fallback.METHODS))
+def test_a_pole_ends_in_a_sentence_and_keeps_the_samples_before_it(method):
+    times = np.linspace(0.0, 4.0, 41)
+    with pytest.raises(
+        PropagationError, match=r"beyond t = 1\.570\d* s on the way to 4\.0 s: the step shrank"
+    ) as caught:
+        fallback.integrate(pole, [], [0.3], 0.0, times, 1e-7, method=method, blocks=(0, 1), scales=(0.0,))
+    numbers, states = caught.value.samples
+    assert numbers.tolist() == list(range(16))
+    assert abs(states[:, 0] - 0.3 + 0.1 * np.log(np.cos(times[:16]))).max() < 20 * 1e-7
+
+
+def test_a_state_that_grows_without_bound_does_not_loosen_the_samples_before():
+    times = np.linspace(0.0, 4.0, 41)  # 1/(1 - t/2): the largest size on the way is that of the pole
+    with pytest.raises(PropagationError, match=r"on the way to 4\.0 s") as caught:
+        fallback.integrate(lambda t, y, p: 0.5 * y * y, [], [1.0], 0.0, times, 1e-7, blocks=(0, 1), scales=(0.0,))
+    numbers, states = caught.value.samples
+    assert numbers.tolist()[:20] == list(range(20))
+    exact = 1.0 / (1.0 - 0.5 * times[:15])
+    assert abs(states[:15, 0] / exact - 1.0).max() < 20 * 1e-7
+
+
+def switching_scene(stop, *torque):
+    content = {
+        "schema": 1, "body": {"principal": [1, 2, 3]}, "initial": {"omega": [0.1, 0.2, 0.3]}, "span": {"t": [0, stop]},
+        "torque": [{"kind": "expression", "torque": list(torque)}], "output": {"quantities": ["omega", "quaternion"]},
+    }  # fmt: skip
+    return Scene.from_dict(content)
+
+
+SWITCHING = ("0.02*sign(sin(0.5*t))", "-0.01*sign(omega_2 - 0.3)", "0.05*sin(t)**3")
+
+
+@pytest.mark.parametrize("method", ["scipy:RK45", "scipy:LSODA"])
+def test_an_interrupt_under_switches_keeps_every_sample_up_to_it(method):
+    """The interrupt comes from a progress report, at several times, before and after switches of the same window."""
+    propagate = propagator(switching_scene(100, *SWITCHING), method, 1e-6)
+    times = np.linspace(0.0, 100.0, 2001)
+    whole = propagate(times).omega
+    for place in (20.0, 43.0, 60.5, 91.0):
+
+        def interrupt(t, start, end, place=place):
+            assert (start, end) == (0.0, 100.0)
+            if t >= place:
+                raise KeyboardInterrupt
+
+        with pytest.raises(KeyboardInterrupt) as caught, progress.reporting(interrupt):
+            propagate(times)
+        kept = caught.value.trajectory
+        # what SciPy followed beyond a switch is of no use
+        last_switch = max(2 * math.pi * k for k in range(16) if 2 * math.pi * k < place)
+        assert kept.t[-1] > last_switch - 0.1 and np.array_equal(kept.t, times[: len(kept)])
+        assert abs(kept.omega - whole[: len(kept)]).max() < 1e-5
+
+
+@pytest.mark.parametrize("method", ["scipy:LSODA", "scipy:DOP853"])
+def test_endlessly_many_switches_are_given_up_soon_with_the_samples_before(method):
+    propagate = propagator(switching_scene(10_000_000, "0", "0", "1e-6*step(0.1 - mod(t, 1))"), method, 1e-6)
+    with pytest.raises(PropagationError, match="far more than the limit") as caught:
+        propagate([0.5, 1.5, 10_000_000])
+    assert caught.value.trajectory.t.tolist() == [0.5, 1.5]
+
+
+@pytest.mark.parametrize("method", list(fallback.METHODS))
+def test_a_torque_that_leaves_zero_slowly_is_followed(method):
+    """Up to 1 s nothing acts, then the fifth power of the time acts on two axes."""
+    scene = switching_scene(3, "where(t > 1, (t-1)**5, 0)", "where(t > 1, (t-1)**5, 0)", "0")
+    exact, found = propagator(scene, "dop853", 1e-11)(), propagator(scene, f"scipy:{method}", 1e-6)()
+    assert abs(found.omega - exact.omega).max() < 20 * 1e-6 * abs(exact.omega).max()
+    assert abs(found.quaternion - exact.quaternion).max() < 20 * 1e-6
+
+
+HYSTERESIS = "-0.5577*where(omega_{0} > 0.3021, 1, where(omega_{0} < -0.2165, -1, 0)) + 0.447*sin(2.01*t)"
+HYSTERETIC = {  # one that is stepped from rest by LSODA, and one that slides where the other mode is no divisor
+    "from rest": ([1, 1, 2], [0, 0, -0.3647], ["0", HYSTERESIS.format(2), "0"]),
+    "slides": (
+        [1, 1.5, 2], [0.266, 0.383, -0.1882],
+        ["0", "0", "-0.4927*where(omega_3 > 0.3939, 1, where(omega_3 < -0.1193, -1, 0)) + 0.1286*sin(1.7792*t)"],
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("method", ["taylor", "scipy:LSODA", "scipy:RK45"])
+@pytest.mark.parametrize("name", HYSTERETIC)
+def test_a_torque_that_falls_behind_two_thresholds_is_followed(name, method):
+    body, omega, torque = HYSTERETIC[name]
+    content = {
+        "schema": 1, "body": {"principal": body}, "initial": {"omega": omega}, "span": {"t": [0, 3]},
+        "torque": [{"kind": "expression", "torque": torque}], "output": {"quantities": ["omega", "quaternion"]},
+    }  # fmt: skip
+    scene = Scene.from_dict(content)
+    times = np.linspace(0.0, 3.0, 7)
+    exact, found = propagator(scene, "dop853", 1e-11)(times), propagator(scene, method, 1e-6)(times)
+    assert abs(found.omega - exact.omega).max() < 20 * 1e-6 * abs(exact.omega).max()
+    assert abs(found.quaternion - exact.quaternion).max() < 20 * 1e-6

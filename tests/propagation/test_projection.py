@@ -26,14 +26,6 @@ TILTED = {"axis": [1, 0, 0], "angle": "1/2"}
 GRAVITY = {"kind": "gravity", "weight": 1, "center_of_mass": ["1/10", "1/5", "9/10"]}
 
 
-@pytest.fixture(scope="module", autouse=True)
-def own_cache(tmp_path_factory):
-    """Build into a directory of this test run."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("SYMROT_CACHE", str(tmp_path_factory.mktemp("cache")))
-        yield
-
-
 class Body:
     """A scene's stepper, with its invariants."""
 

@@ -99,6 +99,7 @@ def test_the_reference_file_is_what_its_program_prints():
     assert [taylor.decimal(x) for line in dcm for x in line] == row["dcm"]
 
 
+@pytest.mark.usefixtures("quick_compiler")
 @pytest.mark.parametrize("name", SCENES)
 def test_every_simplification_leaves_the_motion_alone(name):
     """The structures after each rule of the plan, from general to special, give one motion."""
@@ -340,6 +341,7 @@ CHOICES = {
 }  # fmt: skip
 
 
+@pytest.mark.usefixtures("quick_compiler")
 @pytest.mark.parametrize("name", CHOICES)
 def test_auto_steps_no_motion_that_it_can_solve(name):
     """Exact where there is a form, series where the torque is smooth, Dormand and Prince's method otherwise."""

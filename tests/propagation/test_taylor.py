@@ -34,14 +34,6 @@ from tests.reference.tops import taylor as reference
 MATH = {name: getattr(math, name) for name in FUNCTIONS if name != "abs"}
 
 
-@pytest.fixture(scope="module", autouse=True)
-def own_cache(tmp_path_factory):
-    """Build into a directory of this test run."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("SYMROT_CACHE", str(tmp_path_factory.mktemp("cache")))
-        yield
-
-
 def rigid_body_program():
     """Return a heavy body about a fixed point: moments a, b, c; weight times centre of mass; gravity along -z."""
     names = [f"w{i}" for i in (1, 2, 3)] + [f"q{i}" for i in range(4)]
@@ -83,6 +75,7 @@ def small(rates, scale=1.0, flags=(), order=None):
 # ------------------------------------------------------------------------------------------------ coefficients
 
 
+@pytest.mark.usefixtures("quick_compiler")
 @pytest.mark.parametrize(
     "flags", [(), ("-DSYMROT_PAIRS",), ("-DSYMROT_PLAIN",)], ids=["vectors", "vectors of two", "plain C"]
 )
@@ -96,6 +89,7 @@ def test_compiled_coefficients_are_those_of_the_recurrences(flags):
         compare(rates, flags)
 
 
+@pytest.mark.usefixtures("quick_compiler")
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_compiled_polynomial_systems(name):
     compare(SYSTEMS[name])
@@ -112,6 +106,7 @@ def compare(rates, flags=(), order=20):
     assert (unit == found * 0.5 ** np.arange(order + 1)[:, None]).all() or flags  # a power of two costs no bit
 
 
+@pytest.mark.usefixtures("quick_compiler")
 @pytest.mark.parametrize("order", [4, 6, 10, 16, 22])
 def test_any_even_order(order):
     compare(SYSTEMS["free body"], order=order)
@@ -465,6 +460,7 @@ def test_the_benchmark_runs_and_ranks():
     assert bench.best_of(runs, 1e-30, ["taylor"]) is None
 
 
+@pytest.mark.usefixtures("quick_compiler")
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-6, 1e-9, 1e-12])
 @pytest.mark.parametrize("power", range(1, 7))
 def test_series_with_gaps_are_followed(power, tolerance):

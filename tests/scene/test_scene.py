@@ -25,7 +25,7 @@ SHIPPED = {
     "tumbling_prism", "tumbling_prism_largest", "tumbling_prism_smallest", "chen_cylinder", "t_handle",
     "heavy_top_loops", "heavy_top_cusps", "heavy_top_waves", "precessing_wheel", "axisymmetric_satellite",
     "axisymmetric_satellite_oblate", "gravity_gradient_satellite", "earth_wobble", "gyrostat", "damped_disk",
-    "spin_up", "thruster_pulse",
+    "spin_up", "thruster_pulse", "thruster_train", "friction_wheel", "quadcopter_motor_failure",
 }  # fmt: skip
 
 

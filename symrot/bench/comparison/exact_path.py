@@ -14,10 +14,12 @@ from numpy.typing import NDArray
 
 from symrot.codegen.taylor.coefficients import coefficients
 from symrot.codegen.taylor.recurrences import recurrences
-from symrot.errors import InputError
+from symrot.errors import InputError, SymrotError
 from symrot.formula import exact_numbers as number
 from symrot.formula.tree import evaluate
 from symrot.planning.scene_kernel import EXACT_FUNCTIONS
+from symrot.propagation.compiled_models import error_blocks, formula_deviations
+from symrot.propagation.enclosures.step_limit import longest_followed
 from symrot.propagation.motion import Motion
 
 __all__ = ["ExactPath"]
@@ -27,6 +29,7 @@ Floats = NDArray[np.float64]
 DIGITS, ORDER, TAIL = 40, 32, 1e-28
 FUNCTIONS = ("sqrt", "sin", "cos", "tan", "exp", "log", "sinh", "cosh", "tanh", "asin", "acos", "atan", "atan2")
 MOST_STEPS = 2000
+SLOWEST = 1e-8  # of the speed at the start, or rad/s: a slower body is measured as if it were so fast
 
 
 def _as_mpf(value: Fraction) -> Any:
@@ -49,6 +52,11 @@ class ExactPath:
             self.start = [_as_mpf(given[name]) for name in plan.states]
             self.t0 = _as_mpf(Fraction(plan.scene.span.start))
         self.rates = sum(name.startswith("omega") for name in plan.states)
+        bounds = formula_deviations(plan, kernel)
+        self.deviations = bounds and bounds({name: float(value) for name, value in self.parameters.items()})
+        self.edges = error_blocks(plan)[0]
+        self.span = abs(_as_mpf(Fraction(plan.scene.span.stop) - Fraction(plan.scene.span.start)))
+        self.slowest = SLOWEST * (max([abs(x) for x in self.start[: self.rates]], default=0) or 1)
         self.pieces: list[tuple[Any, Any, list[Any]]] = []  # from, to, coefficients of each state
         self._end: tuple[Any, list[Any]] = (self.t0, self.start)
 
@@ -57,11 +65,25 @@ class ExactPath:
         now, state = self._end
         known = self.parameters | {"t": now} | dict(zip(self.system.states, state, strict=True))
         series = coefficients(self.system, ORDER, known, self.functions, _as_mpf)
-        size = max([abs(x) for x in state[: self.rates]], default=1) or 1
+        size = max([abs(x) for x in state[: self.rates]] + [self.slowest])
         last = max(
             abs(one[ORDER - k]) / (size if i < self.rates else 1) for i, one in enumerate(series) for k in (0, 1)
         )
         step = (TAIL / last) ** (mpmath.mpf(1) / ORDER) if last else mpmath.mpf(1)
+        if self.deviations:  # no step goes past a feature that its coefficients do not show
+            step = min(step, self.span)
+            terms = [[float(abs(one[n] * step**n)) for n in range(1, ORDER + 1)] for one in series]
+            allowed = [TAIL * float(size if first < self.rates else 1) for first in self.edges[:-1]]
+            place = [float(x) for x in state]
+            proven = longest_followed(
+                self.deviations, float(now), place, terms, float(step), allowed, self.edges, ORDER
+            )
+            step = min(step, mpmath.mpf(proven))
+            if step < 1e-15 * max(1, abs(now)):
+                raise SymrotError(
+                    f"{self.motion.plan.scene.name}: the motion cannot be followed in {DIGITS} digits beyond "
+                    f"t = {float(now)!r} s: its steps shrink to nothing, as before a singularity"
+                )
         self.pieces.append((now, now + step, series))
         self._end = (now + step, self._sum(series, step))
 

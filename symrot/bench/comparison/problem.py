@@ -22,6 +22,8 @@ Floats = NDArray[np.float64]
 
 PARTS = (0.382, 0.618, 0.854, 1.0)
 """Of the span, where a motion is judged: an unstable one passes through places where errors all but vanish."""
+REST = 1e-3
+"""Of the largest angular velocity where a motion is judged: slower bodies are measured as if they were so fast."""
 
 
 class State(NamedTuple):
@@ -80,11 +82,15 @@ class Problem:
         return State(found[:3], found[3:] if len(found) > 3 else None)
 
     @staticmethod
-    def error(found: State, exact: State) -> float:
-        """Return the larger of two errors: of the angular velocity, relative to its size; of the attitude, in rad."""
+    def error(found: State, exact: State, least: float = 0.0) -> float:
+        """Return the larger of two errors: of the angular velocity, relative to its size; of the attitude, in rad.
+
+        ``least``, rad/s, is what the error of a slower body is relative to: a body that a pulse has yet to set going
+        moves at 1e-40 rad/s, of which no digit matters.
+        """
         if not np.isfinite(found.omega).all():
             return math.inf
-        size = float(np.linalg.norm(exact.omega)) or 1.0
+        size = max(float(np.linalg.norm(exact.omega)), least) or 1.0
         worst = float(np.linalg.norm(found.omega - exact.omega)) / size
         if found.quaternion is None or exact.quaternion is None:
             return worst
@@ -95,4 +101,5 @@ class Problem:
     @staticmethod
     def worst(found: Sequence[State], exact: Sequence[State]) -> float:
         """Return the largest of the errors at several times."""
-        return max(map(Problem.error, found, exact))
+        largest = max(float(np.linalg.norm(state.omega)) for state in exact)
+        return max(Problem.error(one, other, REST * largest) for one, other in zip(found, exact, strict=True))

@@ -11,6 +11,9 @@ reference                    equations              method                      
                                                     halved likewise
 ===========================  =====================  ============================  ==========================
 
+No reference steps over a feature of a formula: the steps of the series are held to enclosures of the torque, and fixed
+steps are short wherever the steps of a motion are that is held to them.
+
 The first that can be had counts, the others are held against it: references that contradict one another are refused,
 and errors below what they differ by mean nothing. The last is computed where but one of the others can be had, as with
 torques that have no Taylor series. All start from the exact numbers of the scene, not
@@ -43,9 +46,12 @@ from symrot.formula import exact_numbers as number
 from symrot.formula.tree import evaluate
 from symrot.planning.plan import Plan, general_structure
 from symrot.planning.scene_kernel import EXACT_FUNCTIONS, Parameters
-from symrot.propagation.compiled_models import error_blocks
+from symrot.propagation.compiled_models import error_blocks, formula_deviations
 from symrot.propagation.enclosures.step_limit import Deviations, longest_followed
+from symrot.propagation.method import Choice
+from symrot.propagation.motion import Motion
 from symrot.propagation.propagator import propagator
+from symrot.propagation.steppers.cut_off import CutOff
 from symrot.propagation.steppers.smoothness import roughness
 from symrot.propagation.steppers.tableau import HEADER
 
@@ -58,6 +64,7 @@ MOST_SECONDS = 150.0  # for the series; a longer one is not begun
 MOST_LONG_SECONDS = 20.0  # for fixed steps in long double
 MOST_STEPS = 2_000_000  # likewise
 FEWEST_STEPS = 64
+GRID_TOLERANCE = 1e-8  # of the motion whose steps say where fixed steps must be short
 CONTRADICTION = 1e-6  # references this far apart are of two motions: one of them is wrong
 CONVERGED = 4e-19  # times the number of radians turned, at least one: what long double can hold
 ROUNDED = 1e-15  # likewise, from where on changes may be of rounding; larger ones are of corners in the torque
@@ -264,9 +271,10 @@ def _converged(general: Problem, name: str, files: Sequence[Path], seconds: floa
         raise _Unavailable("no C compiler")
     if np.finfo(np.longdouble).nmant < LONG_DOUBLE_BITS or ctypes.sizeof(ctypes.c_longdouble) == 8:
         raise _Unavailable("long double is no longer than double here")
-    follow, sizes = _fixed_steps(general, name, files), np.array(_sizes(general))
+    sizes = np.array(_sizes(general))
     turned = max(1.0, (general.stop - general.start) * max(sizes))
     steps, before, held = max(FEWEST_STEPS, int(turned)), None, None
+    follow = _fixed_steps(general, name, files, steps, _grid(general))
     change, clock = np.inf, process_time()
     while steps <= MOST_STEPS and process_time() - clock < min(seconds, MOST_LONG_SECONDS) / 3.0:  # the next takes half
         path = follow(steps)
@@ -285,8 +293,35 @@ def _converged(general: Problem, name: str, files: Sequence[Path], seconds: floa
     return [_long_state(general, state, end) for state, end in zip(held, general.ends, strict=True)]
 
 
-def _fixed_steps(general: Problem, name: str, files: Sequence[Path]) -> Callable[[int], Any]:
-    """Return a function from the number of steps to the integrated states where the motion is judged."""
+def _grid(problem: Problem) -> list[float]:
+    """Return times that no fixed step may go past: none, or the ends of steps that enclosures of the torque allow.
+
+    A fixed step passes a pulse that is narrower than itself, and so do steps of half its length: they agree, and are
+    wrong. The grid is refined together with the steps, so that it decides nothing but where they are short.
+    """
+    motion = Motion(problem.plan, Choice("dop853", ""), GRID_TOLERANCE)
+    if formula_deviations(problem.plan, problem.kernel) is None:
+        return []
+    task, grid = motion.stepping.again(), []
+    try:
+        for run in task.runs(problem.stop):
+            while run.t != run.stop:
+                rows = np.empty((task.stepper.rows_per_call, task.stepper.row))
+                task.advance(run, None, 0, None, rows.ctypes.data, len(rows))
+                grid += rows[: run.recorded, 0].tolist()
+    except CutOff as reason:
+        raise _Unavailable(f"{reason}") from None
+    return grid
+
+
+def _fixed_steps(
+    general: Problem, name: str, files: Sequence[Path], fewest: int, grid: Sequence[float]
+) -> Callable[[int], Any]:
+    """Return a function from the number of steps to the integrated states where the motion is judged.
+
+    Each part between two times of the grid takes as many steps as its length asks for, and at least one of the
+    ``fewest`` steps; of more steps each part takes more in proportion.
+    """
     parts = [
         general.kernel.source,
         f"#define N {len(general.y0)}",
@@ -297,13 +332,16 @@ def _fixed_steps(general: Problem, name: str, files: Sequence[Path]) -> Callable
     function.argtypes, function.restype = (real, real, ctypes.c_long, ctypes.c_void_p, ctypes.c_void_p), None
     p = _long(_exact_parameters(general.kernel.rate_parameters, general.plan).values())
     start = _long(_exact_start(general.plan))
+    whole = general.stop - general.start
 
     def follow(steps: int) -> Any:
         y, began, path = start.copy(), general.start, []
-        for end in general.ends:
-            share = max(1, round(steps * (end - began) / (general.stop - general.start)))
+        least = math.ceil(steps / fewest) if grid else 1
+        for end in sorted({*grid, *general.ends} - {general.start}):
+            share = max(least, round(steps * (end - began) / whole))
             function(began, end, share, y.ctypes.data, p.ctypes.data)
-            path.append(y.copy())
+            if end in general.ends:
+                path.append(y.copy())
             began = end
         return np.array(path)
 

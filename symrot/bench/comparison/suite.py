@@ -22,7 +22,7 @@ from symrot.bench.comparison.work_precision import digest, machine, study
 from symrot.errors import InputError
 from symrot.files.reading import read_input
 from symrot.files.writing import check_target, write
-from symrot.report.layout import columns, one_line
+from symrot.report.layout import columns, one_line, room
 from symrot.report.work_precision import LARGEST_FILE, ROUNDING
 from symrot.scene.file import read_toml
 from symrot.scene.scene import Scene, load_scene
@@ -198,7 +198,7 @@ LEGEND = (
 def lines(found: Mapping[str, Any]) -> list[str]:
     """Return the lines for people; the first is the title."""
     rows = _rows(found)
-    table = columns(rows, width=220, wrap=0, right=range(1, len(rows[0])))
+    table = columns(rows, width=room(220), wrap=0, right=range(1, len(rows[0])))
     return ["The suite: times of others over symrot's, at equal error", "", *table, "", *columns([[LEGEND]])]
 
 

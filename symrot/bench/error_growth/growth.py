@@ -17,6 +17,7 @@ from symrot.bench.by_hand import text_by_hand
 from symrot.bench.comparison.exact_path import ExactPath
 from symrot.build import cache as library
 from symrot.closed_form.registry import exact_form
+from symrot.planning.plan import make_plan
 from symrot.propagation.motion import Motion
 from symrot.propagation.propagator import propagator
 from symrot.propagation.steppers.smoothness import roughness
@@ -56,6 +57,7 @@ class Track:
     """
 
     def __init__(self, scene: Scene, times: Floats, periodic: bool) -> None:
+        make_plan(scene)  # refuses switches: series go on where a switch would change the equations
         self.scene, self.times = scene, times
         self.motion = propagator(scene, "dop853" if self.rough(scene) else "taylor", TIGHTEST)._motion
         self.speed = max(float(np.linalg.norm([float(w) for w in scene.initial.omega_b])), 1e-300)

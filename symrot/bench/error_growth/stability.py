@@ -21,7 +21,7 @@ from symrot.bench.error_growth.growth import FROM, METHODS, Track, exponent, gro
 from symrot.bench.error_growth.points import carried, laws
 from symrot.errors import InputError, PropagationError
 from symrot.propagation.propagator import propagator
-from symrot.report.layout import columns
+from symrot.report.layout import columns, room
 from symrot.scene.scene import Scene, load_scene
 
 __all__ = ["lines", "report", "stability"]
@@ -218,7 +218,7 @@ def _growth_lines(data: Any) -> list[str]:
 def _wrapped(text: str) -> list[str]:
     from textwrap import wrap
 
-    return wrap(text, 110, initial_indent="  ", subsequent_indent="  ")
+    return wrap(text, room(), initial_indent="  ", subsequent_indent="  ")
 
 
 def _pass_lines(rows: Any) -> list[str]:

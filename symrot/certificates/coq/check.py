@@ -6,7 +6,6 @@ The files are checked in a folder of their own, so that what Coq writes beside t
 import os
 import re
 import shutil
-import subprocess
 from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -15,11 +14,12 @@ from tempfile import TemporaryDirectory
 from time import perf_counter
 
 from symrot.certificates.coq.library import ASSUMPTIONS, RULES, STANDARD_AXIOMS, coq_section, coq_texts
-from symrot.errors import CertificateError
+from symrot.certificates.tools import run_tool
+from symrot.errors import CertificateError, CompilerError
 
 __all__ = ["CoqResult", "TheoremResult", "check_kernel", "check_texts", "coqc", "unproven"]
 
-SECONDS = 300  # that one file may take
+SECONDS, SECONDS_TO_ANSWER = 300, 20  # that one file may take, and the version
 
 _COMMENT = re.compile(r"\(\*.*?\*\)", re.DOTALL)
 _UNPROVEN = re.compile(
@@ -72,7 +72,7 @@ def coqc() -> str | None:
 
 def coq_version(compiler: str) -> str:
     """Return the version of a compiler, e.g. ``"8.16.1"``."""
-    done = subprocess.run([compiler, "--print-version"], capture_output=True, text=True, timeout=60, check=False)
+    done = run_tool([compiler, "--print-version"], SECONDS_TO_ANSWER)
     return (done.stdout.split() or ["unknown"])[0]
 
 
@@ -176,10 +176,9 @@ def _compile(compiler: str, place: Path, name: str, seconds: float) -> tuple[str
     """Return what Coq complains of, or None, and what it printed."""
     command = [compiler, "-q", "-R", ".", "symrot", f"{name}.v"]
     try:
-        done = subprocess.run(command, cwd=place, capture_output=True, text=True, timeout=seconds, check=False,
-                              encoding="utf-8", errors="replace")  # fmt: skip
-    except subprocess.TimeoutExpired:
-        return f"not checked within {seconds:g} s", ""
+        done = run_tool(command, seconds, place)
+    except CompilerError as reason:
+        return f"not checked: {reason}", ""
     if done.returncode == 0:
         return None, done.stdout
     found = _PLACE.search(done.stderr)

@@ -4,7 +4,6 @@ The section names compilers and their versions, so that it is true of one machin
 the certificate and outside of what is compared byte for byte.
 """
 
-import subprocess
 from collections.abc import Iterable, Sequence
 from hashlib import sha256
 from pathlib import Path
@@ -14,6 +13,7 @@ from typing import Any
 
 from symrot.certificates.flags import judge
 from symrot.certificates.object_code.comparison import ObjectVerdict, compare_object
+from symrot.certificates.tools import run_tool
 from symrot.errors import CertificateError, CompilerError
 
 __all__ = ["COMPILERS", "FLAGS", "compile_object", "compiler_version", "objects_section"]
@@ -26,7 +26,7 @@ FLAGS: tuple[tuple[str, ...], ...] = (
     ("-O2", "-mavx2", "-mfma", "-ffp-contract=fast", "-fno-math-errno"),
 )  # fmt: skip
 """Flags of the table: strict code for SSE2 and AVX2; where gcc 12 fuses although it is told not to; contraction."""
-SECONDS = 120
+SECONDS, SECONDS_TO_ANSWER = 120, 20
 
 
 def compile_object(compiler: str, flags: Sequence[str], source: Path, target: Path) -> None:
@@ -35,28 +35,28 @@ def compile_object(compiler: str, flags: Sequence[str], source: Path, target: Pa
     Raises
     ------
     CompilerError
-        If the compiler is not there, or refuses: its first complaint is quoted.
+        If the compiler is not there, does not end in time, or refuses: its first complaint is quoted.
     """
     path = which(compiler)
     if path is None:
         raise CompilerError(f"expected a C compiler, {compiler} is not on the path")
     command = [path, *flags, "-I", str(source.parent), "-c", str(source), "-o", str(target)]
-    try:
-        done = subprocess.run(command, capture_output=True, check=False, timeout=SECONDS)
-    except subprocess.TimeoutExpired:
-        raise CompilerError(f"{compiler} does not finish {source.name} in {SECONDS} s") from None
+    done = run_tool(command, SECONDS)
     if done.returncode:
-        complaint = next((line for line in done.stderr.decode(errors="replace").splitlines() if "error" in line), "")
+        complaint = next((line for line in done.stderr.splitlines() if "error" in line), "")
         raise CompilerError(f"{compiler} {' '.join(flags)} refuses {source.name}: {complaint[:200]}")
 
 
 def compiler_version(compiler: str) -> str:
-    """Return the first line that a compiler says of itself; an empty text where it is not there."""
+    """Return the first line that a compiler says of itself; an empty text where it is not there.
+
+    Raises
+    ------
+    CompilerError
+        If it cannot be run, or gives no answer in time.
+    """
     path = which(compiler)
-    if path is None:
-        return ""
-    done = subprocess.run([path, "--version"], capture_output=True, check=False, timeout=SECONDS)
-    return done.stdout.decode(errors="replace").split("\n")[0].strip()
+    return "" if path is None else run_tool([path, "--version"], SECONDS_TO_ANSWER).stdout.split("\n")[0].strip()
 
 
 def objects_section(

@@ -6,17 +6,20 @@ here knows what an instruction does (:mod:`symrot.certificates.object_code.machi
 
 import re
 import shutil
-import subprocess
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
+from symrot.certificates.tools import run_tool
 from symrot.errors import CertificateError, CompilerError
 
 __all__ = ["Constant", "Instruction", "Listing", "Memory", "Operand", "Register", "Relocation", "listing", "missing"]
 
 FORMAT = "elf64-x86-64"
+SECONDS = 60
+"""In which objdump has to answer."""
+
 SIZES = {"BYTE": 1, "WORD": 2, "DWORD": 4, "QWORD": 8, "XMMWORD": 16, "YMMWORD": 32}
 RELATIVE = (
     "R_X86_64_PC32",
@@ -162,12 +165,12 @@ def listing(path: Path) -> Listing:
 def _objdump(path: Path, *options: str) -> str:
     environment = {"LC_ALL": "C", "PATH": _search_path()}
     command = ["objdump", *options, "--", str(path)]
-    done = subprocess.run(command, capture_output=True, env=environment, check=False, timeout=60)
+    done = run_tool(command, SECONDS, environment=environment)
     if done.returncode:
-        complaint = done.stderr.decode(errors="replace").strip().split("\n")[-1].removeprefix("objdump: ")[:200]
+        complaint = done.stderr.strip().split("\n")[-1].removeprefix("objdump: ")[:200]
         hint = ": clang -flto writes no machine code" if "not recognized" in complaint else ""
         raise CertificateError(f"{path.name}: objdump cannot read it ({complaint}){hint}")
-    return done.stdout.decode(errors="replace")
+    return done.stdout
 
 
 def _search_path() -> str:

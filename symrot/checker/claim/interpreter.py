@@ -15,6 +15,7 @@ from sympy import Expr, Function, ImmutableMatrix, Integer, Rational, Symbol
 from symrot.checker.claim.functions import BUILT_IN, inverted
 from symrot.checker.claim.scope import Scope, described, is_matrix
 from symrot.checker.claim.tree import Node
+from symrot.checker.decide.unordered import is_unordered
 
 __all__ = ["CONSTANTS", "Meaning", "time"]
 
@@ -51,7 +52,12 @@ class Meaning(Scope):
         return value
 
     def evaluate(self, node: Node) -> Any:
-        return _EVALUATE[node.kind](self, node)
+        try:
+            return _EVALUATE[node.kind](self, node)
+        except (TypeError, AttributeError) as reason:
+            if is_unordered(reason):
+                raise self.fail(node, "numbers of which can be told which is larger, by their digits") from None
+            raise
 
 
 # -- the kinds of node ------------------------------------------------------------------------------------------------

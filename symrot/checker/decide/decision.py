@@ -1,16 +1,20 @@
 """Two sides and hypotheses in, a verdict with its evidence out. The mathematics is that of :mod:`symrot.exact`."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import product
 from typing import Any
 
-from sympy import Expr, I, Mul, Pow, Symbol, pi, zeros
+from mpmath import iv
+from sympy import Expr, I, Mul, Pow, Rational, Symbol, atan2, pi, preorder_traversal, zeros
 from sympy.polys.rings import PolyElement
 
 from symrot.checker.claim.printed import shown
 from symrot.checker.decide.conditions import Requirement, branch_requirements, requirements, surely_nonnegative
 from symrot.checker.decide.hypotheses import Grounds
 from symrot.checker.decide.real_points import ATTEMPTS
+from symrot.checker.decide.unordered import is_unordered
 from symrot.checker.verdict import Counterexample
 from symrot.errors import InputError
 from symrot.exact.angles import cyclotomic
@@ -20,15 +24,22 @@ from symrot.exact.counterexample import Counterexample as Witness
 from symrot.exact.counterexample import closed_form_witness, rational_witness
 from symrot.exact.decide import flatten
 from symrot.exact.domain import domain
+from symrot.exact.domain.known_points import holds
 from symrot.exact.domain.needs import Need, needs_of
 from symrot.exact.intervals import enclosure, is_nonnegative_at
-from symrot.exact.inverse_sums import lifts, proof
+from symrot.exact.inverse_sums import lifts, principal, proof
 from symrot.exact.ring.ratio import MOST_PRODUCTS, TooLarge
 from symrot.exact.ring.ring import FormulaRing, as_zero
 
 __all__ = ["Decision", "Problem", "decide_problem", "shown"]
 
 Search = Callable[[FormulaRing, Expr, Expr, tuple[int, int] | None], Witness | None]
+
+MUCH_LARGER = 5
+"""Times the pieces of another formula, from which on the text is longer without a doubt."""
+
+MOST_ON_THE_CUT = 4
+"""Symbols of a formula with atan2 that is looked at where some of them are zero."""
 
 LARGEST_DEGREE = 240
 """Of a side in its symbols, sines and cosines; a larger one is refused before anything is expanded."""
@@ -73,6 +84,10 @@ def decide_problem(problem: Problem) -> Decision:
             return _decide(problem)
     except RecursionError:
         return Decision("undecided", reason="the formulas are nested too deeply to be read")
+    except (TypeError, AttributeError) as reason:
+        if is_unordered(reason):
+            return Decision("undecided", reason="it cannot be told which of two numbers in it is larger")
+        raise
 
 
 def _decide(problem: Problem) -> Decision:
@@ -87,7 +102,10 @@ def _decide(problem: Problem) -> Decision:
     except TooLarge as reason:
         return Decision("undecided", reason=str(reason), products=MOST_PRODUCTS)
     try:
-        return replace(_decided(ring, problem, lefts, rights, shape), products=ring.ratios.products)
+        decision = _decided(ring, problem, lefts, rights, shape)
+        if decision.verdict == "true" and not relations and any(side.has(atan2) for side in (*lefts, *rights)):
+            decision = _off_the_cut(decision, _needs(problem, lefts, rights), lefts, rights, shape)
+        return replace(decision, products=ring.ratios.products)
     except TooLarge as reason:
         searches = [_within(ring, rational_witness), closed_form_witness]
         try:
@@ -109,11 +127,10 @@ def _decided(
     for divisor in problem.divisors:
         ring.ratios.invert(ring.ratio(divisor), divisor)
     further = [lift for found in proofs if found for lift in found]
-    conditions = _conditions([ring, *further], granted, problem.radicands)
     grounds = Grounds(ring, shown, _needs(problem, lefts, rights))
     grounds.refuse_if_nowhere()
     if not wrong:
-        return _true(grounds, conditions, further)
+        return _true(grounds, _conditions([ring, *further], granted, problem.radicands), further)
     numerators = [ring.reduce(residuals[place].numerator) for place in wrong]
     closed_form = grounds.checked(closed_form_witness)
     nearest = _within(ring, grounds.near_witness) if ring.hypotheses else closed_form
@@ -148,6 +165,45 @@ def _decided(
         conditions = _conditions([ring, *further, *lift], granted, problem.radicands)
         return _true(grounds, conditions, (*further, *lift))
     return Decision("undecided", conditions, (), None, _stopped_by(ring))
+
+
+def _points_on_cuts(symbols: Sequence[Expr], cuts: Sequence[Expr]) -> Iterator[dict[Expr, Rational]]:
+    """Yield simple points, and such at which the first argument of an atan2 is zero, where it is linear in a symbol."""
+    for values in product((0, -1, 1, Rational(-3, 2)), repeat=len(symbols)):
+        point = dict(zip(symbols, map(Rational, values), strict=True))
+        yield point
+        for cut, symbol in product(cuts, symbols):
+            slope = cut.diff(symbol)
+            at_zero, steep = (value.subs({**point, symbol: 0}) for value in (cut, slope))
+            if not slope.has(symbol) and steep.is_Rational and steep and at_zero.is_Rational:
+                yield {**point, symbol: -at_zero / steep}
+
+
+def _off_the_cut(
+    decision: Decision, needs: Sequence[Need], lefts: list[Expr], rights: list[Expr], shape: tuple[int, int] | None
+) -> Decision:
+    """Return a decision that is conditional where the sides differ at a point that its conditions exclude.
+
+    All functions but atan2 are continuous where they are defined, so that sides which are equal where no divisor of the
+    proof vanishes are equal in between too; atan2 jumps where its first argument is zero and the second negative.
+    """
+    symbols = sorted({symbol for side in (*lefts, *rights) for symbol in side.free_symbols}, key=str)
+    cuts = sorted({node.args[0] for side in (*lefts, *rights) for node in side.atoms(atan2)}, key=str)
+    for point in _points_on_cuts(symbols, cuts) if 0 < len(symbols) <= MOST_ON_THE_CUT else ():
+        values = {symbol: Fraction(int(value.p), int(value.q)) for symbol, value in point.items()}
+        for place, sides in enumerate(zip(lefts, rights, strict=True)):
+            left, right = (enclosure(side, values) for side in sides)
+            if left is None or right is None or 0 in iv.mpf(0) + left - right:
+                continue
+            if all(holds(need, values) for need in needs):
+                entry = None if shape is None else (place // shape[1] + 1, place % shape[1] + 1)
+                lhs, rhs = (side.subs(point) for side in sides)
+                required = " and ".join(decision.conditions)
+                return replace(
+                    decision, verdict="conditional", requires=(Requirement("principal_value", required),),
+                    counterexample=_as_text(Witness(tuple(point.items()), entry, lhs, rhs)),
+                )  # fmt: skip
+    return decision
 
 
 def _needs(problem: Problem, lefts: Sequence[Expr], rights: Sequence[Expr]) -> list[Need]:
@@ -235,7 +291,7 @@ def _conditions(rings: Sequence[FormulaRing], granted: set[int], radicands: Sequ
     ring, *further = rings
     forms = [*domain.divisors(ring, granted), *(pair for other in further for pair in domain.divisors(other))]
     free = set(domain.divisors(ring)) - set(domain.divisors(ring, granted))
-    found = {f"{shown(min(pair, key=_length))} != 0" for pair in forms if pair not in free}
+    found = {f"{shown(_shorter(*pair))} != 0" for pair in forms if pair not in free}
     found |= {f"{shown(base)} >= 0" for base in (*radicands, *domain.radicands(ring)) if not surely_nonnegative(base)}
     for condition in sorted(found):
         formula, positive = condition.removesuffix(" >= 0"), condition.endswith(" >= 0")
@@ -250,8 +306,16 @@ def _taken_for_granted(branches: Sequence[Requirement], ring: FormulaRing, radic
     return all(sign in known for requirement in branches for sign in requirement.text.split(" and "))
 
 
-def _length(formula: Expr) -> int:
-    return len(str(formula))
+def _shorter(first: Expr, second: Expr) -> Expr:
+    """Return the formula whose text is shorter; a large one is not written out for that."""
+    few, many = sorted((first, second), key=_pieces)
+    if _pieces(many) > MUCH_LARGER * _pieces(few):
+        return few
+    return min(first, second, key=lambda formula: len(str(formula)))
+
+
+def _pieces(formula: Expr) -> int:
+    return sum(1 for _ in preorder_traversal(formula))
 
 
 def _branches(
@@ -270,6 +334,11 @@ def _branches(
             found = branch_requirements(lift.ring, [poly for poly in lift.numerators if poly])
             if found is not None:
                 return found, (lift.ring,)
+        within = principal(ring, numerators[0]) if found is None else None
+        if within is not None:
+            ends = [end for end in (within.least, within.most) if not surely_nonnegative(end)]
+            text = " and ".join(f"{shown(end)} >= 0" for end in ends)
+            return [Requirement("principal_value", text, signs=tuple(ends))] if ends else [], within.rings
     return found, ()
 
 

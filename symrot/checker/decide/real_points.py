@@ -33,6 +33,13 @@ MOST_BARREN = 3
 LARGEST_EXTENSION = 8
 """Degree of the largest field of algebraic numbers that is worked in."""
 
+LARGEST_NORM, MOST_NORMS = 24, 400
+"""Degree of a polynomial over such a field, times that of the field, that is still factored; and their sum in a search.
+
+Factoring goes by a norm of that degree over the rationals: one of degree 24 takes a fifth of a second, one of 64 six
+seconds.
+"""
+
 
 class _DeadEnd(Exception):
     """The choices made so far lead to no point."""
@@ -261,6 +268,7 @@ class _Drawing:
         generator = self.ring.gens[place]
         key = (poly, self.field)
         if key not in self.known:
+            self.spend(poly.degrees()[place])
             self.known[key] = [factor for factor, _ in poly.factor_list()[1]]
         factors = self.known[key]
         roots = [-f.coeff(1) / f.coeff(generator) for f in factors if f.degrees()[place] == 1]
@@ -270,6 +278,14 @@ class _Drawing:
         if not self.algebraic or place in self.constraints.whole:
             raise _DeadEnd
         return self.adjoined(self.source.choice(factors), place)
+
+    def spend(self, degree: int) -> None:
+        """Count a polynomial of this degree that is to be factored; only fields of algebraic numbers are costly."""
+        if self.field != QQ:
+            norm = degree * self.field.mod.degree()
+            self.known["norms"] = self.known.get("norms", 0) + norm
+            if norm > LARGEST_NORM or self.known["norms"] > MOST_NORMS:
+                raise _DeadEnd
 
     def adjoined(self, factor: PolyElement, place: int) -> Any:
         """Return an irrational root, after everything was carried into the field that has it."""

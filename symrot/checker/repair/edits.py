@@ -36,6 +36,7 @@ TEXTS = {
     "requires_symmetric_top": "it holds for equal moments of inertia only",
     "requires_condition": "it holds under a condition only",
     "sign_branch": "it holds on one branch of a root only",
+    "principal_value": "it holds for principal values of the inverse function only",
 }
 """Code of a diagnosis -> what it says."""
 

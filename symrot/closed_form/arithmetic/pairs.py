@@ -9,7 +9,8 @@ from symrot.errors import InputError
 from symrot.formula.exact_numbers import equal, show
 
 __all__ = [
-    "GRID", "LARGEST", "SMALLEST", "Number", "attitude", "common", "numbers", "pair", "quotient", "same", "spread",
+    "GRID", "LARGEST", "SMALLEST", "Number", "attitude", "common", "numbers", "on_grid", "pair", "quotient", "same",
+    "spread",
 ]  # fmt: skip
 
 Number = float | int | Fraction
@@ -30,7 +31,8 @@ def quotient(numerator: int, denominator: int) -> tuple[float, float]:
     """Return numerator/denominator as hi, lo. An integer division of Python's rounds correctly."""
     hi = numerator / denominator
     top, bottom = hi.as_integer_ratio()
-    return hi, (numerator * bottom - top * denominator) / (denominator * bottom)
+    rest = numerator * bottom - top * denominator
+    return hi, rest / (denominator * bottom) if rest else 0.0
 
 
 def pair(value: Number) -> tuple[float, float]:
@@ -51,9 +53,16 @@ def attitude(values: Sequence[Number]) -> list[float]:
 
     An attitude needs no more, and arithmetic in pairs of doubles finds the same numbers for many attitudes at once.
     """
+    return on_grid([value.as_integer_ratio() for value in values])
+
+
+def on_grid(values: Sequence[tuple[int, int]]) -> list[float]:
+    """Return hi, lo of each ratio in one list, lo rounded to a multiple of :data:`GRID` of the last bit of hi."""
     result: list[float] = []
-    for value in values:
-        hi, lo = (value, 0.0) if isinstance(value, float) else quotient(value.numerator, value.denominator)
+    for top, bottom in values:
+        hi = top / bottom
+        over, under = hi.as_integer_ratio()
+        lo = (top * under - over * bottom) / (bottom * under)
         step = ulp(hi) * GRID
         result += (hi, round(lo / step) * step if lo and step else lo)
     return result
@@ -67,7 +76,10 @@ def same(a: Number, b: Number) -> bool:
 def common(values: Sequence[Number]) -> tuple[list[int], int]:
     """Return integers and the denominator that they share."""
     ratios = [value.as_integer_ratio() for value in values]
-    shared = lcm(*(bottom for _, bottom in ratios))
+    shared = ratios[0][1]
+    if {bottom for _, bottom in ratios} == {shared}:
+        return [top for top, _ in ratios], shared
+    shared = lcm(*[bottom for _, bottom in ratios])
     return [top * (shared // bottom) for top, bottom in ratios], shared
 
 
@@ -96,7 +108,7 @@ def numbers(what: str, values: Sequence[Number], length: int, least: float = -LA
 
 def _moderate(value: Fraction, least: float) -> bool:
     """Return whether a fraction surely lies within the bounds of :func:`numbers`, by its length in bits alone."""
-    top, bottom = value.numerator, value.denominator
+    top, bottom = value.as_integer_ratio()
     size = top.bit_length() - bottom.bit_length()  # of the power of two next to it, or one more
     return size < _BITS and (least < 0 or (top > 0 and size > -_BITS))
 

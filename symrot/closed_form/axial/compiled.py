@@ -14,10 +14,13 @@ from symrot.build import cache as codegen
 from symrot.build.address import address
 from symrot.closed_form import build as library
 from symrot.closed_form.build import Floats
-from symrot.errors import CompilerError
+from symrot.errors import CompilerError, InputError
 from symrot.formula import exact_numbers as number
 
-__all__ = ["EARLY", "LOST", "Loops", "available", "loops", "parts"]
+__all__ = ["EARLY", "LOST", "Constants", "Loops", "Ratio", "available", "functions", "parts"]
+
+Ratio = tuple[int, int]
+"""Numerator and positive denominator."""
 
 LOST, EARLY = 1, 2
 """What the loops return where samples have more turns than they know, and where a time lies before the doubles."""
@@ -25,17 +28,24 @@ LOST, EARLY = 1, 2
 _LARGEST = 200  # 2^200 stands for what is larger: whatever it multiplies is more turns than the loops know
 _BITS = 260  # more than four doubles hold
 _WIDE, _WIDER, _PAIR = 3, 4, 2  # parts of a constant
+_TURNING = 14  # doubles of a `turning` of axial.h
+_TURN_BITS = 340  # of a share of the angle in turns to a radian
+_EXPONENT = 700.0  # the exponential of more leaves the doubles
 _PI_TOP, _PI_BOTTOM = number.PI.as_integer_ratio()
 _bound: dict[str, tuple[Any, Any]] = {}
 
 
 def parts(top: int, bottom: int, count: int) -> list[float]:
-    """Return top/bottom as so many doubles, each the rounded rest of those before it."""
+    """Return top/bottom as so many doubles, each the rounded rest of those before it; of equal ratios the same."""
+    sign, top = (-1, -top) if top < 0 else (1, top)
     size = top.bit_length() - bottom.bit_length()
-    if size > _LARGEST:
-        return [2.0**_LARGEST if top > 0 else -(2.0**_LARGEST), *[0.0] * (count - 1)]
-    shift = _BITS - size
-    left, found = (top << shift) // bottom if shift > 0 else top // (bottom << -shift), []
+    shift, found = _BITS - size, []
+    left = (top << shift) // bottom if shift > 0 else top // (bottom << -shift)
+    if left >> _BITS:  # one bit more: for other integers of the same ratio it may not be there
+        left, shift = left >> 1, shift - 1
+    if shift < _BITS - _LARGEST:
+        return [sign * 2.0**_LARGEST, *[0.0] * (count - 1)]
+    left *= sign
     for _ in range(count):
         high = float(left)
         left -= int(high)
@@ -64,7 +74,14 @@ def available() -> bool:
     return bool(_bound) or not codegen.missing()
 
 
-def _functions() -> tuple[Any, Any]:
+def functions() -> tuple[Any, Any]:
+    """Return the loop over samples, and the type of a record of constants.
+
+    Raises
+    ------
+    CompilerError
+        If there is no C compiler, or it breaks error-free arithmetic.
+    """
     if not _bound:
         (compiled,) = library.load("axial")
         if not compiled.symrot_axial_sound():
@@ -77,76 +94,118 @@ def _functions() -> tuple[Any, Any]:
     return _bound["axial"]
 
 
-def _turning(share: Fraction, rate: Fraction, push: Fraction, decay: Fraction) -> list[float]:
-    """Return the constants of so many times the angle, in turns: `turning` of axial.h."""
-    top, bottom = share.numerator * _PI_BOTTOM, 2 * share.denominator * _PI_TOP
-
-    def turns(x: Fraction, count: int) -> list[float]:
-        return parts(x.numerator * top, x.denominator * bottom, count)
-
-    if not decay:
-        return [*turns(rate, _WIDE), 0.0, 0.0, 0.0, *turns(push / 2, _WIDER), *[0.0] * 4]
-    gain = push - decay * rate
-    rest = gain / decay**2
-    below = rest.denominator * bottom
-    beyond = -rest.numerator * top % below
-    fraction = (beyond - below if 2 * beyond > below else beyond), below
-    return [
-        *turns(rate, _WIDE),
-        *turns(push / decay, _WIDE),
-        *turns(gain, _PAIR),
-        0.0,
-        0.0,
-        *turns(rest, _PAIR),
-        *parts(*fraction, _PAIR),
-    ]
-
-
-def loops(
-    axis: int,
-    axial: tuple[Fraction, Fraction, Fraction],
-    rates: Sequence[Fraction],
-    across: tuple[Fraction, Fraction],
-    attitude: tuple[list[float], list[float]],
-    first: float,
-) -> Loops:
-    """Return the loops of a motion.
+class Constants:
+    """The constants of a driven body; a call returns those of one start, as the record of axial.h.
 
     Parameters
     ----------
     axis : 0, 1 or 2
-    axial : 3 Fractions
-        Angular velocity at the start, rad/s, constant acceleration, rad/s^2, and decay, 1/s, about the axis.
-    rates : 3 Fractions
-        Angular velocity at the start, rad/s.
-    across : 2 Fractions
-        Lag of the transverse angular velocity per angle about the axis, and its decay, 1/s.
-    attitude : 2 lists of 4 floats
-        What cosine and sine of half the angle multiply.
-    first : float
-        s; earlier times are refused.
+    moments : 2 ratios
+        Across the axis and about it, kg m^2. A ratio is a pair of integers, the second positive.
+    torque, damping, damping_across : ratios
+        N m and N m s.
 
     Raises
     ------
-    CompilerError
-        If there is no C compiler, or it breaks error-free arithmetic.
+    InputError
+        If a rate or an acceleration is beyond all doubles; a call raises it too.
     """
-    evaluate, record = _functions()
-    rate, push, decay = axial
-    lag, slowing = across
-    one, other = rates[axis - 2], rates[axis - 1]
-    turned, shapes = bool(one or other), [[0.0] * 3 for _ in range(3)]
-    shapes[axis][2] = 1.0
-    shapes[axis - 2][:2] = float(one), -float(other)
-    shapes[axis - 1][:2] = float(other), float(one)
-    final = push / decay if decay else Fraction(0)
-    values = [
-        float(bool(decay)), 1.0, float(turned), first,
-        *parts(*(-decay).as_integer_ratio(), _PAIR), *parts(*(-slowing).as_integer_ratio(), _PAIR),
-        *(parts(*x.as_integer_ratio(), 1)[0] for x in (rate, push - decay * rate, final, rate - final)),
-        *_turning(Fraction(1, 2), *axial), *(_turning(lag, *axial) if turned else [0.0] * 14),
-        *(x for row in shapes for x in row),
-        *(x for pair in zip(*attitude, strict=True) for x in (*pair, 0.0, 0.0)),
-    ]  # fmt: skip
-    constants = record(*values)
-    return Loops(evaluate, constants, ctypes.addressof(constants))
+
+    def __init__(self, axis: int, moments: tuple[Ratio, Ratio], torque: Ratio, damping: Ratio, across: Ratio) -> None:
+        (a, over_a), (c, over_c) = moments
+        self.axis, self._moments = axis, moments
+        push, over_push = torque[0] * over_c, torque[1] * c
+        decay, over_decay = damping[0] * over_c, damping[1] * c
+        slowing = across[0] * over_a, across[1] * a
+        self._push, self._decay, self._shared = push * over_decay, decay * over_push, over_push * over_decay
+        fastest = max(decay / over_decay, slowing[0] / slowing[1])
+        self.first = -_EXPONENT / fastest if fastest else -math.inf
+        self._sign = -1 if decay < 0 else 1
+        self._head = [self.first, *parts(-decay, over_decay, _PAIR), *parts(-slowing[0], slowing[1], _PAIR)]
+        self._final = _nearest(self._sign * self._push, abs(self._decay)) if decay else 0.0
+        self._pushed = _nearest(push, over_push)
+        self._turns: dict[bool, tuple[int, int, list[float]]] = {}
+
+    def head(self, turned: bool) -> list[float]:
+        """Return what stands before the numbers of :meth:`moving`; ``turned``: the body turns across the axis too."""
+        return [float(bool(self._decay)), 1.0, float(turned), *self._head]
+
+    def moving(self, rate: Fraction | float, turned: bool) -> list[float]:
+        """Return `axial` of axial.h and the one `turning` that a motion needs, `half` or `lag`, for a rate, rad/s."""
+        turn, bits, fixed = self._turns.get(turned) or self._turning(turned)
+        top, bottom = rate.as_integer_ratio()
+        if not self._decay:
+            evenly = parts(top * turn, bottom << bits, _WIDE)
+            return [top / bottom, self._pushed, 0.0, top / bottom, *evenly, 0.0, 0.0, 0.0, *fixed]
+        gain, over = self._push * bottom - self._decay * top, self._shared * bottom
+        rest, below = gain * self._shared * turn, self._decay * self._decay * bottom << bits
+        beyond = -rest % below
+        return [
+            top / bottom, _nearest(gain, over), self._final,
+            _nearest(-self._sign * gain, abs(self._decay) * bottom),
+            *parts(top * turn, bottom << bits, _WIDE), *fixed,
+            *parts(gain * turn, over << bits, _PAIR), 0.0, 0.0,
+            *parts(rest, below, _PAIR), *parts(beyond - below if 2 * beyond > below else beyond, below, _PAIR),
+        ]  # fmt: skip
+
+    def _turning(self, turned: bool) -> tuple[int, int, list[float]]:
+        """Return the share of the angle in turns to a radian, its bits behind the point, and what all starts share."""
+        turn, bits = _HALF
+        if turned:
+            (a, over_a), (c, over_c) = self._moments
+            lag = Fraction(c * over_a - a * over_c, over_c * a)
+            turn, bits = _turns_of(lag.numerator, lag.denominator)
+        if self._decay:
+            fixed = parts(self._sign * self._push * turn, abs(self._decay) << bits, _WIDE)
+        else:
+            fixed = [*parts(self._push * turn, 2 * self._shared << bits, _WIDER), *[0.0] * 4]
+        self._turns[turned] = turn, bits, fixed
+        return self._turns[turned]
+
+    def __call__(self, rates: Sequence[Fraction], attitude: tuple[list[float], list[float]]) -> Loops:
+        """Return the loops of a motion.
+
+        Parameters
+        ----------
+        rates : 3 Fractions
+            Angular velocity at the start, rad/s.
+        attitude : 2 lists of 4 floats
+            What cosine and sine of half the angle multiply.
+        """
+        evaluate, record = functions()
+        one, other = rates[self.axis - 2], rates[self.axis - 1]
+        turned, moving = bool(one or other), self.moving(rates[self.axis], bool(one or other))
+        half, lag = ([0.0] * _TURNING, moving[4:]) if turned else (moving[4:], [0.0] * _TURNING)
+        constants = record(
+            *self.head(turned), *moving[:4], *half, *lag, *self.shapes(float(one), float(other)),
+            *(x for pair in zip(*attitude, strict=True) for x in (*pair, 0.0, 0.0)),
+        )  # fmt: skip
+        return Loops(evaluate, constants, ctypes.addressof(constants))
+
+    def shapes(self, one: Any, other: Any) -> list[Any]:
+        """Return the nine numbers of `omega` of axial.h, by rows."""
+        rows: list[list[Any]] = [[0.0] * 3 for _ in range(3)]
+        rows[self.axis][2] = 1.0
+        rows[self.axis - 2][:2] = one, -other
+        rows[self.axis - 1][:2] = other, one
+        return [x for row in rows for x in row]
+
+
+def _turns_of(top: int, bottom: int) -> tuple[int, int]:
+    """Return so many times the turns in a radian, as an integer with bits behind its point."""
+    top, bottom = top * _PI_BOTTOM, 2 * bottom * _PI_TOP
+    bits = max(0, _TURN_BITS + bottom.bit_length() - top.bit_length())
+    return (top << bits) // bottom, bits
+
+
+_HALF = _turns_of(1, 2)  # of half the angle
+
+
+def _nearest(top: int, bottom: int) -> float:
+    """Return the double nearest to a ratio."""
+    try:
+        return top / bottom
+    except OverflowError:
+        raise InputError(
+            "expected a torque, damping and angular velocity whose rates are finite doubles, got more than 1e308"
+        ) from None

@@ -12,16 +12,15 @@ of more than 1e10 turns of transient, or 1e30 in all; NumPy and Python's integer
 Proof: ``derivations/driven_rotation.md``.
 """
 
-import math
 from collections.abc import Callable, Sequence
 from fractions import Fraction
-from typing import NoReturn
+from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from symrot.closed_form.arithmetic.double_double import two_product
-from symrot.closed_form.arithmetic.pairs import LARGEST, SMALLEST, Number, common, numbers, pair
+from symrot.closed_form.arithmetic.pairs import LARGEST, SMALLEST, Number, numbers, pair
 from symrot.closed_form.axial import compiled as axial_compiled
 from symrot.closed_form.axial.angle import Turning, fallen
 from symrot.closed_form.build import Floats, times_of
@@ -29,10 +28,7 @@ from symrot.errors import InputError
 from symrot.formula import exact_numbers as number
 from symrot.scene.scene import Initial
 
-__all__ = ["AxialMotion", "motion", "starts"]
-
-_BITS = 200  # of a norm
-_LARGEST = 700.0  # the exponential of more leaves the doubles
+__all__ = ["AxialMotion", "Driven", "motion", "starts", "turned_about"]
 
 
 class AxialMotion:
@@ -40,26 +36,14 @@ class AxialMotion:
 
     regime = "steady"  # see symrot.closed_form.motion.REGIMES: no series of its own
 
-    def __init__(
-        self,
-        axis: int,
-        axial: tuple[Fraction, Fraction, Fraction],
-        rates: list[Fraction],
-        across: tuple[Fraction, Fraction],
-        attitude: tuple[list[float], list[float]],
-    ) -> None:
-        self._axis, (self._rate, self._push, self._decay) = axis, axial
-        self._across = rates[(axis + 1) % 3], rates[(axis + 2) % 3]
-        self._lag, self._decay_across = across
+    def __init__(self, body: "Driven", rates: list[Fraction], attitude: tuple[list[float], list[float]]) -> None:
+        self._axis, self._rate, (self._push, self._decay) = body.axis, rates[body.axis], body.driven
+        self._across = rates[(self._axis + 1) % 3], rates[(self._axis + 2) % 3]
+        self._lag, self._decay_across = body.turning
         self._attitude, self._turned = attitude
-        self._fastest = float(max(self._decay, self._decay_across))
         self._known: dict[Fraction, Turning] = {}
-        self._first = -_LARGEST / self._fastest if self._fastest else -math.inf
-        self._loops = (
-            axial_compiled.loops(axis, axial, rates, across, attitude, self._first)
-            if axial_compiled.available()
-            else None
-        )
+        self._first = body.constants.first
+        self._loops = body.constants(rates, attitude) if axial_compiled.available() else None
 
     @property
     def has_attitude(self) -> bool:
@@ -177,18 +161,18 @@ def motion(
     InputError
         If the body turns across the axis and is not symmetric about it, or a number is not of this domain.
     """
-    return _Driven(inertia, axis, torque, damping, damping_across).motion(omega0, quaternion0)
+    return Driven(inertia, axis, torque, damping, damping_across).motion(omega0, quaternion0)
 
 
 def starts(
     inertia: Sequence[Number], axis: int, torque: Number, damping: Number = 0.0, damping_across: Number = 0.0
 ) -> Callable[[Initial], AxialMotion]:
     """Return what gives the motion from an initial state; see :func:`motion`."""
-    body = _Driven(inertia, axis, torque, damping, damping_across)
-    return lambda start: body.motion(start.omega_b, start.quaternion)
+    body = Driven(inertia, axis, torque, damping, damping_across)
+    return lambda start: body.moving(start.omega_b, [float(x) for x in start.quaternion])
 
 
-class _Driven:
+class Driven:
     """A driven body with what its motions share: the quotients of its constants, exact."""
 
     def __init__(
@@ -199,33 +183,42 @@ class _Driven:
         push, drag, slowing = (Fraction(x) for x in given)
         if not isinstance(axis, int) or axis not in (0, 1, 2):
             raise InputError(f"expected an axis 0, 1 or 2, got {number.show(axis)}")
-        self._axis = axis
+        self.axis = axis
         across, other, own = moments[axis - 2], moments[axis - 1], moments[axis]
         self._symmetric = number.equal(across, other)
-        self._turning = (own - across) / across, slowing / across
-        self._driven = push / own, drag / own
-        if max(map(abs, (*self._driven, *self._turning))) > LARGEST:
+        self.turning = (own - across) / across, slowing / across
+        self.driven = push / own, drag / own
+        if max(map(abs, (*self.driven, *self.turning))) > LARGEST:
             raise InputError(
                 f"expected torque, damping and moments with quotients up to {LARGEST:g}, got moments "
                 f"{[float(x) for x in moments]} kg m^2, torque {float(push)!r} N m, damping {float(drag)!r} and "
                 f"{float(slowing)!r} N m s"
             )
+        driving = [x.as_integer_ratio() for x in (push, drag, slowing)]
+        self.constants = axial_compiled.Constants(axis, (across.as_integer_ratio(), own.as_integer_ratio()), *driving)
 
     def motion(self, omega0: Sequence[Number], quaternion0: Sequence[Number]) -> AxialMotion:
         """Return the motion from an initial state."""
-        axis, rates = self._axis, [Fraction(x) for x in numbers("omega", omega0, 3)]
-        attitude, _ = common(numbers("quaternion", quaternion0, 4))
-        square = sum([x * x for x in attitude])
-        if not square:
+        axis, rates = self.axis, [Fraction(x) for x in numbers("omega", omega0, 3)]
+        given = numbers("quaternion", quaternion0, 4)
+        if not any(given):
             raise InputError(f"expected a quaternion that is not zero, got {list(quaternion0)}")
         if (rates[axis - 2] or rates[axis - 1]) and not self._symmetric:
             raise InputError(
                 "a body that turns across the driven axis must be symmetric about it, got moments "
                 f"{[float(x) for x in self._moments]} kg m^2 and omega {[float(x) for x in rates]} rad/s"
             )
-        norm = math.isqrt(square << 2 * _BITS)
-        start = [(x << _BITS) / norm for x in attitude]
-        turned = [0.0] * 4  # the product of the start and the axis
-        turned[0], turned[axis + 1] = -start[axis + 1], start[0]
-        turned[(axis + 1) % 3 + 1], turned[(axis + 2) % 3 + 1] = start[(axis + 2) % 3 + 1], -start[(axis + 1) % 3 + 1]
-        return AxialMotion(axis, (rates[axis], *self._driven), rates, self._turning, (start, turned))
+        return self.moving(rates, [float(x) for x in number.unit([Fraction(x) for x in given])])
+
+    def moving(self, rates: Sequence[Number], attitude: list[float]) -> AxialMotion:
+        """Return the motion from an initial state that the body can have, with a unit quaternion."""
+        exact = [Fraction(x) for x in numbers("omega", rates, 3)]
+        return AxialMotion(self, exact, (attitude, turned_about(self.axis, attitude)))
+
+
+def turned_about(axis: int, q: Sequence[Any]) -> list[Any]:
+    """Return the product of a quaternion and an axis of the body."""
+    found: list[Any] = [None] * 4
+    found[0], found[axis + 1] = -q[axis + 1], q[0]
+    found[(axis + 1) % 3 + 1], found[(axis + 2) % 3 + 1] = q[(axis + 2) % 3 + 1], -q[(axis + 1) % 3 + 1]
+    return found

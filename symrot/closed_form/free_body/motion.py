@@ -17,7 +17,7 @@ from symrot.closed_form.motion import ExactMotion, prepared
 from symrot.inertia.principal import Principal, principal_axes
 from symrot.scene.scene import Initial
 
-__all__ = ["NEGLIGIBLE", "Body", "Defect", "motion", "motion_of_tensor", "starts"]
+__all__ = ["NEGLIGIBLE", "Body", "Defect", "gaps", "motion", "motion_of_tensor", "starts"]
 
 NEGLIGIBLE = 200  # bits: what is smaller is taken for zero, as in number.equal
 
@@ -77,7 +77,7 @@ class Body:
 
     def __init__(self, body: Principal) -> None:
         integers, shared = common(body.moments)
-        self.moments, self.gaps, self.defect = spread(body.moments), _gaps(integers, shared), Defect(integers)
+        self.moments, self.gaps, self.defect = spread(body.moments), gaps(integers, shared), Defect(integers)
         entries = [x for row in body.axes for x in row]
         self._axes, self._unit = common(entries)
         self._rates: tuple[Sequence[Number], list[float], list[float]] = (
@@ -91,11 +91,14 @@ class Body:
     def along(self, omega0: Sequence[Number]) -> tuple[list[int], int]:
         """Return angular velocity along the principal axes, as integers over one denominator."""
         rates, shared = common(omega0)
-        largest = max(map(abs, rates)) * self._unit
+        x, y, z = rates
+        largest = max(abs(x), abs(y), abs(z))
         if self.axes is not None:
-            axes = self._axes
-            rates = [sum([axes[3 * i + k] * rates[i] for i in range(3)]) for k in range(3)]
-            shared *= self._unit
+            xx, xy, xz, yx, yy, yz, zx, zy, zz = self._axes
+            rates = [xx * x + yx * y + zx * z, xy * x + yy * y + zy * z, xz * x + yz * y + zz * z]
+            largest, shared = largest * self._unit, shared * self._unit
+        if largest.bit_length() <= NEGLIGIBLE:  # not even 1 is
+            return rates, shared
         return [0 if abs(x) << NEGLIGIBLE < largest else x for x in rates], shared
 
     def motion(self, omega0: Sequence[Number], quaternion0: Sequence[Number]) -> ExactMotion:
@@ -116,10 +119,11 @@ class Body:
 def _differences(moments: Sequence[Number], omega: Sequence[Number]) -> list[float]:
     """Return I2 - I3, I3 - I1, I1 - I2 and the defect |L|^2 - 2 T I_mid, scaled as free_body.c takes it, as hi, lo."""
     integers, shared = common(moments)
-    return [*_gaps(integers, shared), *Defect(integers)(common(omega)[0])]
+    return [*gaps(integers, shared), *Defect(integers)(common(omega)[0])]
 
 
-def _gaps(i: list[int], shared: int) -> list[float]:
+def gaps(i: list[int], shared: int) -> list[float]:
+    """Return I2 - I3, I3 - I1, I1 - I2 of moments as integers over one denominator, as hi, lo."""
     found: list[float] = []
     for k in range(3):
         difference = i[(k + 1) % 3] - i[(k + 2) % 3]
@@ -142,7 +146,12 @@ class Defect:
         x, y, z = w
         one, two, three = self._one * x * x, self._two * y * y, self._three * z * z
         defect, largest = one + two + three, self._largest * max(abs(x), abs(y), abs(z))
-        if not defect or abs(defect) << NEGLIGIBLE < max(abs(one), abs(two), abs(three)):
+        if not defect:
+            return 0.0, 0.0
+        widest = max(one.bit_length(), two.bit_length(), three.bit_length())
+        if defect.bit_length() + NEGLIGIBLE < widest + 2 and abs(defect) << NEGLIGIBLE < max(
+            abs(one), abs(two), abs(three)
+        ):
             return 0.0, 0.0
         return quotient(defect, largest * largest)
 

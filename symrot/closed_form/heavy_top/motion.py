@@ -13,13 +13,13 @@ from collections.abc import Callable, Sequence
 from fractions import Fraction
 
 from symrot.closed_form.arithmetic.frames import product, quaternion_of, to_axis
-from symrot.closed_form.arithmetic.pairs import SMALLEST, Number, attitude, common, numbers, quotient, same, spread
+from symrot.closed_form.arithmetic.pairs import SMALLEST, Number, attitude, common, numbers, on_grid, same, spread
 from symrot.closed_form.free_body import motion as free_body
 from symrot.closed_form.motion import ExactMotion, prepared
 from symrot.errors import InputError
 from symrot.scene.scene import Initial
 
-__all__ = ["Top", "motion", "starts"]
+__all__ = ["Frame", "Top", "motion", "starts"]
 
 _DOWN = (0, 0, -1)
 _UPRIGHT = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
@@ -73,7 +73,7 @@ def starts(
 
 
 class Top:
-    """A heavy top with what its motions share: its moments, and the turns of the space and of the body axes."""
+    """A heavy top with what its motions share: its moments, its pull, and its axes."""
 
     def __init__(
         self, inertia: Sequence[Number], weight: Number, center_of_mass: Sequence[Number], direction: Sequence[Number]
@@ -97,46 +97,61 @@ class Top:
         axis = along[0]
         pull = Fraction(force) * Fraction(center[axis])
         self.moments, self.pull = spread([moments[axis - 2], moments[axis]]), spread([abs(pull)])
-        up = [-x for x in down] if pull > 0 else down
-        self.space, self._back = _UPRIGHT, None
-        if up[0] or up[1] or up[2] < 0:  # turned so that the third axis points up
-            turn = quaternion_of(to_axis([Fraction(x) for x in up]))
-            self.space = spread(turn)
-            self._back = common((turn[0], -turn[1], -turn[2], -turn[3]))
-        self._axes, self._renaming = None, None
-        self.named = [(axis + 1) % 3, (axis + 2) % 3, axis]  # e1, e2, e3 among the body's axes, in cyclic order
-        if axis != 2:
-            matrix = [[Fraction(int(self.named[k] == i)) for k in range(3)] for i in range(3)]
-            renaming = quaternion_of(matrix)
-            self._axes = spread([*(x for row in matrix for x in row), *renaming])
-            self._renaming = common(renaming)
-
-    @property
-    def plain(self) -> bool:
-        """Whether gravity pulls along a third axis of space and of the body, so that no attitude need be turned."""
-        return not self.free and self._back is self._renaming is None
+        self.frame = Frame(axis, [-Fraction(x) if pull > 0 else Fraction(x) for x in down])
 
     def motion(self, omega0: Sequence[Number], quaternion0: Sequence[Number]) -> ExactMotion:
         """Return the motion from an initial state."""
         rates, given = numbers("omega", omega0, 3), numbers("quaternion", quaternion0, 4)
         if self.free:
             return free_body.motion(self._given, rates, given)
-        start = attitude(given) if self.plain else self._turned(given)
-        named = [rates[k] for k in self.named]
+        frame = self.frame
+        named = [rates[k] for k in frame.named]
         return prepared(
             "heavy_top",
-            (self.moments, self.pull, spread(named), start, self.space, self._axes),
+            (self.moments, self.pull, spread(named), frame.start(given), frame.space, frame.axes),
             lambda: (
                 "a heavy top has positive moments (kg m^2), a finite angular velocity (rad/s) and a quaternion that is "
                 f"not zero, got moments {[float(x) for x in self._given]}, omega {[float(x) for x in named]}"
             ),
         )
 
-    def _turned(self, given: Sequence[Number]) -> list[float]:
-        """Return an attitude between the turned axes of space and the renamed axes of the body, each as hi, lo."""
-        start, shared = common(given)
-        if self._back is not None:
-            start, shared = list(product(self._back[0], start)), shared * self._back[1]
-        if self._renaming is not None:
-            start, shared = list(product(start, self._renaming[0])), shared * self._renaming[1]
-        return [part for x in start for part in quotient(x, shared)]
+
+class Frame:
+    """The axes of space and body that the formulas of a heavy top count from: the third ones up and along the axis.
+
+    Parameters
+    ----------
+    axis : 0, 1 or 2
+        Of the body.
+    up : 3 Fractions
+        Against the pull of a weight in front of the fixed point, in space.
+    """
+
+    def __init__(self, axis: int, up: Sequence[Fraction]) -> None:
+        self.named = [(axis + 1) % 3, (axis + 2) % 3, axis]  # e1, e2, e3 among the body's axes, in cyclic order
+        self.space, self.axes = _UPRIGHT, None
+        self.before, self.after = None, None  # what an attitude is multiplied by
+        if up[0] or up[1] or up[2] < 0:  # turned so that the third axis points up
+            turn = quaternion_of(to_axis(up))
+            self.space, self.before = spread(turn), (turn[0], -turn[1], -turn[2], -turn[3])
+        if axis != 2:
+            matrix = [[Fraction(int(self.named[k] == i)) for k in range(3)] for i in range(3)]
+            self.after = quaternion_of(matrix)
+            self.axes = spread([*(x for row in matrix for x in row), *self.after])
+        self._before, self._after = (None if q is None else common(q) for q in (self.before, self.after))
+
+    @property
+    def plain(self) -> bool:
+        """Whether these axes are the given ones, so that no attitude need be turned."""
+        return self._before is self._after is None
+
+    def start(self, given: Sequence[Number]) -> list[float]:
+        """Return an attitude between these axes, as :func:`symrot.closed_form.arithmetic.pairs.attitude` has it."""
+        if self.plain:
+            return attitude(given)
+        found, shared = common(given)
+        if self._before is not None:
+            found, shared = list(product(self._before[0], found)), shared * self._before[1]
+        if self._after is not None:
+            found, shared = list(product(found, self._after[0])), shared * self._after[1]
+        return on_grid([(x, shared) for x in found])

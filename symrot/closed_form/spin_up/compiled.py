@@ -12,9 +12,11 @@ from symrot.closed_form.spin_up import series as spin_up_series
 from symrot.closed_form.spin_up.resonance import DEGREE, PIECES
 from symrot.errors import CompilerError
 
-__all__ = ["Compiled", "available"]
+__all__ = ["TABLE", "Compiled", "available", "functions", "limits"]
 
-_COUNT = int(spin_up_series.NEAR) * PIECES
+TABLE = int(spin_up_series.NEAR) * PIECES * (DEGREE + 1) * 4
+"""Doubles of Taylor's polynomials."""
+
 _LACKING, _LOST = 1, 2  # what samples lack, see spin_up.h
 
 
@@ -29,12 +31,24 @@ class _Functions(NamedTuple):
 _bound: list[_Functions] = []
 
 
+def limits() -> tuple[float, float, float]:
+    """Return what the third argument of ``symrot_spin_up_prepare`` holds."""
+    return spin_up_series.NEAR, spin_up_series.WIDE, spin_up_series.MOST
+
+
 def available() -> bool:
     """Return whether the loops are loaded, or there is a compiler."""
     return bool(_bound) or not library.missing()
 
 
-def _functions() -> _Functions:
+def functions() -> _Functions:
+    """Return the compiled functions, and the types of what they take.
+
+    Raises
+    ------
+    CompilerError
+        If there is no C compiler, or it refuses the source.
+    """
     if not _bound:
         constants, samples = load("spin_up")
         prepare, length = constants.symrot_spin_up_prepare, constants.symrot_spin_up_length
@@ -65,18 +79,17 @@ class Compiled:
     """
 
     def __init__(self, axis: int, numbers: list[float]) -> None:
-        self._axis, self._numbers = axis, numbers
-        self._evaluate = _functions().evaluate
+        self._axis, self._numbers = axis, functions().numbers(*numbers)
+        self._evaluate = functions().evaluate
         self._known = constants, _, _ = self._prepared(None)
         self.longest: float = constants[1] / constants[0]
 
     def _prepared(self, table: Floats | None) -> tuple[Any, int, Floats | None]:
         """Return the constants, where they are, and the table, which is filled if there is one."""
-        functions = _functions()
-        constants = functions.record()
+        bound = functions()
+        constants = bound.record()
         place = ctypes.addressof(constants)
-        limits = functions.limits(spin_up_series.NEAR, spin_up_series.WIDE, spin_up_series.MOST)
-        if functions.prepare(self._axis, functions.numbers(*self._numbers), limits, address(table), place):
+        if bound.prepare(self._axis, self._numbers, bound.limits(*limits()), address(table), place):
             raise CompilerError("the C compiler breaks error-free arithmetic: it must round every operation as written")
         return constants, place, table
 
@@ -86,6 +99,6 @@ class Compiled:
         _, place, table = self._known
         status: int = self._evaluate(place, address(table), *given)
         if status & _LACKING:
-            self._known = _, place, table = self._prepared(np.empty((_COUNT, DEGREE + 1, 4)))
+            self._known = _, place, table = self._prepared(np.empty(TABLE))
             status = self._evaluate(place, address(table), *given)
         return bool(status & _LOST)

@@ -11,7 +11,7 @@ turns have passed. A sample costs the same at any time; those beyond 1e13 rad ta
 The formulas are in :file:`spin_up.h`. Proof: ``derivations/driven_rotation.md``.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -20,28 +20,26 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from symrot.closed_form.arithmetic.pairs import SMALLEST, Number, numbers, same, spread
+from symrot.closed_form.arithmetic.pairs import attitude as pairs_of
 from symrot.closed_form.build import Floats, times_of
 from symrot.closed_form.spin_up import compiled as spin_up_compiled
 from symrot.closed_form.spin_up.compiled import Compiled
 from symrot.errors import InputError
 from symrot.formula.exact_numbers import show
+from symrot.scene.scene import Initial
 
 if TYPE_CHECKING:
     from symrot.closed_form.spin_up.integers import Integers
 
-__all__ = ["SpinUp", "motion"]
+__all__ = ["Body", "SpinUp", "motion", "starts"]
 
 
 class SpinUp:
-    """One motion. Times are counted from that of the initial state.
+    """One motion of a body. Times are counted from that of the initial state.
 
     Parameters
     ----------
-    moments : 2 numbers
-        A across the axis and C about it, kg m^2.
-    axis : 0, 1 or 2
-    torque : number
-        N m, about the axis.
+    body : Body
     rates : 3 numbers
         Angular velocity at the start, rad/s, not all along the axis.
     attitude : 4 numbers
@@ -50,18 +48,11 @@ class SpinUp:
 
     regime = "circular"
 
-    def __init__(
-        self,
-        moments: tuple[Number, Number],
-        axis: int,
-        torque: Number,
-        rates: Sequence[Number],
-        attitude: Sequence[Number],
-    ) -> None:
-        self._given = moments, axis, torque, rates, attitude
+    def __init__(self, body: "Body", rates: Sequence[Number], attitude: Sequence[Number]) -> None:
+        self._given, axis = (body, rates, attitude), body.axis
         turned = rates[axis - 2], rates[axis - 1], rates[axis]
         self._source = (
-            Compiled(axis, spread([*moments, torque, *turned, *attitude]))
+            Compiled(axis, [*body.shared, *spread(turned), *pairs_of(attitude)])
             if spin_up_compiled.available()
             else self.integers
         )
@@ -71,9 +62,10 @@ class SpinUp:
         """The same motion in integers."""
         from symrot.closed_form.spin_up.integers import Integers
 
-        (across, own), axis, torque, rates, attitude = self._given
+        body, rates, attitude = self._given
+        across, own = body.moments
         exact = [Fraction(x) for x in rates], [Fraction(x) for x in attitude]
-        return Integers((Fraction(across), Fraction(own)), axis, Fraction(torque), *exact)
+        return Integers((Fraction(across), Fraction(own)), body.axis, Fraction(body.torque), *exact)
 
     def evaluate(
         self, t: ArrayLike, omega: bool = True, quaternion: bool = True
@@ -126,17 +118,34 @@ def motion(
     InputError
         If the body is not symmetric about the axis, turns about it alone, or a number is not of this domain.
     """
-    moments, rates = numbers("inertia", inertia, 3, SMALLEST), numbers("omega", omega0, 3)
-    attitude, (push,) = numbers("quaternion", quaternion0, 4), numbers("torque", [torque], 1)
-    if not isinstance(axis, int) or axis not in (0, 1, 2) or not any(attitude):
-        raise InputError(
-            f"expected an axis 0, 1 or 2 and a quaternion that is not zero, got axis {show(axis)} and quaternion "
-            f"{[float(x) for x in attitude]}"
-        )
-    across, other = moments[axis - 2], moments[axis - 1]
-    if not same(across, other) or not (rates[axis - 2] or rates[axis - 1]):
-        raise InputError(
-            "expected a body that is symmetric about the driven axis and turns across it too, got moments "
-            f"{[float(x) for x in moments]} kg m^2 and omega {[float(x) for x in rates]} rad/s"
-        )
-    return SpinUp((across, moments[axis]), axis, push, rates, attitude)
+    return Body(inertia, axis, torque).motion(omega0, quaternion0)
+
+
+def starts(inertia: Sequence[Number], axis: int, torque: Number) -> Callable[[Initial], SpinUp]:
+    """Return what gives the motion from an initial state; what all starts share is read once. See :func:`motion`."""
+    body = Body(inertia, axis, torque)
+    return lambda start: body.motion(start.omega_b, start.quaternion)
+
+
+class Body:
+    """A symmetric body and its torque, as what its motions share."""
+
+    def __init__(self, inertia: Sequence[Number], axis: int, torque: Number) -> None:
+        self._given, (self.torque,) = numbers("inertia", inertia, 3, SMALLEST), numbers("torque", [torque], 1)
+        if not isinstance(axis, int) or axis not in (0, 1, 2):
+            raise InputError(f"expected an axis 0, 1 or 2, got {show(axis)}")
+        self.axis, self.moments = axis, (self._given[axis - 2], self._given[axis])
+        self._symmetric = same(self._given[axis - 2], self._given[axis - 1])
+        self.shared = spread([*self.moments, self.torque])
+
+    def motion(self, omega0: Sequence[Number], quaternion0: Sequence[Number]) -> SpinUp:
+        """Return the motion from an initial state."""
+        axis, rates, attitude = self.axis, numbers("omega", omega0, 3), numbers("quaternion", quaternion0, 4)
+        if not any(attitude):
+            raise InputError(f"expected a quaternion that is not zero, got {[float(x) for x in attitude]}")
+        if not self._symmetric or not (rates[axis - 2] or rates[axis - 1]):
+            raise InputError(
+                "expected a body that is symmetric about the driven axis and turns across it too, got moments "
+                f"{[float(x) for x in self._given]} kg m^2 and omega {[float(x) for x in rates]} rad/s"
+            )
+        return SpinUp(self, rates, attitude)

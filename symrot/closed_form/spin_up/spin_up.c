@@ -1,11 +1,12 @@
 /* The constants of a symmetric body's motion under a constant torque about its axis, once. The formulas: spin_up.h. */
 #if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC optimize("O2") /* the table takes most of the time */
+#pragma GCC optimize("O3") /* the table takes most of the time */
 #endif
 
 #include "spin_up_phase.h"
 #include "spin_up_series.h"
 #include "series.h"
+#include <string.h>
 
 enum {
     TERMS = 26, /* of a series near resonance, for a step of 1/4: (r/8)^26/26! < 1e-20 for r < 13.5 */
@@ -110,37 +111,97 @@ static void swept_attitude(const spin_up *f, dd omega, dd q[4])
     far_attitude(f, omega, f->phase.way == SPIN_UP_WEAK ? dd_of(0.0) : turns, q);
 }
 
-/* The series of q0, q1, q2, q3 about a place from its first terms, the last in doubles; halves: 1/(2 n). */
-static void grow(dd kappa, double place, const dd halves[FINE], dd q[TERMS][4])
+enum { LANES = 4 }; /* motions at once, in SIMD code: each step waits for the one before */
+
+/* Quaternions in pairs of doubles of `lanes` motions: component by component, each of all motions. */
+typedef struct {
+    double hi[4*LANES], lo[4*LANES];
+} quaternions;
+
+/* A number of each motion, over each component. */
+typedef quaternions numbers_of_lanes;
+
+/* Components 3, 2, 1, 0. */
+ALWAYS_INLINE void opposite(int lanes, const double *from, double *to)
 {
-    static const int opposite[4] = {3, 2, 1, 0}, beside[4] = {1, 0, 3, 2};
-    static const double swept_sign[4] = {-1.0, 1.0, -1.0, 1.0}, turned_sign[4] = {-1.0, 1.0, 1.0, -1.0};
-    static const dd none[4];
+    for (int k = 0; k < 4; ++k)
+        memcpy(to + k*lanes, from + (3 - k)*lanes, (size_t)lanes*sizeof *to);
+}
+
+/* Components 1, 0, 3, 2. */
+ALWAYS_INLINE void beside(int lanes, const double *from, double *to)
+{
+    for (int k = 0; k < 4; ++k)
+        memcpy(to + k*lanes, from + (k^1)*lanes, (size_t)lanes*sizeof *to);
+}
+
+/* The series of q0, q1, q2, q3 about a place from its first terms, the last in doubles; halves: 1/(2 n). */
+ALWAYS_INLINE void grow(
+    int lanes, const numbers_of_lanes *kappa, const quaternions signs[2], double place, const dd halves[FINE],
+    quaternions q[TERMS])
+{
+    static const quaternions none;
     for (int n = 1; n < FINE; ++n) {
-        const dd *one = q[n - 1], *two = n > 1 ? q[n - 2] : none, inverse = halves[n];
-        for (int k = 0; k < 4; ++k) {
-            const dd swept = linear(two[opposite[k]], one[opposite[k]], place), turned = dd_mul(kappa, one[beside[k]]);
-            q[n][k] = dd_mul(inverse, added(dd_scale(swept, swept_sign[k]), dd_scale(turned, turned_sign[k])));
+        const quaternions *two = n > 1 ? q + n - 2 : &none, *one = q + n - 1;
+        const dd inverse = halves[n];
+        quaternions a, b, c;
+        opposite(lanes, two->hi, a.hi);
+        opposite(lanes, two->lo, a.lo);
+        opposite(lanes, one->hi, b.hi);
+        opposite(lanes, one->lo, b.lo);
+        beside(lanes, one->hi, c.hi);
+        beside(lanes, one->lo, c.lo);
+        for (int i = 0; i < 4*lanes; ++i) {
+            const dd swept = linear(dd_pair(a.hi[i], a.lo[i]), dd_pair(b.hi[i], b.lo[i]), place);
+            const dd turned = dd_mul(dd_pair(kappa->hi[i], kappa->lo[i]), dd_pair(c.hi[i], c.lo[i]));
+            const dd both = added(dd_scale(swept, signs[0].hi[i]), dd_scale(turned, signs[1].hi[i]));
+            const dd next = dd_mul(inverse, both);
+            q[n].hi[i] = next.hi;
+            q[n].lo[i] = next.lo;
         }
     }
     for (int n = FINE; n < TERMS; ++n) {
-        const dd *one = q[n - 1], *two = q[n - 2];
-        for (int k = 0; k < 4; ++k) {
-            const double swept = place*one[opposite[k]].hi + two[opposite[k]].hi;
-            q[n][k] = dd_of(0.5/n*(swept_sign[k]*swept + turned_sign[k]*kappa.hi*one[beside[k]].hi));
-        }
+        const double half = 0.5/n;
+        quaternions a, b;
+        opposite(lanes, q[n - 2].hi, a.hi);
+        opposite(lanes, q[n - 1].hi, b.hi);
+        beside(lanes, q[n - 1].hi, b.lo);
+        for (int i = 0; i < 4*lanes; ++i)
+            q[n].hi[i] = half*(signs[0].hi[i]*(place*b.hi[i] + a.hi[i]) + signs[1].hi[i]*kappa->hi[i]*b.lo[i]);
     }
 }
 
-static void sum(dd q[TERMS][4], dd x, dd total[4])
+/* The sum of a series at a power of two, of which products are exact. */
+ALWAYS_INLINE void sum_at_power(int lanes, const quaternions q[TERMS], double x, quaternions *total)
+{
+    quaternions sum;
+    for (int i = 0; i < 4*lanes; ++i)
+        sum.hi[i] = q[TERMS - 1].hi[i];
+    for (int n = TERMS - 2; n >= FINE; --n)
+        for (int i = 0; i < 4*lanes; ++i)
+            sum.hi[i] = sum.hi[i]*x + q[n].hi[i];
+    for (int i = 0; i < 4*lanes; ++i)
+        sum.lo[i] = 0.0;
+    for (int n = FINE - 1; n >= 0; --n)
+        for (int i = 0; i < 4*lanes; ++i) {
+            const dd next = added(dd_pair(q[n].hi[i], q[n].lo[i]), dd_scale(dd_pair(sum.hi[i], sum.lo[i]), x));
+            sum.hi[i] = next.hi;
+            sum.lo[i] = next.lo;
+        }
+    *total = sum;
+}
+
+/* The same of one motion anywhere. */
+static void sum_at(int lanes, int lane, const quaternions q[TERMS], dd x, dd total[4])
 {
     for (int k = 0; k < 4; ++k) {
-        double tail = q[TERMS - 1][k].hi;
+        const int i = k*lanes + lane;
+        double tail = q[TERMS - 1].hi[i];
         for (int n = TERMS - 2; n >= FINE; --n)
-            tail = tail*x.hi + q[n][k].hi;
+            tail = tail*x.hi + q[n].hi[i];
         total[k] = dd_of(tail);
         for (int n = FINE - 1; n >= 0; --n)
-            total[k] = added(q[n][k], dd_mul(total[k], x));
+            total[k] = added(dd_pair(q[n].hi[i], q[n].lo[i]), dd_mul(total[k], x));
     }
 }
 
@@ -151,31 +212,55 @@ static void mirrored(double sign, dd q[4])
         q[k] = dd_scale(q[k], sign);
 }
 
-/*
- * Taylor's polynomials of the attitude that is 1 at x = 0, about the middles of pieces from x = 0 on; that at the last
- * place, and at `there`, the distance of the start, if it is among them.
- */
-static void near_table(dd kappa, int pieces, dd there, double *table, dd last[4], dd start[4])
+/* What Taylor's polynomials of a motion need, and give. */
+typedef struct {
+    dd kappa, there;      /* the distance of the start from resonance, in x */
+    double *table;
+    dd last[4], start[4]; /* the attitude at the last place, and at `there` if it is among them */
+} near_motion;
+
+/* Taylor's polynomials of attitudes that are 1 at x = 0, about the middles of pieces from x = 0 on. */
+ALWAYS_INLINE void near_tables(int lanes, int pieces, near_motion *motions)
 {
+    static const double swept_sign[4] = {-1.0, 1.0, -1.0, 1.0}, turned_sign[4] = {-1.0, 1.0, 1.0, -1.0};
     const double half = 0.5/SPIN_UP_PIECES;
-    dd q[TERMS][4] = {{{1.0, 0.0}, {0.0, 0.0}, {0.0, 0.0}, {0.0, 0.0}}}, halves[FINE];
+    quaternions q[TERMS], here, signs[2];
+    numbers_of_lanes kappa;
+    dd halves[FINE];
     for (int n = 1; n < FINE; ++n)
         halves[n] = dd_div(dd_of(0.5), dd_of(n));
-    grow(kappa, 0.0, halves, q);
-    sum(q, dd_of(half), last);
+    for (int i = 0; i < 4*lanes; ++i) {
+        q[0].hi[i] = i < lanes ? 1.0 : 0.0;
+        q[0].lo[i] = 0.0;
+        kappa.hi[i] = motions[i%lanes].kappa.hi;
+        kappa.lo[i] = motions[i%lanes].kappa.lo;
+        signs[0].hi[i] = swept_sign[i/lanes];
+        signs[1].hi[i] = turned_sign[i/lanes];
+    }
+    grow(lanes, &kappa, signs, 0.0, halves, q);
+    sum_at_power(lanes, q, half, &here);
     for (int piece = 0; piece < pieces; ++piece) {
         const double middle = (2*piece + 1)*half;
-        for (int i = 0; i < 4; ++i)
-            q[0][i] = last[i];
-        grow(kappa, middle, halves, q);
-        for (int n = 0; n < SPIN_UP_TAYLOR; ++n)
-            for (int i = 0; i < 4; ++i)
-                table[4*(SPIN_UP_TAYLOR*piece + n) + i] = q[n][i].hi;
-        const dd distance = dd_sub(there, dd_of(middle));
-        if (fabs(distance.hi) <= half)
-            sum(q, distance, start);
-        sum(q, dd_of(piece + 1 < pieces ? 2.0*half : half), last);
+        q[0] = here;
+        grow(lanes, &kappa, signs, middle, halves, q);
+        for (int lane = 0; lane < lanes; ++lane) {
+            near_motion *own = motions + lane;
+            for (int n = 0; n < SPIN_UP_TAYLOR; ++n)
+                for (int k = 0; k < 4; ++k)
+                    own->table[4*(SPIN_UP_TAYLOR*piece + n) + k] = q[n].hi[k*lanes + lane];
+            const dd distance = dd_sub(own->there, dd_of(middle));
+            if (fabs(distance.hi) <= half)
+                sum_at(lanes, lane, q, distance, own->start);
+        }
+        sum_at_power(lanes, q, piece + 1 < pieces ? 2.0*half : half, &here);
     }
+    for (int i = 0; i < 4*lanes; ++i)
+        motions[i%lanes].last[i/lanes] = dd_pair(here.hi[i], here.lo[i]);
+}
+
+static void near_table(int pieces, near_motion *motion)
+{
+    near_tables(1, pieces, motion);
 }
 
 /* f->attitude of one place: q -> given conj(here) q conj(axes). */
@@ -290,6 +375,88 @@ static double longest_of(const spin_up *f, double most)
     return 2.0*most/(even + sqrt(even*even + 4.0*growing*most));
 }
 
+/* What the constants that need no polynomials leave to those that do. */
+typedef struct {
+    body own;
+    dd edge, here[4]; /* the attitude of the start in its own place */
+    int side;
+} half_way;
+
+/* The constants that need no polynomials; whether others do. */
+static int prepare_first(int axis, const double numbers[20], const double limits[3], half_way *h, spin_up *f)
+{
+    static const spin_up blank;
+    *f = blank;
+    body *own = &h->own;
+    prepare_body(axis, numbers, own, f);
+    const double square = own->across.hi*own->across.hi, huge = 1e300;
+    const double kappa2 = own->s.hi > 0.0 ? fmin(square/own->s.hi, huge) : huge;
+    const double inverse = square > 0.0 ? fmin(own->s.hi/square, huge) : huge;
+    const int wide = kappa2 >= limits[1]*limits[1];
+    const double radius2 = limits[0]*limits[0] + kappa2;
+    h->edge = dd_mul(own->root, dd_of(limits[0]));
+    asymptotic(wide ? 1.0 : kappa2/radius2, wide ? inverse : 1.0/radius2, f);
+    f->unit = square + (wide ? 0.0 : limits[0]*limits[0]*own->s.hi);
+    prepare_phase(own, &f->phase);
+    f->whole = wide || f->phase.way == SPIN_UP_WEAK;
+    f->edge = f->whole != 0.0 ? 0.0 : h->edge.hi;
+    f->longest = longest_of(f, limits[2]);
+    h->side = f->whole != 0.0 || own->start.hi >= f->edge ? SPIN_UP_BEYOND
+        : own->start.hi <= -f->edge ? SPIN_UP_BEFORE : SPIN_UP_NEAR;
+    f->start = h->side;
+    if (h->side != SPIN_UP_NEAR) {
+        swept_attitude(f, own->start, h->here);
+        store_attitude(own, own->given, h->here, f->attitude[h->side]);
+    }
+    return f->whole == 0.0;
+}
+
+static near_motion near_motion_of(const half_way *h, double *table)
+{
+    near_motion motion;
+    motion.kappa = dd_div(h->own.across, h->own.root);
+    motion.there = dd_abs(dd_div(h->own.start, h->own.root));
+    motion.table = table;
+    return motion;
+}
+
+/* The constants of the other places. */
+static void prepare_rest(const half_way *h, near_motion *near, spin_up *f)
+{
+    const body *own = &h->own;
+    const int side = h->side;
+    const dd x = dd_div(own->start, own->root), *last = near->last;
+    dd middle[4], far[4];
+    const double way[3] = {-1.0, 0.0, 1.0};
+    if (side == SPIN_UP_NEAR) {
+        mirrored(x.hi < 0.0 ? -1.0 : 1.0, near->start);
+        conjugated(near->start, far);
+        quaternion_product(own->given, far, middle);
+    } else {
+        dd left[4], from[4];
+        for (int i = 0; i < 4; ++i)
+            from[i] = last[i];
+        mirrored(way[side], from);
+        swept_attitude(f, dd_scale(h->edge, way[side]), far);
+        handed_on(own->given, h->here, far, left);
+        conjugated(from, far);
+        quaternion_product(left, far, middle);
+    }
+    static const dd one[4] = {{1.0, 0.0}, {0.0, 0.0}, {0.0, 0.0}, {0.0, 0.0}};
+    store_attitude(own, middle, one, f->attitude[SPIN_UP_NEAR]);
+    for (int to = SPIN_UP_BEFORE; to <= SPIN_UP_BEYOND; to += SPIN_UP_BEYOND - SPIN_UP_BEFORE) {
+        if (to == side)
+            continue;
+        dd left[4], leaving[4];
+        for (int i = 0; i < 4; ++i)
+            leaving[i] = last[i];
+        mirrored(way[to], leaving);
+        quaternion_product(middle, leaving, left);
+        swept_attitude(f, dd_scale(h->edge, way[to]), far);
+        store_attitude(own, left, far, f->attitude[to]);
+    }
+}
+
 /*
  * Find the constants of a motion.
  *
@@ -308,64 +475,13 @@ static double longest_of(const spin_up *f, double most)
  */
 int symrot_spin_up_prepare(int axis, const double numbers[20], const double limits[3], double *table, spin_up *f)
 {
-    static const spin_up blank;
-    body own;
-    *f = blank;
+    half_way h;
     if (!dd_sound())
         return 2;
-    prepare_body(axis, numbers, &own, f);
-    const double square = own.across.hi*own.across.hi, huge = 1e300;
-    const double kappa2 = own.s.hi > 0.0 ? fmin(square/own.s.hi, huge) : huge;
-    const double inverse = square > 0.0 ? fmin(own.s.hi/square, huge) : huge;
-    const int wide = kappa2 >= limits[1]*limits[1];
-    const double radius2 = limits[0]*limits[0] + kappa2;
-    const dd edge = dd_mul(own.root, dd_of(limits[0]));
-    asymptotic(wide ? 1.0 : kappa2/radius2, wide ? inverse : 1.0/radius2, f);
-    f->unit = square + (wide ? 0.0 : limits[0]*limits[0]*own.s.hi);
-    prepare_phase(&own, &f->phase);
-    f->whole = wide || f->phase.way == SPIN_UP_WEAK;
-    f->edge = f->whole != 0.0 ? 0.0 : edge.hi;
-    f->longest = longest_of(f, limits[2]);
-    dd here[4];
-    const int side = f->whole != 0.0 || own.start.hi >= f->edge ? SPIN_UP_BEYOND
-        : own.start.hi <= -f->edge ? SPIN_UP_BEFORE : SPIN_UP_NEAR;
-    f->start = side;
-    if (side != SPIN_UP_NEAR) {
-        swept_attitude(f, own.start, here);
-        store_attitude(&own, own.given, here, f->attitude[side]);
-    }
-    if (table == NULL || f->whole != 0.0)
-        return 0;
-    const dd kappa = dd_div(own.across, own.root), x = dd_div(own.start, own.root);
-    dd last[4], start[4], middle[4], far[4];
-    near_table(kappa, (int)(limits[0]*SPIN_UP_PIECES), dd_abs(x), table, last, start);
-    const double way[3] = {-1.0, 0.0, 1.0};
-    if (side == SPIN_UP_NEAR) {
-        mirrored(x.hi < 0.0 ? -1.0 : 1.0, start);
-        conjugated(start, far);
-        quaternion_product(own.given, far, middle);
-    } else {
-        dd left[4], from[4];
-        for (int i = 0; i < 4; ++i)
-            from[i] = last[i];
-        mirrored(way[side], from);
-        swept_attitude(f, dd_scale(edge, way[side]), far);
-        handed_on(own.given, here, far, left);
-        conjugated(from, far);
-        quaternion_product(left, far, middle);
-    }
-    static const dd one[4] = {{1.0, 0.0}, {0.0, 0.0}, {0.0, 0.0}, {0.0, 0.0}};
-    store_attitude(&own, middle, one, f->attitude[SPIN_UP_NEAR]);
-    for (int to = SPIN_UP_BEFORE; to <= SPIN_UP_BEYOND; to += SPIN_UP_BEYOND - SPIN_UP_BEFORE) {
-        if (to == side)
-            continue;
-        dd left[4], leaving[4];
-        for (int i = 0; i < 4; ++i)
-            leaving[i] = last[i];
-        mirrored(way[to], leaving);
-        quaternion_product(middle, leaving, left);
-        swept_attitude(f, dd_scale(edge, way[to]), far);
-        store_attitude(&own, left, far, f->attitude[to]);
+    if (prepare_first(axis, numbers, limits, &h, f) && table != NULL) {
+        near_motion near = near_motion_of(&h, table);
+        near_table((int)(limits[0]*SPIN_UP_PIECES), &near);
+        prepare_rest(&h, &near, f);
     }
     return 0;
 }

@@ -157,7 +157,7 @@ class _Jet:
 
     # -------------------------------------------------------------------------------------------- rows
 
-    def sum(self, row: Row, phase: str, sums: str, factor: str = "") -> str:
+    def sum(self, row: Row, phase: str, sums: str, factor: str = "", fused: str = "V_FMA") -> str:
         """Return a row of sums, times a factor. The terms that come last to hand are added last."""
         value = ""
         parts = [(self.picked(term.pack), term.weights) for term in row.terms]
@@ -170,8 +170,18 @@ class _Jet:
                 if not scale:
                     value = f"V_ADD({part}, {value})" if value else part
                 else:
-                    value = f"V_FMA({part}, {scale}, {value})" if value else f"V_MUL({part}, {scale})"
+                    value = f"{fused}({part}, {scale}, {value})" if value else f"V_MUL({part}, {scale})"
         return value or "V_ALL(0.0)"
+
+    def _rest_of_time(self, row: Row) -> str:
+        """Return the weights of the time in a row of sums, or nothing: ``t`` lacks what ``t_low`` has of the time."""
+        weights: list[Node] = []
+        for number in row.lanes:
+            series = None if number is None else self.layout.series[number]
+            pairs = zip(series.operands, series.weights, strict=False) if series else ()
+            own = [w for operand, w in pairs if w and self.layout.series[operand].rule == "time"]
+            weights.append(own[0] if own else ("number", 0))
+        return self.constant(tuple(weights)) if any(weight != ("number", 0) for weight in weights) else ""
 
     def _weighted(self, weights: tuple[Node, ...], factor: str) -> str:
         """Return a vector of constants times the factor; empty when both are one."""
@@ -186,8 +196,12 @@ class _Jet:
         row, name = self.rows[number], f"r{number}"
         terms = [self.picked(term.pack) for term in row.terms]
         total = self.slot(row.slots[0].columns, phase, sums) if row.slots else ""
-        if row.rule in ("sum", "product"):
-            return [f"{name} = {self.sum(row, phase, sums) if row.rule == 'sum' else total};"]
+        if row.rule == "product":
+            return [f"{name} = {total};"]
+        if row.rule == "sum":
+            rest = self._rest_of_time(row) if phase == "first" else ""
+            value = self.sum(row, phase, sums, fused="symrot_fused" if rest else "V_FMA")
+            return [f"{name} = {f'V_FMA(V_ALL(t_low), {rest}, {value})' if rest else value};"]
         if row.rule == "time":
             value = {"first": "t", "second": "step[1]"}.get(phase, "0.0")
             return [f"{name} = V_ALL({value});"]

@@ -9,16 +9,17 @@ numbers beside a narrow pulse.
 Standard library only.
 """
 
+from collections.abc import Collection, Iterator, Sequence
 from fractions import Fraction
 from math import comb
 from typing import NamedTuple
 
 from symrot.codegen.printing.c_source import c_function
 from symrot.formula.program import Argument, Program, Signature
-from symrot.formula.tree import Node, children, evaluate
+from symrot.formula.tree import Node, children, evaluate, names
 from symrot.planning.scene_kernel import EPOCH, Parameters, SceneKernel
 
-__all__ = ["from_epoch", "moved"]
+__all__ = ["from_epoch", "moved", "moved_formulas"]
 
 ZERO: Node = ("number", Fraction(0))
 ONE: Node = ("number", Fraction(1))
@@ -52,6 +53,26 @@ def moved(program: Program, parameters: Parameters) -> tuple[Program, Parameters
         What the components of p are: formulas of constants. Those of the result hold the symbol ``epoch`` too, s.
     """
     return _Mover(program, parameters).result()
+
+
+def moved_formulas(formulas: Sequence[Node], constants: Collection[str]) -> tuple[tuple[Node, ...], Parameters]:
+    """Return formulas in which t counts from the epoch, and the parameters in them as formulas of constants and epoch.
+
+    Parameters
+    ----------
+    formulas : sequence of Node
+        Of the time, constants, and states of any names.
+    constants : collection of str
+        The names that stand for constants; all others are states.
+    """
+    used = sorted(set().union(*map(names, formulas)) - {TIME})
+    shared = tuple((name, ("symbol", name)) for name in used if name in constants)
+    states = Argument("y", "in", tuple((name, "", "") for name in used if name not in constants))
+    own = Argument("p", "in", tuple((name, "", "") for name, _ in shared))
+    signature = Signature("formulas", (Argument(TIME, "in", ((TIME, "s", ""),), True), states, own))
+    listed = tuple((f"formula_{number}", formula) for number, formula in enumerate(formulas))
+    program, parameters = moved(Program(signature, (), listed), shared)
+    return tuple(formula for _, formula in program.outputs), parameters
 
 
 class _Form(NamedTuple):
@@ -98,6 +119,8 @@ class _Mover:
             return _Form(node, (node,))
         if kind == "symbol":
             return self.forms[node[1]]
+        if kind in ("+", "-") and (gathered := self.gathered(node)):
+            return gathered
         parts = [self.read(child) for child in children(node)]
         terms = _terms(node, [part.terms for part in parts])
         if terms is not None and len(terms) == 2:
@@ -108,6 +131,36 @@ class _Mover:
             return _Form((kind, node[1], written), terms)
         centred = any(part.centred for part in parts) or (kind in ("*", "**") and any(map(_is_shifted, parts)))
         return _Form((kind, *written, *node[2:]) if kind == "**" else (kind, *written), terms, centred)
+
+    def gathered(self, node: Node) -> _Form | None:
+        """Return a sum with all of its terms a t + b as one: far from t = 0 their constants may nearly cancel.
+
+        None for a sum of such terms alone, with fewer than two of them, or without the time in them.
+        """
+        lines: list[tuple[Node, ...]] = []
+        others: list[tuple[bool, _Form]] = []
+        for negative, form in self.summands(node, False):
+            if form.terms is not None and len(form.terms) <= 2:
+                lines.append(tuple(map(_negative, form.terms)) if negative else form.terms)
+            else:
+                others.append((negative, form))
+        if not others or len(lines) < 2 or max(map(len, lines)) == 1:
+            return None
+        line = _trimmed([_total([each[i] for each in lines if i < len(each)]) for i in (0, 1)])
+        gathered = self.written(_Form(None, line))
+        for negative, other in others:
+            gathered = ("-" if negative else "+", gathered, self.written(other))
+        return _Form(gathered)
+
+    def summands(self, node: Node, negative: bool) -> Iterator[tuple[bool, _Form]]:
+        """Yield the terms of a sum, each with whether it is subtracted."""
+        if node[0] in ("+", "-"):
+            yield from self.summands(node[1], negative)
+            yield from self.summands(node[2], negative != (node[0] == "-"))
+        elif node[0] == "neg":
+            yield from self.summands(node[1], not negative)
+        else:
+            yield negative, self.read(node)
 
     def written(self, form: _Form, turns: bool = False) -> Node:
         """Return a form as a formula; a polynomial of t by Horner's rule, its coefficients parameters.
@@ -215,6 +268,13 @@ def _negative(a: Node) -> Node:
 
 def _plus(a: Node, b: Node) -> Node:
     return b if a == ZERO else a if b == ZERO else _folded(("+", a, b))
+
+
+def _total(terms: Sequence[Node]) -> Node:
+    total = ZERO
+    for term in terms:
+        total = _plus(total, term)
+    return total
 
 
 def _times(a: Node, b: Node) -> Node:

@@ -12,7 +12,7 @@ from sympy import Abs, Expr, Rational
 from sympy.polys.domains import ZZ
 from sympy.polys.rings import PolyElement
 
-from symrot.exact.ring.roots import Root, absolute, sign_of
+from symrot.exact.ring.roots import Root, absolute, sign_of, written
 
 __all__ = ["Dependence", "dependences", "take_squares"]
 
@@ -89,18 +89,19 @@ def dependences(radicands: Mapping[Root, PolyElement], generators: Sequence[Expr
     factored = {root: _factored(poly) for root, poly in radicands.items()}
     odd = {root: frozenset(f for f, n in powers.items() if n % 2) for root, (_, powers) in factored.items()}
     candidates = [root for root in radicands if odd[root] or not isinstance(root.expression, Abs)]
-    candidates.sort(key=lambda root: (-isinstance(root.expression, Abs), len(odd[root]), str(root.expression)))
-    basis: list[tuple[frozenset[PolyElement], frozenset[Root]]] = []
+    candidates.sort(key=lambda root: (-isinstance(root.expression, Abs), len(odd[root]), written(root.expression)))
+    texts = {factor: str(factor) for factors in odd.values() for factor in factors}
+    basis: list[tuple[PolyElement, frozenset[PolyElement], frozenset[Root]]] = []
     found: dict[Root, Dependence] = {}
     for root in candidates:
         left, used = odd[root], frozenset([root])
-        for factors, members in basis:
-            if min(factors, key=str) in left:
+        for least, factors, members in basis:
+            if least in left:
                 left, used = left ^ factors, used ^ members
         if left:
-            basis.append((left, used))
+            basis.append((min(left, key=texts.__getitem__), left, used))
             continue
-        others = sorted(used - {root}, key=lambda other: str(other.expression))
+        others = sorted(used - {root}, key=lambda other: written(other.expression))
         number, total = factored[root][0], {f: -n for f, n in factored[root][1].items()}
         for other in others:
             number /= factored[other][0]

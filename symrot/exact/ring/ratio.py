@@ -59,6 +59,8 @@ class Ratios:
         self.reduce = reduce
         self.factors: list[PolyElement] = []  # primitive, not constant, leading coefficient positive
         self.sources: list[Expr] = []  # what stood in the denominator where the factor was met first
+        self.point = [37 + 6 * place + place % 5 for place in range(len(generators))]
+        self.values: list[int] = []  # of the factors there
         self.products = 0  # spent so far
 
     def number(self, numerator: int, denominator: int = 1) -> Ratio:
@@ -147,17 +149,34 @@ class Ratios:
                 powers[self._learn(self.ring.gens[place], self.generators[place])] = power
         if any(shared):
             poly = poly.new({tuple(m - s for m, s in zip(mono, shared, strict=True)): c for mono, c in poly.items()})
+        value = self._value(poly)
         for number, known in enumerate(self.factors):
-            while len(known) > 1 and not poly.is_ground:
+            while len(known) > 1 and not poly.is_ground and self._may_divide(number, value):
                 quotient, rest = divmod(poly, known)
                 if rest:
                     break
                 poly, powers[number] = quotient, powers.get(number, 0) + 1
+                value = self._value(poly)
         if poly.is_ground:
             constant *= Fraction(int(poly.LC.numerator), int(poly.LC.denominator))
         else:
             powers[self._learn(poly, source)] = 1
         return constant, tuple(sorted(powers.items()))
+
+    def _value(self, poly: PolyElement) -> int:
+        """Return the value of a polynomial with integer coefficients at a fixed point."""
+        return sum(
+            int(coefficient) * prod(base**power for base, power in zip(self.point, mono, strict=True) if power)
+            for mono, coefficient in poly.items()
+        )
+
+    def _may_divide(self, number: int, value: int) -> bool:
+        """Return whether a factor may divide a polynomial, by their values; a division that leaves a rest is long.
+
+        Both have integer coefficients without a common divisor, so by Gauss's lemma the quotient has such too.
+        """
+        own = self.values[number]
+        return own == 0 or value % own == 0
 
     def _learn(self, poly: PolyElement, source: Expr) -> int:
         for number, known in enumerate(self.factors):
@@ -165,6 +184,7 @@ class Ratios:
                 return number
         self.factors.append(poly)
         self.sources.append(source)
+        self.values.append(self._value(poly))
         return len(self.factors) - 1
 
 

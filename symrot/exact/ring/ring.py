@@ -34,17 +34,20 @@ from symrot.exact.angles.angles import (
 from symrot.exact.angles.constants import Number, cosine_number, root_number, vanishes
 from symrot.exact.angles.inverse import INVERSE, cosine_sine
 from symrot.exact.angles.known_angles import halved, is_bound, parts_of, unbound
-from symrot.exact.budget import spend_ring
+from symrot.exact.budget import remembered, spend_ring
 from symrot.exact.functions import REWRITTEN, TRIGONOMETRIC, is_jet
 from symrot.exact.ring.radicands import Dependence, dependences, take_squares
 from symrot.exact.ring.ratio import Ratio, Ratios, TooLarge
 from symrot.exact.ring.relations import Relations, Rule, relate
-from symrot.exact.ring.roots import Radical, Radicand, Root, is_root, radical, square_root_of_number
+from symrot.exact.ring.roots import Radical, Radicand, Root, is_root, radical, square_root_of_number, written
 
 __all__ = ["FormulaRing", "as_zero"]
 
 MOST_MULTIPLES = 240
 """Of a base angle."""
+
+MOST_ANGLE_TERMS = 4096
+"""Of a sine or cosine in those of the base angles: a sum of twelve angles has 2048."""
 
 MOST_NESTED_TERMS = 40
 """Of a radicand that holds roots itself: each further nesting multiplies the work."""
@@ -138,6 +141,7 @@ class FormulaRing:
             (atom, sympy.exp(base_angle(atom, self.exponent_bases[atom]))) for atom in exponents
         )
         self.cosines = self._number((atom, cos(base_angle(atom, self.bases[atom]))) for atom in atoms)
+        self.own = {self.generators[n]: n for n in range(len(self.roots), len(self.generators))}
         if self.fine:
             (self.fine_place,) = self._number([(pi, 2 * cos(pi / self.fine))]).values()
 
@@ -189,15 +193,9 @@ class FormulaRing:
 
     def _radicand(self, base: Expr, index: int) -> Radicand:
         """Return a radicand in lowest terms, reduced by those hypotheses that hold no roots themselves."""
-        plain = [relation for relation in self.hypotheses if not any(map(is_root, preorder_traversal(relation)))]
-        inner = FormulaRing([base], plain)
-        content, above, below = inner.lowest_polynomials(inner.ratio(base))
-        if inner.roots and len(above) + len(below) > MOST_NESTED_TERMS:
-            raise TooLarge(f"a root of a formula with roots and more than {MOST_NESTED_TERMS} terms is not taken apart")
-        if index != 2:
-            return Radicand(content, above.as_expr(*inner.generators), below.as_expr(*inner.generators))
-        rest, outside, loose = take_squares(above, below, inner.generators)
-        return Radicand(content, rest, Integer(1), outside, loose)
+        plain = tuple(each for each in self.hypotheses if not any(map(is_root, preorder_traversal(each))))
+        found: Radicand = remembered(("radicand", base, index, plain), lambda: _taken_apart(base, index, plain))
+        return found
 
     def _dependences(self) -> dict[Root, Dependence]:
         """Return the square roots that are products of other generators, if there are several."""
@@ -318,8 +316,8 @@ class FormulaRing:
 
     def _read(self, node: Expr) -> Ratio:
         ratios = self.ratios
-        if node in self.symbols:
-            return Ratio(self.ring.gens[self.symbols[node]])
+        if node in self.own:
+            return Ratio(self.ring.gens[self.own[node]])
         if node.is_Rational:
             return ratios.number(int(node.p), int(node.q))
         if node in self.rewritten:
@@ -398,6 +396,8 @@ class FormulaRing:
             c = self._in_generator(self.cosines[atom], first)
             s = self._in_generator(self.cosines[atom], second) * self.ring.gens[self.sines[atom]]
             s = s if multiple > 0 else -s
+            if len(cosine) * (len(c) + len(s)) > MOST_ANGLE_TERMS:
+                raise TooLarge(f"the sine of a sum of angles with more than {MOST_ANGLE_TERMS} terms is not expanded")
             cosine, sine = cosine * c - sine * s, sine * c + cosine * s
         turned = Ratio(cosine), Ratio(sine)
         for pair in pairs:
@@ -458,6 +458,17 @@ class FormulaRing:
         return constant, above, below
 
 
+def _taken_apart(base: Expr, index: int, hypotheses: Sequence[Expr]) -> Radicand:
+    inner = FormulaRing([base], hypotheses)
+    content, above, below = inner.lowest_polynomials(inner.ratio(base))
+    if inner.roots and len(above) + len(below) > MOST_NESTED_TERMS:
+        raise TooLarge(f"a root of a formula with roots and more than {MOST_NESTED_TERMS} terms is not taken apart")
+    if index != 2:
+        return Radicand(content, above.as_expr(*inner.generators), below.as_expr(*inner.generators))
+    rest, outside, loose = take_squares(above, below, inner.generators)
+    return Radicand(content, rest, Integer(1), outside, loose)
+
+
 def _named(dependence: Dependence | None) -> list[Root]:
     """Return the roots by which a root is expressed."""
     if dependence is None:
@@ -471,9 +482,9 @@ def _occurring(poly: PolyElement) -> set[int]:
 
 def _order(node: Expr) -> tuple[str, str]:
     """Return a key that does not depend on hashing."""
-    return (str(node), type(node).__name__)
+    return (written(node), type(node).__name__)
 
 
 def _depth(root: Root) -> tuple[int, str, str]:
     """Return a key that puts outer roots before the roots inside them."""
-    return (-root.depth, str(root.expression), str(root.power_expression))
+    return (-root.depth, written(root.expression), written(root.power_expression))

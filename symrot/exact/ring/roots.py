@@ -10,14 +10,35 @@ each: what follows from the relations is true, and what does not may still be tr
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from math import prod
+from functools import lru_cache
+from math import comb, prod
 
-from sympy import Abs, Expr, I, Integer, Pow, Rational, Symbol, exp, factorint, sqrt
+from sympy import Abs, Add, Expr, I, Integer, Pow, Rational, Symbol, exp, factorint, sqrt
 from sympy.core.function import AppliedUndef
 
 from symrot.errors import InputError
+from symrot.exact.ring.ratio import TooLarge
 
-__all__ = ["Radical", "Radicand", "Root", "absolute", "is_root", "radical", "sign_of", "square_root_of_number"]
+__all__ = [
+    "Radical",
+    "Radicand",
+    "Root",
+    "absolute",
+    "is_root",
+    "radical",
+    "sign_of",
+    "square_root_of_number",
+    "written",
+]
+
+MOST_TERMS = 4000
+"""Of the radicand of a root, ``P Q^(n-1)`` for a root of P/Q."""
+
+
+@lru_cache(maxsize=20_000)
+def written(node: Expr) -> str:
+    """Return the text of an expression: a key for sorting that does not depend on hashing."""
+    return str(node)
 
 
 @dataclass(frozen=True)
@@ -113,6 +134,9 @@ def radical(node: Expr, radicand: Callable[[Expr, int], Radicand]) -> Radical:
     elif above.is_Rational and above < 0 and index != 2:
         raise InputError(f"a root of a negative number is no real number: {node}")
     elif above != 1 or below != 1:
+        terms, times = len(Add.make_args(below)), index - 1
+        if len(Add.make_args(above)) * comb(terms + times - 1, times) > MOST_TERMS:
+            raise TooLarge(f"a root whose radicand has more than {MOST_TERMS} terms over one denominator is not taken")
         inside = (above * below ** (index - 1)).expand()
         shown = below * (above / below) ** Rational(1, index)
         roots.append(Root(shown, inside, index, 1 + _nesting([inside])))

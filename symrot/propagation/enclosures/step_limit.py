@@ -12,10 +12,12 @@ from symrot.codegen.enclosure.terms import LOW_ORDER, REACHES, Enclosure, value_
 from symrot.codegen.taylor.recurrences import Series
 from symrot.formula.tree import evaluate
 
-__all__ = ["Deviations", "Disc", "longest_followed"]
+__all__ = ["Deviations", "Disc", "deviations_of", "longest_followed"]
 
 LARGEST_EXPONENT = 700.0  # of e, well within doubles
 LEAST_EXPONENT = -745.0  # what is smaller underflows, and need not be zero
+WEIGHTED = ("clock", "sum")  # rules of series with constants of their own
+SLOWER = 10  # times: how long bounds take disc by disc
 SHRINK = 0.3  # least that a step is shortened to at once
 
 
@@ -149,6 +151,51 @@ FUNCTIONS: dict[str, Callable[..., Disc]] = {
 }  # fmt: skip
 
 
+def _one_function(enclosure: Enclosure) -> Callable[..., list[float]]:
+    """Return the bounds of an enclosure as one Python function of (t, reach, y, radii, weights, their sizes).
+
+    It leaves out the logarithms of sizes, which matter only where a bound is infinite or no number: there its result is
+    useless, elsewhere it is that of the discs, many times sooner.
+    """
+    lines, place = ["def bounds(t, reach, y, radii, w, a):"], 0
+    for number in enclosure.series:
+        series: Series = enclosure.system.series[number]
+        c, r = f"c{number}", f"r{number}"
+        own = value_operands(series)
+        if series.rule == "state":
+            lines.append(f" {c}, {r} = y[{series.number}], radii[{series.number}]")
+        elif series.rule == "time":
+            lines.append(f" {c}, {r} = t, reach")
+        elif series.rule == "clock":
+            lines.append(f" {c}, {r}, _ = {series.function}(Disc(w[{place}]*t + w[{place + 1}], a[{place}]*reach))")
+            place += 2
+        elif series.rule == "sum":
+            inner = [f"w[{place + k}]*c{i}" for k, i in enumerate(own)]
+            lines.append(f" {c} = {' + '.join([*inner, f'w[{place + len(own)}]'])}")
+            lines.append(f" {r} = {' + '.join(f'a[{place + k}]*r{i}' for k, i in enumerate(own)) or '0.0'}")
+            place += len(own) + 1
+        elif series.rule == "product":
+            x, z = own
+            lines.append(f" {c}, {r} = c{x}*c{z}, abs(c{x})*r{z} + abs(c{z})*r{x} + r{x}*r{z}")
+        elif series.rule == "quotient":
+            lines.append(f" {c}, {r}, _ = inverse(Disc(c{own[-1]}, r{own[-1]}))")
+            if len(own) > 1:
+                x = own[0]
+                lines.append(f" {c}, {r} = c{x}*{c}, abs(c{x})*{r} + abs({c})*r{x} + r{x}*{r}")
+        else:
+            arguments = ", ".join(f"Disc(c{i}, r{i})" for i in own)
+            lines.append(f" {c}, {r}, _ = {series.function}({arguments})")
+    sums = []
+    for own_terms in enclosure.terms:
+        sums.append(" + ".join(f"a[{place + k}]*r{operand}" for k, (_, operand) in enumerate(own_terms)) or "0.0")
+        place += len(own_terms)
+    lines.append(f" return [{', '.join(sums)}]")
+    known: dict[str, Any] = {**FUNCTIONS, "Disc": Disc, "inverse": _inverse}
+    exec("\n".join(lines), known)
+    made: Callable[..., list[float]] = known["bounds"]
+    return made
+
+
 class Deviations:
     """How far the enclosed terms of each rate deviate from a constant on discs.
 
@@ -157,10 +204,16 @@ class Deviations:
     enclosure : Enclosure
     parameters : mapping of str to number
         Of the right-hand side, by name.
+    bounds : function, optional
+        The enclosure as one function, where it is known.
     """
 
-    def __init__(self, enclosure: Enclosure, parameters: Mapping[str, float]) -> None:
-        self.enclosure = enclosure
+    def __init__(
+        self, enclosure: Enclosure, parameters: Mapping[str, float], bounds: Callable[..., list[float]] | None = None
+    ) -> None:
+        self.enclosure, self._bounds = enclosure, bounds or _one_function(enclosure)
+        self.likely = 0  # number of the reach that proved the last step
+        self.spent = 0  # evaluations, by time
 
         def number(node: Any) -> float:
             return float(evaluate(node, parameters, _MATH, float))
@@ -168,9 +221,25 @@ class Deviations:
         series = enclosure.system.series
         self._weights = {i: [0.0 if w is None else number(w) for w in series[i].weights] for i in enclosure.series}
         self._terms = [[(abs(number(weight)), operand) for weight, operand in own] for own in enclosure.terms]
+        weighted = [i for i in enclosure.series if series[i].rule in WEIGHTED]
+        self._listed = [weight for i in weighted for weight in self._weights[i]]
+        self._listed += [weight for own in self._terms for weight, _ in own]
+        self._sizes = [abs(weight) for weight in self._listed]
 
     def __call__(self, t: float, reach: float, y: Sequence[float], radii: Sequence[float]) -> list[float]:
         """Return the bounds for times within ``reach`` of t and states within ``radii`` of y: infinite at poles."""
+        self.spent += 1
+        try:
+            bounds = self._bounds(t, reach, y, radii, self._listed, self._sizes)
+            if math.isfinite(sum(bounds)):
+                return bounds
+        except (OverflowError, ValueError, ZeroDivisionError):
+            pass
+        return self.slowly(t, reach, y, radii)
+
+    def slowly(self, t: float, reach: float, y: Sequence[float], radii: Sequence[float]) -> list[float]:
+        """Return the bounds disc by disc, with the logarithms of sizes that over- and underflow."""
+        self.spent += SLOWER
         discs: dict[int, Disc] = {}
         try:
             for number in self.enclosure.series:
@@ -204,6 +273,12 @@ class Deviations:
         return FUNCTIONS[series.function](*own)
 
 
+def deviations_of(enclosure: Enclosure) -> Callable[[Mapping[str, float]], Deviations]:
+    """Return what makes deviations of parameters; the function of the enclosure is made once."""
+    bounds = _one_function(enclosure)
+    return lambda parameters: Deviations(enclosure, parameters, bounds)
+
+
 _MATH: dict[str, Callable[..., float]] = {name: getattr(math, name) for name in FUNCTIONS if name != "sech"} | {
     "abs": abs
 }
@@ -234,14 +309,17 @@ def longest_followed(
     order : int
         To which the states are followed.
     """
-    length = h
+    length, reaches = h, REACHES[order < LOW_ORDER]
+    likely = getattr(deviations, "likely", 0)  # the reach that proved the last step, which most often proves the next
+    in_turn = [likely, *(k for k in range(len(reaches)) if k != likely)]
     while abs(length) > 1e-300:
-        least = min(
-            _excess(deviations, t, y, path, abs(length), abs(h), radius, allowed, edges, order)
-            for radius in REACHES[order < LOW_ORDER]
-        )
-        if least <= 1.0:
-            break
+        least = math.inf
+        for k in in_turn:
+            excess = _excess(deviations, t, y, path, abs(length), abs(h), reaches[k], allowed, edges, order)
+            least = min(least, excess)
+            if excess <= 1.0:
+                deviations.likely = k
+                return length
         length *= min(max(0.9 * least ** (-1.0 / (order + 1)), SHRINK), 0.9)
     return length
 

@@ -14,7 +14,7 @@ from symrot.propagation.compiled_models import error_blocks
 from symrot.propagation.events.events import Event, Found, event_library_source, search, stepped, timed, uses_attitude
 from symrot.propagation.events.polynomials import Piece, fitted, fitted_pieces
 from symrot.propagation.steppers.cut_off import CutOff
-from symrot.propagation.steppers.stepping import Stats, both_sides
+from symrot.propagation.steppers.stepping import Stats, Switching, both_sides, stats_of
 
 if TYPE_CHECKING:
     from symrot.propagation.motion import Motion
@@ -59,6 +59,7 @@ class _Side(NamedTuple):
     states: Callable[[Floats], Floats]
     broken: list[PropagationError]
     cost: Callable[[], tuple[int, int, int]]
+    switchings: tuple[Switching, ...] = ()
 
 
 def follow(motion: "Motion", times: Floats, events: Sequence[Event]) -> Eventful:
@@ -89,7 +90,7 @@ def follow(motion: "Motion", times: Floats, events: Sequence[Event]) -> Eventful
     path, p = library.build(source, "events"), bind(motion.kernel.quantity_parameters, plan.constants)
     states, kept = np.empty((len(times), len(plan.states))), np.zeros(len(times), dtype=bool)
     found: list[tuple[Found, Floats]] = []
-    counts, ended = np.zeros(3, dtype=int), False
+    counts, ended, switchings = np.zeros(3, dtype=int), False, list[Switching]()
     for part in both_sides(times, motion.start):
         end = float(times[part[-1]])
         side = _side(motion, end)
@@ -108,12 +109,14 @@ def follow(motion: "Motion", times: Floats, events: Sequence[Event]) -> Eventful
         found = _joined(found, list(zip(listed, rows, strict=True)), motion.start)
         side.pieces.close()
         counts += side.cost()
+        reached = abs((end if stop is None else stop) - motion.start)
+        switchings += [each for each in side.switchings if abs(each.t - motion.start) <= reached]
     found.sort(key=lambda each: each[0].t)
     own = [[each for each in found if each[0].event == number] for number in range(len(events))]
     return Eventful(
         asked[kept],
         states[kept],
-        Stats(int(counts[0]), int(counts[1]), int(counts[2]), perf_counter() - began),
+        stats_of(counts, perf_counter() - began, switchings),
         [np.array([each.t + zero for each, _ in group]) for group in own],
         [np.array([row for _, row in group]).reshape(-1, len(plan.states)) for group in own],
         [[each.kind for each, _ in group] for group in own],
@@ -142,7 +145,7 @@ def _side(motion: "Motion", end: float) -> _Side:
     broken: list[PropagationError] = []
     if motion.switched:
         pieces, path = cast("SwitchedMotion", motion).parts(end, broken)
-        return _Side((piece for piece in pieces), path, broken, lambda: path.stats[:3])
+        return _Side((piece for piece in pieces), path, broken, lambda: path.stats[:3], path.stats.switchings)
     if method in ("taylor", "dop853"):
         task = motion.stepping.again()
         rows: list[Floats] = []

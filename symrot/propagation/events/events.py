@@ -120,7 +120,12 @@ def _checked(event: Event, where: str) -> Event:
         raise InputError(f"{where}: {str(error).removeprefix('event: ')}") from None
     unknown = sorted(names(node) - KNOWN - {"pi"})
     if unknown:
-        raise InputError(f"{where}: expected names among t, omega_1..3, q0..q3 and pi, got {', '.join(unknown)}")
+        from symrot.formula.advice import name_advice  # only on the way to an error
+
+        advice = name_advice(unknown[0], KNOWN | {"pi"})
+        reason = f" ({advice})" if advice else ""
+        expectation = "expected names among t, omega_1..3, q0..q3 and pi"
+        raise InputError(f"{where}: {expectation}, got {', '.join(unknown)}{reason}")
     if not isinstance(event.terminal, bool | int) or event.terminal < 0:
         raise InputError(f"{where}: terminal: expected true, false or a count, got {number.show(event.terminal)}")
     if isinstance(event.direction, bool) or event.direction not in (-1, 0, 1):
@@ -386,6 +391,8 @@ def _settled(
             continue  # it was seen to cross within rounding of the edge
         if not (before and after) and rests and not arrived:
             continue  # zero all along up to an end of what is known: it passes through nothing
+        if rests and arrived:
+            after = 0  # where it goes when it is let go is another matter
         t = t0 if at_start else start if rests and arrived else end if start == end else 0.5 * (start + end)
         kind = "rising" if after > before else "falling" if after < before else "touching"
         if events[event].direction and kind != {1: "rising", -1: "falling"}[events[event].direction]:

@@ -84,7 +84,7 @@ CHECKS = np.array([-1.0, -0.9037, -0.1618, 0.6543, 1.0])  # on [-1, 1]: where a 
 
 def fitted(
     states: Callable[[Floats], Floats], edges: Floats, blocks: Sequence[int], scales: Sequence[float], depth: int = 0,
-    left: list[int] | None = None,
+    left: list[int] | None = None, accuracy: float | Floats = 0.0,
 ) -> Piece:  # fmt: skip
     """Return polynomials that follow a motion to rounding, between edges or, where they do not, between more of them.
 
@@ -98,6 +98,10 @@ def fitted(
         As :func:`symrot.propagation.steppers.dop853.translation_unit` takes them: what states are compared with.
     depth, left : int, list of int
         How often a piece was halved, and how many more pieces there may be: of the function itself.
+
+    accuracy : float
+        Error of the motion itself on its largest size here: where its steps do not join, no fit can be closer. The
+        function itself hands on one error per state.
 
     Raises
     ------
@@ -123,6 +127,8 @@ def fitted(
     for (low, high), scale in zip(pairwise(blocks), scales, strict=True):
         largest = np.abs(values[:, :, low:high]).max(axis=(1, 2))
         size[:, low:high] = np.maximum(largest, scale)[:, None]
+    if depth == 0:
+        accuracy = accuracy * size.max(axis=0)
     rate = np.abs(values[:, :, : blocks[1]]).max(axis=(1, 2)) if scales[0] == 0.0 else np.zeros(len(half))
     doubt = EPS * (NOISE + rate * np.abs(times).max(axis=1))[:, None] * size  # a phase is as good as the time
     series[np.abs(series) < 0.25 * EPS * size[:, None, :]] = 0.0  # what is left of rounding would grow outside
@@ -138,7 +144,7 @@ def fitted(
     if not bad.any():
         return Piece(edges, rows)
     if depth == HALVINGS:
-        if not (off <= ROUGH * size).all():
+        if not (off <= ROUGH * size + accuracy).all():
             t = float(edges[int(bad.argmax())])
             raise PropagationError(
                 f"events: expected a motion that polynomials can follow, but it is rough near t = {t!r} s"
@@ -148,8 +154,14 @@ def fitted(
     for i in range(len(half)):
         piece = Piece(edges[i : i + 2], rows[i : i + 1])
         middle = float(centre[i])
-        if bad[i] and (depth < SURE or (off[i] > ROUGH * size[i]).any()) and middle not in (edges[i], edges[i + 1]):
-            piece = fitted(states, np.array([edges[i], middle, edges[i + 1]]), blocks, scales, depth + 1, left)
+        if (
+            bad[i]
+            and (depth < SURE or (off[i] > ROUGH * size[i] + accuracy).any())
+            and middle not in (edges[i], edges[i + 1])
+        ):
+            piece = fitted(
+                states, np.array([edges[i], middle, edges[i + 1]]), blocks, scales, depth + 1, left, accuracy
+            )
         parts.append(piece.rows)
         ends.append(piece.edges[1:])
     return Piece(np.concatenate(ends), np.concatenate(parts))

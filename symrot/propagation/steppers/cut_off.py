@@ -1,7 +1,7 @@
 """Motions that end before they should: the error, the reasons, and the samples that were computed before."""
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +24,7 @@ class CutOff(PropagationError):
         super().__init__(f"the motion cannot be followed beyond t = {t!r} s{way}: {reason}")
         self.t, self.reason, self.stop = t, reason, stop
         self.samples: Samples | None = None  # those before t
+        self.recording: Any = None  # the motion before t, where one was being recorded
 
     def later(self, epoch: float) -> "CutOff":
         """Return the error for a clock that shows ``epoch`` where this one shows 0."""

@@ -60,6 +60,7 @@ typedef struct {
     double max_step;     /* positive */
     double proven;       /* the last step, if the enclosure held it back, or 0 */
     double epoch;        /* the kernel counts its time from here */
+    double far;          /* pause where the epoch is so many steps away, for it to be moved; 0: never */
     int64_t reach;       /* number of the disc that proved most in the last step */
     int64_t next;        /* first sample not yet written */
     int64_t accepted, rejected, evaluations, recorded;
@@ -144,7 +145,7 @@ static inline double symrot_scale_squared(const double *y, const double *y1, dou
     if (fixed > 0.0) return fixed*fixed;
     const double before = symrot_square_sum(y, block), after = symrot_square_sum(y1, block);
     const double larger = before > after ? before : after, least = SYMROT_RATE_FLOOR/h*(SYMROT_RATE_FLOOR/h);
-    return larger > least ? larger : least;
+    return fmin(larger > least ? larger : least, DBL_MAX);  /* finite in the shortest of steps, too */
 }
 
 /* Return the size of a block at the start: of a rate no less than it has when it has turned the body from rest. */
@@ -255,7 +256,7 @@ static SYMROT_APART double symrot_defect(double at, double h, const double *y, c
         EACH_STATE(i) slope[i] -= h*rate[i];
         for (int b = 0; b < SYMROT_COUNT; ++b) {
             const double defect = sqrt(symrot_square_sum(slope, b)/symrot_scale_squared(y, y1, h, b));
-            if (!(defect <= worst)) worst = defect;
+            if (worst == worst && !(defect <= worst)) worst = defect;  /* a NaN stays one */
         }
     }
     return worst;
@@ -335,6 +336,7 @@ SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *
             break;
         }
         if (room > 0 && recorded == room) { status = SYMROT_FULL; break; }
+        if (run->far > 0.0 && fabs(t - epoch) > run->far*fabs(h)) break;
         const double at = t - epoch, last = (t1 == stop ? run->last : t1) - epoch;  /* for the kernel */
 
 #define K(s) k[s][i]
@@ -372,7 +374,7 @@ SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *
         for (int b = 0; b < SYMROT_COUNT; ++b) {
             const double e5 = symrot_square_sum(error5, b), e3 = symrot_square_sum(error3, b);
             const double error = e5*e5/((e5 + 0.01*e3)*symrot_scale_squared(y, y1, h, b) + DBL_MIN)*weight;
-            worst = worst > error ? worst : error;  /* keeps a NaN once error is one */
+            if (worst == worst && !(error <= worst)) worst = error;  /* a NaN stays one, whatever other blocks say */
         }
         const double factor = SYMROT_SAFETY*symrot_inverse_root_16(worst);
 

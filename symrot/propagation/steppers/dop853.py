@@ -7,7 +7,7 @@ Tolerance: the promise is about the trajectory, not about one step, see :func:`s
 
 Time: a double keeps 53 bits of ``a*t``, so that phases of a torque lose digits as the time grows, which costs accuracy
 and, since errors look rough to the step control, steps. A kernel whose clock can be moved (a :data:`Clock`) is
-therefore given the time since an epoch that follows the motion, every :data:`WINDOW` steps.
+therefore given the time since an epoch that follows the motion, every :data:`WINDOW` steps, and where steps are short.
 """
 
 import math
@@ -49,6 +49,7 @@ Clock = Callable[[float], tuple[PathLike, Sequence[float]]]
 """From an epoch, s, to the library of a kernel that counts its time from there, and the parameters of that kernel."""
 
 WINDOW = 2048
+FAR = 1e4  # steps from the epoch: farther on, the time would be rounded to more than 1e-12 of a step
 """Steps after which the clock of a kernel is moved: phases on it stay below some 1e3 rad, and setting it costs a few
 per cent of the steps. Their errors are alike in all windows, and add up: with 8192 they were five times as large."""
 
@@ -216,8 +217,8 @@ class _Clocked(Task):
         """Return what steps a run further, after moving the clock where it shows too much."""
         tried = self.stepper.tried(run)
         if not hasattr(run, "moved"):
-            run.held, run.moved = (self.stepper.run, self.p), -WINDOW if run.t else 0
-        if tried - run.moved >= WINDOW:
+            run.held, run.moved, run.far = (self.stepper.run, self.p), -WINDOW if run.t else 0, FAR
+        if tried - run.moved >= WINDOW or abs(run.t - run.epoch) > FAR * abs(run.h) > 0.0:
             path, p = self.clock(run.t)
             stepper = _stepper(str(path))
             run.held, run.moved, run.epoch = (stepper.run, stepper.new_parameters(*p)), max(tried, 0), run.t
@@ -228,7 +229,7 @@ class _Stepper(Stepper):
     """A library of :func:`translation_unit`."""
 
     name = "dop853"
-    reals = ("t", "h", "growth", "stop", "first", "last", "tolerance", "pace", "max_step", "proven", "epoch")
+    reals = ("t", "h", "growth", "stop", "first", "last", "tolerance", "pace", "max_step", "proven", "epoch", "far")
     integers = ("reach", "next", "accepted", "rejected", "evaluations", "recorded")
     vectors = ("y", "carry", "dy")
     steps_per_call, rows_per_call = 100_000, 256

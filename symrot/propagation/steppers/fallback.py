@@ -4,21 +4,25 @@ is.
 For where there is no C compiler, and for those who want LSODA. The tolerance means the same as far as SciPy allows: the
 error of every block of states against the largest size the block has on the way, found by a first coarse pass, and
 shared out over the length of the motion. SciPy is imported when a motion is first followed.
+
+Time: where steps are short beside the time, a double keeps too few digits of it. Where the clock of the right-hand side
+can be moved (a :data:`Clock`), SciPy then starts anew on one that shows 0 nearby.
 """
 
 import math
 from collections.abc import Callable, Sequence
 from itertools import pairwise
 from time import perf_counter
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from symrot.closed_form.arithmetic.double_double import two_sum
 from symrot.errors import InputError
 from symrot.propagation import progress
 from symrot.propagation.enclosures.step_limit import Deviations, longest_followed
-from symrot.propagation.steppers.cut_off import CutOff, add_samples, why_hopeless
+from symrot.propagation.steppers.cut_off import CutOff, add_samples, why_hopeless, why_stuck
 from symrot.propagation.steppers.stepping import (
     NOT_FINITE_SENTENCE,
     Floats,
@@ -31,24 +35,38 @@ from symrot.propagation.steppers.stepping import (
     stretches,
 )
 
-__all__ = ["METHODS", "FallbackRecording", "integrate", "method_name", "record"]
+__all__ = ["METHODS", "FallbackRecording", "Whole", "integrate", "method_name", "record"]
 
 Rhs = Callable[[float, Floats, Floats], ArrayLike]
+Clock = Callable[[float], tuple[Rhs, Sequence[float]]]
+"""From an epoch, s, to a right-hand side that counts its time from there, and its parameters."""
 Piece = tuple[float, float, Any]  # from, to, SciPy's solution between
 
-METHODS = {"DOP853": 0.1, "RK45": 0.1, "RK23": 0.1, "Radau": 1.0, "BDF": 0.01, "LSODA": 0.05}
+
+class Whole(NamedTuple):
+    """The motion of which a part is followed: its two ends, s, and the evaluations spent on it before."""
+
+    start: float
+    end: float
+    spent: int
+
+
+METHODS = {"DOP853": 0.1, "RK45": 0.1, "RK23": 0.1, "Radau": 1.0, "BDF": 0.01, "LSODA": 0.001}
 """SciPy's methods, and the share of the tolerance that one step of each is given; calibrated as in dop853.py."""
 
 DEFAULT = "DOP853"
 FIT_ORDER = 7  # of the polynomial that tells how the states move in a step
 SLACK = 1e4  # as in dop853.c
 HELD, REGAIN = 0.5, 1.5  # a step of that part of the longest allowed was held back; the next may be so much longer
+FAR = 1e4  # steps from the epoch: farther on, the time would be rounded to more than 1e-12 of a step
 STUCK = "the step shrank to nothing, as it does before a singularity"
 PILOT_TURN = 1e-3  # rad over the whole span
 PILOT_TOLERANCE = 1e-3  # of the coarse pass
+BEFORE_POLE = 0.5  # of the way to where the coarse pass is cut off: further on, states may grow without bound
 PILOT_STEPS = 10  # a motion of so many coarse steps may spend the whole share in every step
 MAX_EVALUATIONS = 1_000_000  # unless another limit is given: half a minute
 PATIENCE = 50_000  # evaluations after each of which the pace is judged
+MAX_IDLE = 100  # steps too short for the clock of the scene, one after the other, as where LSODA starts anew
 MAX_BROKEN = 1000  # derivatives that are not finite, before the motion is given up
 _NODES = 0.5 - 0.5 * np.cos(np.pi * np.arange(1, FIT_ORDER + 1) / FIT_ORDER)  # Chebyshev's, without the start
 _FIT = np.linalg.inv(_NODES[:, None] ** np.arange(1, FIT_ORDER + 1))  # from rises there to coefficients
@@ -84,6 +102,7 @@ def integrate(
     max_step: float = math.inf,
     max_steps: int = MAX_EVALUATIONS,
     deviations: Deviations | None = None,
+    clock: Clock | None = None,
 ) -> tuple[Floats, Stats]:
     """Return the states at the sample times, shape (n, N), and what it cost.
 
@@ -101,11 +120,14 @@ def integrate(
         Most evaluations of ``rhs``.
     deviations : Deviations, optional
         Of the terms of ``rhs`` that may hide a feature: steps are held to what they prove.
+    clock : callable, optional
+        Of ``rhs``, where it can be moved: see :data:`Clock`.
     """
     times = np.asarray(times, dtype=np.float64)
     if times.ndim != 1 or not np.isfinite(times).all():
         raise InputError(f"sample times are a sequence of finite numbers, got {times!r}")
-    task = _Task(rhs, p, y0, t0, tolerance, method, blocks, scales, breaks, max_step, max_steps, deviations)
+    limits = breaks, max_step, max_steps, deviations, clock
+    task = _Task(rhs, p, y0, t0, tolerance, method, blocks, scales, *limits)
     states = np.empty((len(times), len(task.y0)))
     done = np.empty(0, dtype=np.intp)
     for part in both_sides(times, task.t0):
@@ -135,17 +157,35 @@ def record(
     max_step: float = math.inf,
     max_steps: int = MAX_EVALUATIONS,
     deviations: Deviations | None = None,
+    clock: Clock | None = None,
+    whole: Whole | None = None,
 ) -> "FallbackRecording":
-    """Return the motion over ``span`` as a function of time; see :func:`symrot.propagation.steppers.dop853.record`."""
-    task = _Task(rhs, p, y0, t0, tolerance, method, blocks, scales, breaks, max_step, max_steps, deviations)
-    return FallbackRecording(task, min(*span, task.t0), max(*span, task.t0))
+    """Return the motion over ``span`` as a function of time; see :func:`symrot.propagation.steppers.dop853.record`.
+
+    A motion that is cut off or interrupted has what was computed in the ``recording`` of the exception, if anything
+    was. Of a part of a motion, ``max_steps`` is that of the ``whole``.
+    """
+    limits = breaks, max_step, max_steps, deviations, clock
+    task = _Task(rhs, p, y0, t0, tolerance, method, blocks, scales, *limits, whole)
+    low, high = min(*span, task.t0), max(*span, task.t0)
+    finished: list[Piece] = []
+    try:
+        for end in (low, high):
+            finished += task.solutions(end)
+    except (CutOff, KeyboardInterrupt) as error:
+        finished += task.pieces if task.final else []
+        if finished:
+            reached = [time for low, high, _ in finished for time in (low, high)]
+            error.recording = FallbackRecording(task, finished, min(reached), max(reached))  # type: ignore[union-attr]
+        raise
+    return FallbackRecording(task, finished, low, high)
 
 
 class FallbackRecording(Recording):
     """A motion that SciPy has followed; see :class:`symrot.propagation.steppers.stepping.Recording`."""
 
-    def __init__(self, task: "_Task", low: float, high: float) -> None:
-        self._pieces = [*task.solutions(low), *task.solutions(high)]
+    def __init__(self, task: "_Task", pieces: list[Piece], low: float, high: float) -> None:
+        self._pieces = pieces
         super().__init__(task.t0, task.y0, (low, high), task.stats())
 
     def edges(self, start: float, end: float) -> list[Floats]:
@@ -170,6 +210,17 @@ def _evaluate(pieces: list[Piece], times: Floats, states: Floats) -> None:
             states[chosen] = solution(times[chosen]).T
 
 
+class _Moved:
+    """SciPy's solution over a step on a clock that shows 0 at an epoch, as a function of time on the first clock."""
+
+    def __init__(self, solution: Any, epoch: float) -> None:
+        self._solution, self._epoch = solution, epoch
+
+    def __call__(self, t: Floats) -> Floats:
+        found: Floats = self._solution(t - self._epoch)
+        return found
+
+
 class _Task:
     """One motion to follow with SciPy."""
 
@@ -187,10 +238,13 @@ class _Task:
         max_step: float,
         max_steps: int,
         deviations: Deviations | None,
+        clock: Clock | None,
+        whole: Whole | None = None,
     ) -> None:
         self.began = perf_counter()
         self.method = method_name(method)
-        self.rhs, self.p = rhs, np.array(p, dtype=np.float64)
+        self.rhs, self.p, self.clock, self.epoch = rhs, np.array(p, dtype=np.float64), clock, 0.0
+        self.unmoved = self.rhs, self.p
         self.y0, self.t0 = np.array(y0, dtype=np.float64), float(t0)
         if self.y0.ndim != 1 or not all(np.isfinite(given).all() for given in (self.t0, self.y0, self.p)):
             raise InputError(f"initial time, state and parameters are finite numbers, got {t0!r}, {y0!r}, {p!r}")
@@ -206,9 +260,17 @@ class _Task:
         self.steps = self.evaluations = self.broken = 0
         self.pieces: list[Piece] = []  # of the pass that runs
         self.final = False  # whether that is the pass that counts
-        self.mark = (0, self.t0)  # evaluations and time when the pace was judged last
-        if not np.isfinite(self._derivative(self.t0, self.y0)).all():
+        self.mark = (0, self.t0)  # work and time when the pace was judged last
+        self.whole, self.before = whole, deviations.spent if deviations else 0
+        with np.errstate(all="ignore"):  # the sentence says it
+            first = self._derivative(self.t0, self.y0)
+        if not np.isfinite(first).all():
             raise CutOff(self.t0, NOT_FINITE_SENTENCE)
+
+    @property
+    def work(self) -> int:
+        """Evaluations of the rates and of what bounds them, which take as long: by these the effort is limited."""
+        return self.evaluations + (self.deviations.spent - self.before if self.deviations else 0)
 
     def stats(self) -> Stats:
         return Stats(self.steps, 0, self.evaluations, perf_counter() - self.began)
@@ -231,7 +293,11 @@ class _Task:
         return inside, states
 
     def solutions(self, end: float) -> list[Piece]:
-        """Return (low, high, solution) for each stretch between switching times, from t0 to the end."""
+        """Return (low, high, solution) for each stretch between switching times, from t0 to the end.
+
+        Where the coarse pass is cut off, the motion is followed as far as that came, so that its samples are not lost.
+        """
+        self.final, self.pieces = False, []
         if end == self.t0:
             return []
         slowest = PILOT_TURN / abs(end - self.t0)  # rad/s: nothing turns the body that turns it less
@@ -239,10 +305,17 @@ class _Task:
             SLACK * PILOT_TOLERANCE * (scale if scale > 0.0 else max(float(np.linalg.norm(self.y0[block])), slowest))
             for block, scale in self.blocks
         ]
-        self.final = False
-        pilot = self._stretches(end, PILOT_TOLERANCE, np.full(len(self.y0), PILOT_TOLERANCE), bars)
-        coarse = sum(len(solution.ts) - 1 for _, _, solution in pilot)
-        path = np.concatenate([np.abs(solution(solution.ts)) for _, _, solution in pilot], axis=1)
+        early: CutOff | None = None
+        try:
+            self._stretches(end, PILOT_TOLERANCE, np.full(len(self.y0), PILOT_TOLERANCE), bars)
+        except CutOff as error:
+            if not self.pieces or self._spent >= self.max_evaluations:
+                raise
+            early, end = error, float(self.pieces[-1][2].ts[-1])
+        way = abs(end - self.t0) * (1.0 if early is None else BEFORE_POLE)
+        pilot = [(solution, solution.ts[np.abs(solution.ts - self.t0) <= way]) for _, _, solution in self.pieces]
+        coarse = sum(len(solution.ts) - 1 for solution, _ in pilot)
+        path = np.concatenate([np.abs(solution(times)) for solution, times in pilot if len(times)], axis=1)
         share = self.tolerance * METHODS[self.method] * min(1.0, PILOT_STEPS / coarse)
         allowed, bars = np.empty(len(self.y0)), []
         for block, scale in self.blocks:
@@ -251,10 +324,17 @@ class _Task:
             # SciPy takes the mean over all states, we the sum over a block
             allowed[block] = share * max(size, slowest) / math.sqrt(len(self.y0))
         self.final = True
-        return self._stretches(end, SMALLEST_RTOL, allowed, bars)
+        try:
+            pieces = self._stretches(end, SMALLEST_RTOL, allowed, bars)
+        except CutOff as error:
+            raise error if early is None else CutOff(error.t, error.reason, early.stop) from None
+        if early is not None:
+            raise early
+        return pieces
 
     def _stretches(self, end: float, rtol: float, atol: Floats, bars: list[float]) -> list[Piece]:
-        y, self.pieces, self.mark = self.y0, [], (self.evaluations, self.t0)
+        y, self.pieces, self.mark, self.goal = self.y0, [], (self.work, self.t0), end
+        self.epoch, (self.rhs, self.p) = 0.0, self.unmoved
         for stretch in stretches(self.t0, end, self.breaks):
             with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
                 self._follow_stretch(stretch, y, rtol, atol, bars)
@@ -269,10 +349,12 @@ class _Task:
         new_solver: Any = getattr(scipy.integrate, self.method)
 
         def begin(t: float, y: Floats, longest: float) -> Any:
-            def rate(t: float, y: Floats) -> Floats:
-                return self._derivative(min(max(t, earliest), latest), y)
+            low, high = earliest - self.epoch, latest - self.epoch
 
-            return new_solver(rate, t, y, stretch.stop, rtol=rtol, atol=atol, max_step=longest)
+            def rate(t: float, y: Floats) -> Floats:
+                return self._derivative(min(max(t, low), high), y)
+
+            return new_solver(rate, t, y, stretch.stop - self.epoch, rtol=rtol, atol=atol, max_step=longest)
 
         times: list[float] = [stretch.start]
         interpolants: list[Any] = []
@@ -281,61 +363,106 @@ class _Task:
         finally:
             if interpolants:
                 lagging = self.method in ("BDF", "LSODA")  # their steps hold the end that they begin at
+                times = times[: len(interpolants) + 1]  # an interrupt may come between the two
                 solution = scipy.integrate.OdeSolution(times, interpolants, alt_segment=lagging)
                 self.pieces.append((min(times[0], times[-1]), max(times[0], times[-1]), solution))
 
     def _steps(
         self, begin: Any, y: Floats, stretch: Stretch, bars: list[float], times: list[float], interpolants: list[Any]
     ) -> None:
-        longest = self.max_step
-        solver = begin(stretch.start, y, longest)
+        longest, idle = self.max_step, 0
+        solver = begin(stretch.start - self.epoch, y, longest)
         while solver.status == "running":
-            progress.report(float(solver.t), self.t0, stretch.stop)
-            before, y = float(solver.t), solver.y.copy()
-            self._judge_pace(before, stretch.stop)
-            message = solver.step()
+            start, end = (self.whole.start, self.whole.end) if self.whole else (self.t0, stretch.stop)
+            shown, y = float(solver.t), solver.y.copy()  # what the present clock shows
+            before = self.epoch + shown
+            progress.report(before if self.final else self.t0, start, end if self.whole else self.goal)
+            self._judge_pace(before, end if self.final else stretch.stop)  # a coarse pass is no part of the whole
+            broken = self.broken
+            try:
+                message = solver.step()
+            except ValueError:  # of linear algebra, for numbers that are not finite
+                longest = 0.5 * min(float(solver.h_abs), abs(stretch.stop - before), longest)
+                if longest <= 4.0 * math.ulp(before):
+                    raise CutOff(before, NOT_FINITE_SENTENCE, end) from None
+                solver = begin(shown, y, longest)
+                continue
+            step = float(solver.t) - shown
+            if self.broken > broken and not np.isfinite(self._derivative(float(solver.t), solver.y)).all():
+                if abs(step) <= 4.0 * math.ulp(before):
+                    raise CutOff(before, NOT_FINITE_SENTENCE, end)
+                longest = 0.5 * abs(step)  # LSODA goes on where the rates have no value
+                solver = begin(shown, y, longest)
+                continue
+            after = stretch.stop if solver.status == "finished" else self.epoch + float(solver.t)
+            moves = solver.status != "failed" and step * solver.direction > 0.0  # LSODA may say so when it could not
+            if self.clock is not None and abs(shown) > FAR * abs(step) and abs(shown) > math.ulp(before):
+                shown = self._move_clock(self.clock, shown)
+                solver = begin(shown, y, longest)
+                continue
+            idle = idle + 1 if after == before else 0
+            if message == solver.TOO_SMALL_STEP or (solver.status != "failed" and not moves) or idle > MAX_IDLE:
+                raise CutOff(before, why_stuck(STUCK, before, start, end), end)
             if solver.status == "failed" or not np.isfinite(solver.y).all():
-                raise CutOff(float(solver.t), message or NOT_FINITE_SENTENCE, stretch.stop)
-            dense, step = solver.dense_output(), float(solver.t - before)
-            proven = step if self.deviations is None else self._proven(before, y, dense, step, bars)
+                raise CutOff(after, message or NOT_FINITE_SENTENCE, end)
+            dense = solver.dense_output()
+            proven = step if self.deviations is None else self._proven(before, y, dense, shown, step, bars)
             if proven != step:
                 if abs(proven) <= 4.0 * math.ulp(before):
-                    raise CutOff(before, STUCK, stretch.stop)
+                    raise CutOff(before, why_stuck(STUCK, before, start, end), end)
                 longest = abs(proven)
-                solver = begin(before, y, longest)
+                solver = begin(shown, y, longest)
                 continue
-            times.append(solver.t)
-            interpolants.append(dense)
             self.steps += 1
+            if after != before:
+                times.append(after)
+                interpolants.append(_Moved(dense, self.epoch) if self.epoch else dense)
             if longest < self.max_step and abs(step) > HELD * longest and solver.status == "running":
                 longest = min(REGAIN * longest, self.max_step)
-                solver = begin(solver.t, solver.y.copy(), longest)
+                if self.method == "LSODA":
+                    solver = begin(solver.t, solver.y.copy(), longest)
+                else:  # the others read it before every step
+                    solver.max_step = longest
+
+    def _move_clock(self, clock: Clock, shown: float) -> float:
+        """Have the clock show about 0 where it now shows another time, and return what it shows instead, exactly."""
+        self.epoch, rest = two_sum(self.epoch, shown)
+        self.rhs, p = clock(self.epoch)
+        self.p = np.array(p, dtype=np.float64)
+        return float(rest)
 
     def _judge_pace(self, t: float, stop: float) -> None:
         """Give the motion up if the rest would take far more evaluations than the limit."""
-        spent = self.evaluations - self.mark[0]
+        work = self.work
+        spent = work - self.mark[0]
         if spent >= PATIENCE:
             reason = why_hopeless(spent, abs(t - self.mark[1]), abs(stop - t), self.max_evaluations)
             if reason:
                 raise CutOff(t, reason, stop)
-            self.mark = (self.evaluations, t)
+            self.mark = (work, t)
+        if self._spent > self.max_evaluations:
+            raise CutOff(t, f"{self.max_evaluations} evaluations were not enough", stop)
 
-    def _proven(self, t: float, y: Floats, dense: Any, step: float, bars: list[float]) -> float:
-        """Return the longest part of a step that is proven to miss nothing."""
+    @property
+    def _spent(self) -> int:
+        return self.work + (self.whole.spent if self.whole else 0)
+
+    def _proven(self, t: float, y: Floats, dense: Any, shown: float, step: float, bars: list[float]) -> float:
+        """Return the longest part of a step, from ``shown`` on the present clock, that is proven to miss nothing."""
         assert self.deviations is not None
-        path = np.abs(_FIT @ (dense(t + _NODES * step).T - y)).T.tolist()
+        path = np.abs(_FIT @ (dense(shown + _NODES * step).T - y)).T.tolist()
         edges = [0, *(block.stop for block, _ in self.blocks)]
         return longest_followed(self.deviations, t, y.tolist(), path, step, bars, edges, FIT_ORDER)
 
     def _derivative(self, t: float, y: Floats) -> Floats:
         self.evaluations += 1
         if self.evaluations > self.max_evaluations:
-            raise CutOff(float(t), f"{self.max_evaluations} evaluations were not enough")
+            raise CutOff(self.epoch + float(t), f"{self.max_evaluations} evaluations were not enough")
         dy = np.asarray(self.rhs(t, y, self.p), dtype=np.float64)
         if dy.shape != self.y0.shape:
             raise InputError(f"the right-hand side returns {len(self.y0)} numbers, got an array of shape {dy.shape}")
         if not math.isfinite(dy.sum()):
             self.broken += 1
             if self.broken > MAX_BROKEN:
-                raise CutOff(float(t), NOT_FINITE_SENTENCE)
+                raise CutOff(self.epoch + float(t), NOT_FINITE_SENTENCE)
         return dy

@@ -9,7 +9,7 @@ import ctypes
 import math
 import os
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cached_property
 from itertools import pairwise
 from operator import le
@@ -38,11 +38,13 @@ __all__ = [
     "SteppedRecording",
     "Stepper",
     "Stretch",
+    "Switching",
     "Task",
     "both_sides",
     "check_longest_step",
     "check_tolerance",
     "rising",
+    "stats_of",
     "stretches",
 ]
 
@@ -59,11 +61,23 @@ DONE, PAUSED, FULL, NOT_FINITE, UNDERFLOW = range(5)  # what a stepper in C retu
 NOT_FINITE_SENTENCE = "its rate of change is not finite there"
 
 
+class Switching(NamedTuple):
+    """What a function with a switch did at a time, s, such as ``sign(omega_3)`` in a torque.
+
+    ``how`` is ``"passed"``: the motion goes on beyond the switch; ``"held"``: the motion slides along the switch, as a
+    wheel that friction holds at rest; ``"released"``: it leaves the switch along which it slid.
+    """
+
+    t: float
+    function: str
+    how: str
+
+
 class Stats(NamedTuple):
     """What a propagation cost: steps kept and tried again, evaluations of the kernel, seconds in all.
 
-    ``switches`` counts changes of the sequence of Euler angles, where angles are the state, and those of torques with
-    switches, whose times, s, are ``switching_times``.
+    ``switches`` counts changes of the sequence of Euler angles, where angles are the state, and the times at which
+    torques with switches switch: ``switching_times``, s, each once. ``switchings`` says which functions switch there.
     """
 
     accepted: int
@@ -72,6 +86,15 @@ class Stats(NamedTuple):
     seconds: float
     switches: int = 0
     switching_times: tuple[float, ...] = ()
+    switchings: tuple[Switching, ...] = ()
+
+
+def stats_of(cost: Any, seconds: float, switchings: Iterable[Switching]) -> Stats:
+    """Return what a motion cost (steps accepted and rejected, evaluations) and where it switched."""
+    accepted, rejected, evaluations = map(int, cost)
+    listed = tuple(sorted(switchings))
+    times = tuple(sorted({change.t for change in listed}))  # of switches that coincide one
+    return Stats(accepted, rejected, evaluations, seconds, len(times), times, listed)
 
 
 # ------------------------------------------------------------------------------------------------ checks and sentences
@@ -324,6 +347,7 @@ class Task:
         self.allowed, self.pace = stepper.allowance(tolerance)
         self.accepted = self.rejected = self.evaluations = 0
         self.mark = (0, self.t0)  # steps and time when the pace was judged last
+        self.goal = t0  # where the motion goes, beyond all switching times
         self.way = 0.0  # the whole of which this is a part, s; 0: this is all
         self.fields: dict[str, int] = {}  # of the run in C: what a method sets beside the rest
 
@@ -385,7 +409,7 @@ class Task:
         run.pace, run.stop = (end - self.t0) * self.pace, end
         stepper.enter(run, Stretch(self.t0, end, self.t0, end), self.allowed)
         first, out = address(times), address(states)
-        self.mark = (0, self.t0)
+        self.mark, self.goal = (0, self.t0), end
         try:
             while self.advance(run, first, count, out, None, 0) != DONE:
                 pass
@@ -439,7 +463,7 @@ class Task:
 
     def runs(self, end: float) -> Iterator[Any]:
         """Yield the C side's run, set up for each stretch between switching times, and count what it cost."""
-        stepper = self.stepper
+        stepper, self.goal = self.stepper, end
         pace = (self.way or abs(end - self.t0)) * self.pace
         run = stepper.new_run(t=self.t0, pace=pace, max_step=self.max_step, **self.fields)
         run.y[:] = self.y0
@@ -473,7 +497,7 @@ class Task:
         tried = stepper.tried(run)
         if tried >= self.max_steps:
             raise CutOff(run.t, stepper.reasons[PAUSED].format(steps=self.max_steps, run=run), run.stop)
-        progress.report(run.t, self.t0, run.stop)
+        progress.report(run.t, self.t0, self.goal)
         if tried - self.mark[0] >= PATIENCE:
             self.judge_pace(tried, run)
         return status

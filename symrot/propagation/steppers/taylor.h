@@ -148,3 +148,11 @@ static inline symrot_v4 symrot_pick(symrot_v4 v, symrot_v4 u, int i, int j, int 
 }
 #endif
 typedef symrot_v4 symrot_v;  /* as series.h calls it */
+
+/* a b + c with one rounding, whatever the compiler makes of V_FMA: the difference a t - b of large numbers is exact */
+static inline symrot_v4 symrot_fused(symrot_v4 a, symrot_v4 b, symrot_v4 c)
+{
+#define SYMROT_FUSED(i) fma(V_LANE(a, i), V_LANE(b, i), V_LANE(c, i))
+    return V_SET(SYMROT_FUSED(0), SYMROT_FUSED(1), SYMROT_FUSED(2), SYMROT_FUSED(3));
+#undef SYMROT_FUSED
+}

@@ -9,7 +9,9 @@ value leaves the range of the switch.
 Source: A. F. Filippov, Differential Equations with Discontinuous Righthand Sides, Kluwer 1988, sections 4 and 8.
 """
 
+import json
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
@@ -20,14 +22,15 @@ import numpy as np
 
 from symrot.errors import PropagationError
 from symrot.formula.exact_numbers import PI
-from symrot.formula.tree import evaluate, names, parse, rename
+from symrot.formula.switches import chosen, hold
+from symrot.formula.tree import evaluate, names, parse, rename, text
 from symrot.planning.plan import Plan, make_plan
 from symrot.propagation.events.polynomials import Piece
-from symrot.propagation.method import choose_method
-from symrot.propagation.motion import Motion
+from symrot.propagation.method import Choice, choose_method
+from symrot.propagation.motion import Motion, on_own_clock
 from symrot.propagation.propagator import Propagator
 from symrot.propagation.steppers.cut_off import CutOff, add_samples
-from symrot.propagation.steppers.stepping import Floats, Recording, Stats, both_sides
+from symrot.propagation.steppers.stepping import Floats, Recording, Stats, Switching, both_sides, stats_of
 from symrot.propagation.switched.regimes import Modes, Regime
 from symrot.propagation.switched.run import MATH, Chunk, SwitchedRun
 from symrot.scene.scene import Initial
@@ -50,8 +53,13 @@ class SwitchedPropagator(Propagator):
 class SwitchedMotion(Motion):
     """A motion under torques with switches."""
 
-    movable = False  # guards name the time of the scene
+    movable = False  # each regime has a clock of its own
     switched = True
+
+    def __init__(self, plan: Plan, choice: Choice, tolerance: float) -> None:
+        self.plan, self.choice, self.tolerance, self.library = plan, choice, tolerance, None
+        self.start = float(plan.scene.span.start)
+        self.regime(frozenset(), self.initial_modes())
 
     @cached_property
     def switches(self) -> list[dict[str, Any]]:
@@ -61,10 +69,31 @@ class SwitchedMotion(Motion):
             prefix = torque["prefix"]
             own = {name: f"{prefix}{name}" for name in torque.get("parameters", ())}
             for switch in torque.get("switches", ()):
-                where = switch["where"] and (own[switch["where"][0]], switch["where"][1])
-                guard = rename(parse(switch["guard"]), own)
-                listed.append({**switch, "mode": own[switch["mode"]], "guard": guard, "where": where})
+                where = tuple((rename(parse(share), own), value) for share, value in switch["where"])
+                guard = rename(parse(switch.get("choices", switch["guard"]), switching=True), own)
+                listed.append({**switch, "mode": own[switch["mode"]], "guard": guard, "where": where, "prefix": prefix})
         return listed
+
+    @cached_property
+    def twins(self) -> dict[str, list[str]]:
+        """The modes of one torque that have the same guard as a mode, itself included: those that jump come first.
+
+        As of sign(omega_3) and abs(omega_3) in the friction of a bearing that is greater at rest.
+        """
+        alike: dict[Any, list[str]] = {}
+        for switch in sorted(self.switches, key=_bends):
+            if switch["kind"] == "sign":
+                alike.setdefault((switch["prefix"], switch["guard"], switch["where"]), []).append(switch["mode"])
+        return {mode: modes for modes in alike.values() for mode in modes}
+
+    @cached_property
+    def settled(self) -> set[str]:
+        """The modes whose guards never change: they hold neither the time, nor a state, nor a mode that does."""
+        settled = set[str]()
+        for switch in self.switches:
+            if names(switch["guard"]) <= self.constants.keys() - ({each["mode"] for each in self.switches} - settled):
+                settled.add(switch["mode"])
+        return settled
 
     @cached_property
     def constants(self) -> dict[str, Fraction]:
@@ -81,53 +110,89 @@ class SwitchedMotion(Motion):
 
     @cached_property
     def _initial_modes(self) -> tuple[Modes, set[str]]:
+        return self._modes_at_start({})
+
+    def beside_start(self, mode: str, sign: int) -> Modes:
+        """Return the modes on one side of a guard that is zero at the start: those with it in their guards follow."""
+        return self._modes_at_start({mode: sign})[0]
+
+    def _modes_at_start(self, given: Modes) -> tuple[Modes, set[str]]:
         start, modes, undecided = self.plan.scene.initial, Modes(), set[str]()
         values: dict[str, float] = {name: float(value) for name, value in self.constants.items()}
         values |= {"t": self.start, **{f"omega_{i + 1}": float(value) for i, value in enumerate(start.omega_b)}}
         values |= {f"q{i}": float(value) for i, value in enumerate(start.quaternion)}
         for switch in self.switches:
+            if not hold(switch["where"], modes):
+                modes[switch["mode"]] = 0 if switch["kind"] == "floor" else 1
+                values[switch["mode"]] = float(modes[switch["mode"]])
+                continue
             try:
-                guard = float(evaluate(switch["guard"], values, MATH, float))
+                guard = float(evaluate(chosen(switch["guard"], modes), values, MATH, float))
             except (ArithmeticError, ValueError):
                 raise CutOff(self.start, f"{switch['label']} has no value there") from None
             modes[switch["mode"]] = math.floor(guard) if switch["kind"] == "floor" else -1 if guard < 0.0 else 1
+            if guard == 0.0 and switch["mode"] in self.settled:
+                modes[switch["mode"]] = 0 if switch["kind"] == "floor" else switch["at_zero"]
+            modes[switch["mode"]] = given.get(switch["mode"], modes[switch["mode"]])
             values[switch["mode"]] = float(modes[switch["mode"]])
             if guard == 0.0 and switch["kind"] == "sign" and names(switch["guard"]) & STATES:
                 undecided.add(switch["mode"])
         return modes, undecided
 
-    def regime(self, held: frozenset[str]) -> Regime:
-        """Return the smooth motion while the guards of some modes stay at zero; derived when first asked for."""
-        if held not in self._regimes:
-            motion: Motion = self
-            if held:
-                torques = [
-                    {**torque, "held": sorted(m for m in torque.get("parameters", ()) if torque["prefix"] + m in held)}
-                    for torque in self.plan.structure["torques"]
-                ]
+    def regime(self, held: frozenset[str], modes: Modes) -> Regime:
+        """Return the smooth motion while the guards of some modes stay at zero; derived when first asked for.
+
+        The other modes count where they choose between the parts of a ``where``.
+        """
+        key = held, tuple(modes.values()) if self._chooses else ()
+        if key not in self._regimes:
+            tied = {twin: mode for mode in held for twin in self.twins[mode][1:]}
+            torques = [_chosen(torque, modes, held, tied) for torque in self.plan.structure["torques"]]
+            content = held, json.dumps(torques, sort_keys=True)
+            if content not in self._regime_of:
                 plan = replace(self.plan, structure=self.plan.structure | {"torques": torques})
-                motion = Motion(plan, self.choice, self.tolerance)
-            self._regimes[held] = Regime(self, motion, held)
-        return self._regimes[held]
+                switches = [
+                    {**switch, "guard": chosen(switch["guard"], modes, held)}
+                    for switch in self.switches
+                    if switch["mode"] not in self.settled
+                    and switch["mode"] not in tied
+                    and (not self._chooses or hold(switch["where"], modes, held))
+                ]
+                own = on_own_clock(plan, self.choice, self.tolerance)
+                self._regime_of[content] = Regime(self, own, held, switches)
+            self._regimes[key] = self._regime_of[content]
+        return self._regimes[key]
 
     @cached_property
-    def _regimes(self) -> dict[frozenset[str], Regime]:
+    def _chooses(self) -> bool:
+        """Whether a ``where`` has a part that must not be evaluated where it does not hold."""
+        torques = self.plan.structure["torques"]
+        return any("choices" in part for torque in torques for part in (torque, *torque.get("switches", ())))
+
+    @cached_property
+    def _regimes(self) -> dict[tuple[frozenset[str], tuple[int, ...]], Regime]:
+        return {}
+
+    @cached_property
+    def _regime_of(self) -> dict[tuple[frozenset[str], str], Regime]:
         return {}
 
     def integrate(self, times: Floats, rise: bool = False) -> tuple[Floats, Stats]:
         """Return the states at the times, shape (n, N), and what it cost."""
         began, states = perf_counter(), np.empty((len(times), len(self.plan.states)))
         cost, done = np.zeros(3, dtype=np.int64), np.empty(0, dtype=np.intp)
-        switching: list[float] = []
+        changes: dict[tuple[float, str], str] = {}
         for part in both_sides(times, self.start):
             sorted_times = times[part]
             count = int((sorted_times == self.start).sum())
             states[part[:count]] = self.plan.initial_state
             run = SwitchedRun(self, float(sorted_times[-1]))
 
-            def sample(chunk: Chunk, part: Any = part, sorted_times: Floats = sorted_times) -> None:
+            def sample(
+                chunk: Chunk, part: Any = part, sorted_times: Floats = sorted_times, side: float = run.side
+            ) -> None:
                 nonlocal count
-                last = count + int((np.abs(sorted_times[count:] - self.start) <= abs(chunk.stop - self.start)).sum())
+                last = count + chunk.stop.reached(sorted_times[count:], side)
                 if last > count:
                     states[part[count:last]] = chunk.states(sorted_times[count:last])
                     count = last
@@ -140,10 +205,8 @@ class SwitchedMotion(Motion):
                 raise
             done = np.concatenate([done, part])
             cost += run.cost
-            switching += run.switching
-        accepted, rejected, evaluations = map(int, cost)
-        seconds, times_of = perf_counter() - began, tuple(sorted(switching))
-        return states, Stats(accepted, rejected, evaluations, seconds, len(switching), times_of)
+            changes |= run.changes
+        return states, stats_of(cost, perf_counter() - began, _switchings(changes))
 
     def parts(self, end: float, broken: list[PropagationError]) -> tuple[list[Piece], Recording]:
         """Return the motion from its start to an end as polynomials and at any time; what cut it off in ``broken``."""
@@ -153,36 +216,84 @@ class SwitchedMotion(Motion):
             run.follow(chunks.append)
         except CutOff as error:
             broken.append(error)
-        accepted, rejected, evaluations = map(int, run.cost)
-        stats = Stats(accepted, rejected, evaluations, 0.0, len(run.switching), tuple(sorted(run.switching)))
+        stats = stats_of(run.cost, 0.0, _switchings(run.changes))
         states = SwitchedRecording(self.start, self.plan.initial_state, (self.start, end), stats, chunks)
-        return [chunk.piece for chunk in chunks], states
+        return [chunk.piece() for chunk in chunks], states
 
     def dense(self, span: tuple[float, float]) -> Recording:
         """Return the states as a function of time."""
         chunks: list[Chunk] = []
-        cost, began, switching = np.zeros(3, dtype=np.int64), perf_counter(), list[float]()
+        cost, began, changes = np.zeros(3, dtype=np.int64), perf_counter(), dict[tuple[float, str], str]()
         for end in {min(*span, self.start), max(*span, self.start)} - {self.start}:
             run = SwitchedRun(self, end)
             run.follow(chunks.append)
             cost += run.cost
-            switching += run.switching
-        accepted, rejected, evaluations = map(int, cost)
-        seconds, times_of = perf_counter() - began, tuple(sorted(switching))
-        stats = Stats(accepted, rejected, evaluations, seconds, len(switching), times_of)
+            changes |= run.changes
+        stats = stats_of(cost, perf_counter() - began, _switchings(changes))
         return SwitchedRecording(self.start, self.plan.initial_state, span, stats, chunks)
 
 
+def _bends(switch: Mapping[str, Any]) -> bool:
+    """Return whether a formula bends at a switch, and does not jump: where its guard is zero its mode is at will."""
+    return bool(switch["at_zero"] == 1)
+
+
+def _chosen(torque: dict[str, Any], modes: Modes, held: frozenset[str], tied: Mapping[str, str]) -> dict[str, Any]:
+    """Return a torque with the parts of its formulas that hold under some modes, and those of its modes that are held.
+
+    Its guards that do not matter are left out. Modes with the guard of a held one are ``tied`` to that: where the
+    formula jumps there they take its value.
+    """
+    prefix, names = torque["prefix"], torque.get("parameters", ())
+    if own := sorted(name for name in names if prefix + name in held):
+        torque = {**torque, "held": own}
+    switches = torque.get("switches", ())
+    jumping = [switch["mode"] for switch in switches if not _bends(switch)]
+    same = {name: tied[prefix + name].removeprefix(prefix) for name in jumping if prefix + name in tied}
+    if not same and not any("choices" in part for part in (torque, *switches)):
+        return torque
+    values = {name: modes[prefix + name] for name in names if prefix + name in modes}
+
+    def read(formula: str) -> str:
+        return text(chosen(rename(parse(formula, switching=True), same), values, own))
+
+    return {
+        **{key: value for key, value in torque.items() if key != "choices"},
+        "formulas": list(map(read, torque.get("choices", torque["formulas"]))),
+        "switches": [
+            {
+                **{key: value for key, value in switch.items() if key != "choices"},
+                "guard": read(switch.get("choices", switch["guard"])),
+            }
+            for switch in switches
+            if hold([(parse(share), value) for share, value in switch["where"]], values, own)
+        ],
+    }
+
+
+def _switchings(changes: dict[tuple[float, str], str]) -> list[Switching]:
+    return [Switching(t, function, how) for (t, function), how in changes.items()]
+
+
 class SwitchedRecording(Recording):
+    """A motion under torques with switches at any time, from the parts between them."""
+
     def __init__(
         self, t0: float, y0: tuple[float, ...], span: tuple[float, float], stats: Stats, chunks: list[Chunk]
     ) -> None:
         super().__init__(t0, np.array(y0), (min(*span, t0), max(*span, t0)), stats)
         self._chunks = sorted(chunks, key=lambda chunk: min(chunk.start, chunk.stop))
-        self._ends = np.array([max(chunk.start, chunk.stop) for chunk in self._chunks])
+        ends = [max(chunk.start, chunk.stop) for chunk in self._chunks]
+        self._ends, self._rests = np.array([end.high for end in ends]), np.array([end.low for end in ends])
 
     def _fill(self, times: Floats, states: Floats) -> None:
         places = np.searchsorted(self._ends, times)
+        while True:  # a time that is rounded up to the end of a chunk lies in the next one
+            inside = np.minimum(places, len(self._ends) - 1)
+            beyond = (places < len(self._ends)) & (self._ends[inside] == times) & (self._rests[inside] < 0.0)
+            if not beyond.any():
+                break
+            places[beyond] += 1
         for place in np.unique(places):
             if place == len(self._chunks):
                 states[places == place] = np.nan  # beyond where the motion was cut off

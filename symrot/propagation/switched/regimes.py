@@ -1,17 +1,23 @@
 """The smooth motions between switches, and the guards that end them; see :mod:`symrot.propagation.switched.motion`."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from symrot.build import cache as library
+from symrot.codegen.taylor.time_shift import moved, moved_formulas
 from symrot.formula.program import Argument, Program
-from symrot.formula.tree import names, parse, rename, text
-from symrot.planning.scene_kernel import SceneKernel, bind
+from symrot.formula.switches import Conditions, hold
+from symrot.formula.tree import Node, names, parse, rename, text
+from symrot.planning.scene_kernel import Parameters
+from symrot.propagation.binding import folded, two_doubles, value_of
 from symrot.propagation.compiled_models import error_blocks
 from symrot.propagation.events.events import Event, guard_library_source
 from symrot.propagation.motion import Motion
+from symrot.propagation.switched.instant import Instant
+from symrot.propagation.time_shift import Following
 
 if TYPE_CHECKING:
     from symrot.propagation.switched.motion import SwitchedMotion
@@ -27,54 +33,129 @@ class Guard(NamedTuple):
     mode: str
     formula: str
     change: int  # 0: to the opposite sign; 1, -1: to that side, or by that much
-    where: tuple[str, int] | None
+    where: Conditions
 
 
 class Regime:
-    """The smooth motion while some guards stay at zero, and the guards that end it."""
+    """The smooth motion while some guards stay at zero, and the guards that end it.
 
-    def __init__(self, switched: "SwitchedMotion", motion: Motion, held: frozenset[str]) -> None:
+    Its clock shows 0 wherever the motion enters it: the parameters of rates and guards are those of that instant.
+    """
+
+    def __init__(
+        self, switched: "SwitchedMotion", motion: Motion, held: frozenset[str], switches: Sequence[Mapping[str, Any]]
+    ) -> None:
         self.motion, self.plan, self.held, self.constants = motion, motion.plan, held, switched.constants
-        self.guards = [guard for switch in switched.switches for guard in self._guards(switch)]
-        known = {*self.constants, *(switch["mode"] for switch in switched.switches)}
+        self.switches = switched.switches
+        modes = [switch["mode"] for switch in switches]
+        distances = [_distance(switch) for switch in switches]
+        formulas, parameters = moved_formulas(distances, {*self.constants, *modes})
+        names_of_clock = {name: f"since_{name}" for name, _ in parameters if name not in {*self.constants, *modes}}
+        self.parameters = tuple((names_of_clock.get(name, name), formula) for name, formula in parameters)
+        self.formulas = {mode: rename(node, names_of_clock) for mode, node in zip(modes, formulas, strict=True)}
+        known = {"t", "pi", *(name for name, _ in self.parameters)}
+        self.of_time = {mode for mode, formula in self.formulas.items() if names(formula) <= known}
+        self.guards = [guard for switch in switches for guard in self._guards(switch)]
         nodes = [parse(guard.formula) for guard in self.guards]
+        known = {name for name, _ in self.parameters} | set(modes)
         self.more = sorted(known & set().union(*map(names, nodes)))
         self.events = [Event(guard.formula, terminal=True, direction=-1) for guard in self.guards]
         columns = {name: f"{name} of the scene" for name in self.more}  # a kernel has names of its own for constants
         columns |= {f"{mode}_of_t": f"{mode} of t" for mode in held}
-        program = _with_parameters(motion.kernel.quantities, [columns[name] for name in self.more])
-        formulas = [rename(node, columns) for node in nodes]
-        source = guard_library_source(program, formulas, self.plan.states, *error_blocks(self.plan))
+        quantities, self.quantity_parameters = motion.kernel.quantities, motion.kernel.quantity_parameters
+        if quantities.uses("t"):  # as the value of a mode that holds its guard at zero
+            quantities, self.quantity_parameters = moved(quantities, self.quantity_parameters)
+        program = _with_parameters(quantities, [columns[name] for name in self.more])
+        source = guard_library_source(
+            program, [rename(node, columns) for node in nodes], self.plan.states, *error_blocks(self.plan)
+        )
         self.path = library.build(source, "events")
-        self._bound: dict[tuple[int, ...], tuple[list[float], list[float]]] = {}
+        self._following: dict[tuple[int, ...], tuple[Following, Following, Following, list[float]]] = {}
+        self._active: dict[tuple[int, ...], list[bool]] = {}
+        self._bound: dict[tuple[tuple[int, ...], Instant | None], tuple[list[float], list[float]]] = {}
 
     def _guards(self, switch: Mapping[str, Any]) -> Iterator[Guard]:
         mode, where = switch["mode"], switch["where"]
+        guard = text(self.formulas[mode])
         if mode in self.held:
             yield Guard(mode, f"1 - {mode}_of_t", 1, where)
             yield Guard(mode, f"1 + {mode}_of_t", -1, where)
         elif switch["kind"] == "sign":
-            yield Guard(mode, f"{mode}*({text(switch['guard'])})", 0, where)
+            yield Guard(mode, f"{mode}*({guard})", 0, where)
         else:
-            yield Guard(mode, f"({text(switch['guard'])}) - {mode}", -1, where)
-            yield Guard(mode, f"{mode} + 1 - ({text(switch['guard'])})", 1, where)
+            yield Guard(mode, guard, -1, where)
+            yield Guard(mode, f"1 - ({guard})", 1, where)
 
-    def bound(self, modes: Modes) -> tuple[list[float], list[float]]:
-        """Return the parameters of the stepper's library and of the guards' for some modes."""
+    def _follow(self, modes: Modes) -> tuple[Following, Following, Following, list[float]]:
+        """Return the parameters of rates, guards and quantities for one clock after another, and those of invariants.
+
+        The last are pairs of doubles, for Taylor steps; under other modes some of them have no value.
+        """
         key = tuple(modes.values())
-        if key not in self._bound:
-            constants = {**self.constants, **{name: Fraction(value) for name, value in modes.items()}}
-            kernel: SceneKernel = self.motion.kernel
-            rates = bind(kernel.rate_parameters, constants)
-            if self.motion.choice.method == "taylor":
-                rates += self.motion.taylor_parameters[len(rates) :]
-            guards = [*bind(kernel.quantity_parameters, constants), *(float(constants[name]) for name in self.more)]
-            self._bound[key] = rates, guards
-        return self._bound[key]
+        if key not in self._following:
+            values = {name: Fraction(value) for name, value in modes.items()}
+            rates, guards, quantities = self._with_constants
+            taylor = self.motion.choice.method == "taylor"
+            invariants = self.motion.kernel.quantity_parameters if taylor else ()
+            constants = {**self.constants, **values}
+            ratios = [value_of(node, constants).as_integer_ratio() for _, node in invariants]
+            pairs = [part for ratio in ratios for part in two_doubles(*ratio)]
+            following = Following(rates, values), Following(guards, values), Following(quantities, values)
+            self._following[key] = *following, pairs
+        return self._following[key]
+
+    def values(self, modes: Modes, zero: Instant) -> dict[str, float]:
+        """Return what the names in :attr:`formulas` stand for on a clock that shows 0 at an instant."""
+        numbers = self._follow(modes)[1].parameters(zero.exact)
+        return {name: number for (name, _), number in zip(self.parameters, numbers, strict=True)} | {
+            name: float(mode) for name, mode in modes.items()
+        }
+
+    def bound(self, modes: Modes, zero: Instant) -> tuple[list[float], list[float]]:
+        """Return the parameters of the stepper's library and of the guards', on a clock that shows 0 at an instant."""
+        following, guards, quantities, pairs = self._follow(modes)
+        fixed = following.fixed and guards.fixed and quantities.fixed
+        place = tuple(modes.values()), None if fixed else zero
+        if place not in self._bound:
+            if place[1] is not None:
+                self._bound = {key: value for key, value in self._bound.items() if key[1] in (None, zero)}
+            rates, values = following.parameters(zero.exact), self.values(modes, zero)
+            rates += pairs
+            self._bound[place] = rates, [*quantities.parameters(zero.exact), *(values[name] for name in self.more)]
+        return self._bound[place]
+
+    def rates_since(self, modes: Modes, zero: Instant) -> Callable[[float], list[float]] | None:
+        """Return the parameters of the rates as a function of an epoch, s, on a clock that shows 0 at an instant."""
+        following = self._follow(modes)[0]
+        return None if following.fixed else lambda since: following.parameters(zero.exact + Fraction(since))
+
+    @cached_property
+    def _with_constants(self) -> tuple[Parameters, Parameters, Parameters]:
+        """The parameters of rates, guards and quantities as formulas of the modes and the epoch alone."""
+        modes = {switch["mode"] for switch in self.switches}
+        known = {name: value for name, value in self.constants.items() if name not in modes}
+        kernel = self.motion.kernel
+        rates, guards, quantities = (
+            tuple((name, folded(formula, known)) for name, formula in parameters)
+            for parameters in (kernel.rate_parameters, self.parameters, self.quantity_parameters)
+        )
+        return rates, guards, quantities
 
     def active(self, modes: Modes) -> list[bool]:
         """Return which guards matter."""
-        return [guard.where is None or modes[guard.where[0]] == guard.where[1] for guard in self.guards]
+        key = tuple(modes.values())
+        if key not in self._active:
+            self._active[key] = [hold(guard.where, modes, self.held) for guard in self.guards]
+        return self._active[key]
+
+
+def _distance(switch: Mapping[str, Any]) -> Node:
+    """Return what is zero where a switch switches: its guard, less the whole number below it for a floor.
+
+    The number is subtracted before anything is rounded: far from t = 0 it takes most digits of the guard away.
+    """
+    guard: Node = switch["guard"]
+    return guard if switch["kind"] == "sign" else ("-", guard, ("symbol", switch["mode"]))
 
 
 def _with_parameters(program: Program, more: list[str]) -> Program:

@@ -3,17 +3,23 @@
 import math
 from collections import deque
 from collections.abc import Callable, Generator
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from symrot.closed_form.arithmetic.double_double import two_sum
 from symrot.errors import InputError
-from symrot.formula.tree import evaluate
+from symrot.formula.switches import hold
+from symrot.formula.tree import evaluate, names, parse
+from symrot.propagation import progress
+from symrot.propagation.compiled_models import error_blocks
 from symrot.propagation.events.events import search, signs_at_ends
 from symrot.propagation.events.polynomials import Piece
 from symrot.propagation.steppers.cut_off import CutOff
 from symrot.propagation.steppers.stepping import Floats
-from symrot.propagation.switched.regimes import Guard, Regime
+from symrot.propagation.switched.instant import Instant
+from symrot.propagation.switched.regimes import Guard, Modes, Regime
 from symrot.propagation.switched.smooth_pieces import SOURCES
 
 if TYPE_CHECKING:
@@ -21,7 +27,11 @@ if TYPE_CHECKING:
 
 __all__ = ["MATH", "Chunk", "SwitchedRun"]
 
-MOST_SWITCHES = 1_000_000
+MOST_SWITCHES, MOST_AT_ONCE = 1_000_000, 1000
+HOP_BITS = 10  # a hop over a switch is at most so many times two ulps of the clock long
+LEAST_TURN = 1e-3  # rad over the whole span: slower rates are as good as this one
+AWAY = range(50, 400, 10)  # a hop away from a switch is so many times halved a span
+NEARBY, MOST_ULPS = 1e-6, 64.0  # parts of the way since the last switch; last bits of a time that was located
 CHATTER, CHATTERING = 50, 1e-9  # so many switches within that part of the span are endlessly many
 Consumer = Callable[["Chunk"], None]
 
@@ -33,61 +43,122 @@ MATH: dict[str, Callable[..., float]] = {
 
 
 class Chunk(NamedTuple):
-    """A part of a motion from ``start`` to ``stop``, s: its states there at any time, and as polynomials."""
+    """A part of a motion from ``start`` to ``stop``, and its polynomials on a clock that shows 0 at ``zero``."""
 
-    start: float
-    stop: float
-    states: Callable[[Floats], Floats]
-    piece: Piece
+    start: Instant
+    stop: Instant
+    zero: Instant
+    own_states: Callable[[Floats], Floats]
+    own_piece: Piece
+
+    def states(self, times: Floats) -> Floats:
+        """Return the states at times, s, on the clock of the scene."""
+        return self.own_states(self.zero.since(times))
+
+    def piece(self) -> Piece:
+        """Return the part as polynomials on the clock of the scene."""
+        rows, edges = self.own_piece.rows.copy(), self.own_piece.edges + self.zero.low + self.zero.high
+        edges[0], edges[-1] = self.start.high, self.stop.high  # as the parts before and after have them
+        time, low = two_sum(self.zero.high, rows[:, 0])
+        rows[:, 0], rows[:, 2] = two_sum(time, low + (rows[:, 2] + self.zero.low))
+        return Piece(edges, rows)
 
 
 class SwitchedRun:
-    """A motion on its way from the start to one end."""
+    """A motion on its way from the start to one end.
+
+    Its clock shows 0 at the last switch, which is known to twice the digits of a double: ``t`` and ``end`` are times on
+    that clock, s.
+    """
 
     def __init__(self, motion: "SwitchedMotion", end: float) -> None:
-        self.motion, self.end, self.span = motion, end, abs(end - motion.start)
-        self.t, self.y = motion.start, np.array(motion.plan.initial_state, dtype=np.float64)
+        self.motion, self.span = motion, abs(end - motion.start)
+        self.side = 1.0 if end >= motion.start else -1.0
+        self.zero, self._end = Instant(motion.start), Instant(end)
+        self.t, self.end = 0.0, float(self.zero.since(end))
+        self.y = np.array(motion.plan.initial_state, dtype=np.float64)
+        self.by_name = {switch["mode"]: switch for switch in motion.switches}
         self.modes, self.held = motion.initial_modes(), frozenset[str]()
         self.cost = np.zeros(3, dtype=np.int64)  # steps accepted and rejected, evaluations
-        self.switching: list[float] = []
+        self.switches = 0
+        self.changes: dict[tuple[float, str], str] = {}  # what each function with a switch did at a time
         self.flipped: dict[str, int] = {}  # modes changed at this very time, and how often
         self.released: set[str] = set()  # modes whose guards were held until this very time: they leave zero slowly
+        self.order: list[str] = []  # the same in the order of the changes
         self.left: set[tuple[str, int]] = set()  # modes and their values left at this very time
-        self.settled = 0
-        self.recent: deque[float] = deque(maxlen=CHATTER)
+        self.settled, self.hopped = 0, False
+        self.spent, self.mark = 0, (0, 0.0)  # SciPy's evaluations; those and the way when the pace was judged last
+        self.interrupt: KeyboardInterrupt | None = None  # that came while SciPy followed the motion, beyond a switch
+        self.recent: deque[Instant] = deque(maxlen=CHATTER)
 
     def follow(self, consume: Consumer) -> None:
         """Follow the motion to its end, handing on each part as it is known."""
-        self._check_start()
-        while self.t != self.end:
-            regime = self.motion.regime(self.held)
-            guard = self._segment(regime, consume)
-            if guard is not None:
-                self._switch(regime, guard)
+        with progress.within(self.motion.start, self._end.high, lambda: self.zero.high):
+            try:
+                self._check_start()
+                if self.interrupt is not None:
+                    raise self.interrupt
+                while self.t != self.end:
+                    progress.report(self.t, 0.0, self.end)
+                    regime = self.motion.regime(self.held, self.modes)
+                    guard = self._segment(regime, consume)
+                    if self.interrupt is not None:
+                        raise self.interrupt
+                    if guard is not None:
+                        self._switch(regime, guard)
+            except CutOff as error:
+                raise error.later(self.zero.high) from None
+
+    @property
+    def start(self) -> float:
+        """When the motion started, on its present clock, s."""
+        return Instant(self.motion.start) - self.zero
+
+    @property
+    def now(self) -> float:
+        """The time on the clock of the scene, s."""
+        return self.zero.after(self.t).high
+
+    def _at(self, t: float) -> Instant:
+        return self._end if t == self.end else self.zero.after(t)
+
+    def _move_clock(self, zero: Instant) -> None:
+        """Have the clock show 0 at an instant, where the motion is now."""
+        self.zero, self.t, self.end = zero, 0.0, float(zero.since(self._end.high))
+        if self.side * self.end < 0.0:  # within rounding of the end
+            self.end = 0.0
 
     def _check_start(self) -> None:
         """Refuse a start on a switch from which both sides lead away: the motion has more than one way on."""
         for switch in self.motion.switches:
             mode = switch["mode"]
-            inactive = switch["where"] and self.modes[switch["where"][0]] != switch["where"][1]
-            if mode not in self.motion.undecided or inactive or self.t == self.end:
+            if mode not in self.motion.undecided or not hold(switch["where"], self.modes) or self.t == self.end:
                 continue
-            regime, leaving = self.motion.regime(self.held), 0
+            leaving = 0
             for sign in (1, -1):
-                rates, values = regime.bound({**self.modes, mode: sign})
+                modes = self.motion.beside_start(mode, sign)
+                regime = self.motion.regime(self.held, modes)
+                rates, values = regime.bound(modes, self.zero)
                 piece, _ = next(self._source(regime, rates).pieces())
                 signs, _ = signs_at_ends(regime.path, [guard.formula for guard in regime.guards], values, piece)
                 leaving += all(s > 0 for s, guard in zip(signs, regime.guards, strict=True) if guard.mode == mode)
             if leaving == 2:
-                way = "past" if self.end < self.motion.start else "future"
+                way = "past" if self.side < 0.0 else "future"
                 raise CutOff(self.t, f"the motion starts on {self._name(mode)} and has more than one {way}", self.end)
+
+    def clock(self, regime: Regime, stepped: Any) -> Callable[[float], tuple[Any, list[float]]] | None:
+        """Return the clock of a regime from now on, with what is stepped; None where no time stands in its rates."""
+        parameters = regime.rates_since(self.modes, self.zero)
+        return (lambda since: (stepped, parameters(since))) if parameters else None
 
     def _source(self, regime: Regime, rates: list[float]) -> Any:
         return SOURCES[self.motion.choice.method.partition(":")[0]](self, regime, rates)
 
     def _segment(self, regime: Regime, consume: Consumer) -> Guard | None:
         """Follow one smooth part; return the guard that ended it, or None at the end of the motion."""
-        rates, values = regime.bound(self.modes)
+        if self.t != 0.0:
+            self._move_clock(self._at(self.t))
+        rates, values = regime.bound(self.modes, self.zero)
         active = regime.active(self.modes)
         events = [
             event if on else event._replace(terminal=False) for event, on in zip(regime.events, active, strict=True)
@@ -109,15 +180,30 @@ class SwitchedRun:
                     violated.extend(last)
                     if passed[-1] != start:
                         self.t, self.y = passed[-1], states(np.array(passed[-1:]))[0]
-                        self.flipped, self.left, self.released = {}, set(), set()
+                        self.flipped, self.order, self.left, self.released = {}, [], set(), set()
                     return
-                consume(Chunk(passed[-1], float(piece.edges[-1]), states, piece))
+                consume(self._chunk(passed[-1], float(piece.edges[-1]), states, piece))
                 passed.append(float(piece.edges[-1]))
 
         current: list[tuple[Piece, Callable[[Floats], Floats]]] = []
         watching = watched()
         try:
             found, stop = search(regime.path, events, values, watching, start)
+        except CutOff as error:
+            at = passed[-1]
+            y = current[0][1](np.array([at]))[0] if current else self.y
+            hop = self._hop(regime, active, rates, at, y, error)
+            if hop is None:
+                raise
+            piece, states, hopped = hop
+            stop = float(piece.edges[-1])
+            self.y = states(piece.edges[-1:])[0]
+            instant = self._at(stop) if hopped is None else self._located(regime, hopped, stop)
+            consume(Chunk(self._at(at), instant, self.zero, states, piece))
+            self.t = stop
+            if hopped is not None:
+                self._arrive(instant)
+            return hopped
         finally:
             watching.close()
             self.cost += source.cost()
@@ -127,14 +213,106 @@ class SwitchedRun:
             self.t = self.end if current else self.t  # a mode was settled: once more from here
             return None
         piece, states = current[0]
-        if abs(stop - self.motion.start) > abs(passed[-1] - self.motion.start):
-            rows = int((np.abs(piece.edges[:-1] - start) < abs(stop - start)).sum())
-            consume(Chunk(passed[-1], stop, states, Piece(np.append(piece.edges[:rows], stop), piece.rows[:rows])))
+        ended = next(each.event for each in reversed(found) if each.t == stop and active[each.event])
+        guard = regime.guards[ended]
+        instant = self._at(stop) if stop == self.end else self._located(regime, guard, stop)
+        if abs(stop) > abs(passed[-1]):
+            rows = int((np.abs(piece.edges[:-1]) < abs(stop)).sum())
+            part = Piece(np.append(piece.edges[:rows], stop), piece.rows[:rows])
+            consume(Chunk(self._at(passed[-1]), instant, self.zero, states, part))
         self.y = states(np.array([stop]))[0]
         self.t = stop
-        self.flipped, self.left, self.released = {}, set(), set()
-        ended = next(each.event for each in reversed(found) if each.t == stop and active[each.event])
-        return regime.guards[ended]
+        self._arrive(instant)
+        return guard
+
+    def _arrive(self, instant: Instant) -> None:
+        """Begin anew at a switch, where the motion is now; the clock shows 0 there, unless it is the end."""
+        if self.t != self.end:
+            self._move_clock(instant)
+        self.flipped, self.order, self.left, self.released, self.hopped = {}, [], set(), set(), False
+
+    def _hop(
+        self, regime: Regime, active: list[bool], rates: list[float], t: float, y: Floats, error: CutOff
+    ) -> tuple[Piece, Callable[[Floats], Floats], Guard | None] | None:
+        """Return a straight piece on from where a stepper is stuck, and the guard that it crosses; or None.
+
+        As sqrt(1 - t) before a switch at 1 s, and sqrt(t - 1) after it: steps shrink to nothing where a torque has no
+        derivative, though it has an impulse. Over a time so short that the impulse is less than the tolerance the
+        motion may go straight on: to the guard if the guard is that near, or away from the last switch.
+        """
+        kernel, motion = regime.motion.kernel, regime.motion
+        p = np.array(rates[: len(kernel.rate_parameters)])
+        edges, scales = error_blocks(regime.plan)
+
+        def rate(t: float) -> Floats:
+            with np.errstate(all="ignore"):
+                return np.asarray(motion.rates(t, y, p), dtype=np.float64)
+
+        def slight(change: Floats) -> bool:
+            return all(
+                float(np.linalg.norm(change[low:high]))
+                <= motion.tolerance * max(float(np.linalg.norm(y[low:high])), scale, LEAST_TURN / self.span)
+                for (low, high), scale in zip(pairwise(edges), scales, strict=True)
+            )
+
+        def straight(h: float, change: Floats) -> tuple[Piece, Callable[[Floats], Floats]]:
+            row = np.concatenate([[t, h, 0.0, h], y, change])
+            return Piece(np.array([t, t + h]), row[None]), lambda times: y + np.outer((times - t) / h, change)
+
+        if t == 0.0:
+            for halvings in () if self.hopped or abs(error.t) > 0.0 else AWAY:
+                h = self.side * math.ldexp(self.span, -halvings)
+                early, late = rate(0.25 * h), rate(0.75 * h)
+                if slight(h * early) and slight(h * late):
+                    self.hopped = True
+                    return *straight(h, 0.5 * h * (early + late)), None
+            return None
+        for bits in range(HOP_BITS + 1):
+            h = self.side * math.ldexp(math.ulp(t), bits)
+            h = t + h - t
+            change = h * rate(t)
+            if not slight(change):
+                return None
+            for guard, on in zip(regime.guards, active, strict=True):
+                if on and guard.mode not in self.held and self._crosses(regime, guard, (t, y), (t + h, y + change)):
+                    return *straight(h, change), guard
+        return None
+
+    def _crosses(self, regime: Regime, guard: Guard, *places: tuple[float, Floats]) -> bool:
+        """Return whether a guard leaves the positive side between two places, a time and a state each."""
+        try:
+            before, after = (
+                float(evaluate(parse(guard.formula), self._values(regime, place), MATH, float)) for place in places
+            )
+        except (ArithmeticError, ValueError):
+            return False
+        return before >= 0.0 >= after and before > after
+
+    def _chunk(self, start: float, stop: float, states: Callable[[Floats], Floats], piece: Piece) -> Chunk:
+        return Chunk(self._at(start), self._at(stop), self.zero, states, piece)
+
+    def _located(self, regime: Regime, guard: Guard, t: float) -> Instant:
+        """Return the instant at which a guard is zero, next to t.
+
+        On a clock that shows 0 there a guard of time alone is known to all digits; one step of Newton's rule finds its
+        zero to twice the digits of t.
+        """
+        instant = self.zero.after(t)
+        if guard.mode in self.held or guard.mode not in regime.of_time:
+            return instant
+        switch, aside = self.by_name[guard.mode], NEARBY * abs(t)
+        goal = 0.0 if switch["kind"] == "sign" else max(guard.change, 0)
+        values = regime.values(self.modes, instant)
+
+        def value(t: float) -> float:
+            return float(evaluate(regime.formulas[guard.mode], {**values, "t": t}, MATH, float)) - goal
+
+        try:
+            slope = (value(aside) - value(-aside)) / (2.0 * aside)
+            correction = -value(0.0) / slope
+        except (ArithmeticError, ValueError):
+            return instant
+        return instant.after(correction) if abs(correction) <= MOST_ULPS * math.ulp(t) else instant
 
     def _negative(
         self, regime: Regime, active: list[bool], values: list[float], piece: Piece
@@ -153,9 +331,11 @@ class SwitchedRun:
         A mode that is 0 takes the sign of its guard as soon as that is other than zero.
         """
         formulas, settled = [guard.formula for guard in regime.guards], dict(self.modes)
-        resting = {s["mode"]: 1 for s in self.motion.switches if s["kind"] == "sign" and self.modes[s["mode"]] == 0}
-        alive = {**self.modes, **resting}
-        signs, _ = signs_at_ends(regime.path, formulas, regime.bound(alive)[1], piece)
+
+        def signs_under(modes: Modes) -> list[int]:
+            return signs_at_ends(regime.path, formulas, regime.bound(modes, self.zero)[1], piece)[0]
+
+        signs_now = signs_under(self.modes)
         end = float(piece.edges[-1])
         later = end, states(np.array([end]))[0]  # a guard may leave zero more slowly than rounding shows
         for switch in self.motion.switches:
@@ -163,15 +343,17 @@ class SwitchedRun:
             numbers = [n for n, guard in enumerate(regime.guards) if guard.mode == mode and active[n]]
             if mode in self.held or not numbers:
                 continue
+            resting = switch["kind"] == "sign" and self.modes[mode] == 0  # so that its mode times its guard is zero
+            signs = signs_under({**self.modes, mode: 1}) if resting else signs_now
             sign = signs[numbers[0]]
             if switch["kind"] == "floor":  # closed on the left: at n + 1 it is n + 1
                 upper = signs[numbers[1]]
-                if not upper and self._guard_value(switch["guard"]) == self.modes[mode] + 1:
+                if not upper and self._guard_value(mode) == 1.0:
                     settled[mode] = self.modes[mode] + 1
                 continue
             if sign and self.modes[mode] == 0:
                 settled[mode] = sign
-            elif not sign and self._guard_value(switch["guard"]) == 0.0 == self._guard_value(switch["guard"], later):
+            elif not sign and self._guard_value(mode) == 0.0 == self._guard_value(mode, later):
                 settled[mode] = switch["at_zero"]
         changed = settled != self.modes
         if changed:
@@ -181,64 +363,102 @@ class SwitchedRun:
         self.modes = settled
         return changed
 
-    def _guard_value(self, guard: Any, place: tuple[float, Floats] | None = None) -> float:
-        """Return a guard at a time and a state, or at the present ones, under the present modes."""
-        t, y = place or (self.t, self.y)
+    def _guard_value(self, mode: str, place: tuple[float, Floats] | None = None) -> float:
+        """Return the distance of a mode's guard from its zero, at a time and a state or at the present ones.
+
+        Of a floor, how far the guard is above the whole number that is its mode.
+        """
+        regime = self.motion.regime(self.held, self.modes)
+        return float(evaluate(regime.formulas[mode], self._values(regime, place or (self.t, self.y)), MATH, float))
+
+    def _values(self, regime: Regime, place: tuple[float, Floats]) -> dict[str, float]:
+        """Return what the names in guards stand for at a time and a state."""
+        t, y = place
         names = [f"omega_{i} of t" for i in (1, 2, 3)]
         names += [f"q{i} of t" for i in range(4)] if self.motion.plan.structure["attitude"] else []
         quantities = self.motion.evaluate(np.array([t]), y[None], names)[0].tolist()
         values = {name.removesuffix(" of t"): value for name, value in zip(names, quantities, strict=True)}
-        values |= {name: float(value) for name, value in self.motion.constants.items()}
-        values |= {"t": t, **{name: float(mode) for name, mode in self.modes.items()}}
-        return float(evaluate(guard, values, MATH, float))
+        return {**values, **regime.values(self.modes, self.zero), "t": t}
 
     def _switch(self, regime: Regime, guard: Guard) -> None:
         """Change the mode of a guard; hold the guard at zero where both sides send the motion back."""
-        mode, switch = guard.mode, next(s for s in self.motion.switches if s["mode"] == guard.mode)
-        kind = switch["kind"]
+        mode, kind = guard.mode, self.by_name[guard.mode]["kind"]
         self.left.add((mode, self.modes[mode]))
         again = self.flipped.get(mode, 0)
+        if again and self._jumped(mode):  # with a mode inside its guard: that it changes again says nothing
+            again = 0
+        self.order.append(mode)
+        if len(self.order) > MOST_AT_ONCE:
+            raise CutOff(self.t, f"the switch {self._name(mode)} leaves no way to go on", self.end)
         if again == 0:
             self._count()
         self.flipped[mode] = again + 1
         if again > 2 and kind == "sign":
             raise CutOff(self.t, f"the switch {self._name(mode)} leaves no way to go on", self.end)
+        self.changes[self.now, self._name(mode)] = "released" if mode in self.held else "passed"
+        asleep = self._asleep()
         if mode in self.held:
             self.held -= {mode}
-            self.modes[mode] = guard.change
-            self.released.add(mode)
+            self.modes |= dict.fromkeys(self.motion.twins[mode], guard.change)
+            self.released.update(self.motion.twins[mode])
         elif again and kind == "sign":
             self._hold(regime, mode)
         elif kind == "sign":
             self.modes[mode] = -self.modes[mode]
         else:
-            whole = math.floor(self._guard_value(switch["guard"]))
-            far = abs(whole - self.modes[mode]) > 1  # it jumped over some whole numbers
-            self.modes[mode] = whole if far else self.modes[mode] + guard.change
+            above = math.floor(self._guard_value(mode))
+            far = abs(above) > 1  # it jumped over some whole numbers
+            self.modes[mode] += above if far else guard.change
             if (mode, self.modes[mode]) in self.left:
                 raise CutOff(self.t, f"the motion would slide along the jump of {self._name(mode)}", self.end)
+        for other in asleep - self._asleep():
+            self._wake(other)
+
+    def _jumped(self, mode: str) -> bool:
+        """Return whether a mode inside a mode's guard has changed at this very time since that mode did."""
+        inside = names(self.by_name[mode]["guard"])
+        last = len(self.order) - self.order[::-1].index(mode)
+        return any(other in inside for other in self.order[last:])
+
+    def _asleep(self) -> set[str]:
+        """Return the modes whose guards do not matter."""
+        return {s["mode"] for s in self.motion.switches if s["where"] and not hold(s["where"], self.modes, self.held)}
+
+    def _wake(self, mode: str) -> None:
+        """Give a mode whose guard begins to matter the value that the guard tells, if it tells one."""
+        try:
+            guard = self._guard_value(mode)
+        except (ArithmeticError, ValueError):
+            return
+        if self.by_name[mode]["kind"] == "floor":
+            self.modes[mode] += math.floor(guard)
+        elif guard:
+            self.modes[mode] = 1 if guard > 0.0 else -1
 
     def _hold(self, regime: Regime, mode: str) -> None:
-        if self.end < self.motion.start:
+        if self.side < 0.0:
             raise CutOff(self.t, "a motion that slides along a switch has more than one past", self.end)
+        mode = self.motion.twins[mode][0]
         self.held |= {mode}
-        guard = next(switch["guard"] for switch in self.motion.switches if switch["mode"] == mode)
+        self.changes[self.now, self._name(mode)] = "held"
+        guard = self.by_name[mode]["guard"]
         if guard[0] == "symbol" and guard[1] in regime.plan.states:
             self.y[regime.plan.states.index(guard[1])] = 0.0  # exactly, where the guard is a state
         try:
-            self.motion.regime(self.held)
+            self.motion.regime(self.held, self.modes)
         except InputError:
             raise CutOff(
                 self.t, f"the motion would slide along {self._name(mode)}, in no single way", self.end
             ) from None
 
     def _count(self) -> None:
-        self.switching.append(self.t)
-        self.recent.append(self.t)
-        near = len(self.recent) == CHATTER and abs(self.t - self.recent[0]) <= CHATTERING * self.span
-        if near or len(self.switching) > MOST_SWITCHES:
-            within = f"{CHATTER} within {abs(self.t - self.recent[0]):.1e} s" if near else f"more than {MOST_SWITCHES}"
+        self.switches += 1
+        self.recent.append(self.zero.after(self.t))
+        way = abs(self.recent[-1] - self.recent[0])
+        near = len(self.recent) == CHATTER and way <= CHATTERING * self.span
+        if near or self.switches > MOST_SWITCHES:
+            within = f"{CHATTER} within {way:.1e} s" if near else f"more than {MOST_SWITCHES}"
             raise CutOff(self.t, f"its switches follow one another endlessly ({within})", self.end)
 
     def _name(self, mode: str) -> str:
-        return next(str(switch["label"]) for switch in self.motion.switches if switch["mode"] == mode)
+        return str(self.by_name[mode]["label"])

@@ -1,15 +1,17 @@
 """The pieces of a smooth motion on its way to the next switch, by each stepper: polynomials, and states at any time."""
 
 from collections.abc import Callable, Iterator
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from symrot.propagation.compiled_models import error_blocks, formula_deviations
+from symrot.propagation.compiled_models import error_blocks
 from symrot.propagation.events.polynomials import Piece, fitted, rows_of
 from symrot.propagation.steppers import dop853, taylor
-from symrot.propagation.steppers.cut_off import CutOff
+from symrot.propagation.steppers.cut_off import CutOff, why_hopeless
 from symrot.propagation.steppers.stepping import Floats
+from symrot.propagation.switched.instant import Instant
 from symrot.propagation.switched.regimes import Regime
 
 if TYPE_CHECKING:
@@ -18,7 +20,12 @@ if TYPE_CHECKING:
 __all__ = ["SOURCES"]
 
 ROOM = 4  # steps in the first piece after a switch; twice as many in each piece after it
-WINDOWS = 64  # pieces of the span that SciPy follows at a time, at first
+WINDOWS, FEWEST = 64, 8  # pieces of the span that SciPy follows at a time, at first and later
+JOIN = 0.01  # of the tolerance: how far the ends of LSODA's steps may be apart
+RECENT = 4  # smooth parts before, whose lengths tell how long the next may be
+FIRST_ANGLE = 30.0  # rad
+SHORTEST = 1e-6  # of the span
+OVERHEAD = 200  # evaluations: how long a window takes beside them
 
 
 class SteppedPieces:
@@ -30,7 +37,9 @@ class SteppedPieces:
         if not np.isfinite(run.y).all():
             raise CutOff(run.t, "its states are not finite there", run.end)
         stepping = taylor if motion.choice.method == "taylor" else dop853
-        self.task = stepping.task(motion.library, rates, run.y, run.t, motion.tolerance)
+        moved = run.clock(regime, motion.library) if stepping is dop853 else None
+        options = {"clock": moved} if moved else {}
+        self.task = stepping.task(motion.library, rates, run.y, run.t, motion.tolerance, **options)
         self.task.way, self.end = run.span, run.end
 
     def pieces(self) -> Iterator[tuple[Piece, Callable[[Floats], Floats]]]:
@@ -65,25 +74,70 @@ class SciPyPieces:
 
     def __init__(self, run: "SwitchedRun", regime: Regime, rates: list[float]) -> None:
         self.run, self.motion, self.rates, self.counts = run, regime.motion, rates, np.zeros(3, dtype=np.int64)
+        self.clock = run.clock(regime, self.motion.rates)
 
     def pieces(self) -> Iterator[tuple[Piece, Callable[[Floats], Floats]]]:
         from symrot.propagation.steppers import fallback
 
         run, t, y = self.run, self.run.t, self.run.y
         side = 1.0 if run.end >= t else -1.0
-        length = run.span / WINDOWS
+        length = self._first_length()
+        options = self.motion.scipy_options_for(self.rates) | {"clock": self.clock}
         while t != run.end:
             stop = run.end if abs(run.end - t) <= 1.01 * length else t + side * length
             share = max(abs(stop - t) / run.span, 1e-3)
-            options = self.motion.scipy_options
-            options["deviations"] = formula_deviations(self.motion.plan, self.motion.kernel, self.rates)
-            recording = fallback.record(
-                self.motion.rates, self.rates, y, t, (t, stop), run.motion.tolerance * share, **options
-            )
+            self._judge_pace(t)
+            options["whole"] = fallback.Whole(run.start, run.end, run.spent)
+            ended: CutOff | KeyboardInterrupt | None = None
+            recording: Any
+            try:
+                recording = fallback.record(
+                    self.motion.rates, self.rates, y, t, (t, stop), run.motion.tolerance * share, **options
+                )
+            except (CutOff, KeyboardInterrupt) as error:
+                before: fallback.FallbackRecording | None = getattr(error, "recording", None)
+                if before is None:
+                    raise
+                recording, ended = before, error
+                stop = recording.span[side > 0.0]
+                if isinstance(error, KeyboardInterrupt):  # a switch before it must not forget it
+                    run.interrupt = error
             self.counts += recording.stats[:3]
+            run.spent += recording.stats.evaluations + OVERHEAD
             for edges in recording.edges(t, stop):
-                yield fitted(recording, edges, *error_blocks(self.motion.plan)), recording
-            y, t, length = recording(stop), stop, 2.0 * length
+                accuracy = JOIN * run.motion.tolerance * share
+                yield fitted(recording, edges, *error_blocks(self.motion.plan), accuracy=accuracy), recording
+            if ended is not None:
+                raise ended
+            y, t, length = recording(stop), stop, min(2.0 * length, run.span / FEWEST)
+
+    def _first_length(self) -> float:
+        """Return how far to go at first, s: no farther than twice the longest smooth part of late, nor many rotations.
+
+        What is followed beyond the next switch is wasted.
+        """
+        run = self.run
+        (_, rates, *_), _ = error_blocks(self.motion.plan)
+        turning = float(np.linalg.norm(run.y[:rates]))  # rad/s, or 1 where omega is no state
+        instants = [Instant(run.motion.start), *run.recent][-RECENT - 1 :]
+        longest = max((abs(after - before) for before, after in pairwise(instants)), default=run.span)
+        likely = min(longest, FIRST_ANGLE / max(turning, FIRST_ANGLE / run.span))
+        return min(max(2.0 * likely, SHORTEST * run.span), run.span / WINDOWS)
+
+    def _judge_pace(self, t: float) -> None:
+        """Give the whole motion up if the rest would take far more than the limit."""
+        from symrot.propagation.steppers.fallback import MAX_EVALUATIONS, PATIENCE
+
+        run = self.run
+        spent = run.spent - run.mark[0]
+        if spent >= PATIENCE:
+            way = abs(t - run.start)
+            reason = why_hopeless(spent, way - run.mark[1], abs(run.end - t), MAX_EVALUATIONS)
+            if reason:
+                raise CutOff(t, reason, run.end)
+            run.mark = (run.spent, way)
+        if run.spent > MAX_EVALUATIONS:
+            raise CutOff(t, f"{MAX_EVALUATIONS} evaluations were not enough", run.end)
 
     def cost(self) -> Any:
         return self.counts

@@ -9,7 +9,6 @@ import ctypes
 import json
 import re
 import struct
-import subprocess
 import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -18,6 +17,7 @@ from random import Random
 
 from symrot.certificates.object_code.build import compile_object
 from symrot.certificates.readback.c_functions import functions_of
+from symrot.certificates.tools import run_tool
 from symrot.errors import CompilerError
 
 __all__ = ["KINDS", "Mutant", "mutants", "same_bits"]
@@ -233,11 +233,6 @@ def same_bits(source: Path, good: Path, mutant: Path, seed: int = 1) -> bool:
     found = []
     for path in (good, mutant):
         library = path.with_suffix(".so")
-        linked = subprocess.run(
-            ["cc", "-shared", "-o", str(library), str(path), "-lm"], capture_output=True, check=False
-        )
-        if linked.returncode:
-            return False
         command = [
             sys.executable,
             "-m",
@@ -247,8 +242,9 @@ def same_bits(source: Path, good: Path, mutant: Path, seed: int = 1) -> bool:
             str(seed),
         ]
         try:
-            done = subprocess.run(command, capture_output=True, check=False, timeout=SECONDS)
-        except subprocess.TimeoutExpired:
+            linked = run_tool(["cc", "-shared", "-o", str(library), str(path), "-lm"], SECONDS)
+            done = run_tool(command, SECONDS) if linked.returncode == 0 else linked
+        except CompilerError:
             return False
         if done.returncode:
             return False

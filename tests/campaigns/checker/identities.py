@@ -9,11 +9,11 @@ logarithms, inverse functions outside their domains, and towers of functions.
 
 import sys
 from argparse import ArgumentParser
-from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from functools import partial
+from pathlib import Path
 from random import Random
-from time import perf_counter
+from typing import Any
 
 from symrot.checker.claim.reader import read_expression
 from symrot.checker.claim.tree import Node, number, product, replaced, sum_of, text, walk
@@ -22,9 +22,10 @@ from symrot.checker.repair.edits import single_edits
 from symrot.errors import InputError
 from tests.campaigns.checker.judge import ANGLES, FUNCTIONS, QUATERNIONS, SYMBOLS
 from tests.campaigns.checker.judge_wider import EXPONENTS, HYPOTHESES, INVERSES, truth_under
-from tests.campaigns.checker.real_identities import real_campaign
+from tests.campaigns.checker.real_identities import judged_real, real_claims
+from tests.campaigns.checker.run import Judged, Tally, answer_of, judged_claims, read_log
 
-__all__ = ["RULES", "Outcome", "campaign", "claims", "main"]
+__all__ = ["RULES", "campaign", "claims", "main"]
 
 RULES = (
     ("sin(A + B)", "sin(A)*cos(B) + cos(A)*sin(B)"), ("cos(A + B)", "cos(A)*cos(B) - sin(A)*sin(B)"),
@@ -257,89 +258,100 @@ def _setting(source: Random) -> tuple[tuple[str, ...], Sequence[str], Rules]:
     return ((), WIDER_SEEDS, _COMPILED) if chosen == 2 else source.choice(_UNDER)
 
 
-@dataclass(frozen=True)
-class Outcome:
-    """What a campaign found: verdicts by (truth, verdict), wrong ones, refused true claims, the slowest claim.
+RIGHT = {"true claims: true", "false claims: false", "false claims: conditional", "true claims: undecided",
+         "false claims: undecided", "true claims: refused", "false claims: refused"}  # fmt: skip
+"""What may be said of a true and of a false claim; that a false claim holds under a condition is no error.
 
-    An edit may make a claim that has no meaning, which is refused for good reason.
+An edit may make a claim that has no meaning, which is refused for good reason.
+"""
+
+MOST_OPEN = 0.01
+"""Share of claims that may be undecided, or true and refused."""
+
+
+def judged(number: int, generated: Generated) -> Judged:
+    """Check one claim whose truth is known, and judge the verdict."""
+    claim, given, true = generated
+    shown = claim + "".join(f", given {hypothesis}" for hypothesis in given)
+    answer = answer_of(lambda: check(claim, assume=given, repair=False))
+    verdict = f"{'true' if true else 'false'} claims: {answer.name}"
+    wrong = answer.failure or ("" if verdict in RIGHT else f"a {'true' if true else 'false'} claim is {answer.name}")
+    refused = answer.verdict if true and isinstance(answer.verdict, str) and not answer.failure else ""
+    return Judged(number, shown, verdict, answer.seconds, wrong, refused)
+
+
+def campaign(count: int, seed: int = 0, real: bool = False, workers: int = 1, log: Path | None = None) -> Tally:
+    """Check generated claims, judge every verdict, and return what came out.
+
+    Parameters
+    ----------
+    count, seed : int
+        The first ``count`` claims of a seed; fewer of the same seed are the first of them.
+    real : bool
+        Claims of :mod:`tests.campaigns.checker.real_identities`.
+    workers : int
+        Processes.
+    log : Path, optional
+        To which every answer is appended. Claims that are in it already are not checked again, unless their answers
+        were wrong or late.
+
+    Raises
+    ------
+    InputError
+        If the log is that of another campaign.
     """
+    known, tally = read_log(log), Tally()
 
-    counts: dict[tuple[bool, str], int]
-    wrong: tuple[str, ...]
-    refused: tuple[str, ...]
-    slowest: float
-    seconds: float
+    def rest() -> Iterator[tuple[int, Any]]:
+        for place, claim in enumerate(real_claims(count, seed) if real else claims(count, seed), start=1):
+            row = known.get(place)
+            if row is not None and not row.claim.startswith(str(claim if real else claim[0])):
+                raise InputError(
+                    f"expected the log of the claims of seed {seed}; number {place} in {log} is another one"
+                )
+            if row is not None and not row.wrong and not row.late:
+                tally.add(row)
+            else:
+                yield place, claim
 
-    @property
-    def undecided(self) -> int:
-        return sum(n for (_, verdict), n in self.counts.items() if verdict == "undecided")
-
-
-RIGHT = {(True, "true"), (False, "false"), (False, "conditional"), (True, "undecided"), (False, "undecided")}
-"""What may be said of a true and of a false claim; that a false claim holds under a condition is no error."""
-
-
-def campaign(count: int, seed: int = 0, progress: Callable[[int], None] = lambda done: None) -> Outcome:
-    """Check generated claims and return what came out."""
-    counts: Counter[tuple[bool, str]] = Counter()
-    wrong, refused = [], []
-    slowest, start = 0.0, perf_counter()
-    for done, (claim, given, true) in enumerate(claims(count, seed), start=1):
-        before = perf_counter()
-        shown = claim + "".join(f", given {hypothesis}" for hypothesis in given)
-        try:
-            verdict = check(claim, assume=given, repair=False).verdict
-        except InputError as reason:
-            verdict = "refused"
-            if true:
-                refused.append(f"{shown}: {reason}")
-        slowest = max(slowest, perf_counter() - before)
-        counts[true, verdict] += 1
-        if (true, verdict) not in RIGHT and verdict != "refused":
-            wrong.append(f"{'true' if true else 'false'} but {verdict}: {shown}")
-        progress(done)
-    return Outcome(dict(counts), tuple(wrong), tuple(refused), slowest, perf_counter() - start)
+    for row in judged_claims(partial(judged_real, seed) if real else judged, rest(), workers, log):
+        tally.add(row)
+        tally.show(count, row)
+    return tally
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run a campaign; exit code 1 when a verdict is wrong, or more than 1 % are undecided or refused as too large."""
+    """Run a campaign; exit code 1 for an answer that is wrong, late or missing, or too many undecided ones.
+
+    Of claims made by rewriting 1 % may be undecided, or true and refused; of real functions any number.
+    """
     parser = ArgumentParser(prog="python -m tests.campaigns.checker.identities", description=__doc__.splitlines()[0])
     parser.add_argument("--count", type=int, default=1000, help="claims (default: 1000)")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--real", action="store_true", help="powers, logarithms, inverse functions and towers")
+    parser.add_argument("--workers", type=int, default=1, metavar="N", help="processes (default: 1)")
+    parser.add_argument("--log", type=Path, metavar="FILE", help="every answer, so that the same command goes on where "
+                        "it was interrupted; wrong and late answers in it are asked for again")  # fmt: skip
     options = parser.parse_args(argv)
-    if options.real:
-        return _real(options.count, options.seed)
-    found = campaign(options.count, options.seed, _shown_progress if sys.stderr.isatty() else lambda done: None)
-    for (true, verdict), number_of in sorted(found.counts.items()):
-        print(f"{'true' if true else 'false':<6} claims found {verdict:<12} {number_of}")
-    print(f"wrong {len(found.wrong)}, refused {len(found.refused)}, undecided {found.undecided} of {options.count}")
-    print(f"{found.seconds:.1f} s, slowest claim {found.slowest:.2f} s")
-    for line in (*found.wrong, *found.refused)[:20]:
+    try:
+        tally = campaign(options.count, options.seed, options.real, options.workers, options.log)
+    except InputError as reason:
+        print(reason, file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        again = "; the same command goes on from there" if options.log else ", and nothing of it is saved without --log"
+        print(f"interrupted{again}", file=sys.stderr)
+        return 130
+    for verdict, number_of in sorted(tally.counts.items()):
+        print(f"{verdict:<26} {number_of}")
+    undecided = sum(n for verdict, n in tally.counts.items() if verdict.endswith("undecided"))
+    print(f"wrong {len(tally.wrong)}, late {len(tally.late)}, true and refused {len(tally.refused)}, "
+          f"undecided {undecided} of {tally.count}")  # fmt: skip
+    print(f"{tally.seconds:.1f} s, slowest claim {tally.slowest:.2f} s: {tally.slowest_claim}")
+    for line in (*tally.wrong, *tally.late, *tally.refused)[:40]:
         print(line)
-    return int(bool(found.wrong) or found.undecided + len(found.refused) > options.count / 100)
-
-
-LONGEST_SECONDS = 60.0
-"""In which every claim has its answer."""
-
-
-def _real(count: int, seed: int) -> int:
-    """Run the campaign over real functions; exit code 1 for a wrong verdict, a traceback or a late answer."""
-    start = perf_counter()
-    found = real_campaign(count, seed, _shown_progress if sys.stderr.isatty() else lambda done: None)
-    for verdict, number_of in sorted(found.counts.items()):
-        print(f"{verdict:<12} {number_of}")
-    print(f"wrong {len(found.wrong)} of {count}")
-    print(f"{perf_counter() - start:.1f} s, slowest claim {found.slowest:.2f} s: {found.slowest_claim}")
-    for line in found.wrong[:20]:
-        print(line)
-    return int(bool(found.wrong) or found.slowest > LONGEST_SECONDS)
-
-
-def _shown_progress(done: int) -> None:
-    if done % 100 == 0:
-        sys.stderr.write(f"\r{done}")
+    too_open = not options.real and undecided + len(tally.refused) > MOST_OPEN * options.count
+    return int(bool(tally.wrong or tally.late) or too_open)
 
 
 if __name__ == "__main__":

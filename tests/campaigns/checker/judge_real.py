@@ -7,15 +7,29 @@ multiplied by zero must have a value too. Near the edge of a domain, and beyond 
 """
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
+from functools import cache
+from math import prod
 from random import Random
 from typing import Any
 
 from mpmath import MPContext
 
-from symrot.checker.claim.tree import Node
+from symrot.checker.claim.tree import Node, walk
 
-__all__ = ["NAMES", "Edge", "NoValue", "Unclear", "compare", "drawn_point", "generic_point", "real_value"]
+__all__ = [
+    "NAMES",
+    "Edge",
+    "Large",
+    "NoValue",
+    "Unclear",
+    "compare",
+    "drawn_point",
+    "generic_point",
+    "has_values",
+    "real_value",
+]
 
 NAMES = ("x", "y", "z")
 
@@ -41,6 +55,10 @@ class Edge(Unclear):
     """The judge cannot tell since the point is on the edge of the domain, or close to it."""
 
 
+class Large(Unclear):
+    """There is a value, but one too large to be compared."""
+
+
 def _context(digits: int) -> Any:
     made = MPContext()
     made.dps = digits
@@ -50,23 +68,72 @@ def _context(digits: int) -> Any:
 _CONTEXTS = {digits: _context(digits) for digits in (DIGITS, MORE_DIGITS)}
 
 
+@dataclass(frozen=True)
+class Unknown:
+    """A real number beyond what is computed, or made of one: its sign is 1 or -1 where that is known, else 0."""
+
+    sign: int = 0
+
+
+_EVERYWHERE = {"abs": 0, "exp": 1, "sinh": 0, "cosh": 1, "tanh": 0, "sin": 0, "cos": 0, "tan": 0, "atan": 0}
+"""Functions that have a value of every real number, or of nearly every one, and the sign of it."""
+
+
+def _of_unknown(node: Node, parts: Sequence[Any]) -> Unknown:
+    """Return what a piece with parts beyond what is computed is, if it has a value."""
+    signs = [part.sign if isinstance(part, Unknown) else (part > 0) - (part < 0) for part in parts]
+    if node.kind == "sum":
+        return Unknown(signs[0] if len({*signs}) == 1 else 0)
+    if node.kind in ("product", "neg"):
+        return Unknown(prod(signs) if node.kind == "product" else -signs[0])
+    if node.kind == "call" and node.value in _EVERYWHERE:
+        return Unknown(_EVERYWHERE[node.value])
+    if node.kind == "power":
+        exponent = _rational(node.args[1])
+        if exponent.denominator > 1 and signs[0] < 0:
+            raise NoValue
+        if signs[0] > 0 or (exponent.denominator == 1 and exponent >= 0):
+            return Unknown(signs[0] if signs[0] > 0 or exponent.numerator % 2 else 0)
+    if signs[0] and (node.kind == "inv" or node.value in ("log", "sqrt")):
+        if signs[0] < 0 and node.kind == "call":
+            raise NoValue
+        return Unknown(0 if node.value == "log" else signs[0])
+    raise Edge if node.kind == "inv" else Unclear
+
+
 class _Judge:
     """Values at one point, in one precision."""
 
     def __init__(self, point: Point, digits: int) -> None:
-        self.mp = _CONTEXTS[digits]
+        self.mp, self.point = _CONTEXTS[digits], point
         self.values = {name: self.mp.mpf(value.numerator) / value.denominator for name, value in point.items()}
         self.edge = self.mp.mpf(10) ** -EDGE
+        self.failed: Node | None = None  # the piece without a value
 
     def value(self, node: Node) -> Any:
+        """Return the value of a tree, or an ``Unknown`` for a real number that is too large, or made of one."""
+        try:
+            return self.small_value(node)
+        except Large as large:
+            return large.args[0]
+        except (NoValue, Unclear):
+            self.failed = self.failed or node
+            raise
+
+    def small_value(self, node: Node) -> Any:
         kind, args = node.kind, node.args
         if kind == "number":
             return self.mp.mpf(node.value.numerator) / node.value.denominator
         if kind == "name":
             return +self.mp.pi if node.value == "pi" else self.values[node.value]
         if kind == "power":
-            return self.power(self.value(args[0]), _rational(args[1]))
+            base, exponent = self.value(args[0]), _rational(args[1])
+            if isinstance(base, Unknown):
+                raise Large(_of_unknown(node, [base]))
+            return self.power(base, exponent)
         parts = [self.value(argument) for argument in args]
+        if any(isinstance(part, Unknown) for part in parts):
+            raise Large(_of_unknown(node, parts))
         if kind == "sum":
             return sum(parts[1:], parts[0])
         if kind == "product":
@@ -108,7 +175,7 @@ class _Judge:
         if base == 0:
             return self.mp.mpf(0 if exponent else 1)
         if abs(self.mp.log(abs(base)) * exponent.numerator / exponent.denominator) > _MOST:
-            raise Unclear
+            raise Large(Unknown(1 if base > 0 or exponent.numerator % 2 == 0 else -1))
         if exponent.denominator == 1:
             return base**exponent.numerator
         return self.mp.exp(self.mp.log(base) * exponent.numerator / exponent.denominator)
@@ -126,16 +193,20 @@ class _Judge:
 
     def of_exp(self, u: Any) -> Any:
         if abs(u) > _MOST:
-            raise Unclear
+            raise Large(Unknown(1))
         return self.mp.exp(u)
 
     def of_sinh(self, u: Any) -> Any:
+        if abs(u) > _MOST:
+            raise Large(Unknown(1 if u > 0 else -1))
         return (self.of_exp(u) - self.of_exp(-u)) / 2
 
     def of_cosh(self, u: Any) -> Any:
         return (self.of_exp(u) + self.of_exp(-u)) / 2
 
     def of_tanh(self, u: Any) -> Any:
+        if abs(u) > _MOST:
+            raise Large(Unknown(1 if u > 0 else -1))
         return self.of_sinh(u) / self.of_cosh(u)
 
     def of_sin(self, u: Any) -> Any:
@@ -149,7 +220,7 @@ class _Judge:
 
     def angle(self, u: Any) -> Any:
         if abs(u) > self.mp.mpf(10) ** 20:
-            raise Unclear
+            raise Large(Unknown())
         return u
 
     def of_asin(self, u: Any) -> Any:
@@ -198,9 +269,46 @@ def real_value(node: Node, point: Point, digits: int = DIGITS) -> Any:
         Where the judge cannot tell, or does not know a function.
     """
     try:
-        return _Judge(point, digits).value(node)
+        return _Judge(point, digits).small_value(node)
     except (AttributeError, KeyError, TypeError, OverflowError, MemoryError):
         raise Unclear from None
+
+
+@cache
+def _generic_judges(count: int) -> tuple[_Judge, ...]:
+    source = Random(count)
+    return tuple(_Judge(generic_point(source), DIGITS) for _ in range(count))
+
+
+def has_values(sides: Sequence[Node], count: int) -> bool:
+    """Return whether at one of so many generic points all sides have values, as far as the judge can tell.
+
+    The piece that had no value at the last point is looked at first: it often has none at the next one either.
+    """
+    pieces = list(sides)
+    for judge in _generic_judges(count):
+        judge.failed = None
+        try:
+            for piece in pieces:
+                judge.value(piece)
+            finer = _Judge(judge.point, MORE_DIGITS)  # a number that seems zero in 60 digits may be negative
+            for piece in sides:
+                finer.value(piece)
+            return True
+        except (NoValue, Unclear, AttributeError, KeyError, TypeError, OverflowError, MemoryError):
+            failed = judge.failed
+        if failed is not None:
+            if not any(node.kind == "name" and node.value != "pi" for _, node in walk(failed)):
+                return False
+            pieces = [failed, *sides]
+    return False
+
+
+def _value_or_unknown(node: Node, point: Point, digits: int) -> Any:
+    try:
+        return real_value(node, point, digits)
+    except Large as large:
+        return large.args[0]
 
 
 def compare(left: Node, right: Node, point: Point) -> bool:
@@ -214,7 +322,9 @@ def compare(left: Node, right: Node, point: Point) -> bool:
     """
     gaps = []
     for digits in (DIGITS, MORE_DIGITS):
-        a, b = (real_value(side, point, digits) for side in (left, right))
+        a, b = (_value_or_unknown(side, point, digits) for side in (left, right))
+        if isinstance(a, Unknown) or isinstance(b, Unknown):
+            raise Large
         gap = abs(a - b) / (1 + abs(a) + abs(b))
         if gap == 0:
             return True

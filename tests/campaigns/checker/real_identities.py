@@ -5,30 +5,28 @@ wrong rules make of it, or something else. Sides with a value nowhere are wanted
 them. What is true is judged by :mod:`tests.campaigns.checker.judge_real`, point by point, for the verdict and its evidence.
 """
 
-from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from random import Random
-from time import perf_counter
 
 from symrot.checker.claim.reader import read_expression, read_relation
 from symrot.checker.claim.tree import Node, replaced, text, walk
 from symrot.checker.interface import check
 from symrot.checker.verdict import Verdict
-from symrot.errors import InputError
 from tests.campaigns.checker.judge_real import (
     NAMES,
     Edge,
+    Large,
     NoValue,
     Unclear,
     compare,
     drawn_point,
-    generic_point,
+    has_values,
     real_value,
 )
+from tests.campaigns.checker.run import Judged, answer_of
 
-__all__ = ["REAL_RULES", "TRAPS", "RealOutcome", "fault", "real_campaign", "real_claims"]
+__all__ = ["REAL_RULES", "TRAPS", "fault", "judged_real", "real_claims"]
 
 REAL_RULES = (
     ("sqrt(X)*sqrt(Y)", "sqrt(X*Y)"), ("sqrt(X)", "X/sqrt(X)"), ("sqrt(X)**2", "X"), ("sqrt(X**2)", "abs(X)"),
@@ -192,7 +190,7 @@ def fault(claim: str, verdict: Verdict | str, source: Random) -> str:
     """
     _, left, right = read_relation(claim)
     if isinstance(verdict, str):
-        if any(words in verdict for words in _OF_THE_DOMAIN) and _defined(left, right, source):
+        if any(words in verdict for words in _OF_THE_DOMAIN) and has_values((left, right), MOST_POINTS // 2):
             return f"refused as if it had no value: {verdict}"
         return ""
     if verdict.verdict == "undecided":
@@ -227,24 +225,12 @@ def _fault_of_true(left: Node, right: Node, source: Random, conditions: Sequence
             if not compare(left, right, point):
                 return "true, but not at " + ", ".join(f"{name} = {value}" for name, value in point.items())
         except (NoValue, Unclear) as reason:
-            edges += isinstance(reason, Edge)
+            edges += isinstance(reason, Edge | Large)
             continue
         defined += 1
         if defined >= POINTS // 4 and number >= POINTS:
             break
     return "" if defined or edges else "true of nothing: no point has a value on both sides"
-
-
-def _defined(left: Node, right: Node, source: Random) -> bool:
-    for _ in range(MOST_POINTS // 2):
-        point = generic_point(source)
-        try:
-            for side in (left, right):
-                real_value(side, point)
-        except (NoValue, Unclear):
-            continue
-        return True
-    return False
 
 
 def _conditions(requirement: str) -> list[tuple[str, Node, Node]]:
@@ -270,38 +256,8 @@ def _placed(side: Node, point: dict[str, Node]) -> Node:
     return read_expression(text(_filled(side, point)))
 
 
-@dataclass(frozen=True)
-class RealOutcome:
-    """What a campaign found: verdicts of each kind, sentences on wrong ones, and the slowest claim, in seconds."""
-
-    counts: dict[str, int]
-    wrong: tuple[str, ...]
-    slowest: float
-    slowest_claim: str
-
-
-def real_campaign(count: int, seed: int = 0, progress: Callable[[int], None] = lambda done: None) -> RealOutcome:
-    """Check generated claims and judge every verdict."""
-    counts: Counter[str] = Counter()
-    wrong: list[str] = []
-    slowest, slowest_claim = 0.0, ""
-    for done, claim in enumerate(real_claims(count, seed), start=1):
-        before = perf_counter()
-        verdict: Verdict | str
-        try:
-            verdict = check(claim, repair=False)
-        except InputError as reason:
-            verdict = str(reason)
-        except Exception as failure:  # whatever it is, a user would see a traceback
-            wrong.append(f"{type(failure).__name__}: {claim}")
-            counts["traceback"] += 1
-            continue
-        seconds = perf_counter() - before
-        if seconds > slowest:
-            slowest, slowest_claim = seconds, claim
-        counts["refused" if isinstance(verdict, str) else verdict.verdict] += 1
-        sentence = fault(claim, verdict, Random(f"{seed} {done}"))
-        if sentence:
-            wrong.append(f"{sentence}: {claim}")
-        progress(done)
-    return RealOutcome(dict(counts), tuple(wrong), slowest, slowest_claim)
+def judged_real(seed: int, number: int, claim: str) -> Judged:
+    """Check one claim and judge the verdict."""
+    answer = answer_of(lambda: check(claim, repair=False))
+    wrong = answer.failure or fault(claim, answer.verdict, Random(f"{seed} {number}"))
+    return Judged(number, claim, answer.name, answer.seconds, wrong)

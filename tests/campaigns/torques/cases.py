@@ -278,7 +278,7 @@ def switch_tumbling(draw: Draw, family: str, index: int, seed: int) -> Case:
 def thruster(draw: Draw, family: str, index: int, seed: int) -> Case:
     """A thruster with many short pulses."""
     count = int(draw.random.choice([10, 100, 1000]))
-    on = float(draw.random.choice([0.01, 0.1, 1e-4]))
+    on = 2.0 ** -int(draw.random.choice([7, 3, 13]))  # the edges of the truth are doubles, and exact
     c = log_uniform(draw.random, 1e-2, 1e2)
     m = c * draw.turn / count / (count * on)
     edges = [float(k) + d for k in range(count + 1) for d in (0.0, on)]

@@ -1,0 +1,45 @@
+"""Programs that symrot runs to look at object code and proofs: for a bounded time, with everything that they start."""
+
+import os
+import signal
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from pathlib import Path
+from subprocess import DEVNULL, PIPE, CompletedProcess, Popen, TimeoutExpired
+
+from symrot.errors import CompilerError
+
+__all__ = ["run_tool"]
+
+
+def run_tool(
+    command: Sequence[str],
+    seconds: float,
+    cwd: Path | None = None,
+    environment: Mapping[str, str] | None = None,
+) -> CompletedProcess[str]:
+    """Return what a program printed, and its exit status.
+
+    Raises
+    ------
+    CompilerError
+        If it cannot be run, or gives no answer in time; it is killed then, and so are the programs that it started.
+    """
+    try:
+        process = Popen(
+            command, cwd=cwd, env=environment, stdin=DEVNULL, stdout=PIPE, stderr=PIPE, start_new_session=True
+        )
+    except OSError as error:
+        raise CompilerError(f"{command[0]} cannot be run: {error.strerror or error}") from None
+    with process:
+        try:
+            out, complaint = process.communicate(timeout=seconds)
+        except TimeoutExpired:
+            raise CompilerError(f"{command[0]} is stopped: no answer within {seconds:g} s") from None
+        finally:
+            if process.poll() is None:
+                with suppress(ProcessLookupError):
+                    os.killpg(process.pid, signal.SIGKILL) if hasattr(os, "killpg") else process.kill()
+    return CompletedProcess(
+        [*command], process.returncode, out.decode("utf-8", "replace"), complaint.decode("utf-8", "replace")
+    )

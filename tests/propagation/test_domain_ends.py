@@ -1,0 +1,32 @@
+"""Torques that end: beyond where their formula has a value no method says anything, and what comes before is right."""
+
+import numpy as np
+import pytest
+
+import symrot
+from symrot.errors import PropagationError
+from tests.needs import needs_compiler
+
+METHODS = ["taylor", "dop853", *(f"scipy:{name}" for name in ("DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA"))]
+
+
+def scene(torque, stop=2.0):
+    content = {
+        "schema": 1, "body": {"principal": [1, 1, 1]}, "initial": {"omega": [0, 0, 0]}, "span": {"t": [0, stop]},
+        "torque": [{"kind": "expression", "torque": ["0", "0", torque]}],
+        "output": {"quantities": ["omega", "quaternion"]},
+    }  # fmt: skip
+    return symrot.Scene.from_dict(content)
+
+
+@needs_compiler
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("stop", [1.00000004, 1.2])
+def test_a_motion_ends_where_its_torque_has_no_value(method, stop):
+    """The root of 1 - t has none after 1 s; only the rate, not the attitude, shows it within a step that ends there."""
+    with pytest.raises(PropagationError, match="cannot be followed beyond") as caught:
+        symrot.propagator(scene("sqrt(1 - t)", stop), method, 1e-9)([0.25, 0.5, stop])
+    reached = caught.value.trajectory
+    assert set(reached.t) <= {0.25, 0.5}
+    assert reached.omega[:, 2] == pytest.approx(2 / 3 * (1 - (1 - reached.t) ** 1.5), abs=2e-8)
+    assert np.isfinite(reached.quaternion).all()
