@@ -26,7 +26,8 @@ _HOMES = {
     "ensemble.ensemble": ("Ensemble", "propagate_ensemble"),
     "workshop.emit": ("emit", "explain", "kernel_names", "plan"),
     "propagation.events.events": ("Event",),
-    "propagation.propagator": ("Propagator", "propagate", "propagator"),
+    "propagation.propagate": ("propagate", "propagator"),
+    "propagation.propagator": ("Propagator",),
     "propagation.trajectory": ("Trajectory",),
 }
 _HOME = {name: module for module, names in _HOMES.items() for name in names}

@@ -23,7 +23,7 @@ from symrot.bench.comparison.problem import Floats, Problem
 from symrot.bench.comparison.race import Measured, race, seconds_of
 from symrot.bench.taylor import MOTIONS, reference, scene
 from symrot.closed_form.registry import exact_form
-from symrot.propagation.propagator import propagator
+from symrot.propagation.propagate import propagator
 
 __all__ = ["Sampled", "main", "measure"]
 

@@ -24,7 +24,7 @@ from symrot.planning.plan import make_plan
 from symrot.planning.scene_kernel import bind
 from symrot.propagation.compiled_models import error_blocks, scene_kernel
 from symrot.propagation.invariants import invariant_parameters, invariant_source
-from symrot.propagation.propagator import propagator
+from symrot.propagation.propagate import propagator
 from symrot.propagation.steppers import taylor
 from symrot.scene.scene import Scene
 

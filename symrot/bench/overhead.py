@@ -15,7 +15,8 @@ import numpy as np
 
 from symrot.bench.comparison.race import Measured, race, seconds_of
 from symrot.errors import InputError
-from symrot.propagation.propagator import Propagator, propagator
+from symrot.propagation.propagate import propagator
+from symrot.propagation.propagator import Propagator
 from symrot.propagation.steppers.stepping import DONE, Stretch
 
 __all__ = ["main", "measure"]

@@ -24,7 +24,7 @@ from symrot.errors import InputError
 from symrot.planning.plan import Plan, general_structure, make_plan
 from symrot.propagation.method import Choice
 from symrot.propagation.motion import Motion
-from symrot.propagation.propagator import propagator
+from symrot.propagation.propagate import propagator
 from symrot.scene.file import read_toml
 from symrot.scene.scene import Scene, Torque, load_scene
 

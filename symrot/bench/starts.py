@@ -28,7 +28,8 @@ from symrot.closed_form.spin_up import compiled as spin_up_compiled
 from symrot.ensemble.ensemble import propagate_ensemble
 from symrot.errors import InputError
 from symrot.planning.plan import structure_key
-from symrot.propagation.propagator import Propagator, propagator, read_start
+from symrot.propagation.propagate import propagator
+from symrot.propagation.propagator import Propagator, read_start
 from symrot.scene.scene import Initial, Scene, load_scene
 
 __all__ = ["main"]

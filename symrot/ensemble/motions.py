@@ -15,6 +15,7 @@ from symrot.formula.tree import names
 from symrot.planning.plan import STATES, Plan
 from symrot.planning.scene_kernel import SceneKernel
 from symrot.propagation import time_shift as epoch
+from symrot.propagation.array_functions import ARRAY_FUNCTIONS
 from symrot.propagation.compiled_models import (
     compiled,
     error_blocks,
@@ -32,7 +33,7 @@ from symrot.propagation.steppers import dop853, taylor
 from symrot.propagation.steppers.cut_off import CutOff
 from symrot.propagation.steppers.smoothness import roughness
 from symrot.propagation.steppers.stepping import NOT_FINITE_SENTENCE, Floats
-from symrot.propagation.trajectory import ARRAY_FUNCTIONS, Trajectory
+from symrot.propagation.trajectory import Trajectory
 
 Integers = lanes.Integers
 
@@ -119,7 +120,7 @@ def _switched(
     problem: Problem, method: str, stepped: Sequence[int], omega: Floats, quaternion: Floats | None
 ) -> Followed:
     """Follow motions under torques with switches, each as it would be alone."""
-    from symrot.propagation.propagator import propagator
+    from symrot.propagation.propagate import propagator
 
     count, messages, methods = len(stepped), list[str](), list[str]()
     steps, evaluations = np.zeros(count, dtype=np.int64), np.zeros(count, dtype=np.int64)

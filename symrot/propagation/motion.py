@@ -12,23 +12,25 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from symrot.closed_form.registry import Exact, Form, exact_form
+from symrot.errors import PropagationError
 from symrot.planning.plan import Plan, Row, general_structure
 from symrot.planning.scene_kernel import EPOCH, SceneKernel
 from symrot.propagation import time_shift as epoch
+from symrot.propagation.array_functions import ARRAY_FUNCTIONS
 from symrot.propagation.binding import Binding, two_doubles
 from symrot.propagation.compiled_models import compiled, error_blocks, formula_deviations, scene_kernel, taylor_library
+from symrot.propagation.events.polynomials import Piece
 from symrot.propagation.method import Choice
 from symrot.propagation.steppers import dop853, taylor
 from symrot.propagation.steppers.cut_off import CutOff
 from symrot.propagation.steppers.dop853 import Stats
 from symrot.propagation.steppers.stepping import NOT_FINITE_SENTENCE, Recording, Task
-from symrot.propagation.trajectory import ARRAY_FUNCTIONS, Trajectory
 from symrot.scene.scene import Initial
 
 if TYPE_CHECKING:
     from symrot.propagation.enclosures.step_limit import Deviations
 
-__all__ = ["Motion", "on_own_clock", "python_rates", "unreduced"]
+__all__ = ["Motion", "MotionInParts", "on_own_clock", "python_rates", "unreduced"]
 
 Floats = NDArray[np.float64]
 
@@ -233,9 +235,8 @@ class Motion:
         """The closed form of the body and its torques, with all that its starts share."""
         return self.first._starts if self.first else self.form.starts(self.plan.scene)
 
-    def solution(self, trajectory: Trajectory) -> Callable[[ArrayLike], Floats]:
-        """Return omega and quaternion as a function of time over the trajectory's span."""
-        times = trajectory.t
+    def solution(self, times: Floats, with_attitude: bool) -> Callable[[ArrayLike], Floats]:
+        """Return omega, and the quaternion if asked for, as a function of time from the start over all the times."""
         span = (
             (min(self.start, float(times.min())), max(self.start, float(times.max())))
             if len(times)
@@ -245,7 +246,7 @@ class Motion:
         zero = motion.epoch
         states = motion.dense((span[0] - zero, span[1] - zero))
         names = [f"omega_{i} of t" for i in (1, 2, 3)]
-        names += [f"q{i} of t" for i in range(4)] if trajectory.has_attitude else []
+        names += [f"q{i} of t" for i in range(4)] if with_attitude else []
 
         def at(t: ArrayLike) -> Floats:
             wanted = np.asarray(t, dtype=float)
@@ -294,6 +295,16 @@ class Motion:
         named = {"method": solver} if solver else {}
         limits = {"deviations": self.deviations(parameters), "clock": self._python_clock if self._on_clocks else None}
         return {"blocks": blocks, "scales": scales, **limits, **named}
+
+
+class MotionInParts(Motion):
+    """A motion that is smooth from one switch of its torques to the next."""
+
+    switched = True
+
+    def parts(self, end: float, broken: list[PropagationError]) -> tuple[list[Piece], Recording]:
+        """Return the motion from its start to an end as polynomials and at any time; what cut it off in ``broken``."""
+        raise NotImplementedError
 
 
 def on_own_clock(plan: Plan, choice: Choice, tolerance: float) -> Motion:

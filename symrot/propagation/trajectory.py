@@ -2,28 +2,20 @@
 
 from collections.abc import Callable, Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from symrot.errors import InputError
 from symrot.kinematics import conversions
+from symrot.propagation.events.eventful import Eventful
+from symrot.propagation.motion import Motion
 from symrot.propagation.steppers.dop853 import Stats
-
-if TYPE_CHECKING:
-    from symrot.propagation.events.eventful import Eventful
-    from symrot.propagation.motion import Motion
 
 __all__ = ["Invariant", "Trajectory"]
 
 Floats = NDArray[np.float64]
-
-ARRAY_FUNCTIONS = {
-    "sqrt": np.sqrt, "sin": np.sin, "cos": np.cos, "tan": np.tan, "exp": np.exp, "log": np.log, "abs": np.abs,
-    "sinh": np.sinh, "cosh": np.cosh, "tanh": np.tanh, "asin": np.arcsin, "acos": np.arccos, "atan": np.arctan,
-    "atan2": np.arctan2,
-}  # fmt: skip
 
 
 class Invariant(NamedTuple):
@@ -65,13 +57,13 @@ class Trajectory:
 
     def __init__(
         self,
-        motion: "Motion",
+        motion: Motion,
         t: Floats,
         states: Floats | tuple[Floats, ...],
         method: str,
         stats: Stats,
         message: str,
-        events: "Eventful | None" = None,
+        events: Eventful | None = None,
     ) -> None:
         self._motion, self._found = motion, states
         self.t, self.method, self.stats, self.message = t, method, stats, message
@@ -252,7 +244,7 @@ class Trajectory:
 
     @cached_property
     def _solution(self) -> Callable[[ArrayLike], Floats]:
-        return self._motion.solution(self)
+        return self._motion.solution(self.t, self.has_attitude)
 
     def quantity(self, name: str) -> Floats:
         """Return a quantity by the name that scenes use for it (``output.quantities``)."""

@@ -9,6 +9,7 @@ from symrot.dynamics.torque_kinds import EXPRESSION_NAMES, TABLE_KIND, TORQUE_KI
 from symrot.errors import InputError
 from symrot.formula import tree as expression
 from symrot.formula.exact_numbers import PI, read, show, sqrt
+from symrot.formula.float_functions import FLOAT_FUNCTIONS
 from symrot.formula.switches import condition_error
 from symrot.scene.attitude import Vector, read_attitude
 from symrot.scene.body import Body
@@ -210,10 +211,7 @@ def _check_clips(node: expression.Node, values: Mapping[str, float], where: str,
                  f"low is {show(bounds[0])}, high is {show(bounds[1])}")  # fmt: skip
 
 
-_MATH: dict[str, Callable[..., float]] = {
-    "abs": abs, "min": min, "max": max, "floor": math.floor,
-    **{name: getattr(math, name) for name in expression.FUNCTIONS if name != "abs"},
-}  # fmt: skip
+_MATH: dict[str, Callable[..., float]] = {**FLOAT_FUNCTIONS, "min": min, "max": max, "floor": math.floor}
 
 _FITS: dict[str, Callable[[dict[str, Any], Body, str], dict[str, Any]]] = {
     "gravity": _fit_gravity,

@@ -28,7 +28,7 @@ from symrot.cli.main import main
 from symrot.codegen.numpy_kernel import load_numpy_kernel
 from symrot.errors import InputError, SymrotError
 from symrot.planning.plan import make_plan
-from symrot.propagation.propagator import propagator
+from symrot.propagation.propagate import propagator
 from symrot.report.work_precision import compared, lines, lines_of_comparison, read_study
 from symrot.scene.scene import Scene, load_scene
 

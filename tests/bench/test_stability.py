@@ -12,7 +12,7 @@ from symrot.bench.comparison.exact_path import ExactPath
 from symrot.bench.error_growth import growth, points, stability
 from symrot.cli import main as cli
 from symrot.errors import InputError
-from symrot.propagation.propagator import propagator
+from symrot.propagation.propagate import propagator
 from symrot.scene.scene import load_scene
 from tests.reference import free_body as reference
 from tests.reference.figures import GRAVITY, body, largest

@@ -16,7 +16,7 @@ from symrot.closed_form.axial import motion as axial
 from symrot.closed_form.free_body import motion as free_body
 from symrot.closed_form.gyrostat import motion as gyrostat
 from symrot.errors import CompilerError, InputError
-from symrot.propagation.propagator import propagator
+from symrot.propagation.propagate import propagator
 from tests.propagation.test_changed_start import scene
 
 Q0 = (0.1, 0.7, -0.5, 0.5)

@@ -13,7 +13,7 @@ from symrot.closed_form.free_body import motion as free_body
 from symrot.closed_form.gyrostat import motion as gyrostat
 from symrot.closed_form.heavy_top import motion as heavy_top
 from symrot.errors import InputError
-from symrot.propagation.propagator import propagator
+from symrot.propagation.propagate import propagator
 
 Q0 = (0.1, 0.7, -0.5, 0.5)
 BAR = 1e-15  # of q; of omega relative to the largest: each side is within 5e-16 of the motion

@@ -13,7 +13,7 @@ from symrot.closed_form.spin_up import compiled as spin_up_compiled
 from symrot.closed_form.spin_up import motion as spin_up
 from symrot.closed_form.spin_up import series as spin_up_series
 from symrot.errors import InputError
-from symrot.propagation.propagator import propagate
+from symrot.propagation.propagate import propagate
 from symrot.scene.scene import load_scene
 from tests.closed_form.test_driven import flow
 

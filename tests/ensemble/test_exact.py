@@ -19,7 +19,7 @@ from symrot.ensemble.variation import read_variation
 from symrot.errors import InputError
 from symrot.formula import exact_numbers as number
 from symrot.inertia import principal
-from symrot.propagation.propagator import propagator
+from symrot.propagation.propagate import propagator
 from symrot.scene.scene import Initial
 from tests.propagation.test_changed_start import BESIDE, GRAVITY, SCENES, scene
 

@@ -127,7 +127,7 @@ def test_repeated_torques_and_parameters_with_taken_names_keep_apart():
 )
 def test_a_parameter_may_have_any_name(name):
     """A parameter called like a component of another torque is still itself: the motion does not depend on its name."""
-    from symrot.propagation.propagator import propagate
+    from symrot.propagation.propagate import propagate
 
     def motion(parameter):
         body = {"principal": [1, 2, 3], "about": "fixed_point"}

@@ -7,7 +7,7 @@ import pytest
 
 from symrot.errors import InputError, PropagationError
 from symrot.propagation import progress
-from symrot.propagation.propagator import propagator
+from symrot.propagation.propagate import propagator
 from symrot.propagation.steppers import fallback
 from symrot.scene.scene import Scene
 from tests.reference.tops import MOTIONS, TIMES, error, parameters, rigid_body, taylor, wave

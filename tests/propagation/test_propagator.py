@@ -16,7 +16,7 @@ from symrot.kinematics import conversions
 from symrot.planning.plan import Plan, make_plan
 from symrot.propagation.method import Choice
 from symrot.propagation.motion import Motion
-from symrot.propagation.propagator import propagate, propagator
+from symrot.propagation.propagate import propagate, propagator
 from symrot.scene.file import names_with_kernels
 from symrot.scene.scene import Scene, load_scene
 from tests.reference import taylor
@@ -245,7 +245,7 @@ def test_tolerances_out_of_range_are_refused(tolerance):
 def test_a_cached_scene_propagates_without_sympy_or_scipy():
     assert propagate("tumbling_prism").invariants  # derived, and kept for the next process
     code = (
-        "import sys; from symrot import load_scene; from symrot.propagation.propagator import propagate;"
+        "import sys; from symrot import load_scene; from symrot.propagation.propagate import propagate;"
         "t = propagate('tumbling_prism'); t.euler('ZYX'); t.invariants;"
         "print([m for m in ('sympy', 'scipy', 'matplotlib') if m in sys.modules])"
     )
@@ -355,7 +355,7 @@ def test_an_exact_motion_derives_nothing_for_omega_and_attitude():
     """SymPy is imported when something that it derives is asked for."""
     code = (
         "import sys, os, tempfile; os.environ['SYMROT_CACHE'] = tempfile.mkdtemp();"
-        "from symrot.propagation.propagator import propagate;"
+        "from symrot.propagation.propagate import propagate;"
         "t = propagate('tumbling_prism'); t.omega; t.euler('ZYX'); t.omega_space; t.sol(1.0);"
         "print('sympy' in sys.modules); t.energy; print('sympy' in sys.modules)"
     )

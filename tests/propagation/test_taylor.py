@@ -23,7 +23,7 @@ from symrot.formula.tree import FUNCTIONS, parse
 from symrot.planning.plan import make_plan
 from symrot.planning.scene_kernel import bind
 from symrot.propagation.compiled_models import error_blocks, scene_kernel
-from symrot.propagation.propagator import propagator
+from symrot.propagation.propagate import propagator
 from symrot.propagation.steppers import dop853, taylor
 from symrot.propagation.steppers.stepping import Task
 from symrot.scene.scene import Scene, load_scene

@@ -17,7 +17,7 @@ from symrot.formula.program import Argument, Program, Signature
 from symrot.formula.tree import evaluate, parse
 from symrot.planning.scene_kernel import EXACT_FUNCTIONS, bind
 from symrot.propagation import time_shift as epoch
-from symrot.propagation.propagator import propagator
+from symrot.propagation.propagate import propagator
 from symrot.propagation.steppers import dop853
 from symrot.propagation.steppers.stepping import MAX_STEPS
 from symrot.propagation.time_shift import far
@@ -275,7 +275,7 @@ def test_a_motion_that_was_derived_before_needs_no_sympy_far_away():
     given = (AXIS, CASES["axis"][1], 10**9)
     propagator(scene(*given))()
     code = (
-        "import sys; from symrot.scene.scene import Scene; from symrot.propagation.propagator import propagator;"
+        "import sys; from symrot.scene.scene import Scene; from symrot.propagation.propagate import propagator;"
         f"propagator(Scene.from_dict({listed(*given)!r}, 'far'))(); assert not {{'sympy', 'scipy'}} & set(sys.modules)"
     )
     subprocess.run([sys.executable, "-c", code], check=True)

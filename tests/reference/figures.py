@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from symrot.propagation.propagator import propagator
+from symrot.propagation.propagate import propagator
 from symrot.scene.scene import Scene
 
 Q0 = {"quaternion": ["1/10", "7/10", "-1/2", "1/2"]}

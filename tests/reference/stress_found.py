@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from symrot.ensemble.ensemble import propagate_ensemble
-from symrot.propagation.propagator import propagator
+from symrot.propagation.propagate import propagator
 from tests.reference.figures import Figure, apart, body, largest, propagated
 from tests.reference.stress_stepping import Stepped
 

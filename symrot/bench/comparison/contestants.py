@@ -19,7 +19,7 @@ from symrot.bench.comparison.problem import Floats, Problem, State
 from symrot.build import cache as library
 from symrot.closed_form.registry import exact_form
 from symrot.errors import InputError
-from symrot.propagation.propagator import propagator
+from symrot.propagation.propagate import propagator
 from symrot.propagation.steppers.smoothness import roughness
 
 __all__ = ["CONTESTANTS", "Contestant", "Run", "chosen", "tolerances_from"]

@@ -50,7 +50,7 @@ from symrot.propagation.compiled_models import error_blocks, formula_deviations
 from symrot.propagation.enclosures.step_limit import Deviations, longest_followed
 from symrot.propagation.method import Choice
 from symrot.propagation.motion import Motion
-from symrot.propagation.propagator import propagator
+from symrot.propagation.propagate import propagator
 from symrot.propagation.steppers.cut_off import CutOff
 from symrot.propagation.steppers.smoothness import roughness
 from symrot.propagation.steppers.tableau import HEADER

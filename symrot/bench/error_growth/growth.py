@@ -19,7 +19,7 @@ from symrot.build import cache as library
 from symrot.closed_form.registry import exact_form
 from symrot.planning.plan import make_plan
 from symrot.propagation.motion import Motion
-from symrot.propagation.propagator import propagator
+from symrot.propagation.propagate import propagator
 from symrot.propagation.steppers.smoothness import roughness
 from symrot.propagation.steppers.stepping import Stats
 from symrot.propagation.trajectory import Trajectory

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from symrot.propagation.propagator import propagator
+from symrot.propagation.propagate import propagator
 from symrot.scene.scene import Scene
 
 __all__ = ["Carried", "carried", "laws"]

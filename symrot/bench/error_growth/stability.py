@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from symrot.bench.error_growth.growth import FROM, METHODS, Track, exponent, growth, median_curve
 from symrot.bench.error_growth.points import carried, laws
 from symrot.errors import InputError, PropagationError
-from symrot.propagation.propagator import propagator
+from symrot.propagation.propagate import propagator
 from symrot.report.layout import columns, room
 from symrot.scene.scene import Scene, load_scene
 

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 from symrot.codegen.enclosure.terms import LOW_ORDER, REACHES, Enclosure, value_operands
 from symrot.codegen.taylor.recurrences import Series
+from symrot.formula.float_functions import FLOAT_FUNCTIONS
 from symrot.formula.tree import evaluate
 
 __all__ = ["Deviations", "Disc", "deviations_of", "longest_followed"]
@@ -216,7 +217,7 @@ class Deviations:
         self.spent = 0  # evaluations, by time
 
         def number(node: Any) -> float:
-            return float(evaluate(node, parameters, _MATH, float))
+            return float(evaluate(node, parameters, FLOAT_FUNCTIONS, float))
 
         series = enclosure.system.series
         self._weights = {i: [0.0 if w is None else number(w) for w in series[i].weights] for i in enclosure.series}
@@ -277,11 +278,6 @@ def deviations_of(enclosure: Enclosure) -> Callable[[Mapping[str, float]], Devia
     """Return what makes deviations of parameters; the function of the enclosure is made once."""
     bounds = _one_function(enclosure)
     return lambda parameters: Deviations(enclosure, parameters, bounds)
-
-
-_MATH: dict[str, Callable[..., float]] = {name: getattr(math, name) for name in FUNCTIONS if name != "sech"} | {
-    "abs": abs
-}
 
 
 def longest_followed(

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Generator, Sequence
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, NamedTuple, cast
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,12 +13,9 @@ from symrot.planning.scene_kernel import bind
 from symrot.propagation.compiled_models import error_blocks
 from symrot.propagation.events.events import Event, Found, event_library_source, search, stepped, timed, uses_attitude
 from symrot.propagation.events.polynomials import Piece, fitted, fitted_pieces
+from symrot.propagation.motion import Motion, MotionInParts
 from symrot.propagation.steppers.cut_off import CutOff
 from symrot.propagation.steppers.stepping import Stats, Switching, both_sides, stats_of
-
-if TYPE_CHECKING:
-    from symrot.propagation.motion import Motion
-    from symrot.propagation.switched.motion import SwitchedMotion
 
 __all__ = ["Eventful", "follow"]
 
@@ -62,7 +59,7 @@ class _Side(NamedTuple):
     switchings: tuple[Switching, ...] = ()
 
 
-def follow(motion: "Motion", times: Floats, events: Sequence[Event]) -> Eventful:
+def follow(motion: Motion, times: Floats, events: Sequence[Event]) -> Eventful:
     """Return a motion at its sample times with the events on the way from the start to the first and last of them.
 
     Raises
@@ -138,13 +135,13 @@ def _joined(
     return joined
 
 
-def _side(motion: "Motion", end: float) -> _Side:
+def _side(motion: Motion, end: float) -> _Side:
     """Return the motion from its start to an end."""
     method, plan = motion.choice.method.partition(":")[0], motion.plan
     start, y0 = motion.start, np.array(plan.initial_state, dtype=np.float64)
     broken: list[PropagationError] = []
-    if motion.switched:
-        pieces, path = cast("SwitchedMotion", motion).parts(end, broken)
+    if isinstance(motion, MotionInParts):
+        pieces, path = motion.parts(end, broken)
         return _Side((piece for piece in pieces), path, broken, lambda: path.stats[:3], path.stats.switchings)
     if method in ("taylor", "dop853"):
         task = motion.stepping.again()

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from symrot.build import cache as library
 from symrot.codegen.taylor.time_shift import moved, moved_formulas
@@ -18,9 +18,6 @@ from symrot.propagation.events.events import Event, guard_library_source
 from symrot.propagation.motion import Motion
 from symrot.propagation.switched.instant import Instant
 from symrot.propagation.time_shift import Following
-
-if TYPE_CHECKING:
-    from symrot.propagation.switched.motion import SwitchedMotion
 
 __all__ = ["Guard", "Modes", "Regime"]
 
@@ -43,10 +40,15 @@ class Regime:
     """
 
     def __init__(
-        self, switched: "SwitchedMotion", motion: Motion, held: frozenset[str], switches: Sequence[Mapping[str, Any]]
+        self,
+        constants: Mapping[str, Fraction],
+        all_switches: Sequence[Mapping[str, Any]],
+        motion: Motion,
+        held: frozenset[str],
+        switches: Sequence[Mapping[str, Any]],
     ) -> None:
-        self.motion, self.plan, self.held, self.constants = motion, motion.plan, held, switched.constants
-        self.switches = switched.switches
+        self.motion, self.plan, self.held = motion, motion.plan, held
+        self.constants, self.switches = constants, all_switches
         modes = [switch["mode"] for switch in switches]
         distances = [_distance(switch) for switch in switches]
         formulas, parameters = moved_formulas(distances, {*self.constants, *modes})

@@ -1,45 +1,39 @@
 """A motion under torques with switches on its way from the start to one end: when it switches, slides, stops."""
 
 import math
-from collections import deque
 from collections.abc import Callable, Generator
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from symrot.closed_form.arithmetic.double_double import two_sum
 from symrot.errors import InputError
+from symrot.formula.float_functions import FLOAT_FUNCTIONS
 from symrot.formula.switches import hold
 from symrot.formula.tree import evaluate, names, parse
 from symrot.propagation import progress
 from symrot.propagation.compiled_models import error_blocks
 from symrot.propagation.events.events import search, signs_at_ends
 from symrot.propagation.events.polynomials import Piece
+from symrot.propagation.motion import Motion
 from symrot.propagation.steppers.cut_off import CutOff
 from symrot.propagation.steppers.stepping import Floats
 from symrot.propagation.switched.instant import Instant
 from symrot.propagation.switched.regimes import Guard, Modes, Regime
+from symrot.propagation.switched.run_state import CHATTER, RunState
 from symrot.propagation.switched.smooth_pieces import SOURCES
+from symrot.propagation.switched.system import SwitchedSystem
 
-if TYPE_CHECKING:
-    from symrot.propagation.switched.motion import SwitchedMotion
-
-__all__ = ["MATH", "Chunk", "SwitchedRun"]
+__all__ = ["Chunk", "SwitchedRun"]
 
 MOST_SWITCHES, MOST_AT_ONCE = 1_000_000, 1000
 HOP_BITS = 10  # a hop over a switch is at most so many times two ulps of the clock long
 LEAST_TURN = 1e-3  # rad over the whole span: slower rates are as good as this one
 AWAY = range(50, 400, 10)  # a hop away from a switch is so many times halved a span
 NEARBY, MOST_ULPS = 1e-6, 64.0  # parts of the way since the last switch; last bits of a time that was located
-CHATTER, CHATTERING = 50, 1e-9  # so many switches within that part of the span are endlessly many
+CHATTERING = 1e-9  # of the span: so many switches as are remembered within it are endlessly many
 Consumer = Callable[["Chunk"], None]
-
-MATH: dict[str, Callable[..., float]] = {
-    "sqrt": math.sqrt, "sin": math.sin, "cos": math.cos, "tan": math.tan, "exp": math.exp, "log": math.log, "abs": abs,
-    "sinh": math.sinh, "cosh": math.cosh, "tanh": math.tanh, "asin": math.asin, "acos": math.acos, "atan": math.atan,
-    "atan2": math.atan2,
-}  # fmt: skip
 
 
 class Chunk(NamedTuple):
@@ -64,21 +58,18 @@ class Chunk(NamedTuple):
         return Piece(edges, rows)
 
 
-class SwitchedRun:
+class SwitchedRun(RunState):
     """A motion on its way from the start to one end.
 
     Its clock shows 0 at the last switch, which is known to twice the digits of a double: ``t`` and ``end`` are times on
     that clock, s.
     """
 
-    def __init__(self, motion: "SwitchedMotion", end: float) -> None:
-        self.motion, self.span = motion, abs(end - motion.start)
-        self.side = 1.0 if end >= motion.start else -1.0
-        self.zero, self._end = Instant(motion.start), Instant(end)
-        self.t, self.end = 0.0, float(self.zero.since(end))
-        self.y = np.array(motion.plan.initial_state, dtype=np.float64)
-        self.by_name = {switch["mode"]: switch for switch in motion.switches}
-        self.modes, self.held = motion.initial_modes(), frozenset[str]()
+    def __init__(self, motion: Motion, system: SwitchedSystem, end: float) -> None:
+        super().__init__(motion, end, system.initial_modes())
+        self.system, self._end = system, Instant(end)
+        self.by_name = {switch["mode"]: switch for switch in system.switches}
+        self.held = frozenset[str]()
         self.cost = np.zeros(3, dtype=np.int64)  # steps accepted and rejected, evaluations
         self.switches = 0
         self.changes: dict[tuple[float, str], str] = {}  # what each function with a switch did at a time
@@ -87,9 +78,6 @@ class SwitchedRun:
         self.order: list[str] = []  # the same in the order of the changes
         self.left: set[tuple[str, int]] = set()  # modes and their values left at this very time
         self.settled, self.hopped = 0, False
-        self.spent, self.mark = 0, (0, 0.0)  # SciPy's evaluations; those and the way when the pace was judged last
-        self.interrupt: KeyboardInterrupt | None = None  # that came while SciPy followed the motion, beyond a switch
-        self.recent: deque[Instant] = deque(maxlen=CHATTER)
 
     def follow(self, consume: Consumer) -> None:
         """Follow the motion to its end, handing on each part as it is known."""
@@ -100,7 +88,7 @@ class SwitchedRun:
                     raise self.interrupt
                 while self.t != self.end:
                     progress.report(self.t, 0.0, self.end)
-                    regime = self.motion.regime(self.held, self.modes)
+                    regime = self.system.regime(self.held, self.modes)
                     guard = self._segment(regime, consume)
                     if self.interrupt is not None:
                         raise self.interrupt
@@ -108,11 +96,6 @@ class SwitchedRun:
                         self._switch(regime, guard)
             except CutOff as error:
                 raise error.later(self.zero.high) from None
-
-    @property
-    def start(self) -> float:
-        """When the motion started, on its present clock, s."""
-        return Instant(self.motion.start) - self.zero
 
     @property
     def now(self) -> float:
@@ -130,14 +113,14 @@ class SwitchedRun:
 
     def _check_start(self) -> None:
         """Refuse a start on a switch from which both sides lead away: the motion has more than one way on."""
-        for switch in self.motion.switches:
+        for switch in self.system.switches:
             mode = switch["mode"]
-            if mode not in self.motion.undecided or not hold(switch["where"], self.modes) or self.t == self.end:
+            if mode not in self.system.undecided or not hold(switch["where"], self.modes) or self.t == self.end:
                 continue
             leaving = 0
             for sign in (1, -1):
-                modes = self.motion.beside_start(mode, sign)
-                regime = self.motion.regime(self.held, modes)
+                modes = self.system.beside_start(mode, sign)
+                regime = self.system.regime(self.held, modes)
                 rates, values = regime.bound(modes, self.zero)
                 piece, _ = next(self._source(regime, rates).pieces())
                 signs, _ = signs_at_ends(regime.path, [guard.formula for guard in regime.guards], values, piece)
@@ -145,11 +128,6 @@ class SwitchedRun:
             if leaving == 2:
                 way = "past" if self.side < 0.0 else "future"
                 raise CutOff(self.t, f"the motion starts on {self._name(mode)} and has more than one {way}", self.end)
-
-    def clock(self, regime: Regime, stepped: Any) -> Callable[[float], tuple[Any, list[float]]] | None:
-        """Return the clock of a regime from now on, with what is stepped; None where no time stands in its rates."""
-        parameters = regime.rates_since(self.modes, self.zero)
-        return (lambda since: (stepped, parameters(since))) if parameters else None
 
     def _source(self, regime: Regime, rates: list[float]) -> Any:
         return SOURCES[self.motion.choice.method.partition(":")[0]](self, regime, rates)
@@ -282,7 +260,8 @@ class SwitchedRun:
         """Return whether a guard leaves the positive side between two places, a time and a state each."""
         try:
             before, after = (
-                float(evaluate(parse(guard.formula), self._values(regime, place), MATH, float)) for place in places
+                float(evaluate(parse(guard.formula), self._values(regime, place), FLOAT_FUNCTIONS, float))
+                for place in places
             )
         except (ArithmeticError, ValueError):
             return False
@@ -305,7 +284,7 @@ class SwitchedRun:
         values = regime.values(self.modes, instant)
 
         def value(t: float) -> float:
-            return float(evaluate(regime.formulas[guard.mode], {**values, "t": t}, MATH, float)) - goal
+            return float(evaluate(regime.formulas[guard.mode], {**values, "t": t}, FLOAT_FUNCTIONS, float)) - goal
 
         try:
             slope = (value(aside) - value(-aside)) / (2.0 * aside)
@@ -338,7 +317,7 @@ class SwitchedRun:
         signs_now = signs_under(self.modes)
         end = float(piece.edges[-1])
         later = end, states(np.array([end]))[0]  # a guard may leave zero more slowly than rounding shows
-        for switch in self.motion.switches:
+        for switch in self.system.switches:
             mode = switch["mode"]
             numbers = [n for n, guard in enumerate(regime.guards) if guard.mode == mode and active[n]]
             if mode in self.held or not numbers:
@@ -368,8 +347,10 @@ class SwitchedRun:
 
         Of a floor, how far the guard is above the whole number that is its mode.
         """
-        regime = self.motion.regime(self.held, self.modes)
-        return float(evaluate(regime.formulas[mode], self._values(regime, place or (self.t, self.y)), MATH, float))
+        regime = self.system.regime(self.held, self.modes)
+        return float(
+            evaluate(regime.formulas[mode], self._values(regime, place or (self.t, self.y)), FLOAT_FUNCTIONS, float)
+        )
 
     def _values(self, regime: Regime, place: tuple[float, Floats]) -> dict[str, float]:
         """Return what the names in guards stand for at a time and a state."""
@@ -399,8 +380,8 @@ class SwitchedRun:
         asleep = self._asleep()
         if mode in self.held:
             self.held -= {mode}
-            self.modes |= dict.fromkeys(self.motion.twins[mode], guard.change)
-            self.released.update(self.motion.twins[mode])
+            self.modes |= dict.fromkeys(self.system.twins[mode], guard.change)
+            self.released.update(self.system.twins[mode])
         elif again and kind == "sign":
             self._hold(regime, mode)
         elif kind == "sign":
@@ -422,7 +403,7 @@ class SwitchedRun:
 
     def _asleep(self) -> set[str]:
         """Return the modes whose guards do not matter."""
-        return {s["mode"] for s in self.motion.switches if s["where"] and not hold(s["where"], self.modes, self.held)}
+        return {s["mode"] for s in self.system.switches if s["where"] and not hold(s["where"], self.modes, self.held)}
 
     def _wake(self, mode: str) -> None:
         """Give a mode whose guard begins to matter the value that the guard tells, if it tells one."""
@@ -438,14 +419,14 @@ class SwitchedRun:
     def _hold(self, regime: Regime, mode: str) -> None:
         if self.side < 0.0:
             raise CutOff(self.t, "a motion that slides along a switch has more than one past", self.end)
-        mode = self.motion.twins[mode][0]
+        mode = self.system.twins[mode][0]
         self.held |= {mode}
         self.changes[self.now, self._name(mode)] = "held"
         guard = self.by_name[mode]["guard"]
         if guard[0] == "symbol" and guard[1] in regime.plan.states:
             self.y[regime.plan.states.index(guard[1])] = 0.0  # exactly, where the guard is a state
         try:
-            self.motion.regime(self.held, self.modes)
+            self.system.regime(self.held, self.modes)
         except InputError:
             raise CutOff(
                 self.t, f"the motion would slide along {self._name(mode)}, in no single way", self.end

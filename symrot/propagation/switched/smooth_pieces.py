@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -13,9 +13,7 @@ from symrot.propagation.steppers.cut_off import CutOff, why_hopeless
 from symrot.propagation.steppers.stepping import Floats
 from symrot.propagation.switched.instant import Instant
 from symrot.propagation.switched.regimes import Regime
-
-if TYPE_CHECKING:
-    from symrot.propagation.switched.run import SwitchedRun
+from symrot.propagation.switched.run_state import RunState
 
 __all__ = ["SOURCES"]
 
@@ -31,7 +29,7 @@ OVERHEAD = 200  # evaluations: how long a window takes beside them
 class SteppedPieces:
     """Pieces of a motion by a stepper in C."""
 
-    def __init__(self, run: "SwitchedRun", regime: Regime, rates: list[float]) -> None:
+    def __init__(self, run: RunState, regime: Regime, rates: list[float]) -> None:
         motion = regime.motion
         assert motion.library is not None
         if not np.isfinite(run.y).all():
@@ -72,7 +70,7 @@ class SteppedPieces:
 class SciPyPieces:
     """Pieces of a motion by SciPy: a window of time after the other."""
 
-    def __init__(self, run: "SwitchedRun", regime: Regime, rates: list[float]) -> None:
+    def __init__(self, run: RunState, regime: Regime, rates: list[float]) -> None:
         self.run, self.motion, self.rates, self.counts = run, regime.motion, rates, np.zeros(3, dtype=np.int64)
         self.clock = run.clock(regime, self.motion.rates)
 

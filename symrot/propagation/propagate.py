@@ -1,0 +1,130 @@
+"""From a scene to its propagator: which kind of motion it is, and which options it takes."""
+
+from math import inf
+from pathlib import Path
+from typing import Any
+
+from numpy.typing import ArrayLike
+
+from symrot.errors import InputError
+from symrot.formula import exact_numbers as number
+from symrot.planning.plan import switched
+from symrot.propagation.propagator import Propagator
+from symrot.propagation.real_array import real_array
+from symrot.propagation.trajectory import Trajectory
+from symrot.scene.scene import Scene, load_scene
+
+__all__ = ["propagate", "propagator"]
+
+
+def propagator(
+    scene: Scene | str | Path,
+    method: str = "auto",
+    tolerance: float | None = None,
+    *,
+    torque: Any = None,
+    switching_times: ArrayLike = (),
+    torque_frame: str = "body",
+    state: str = "quaternion",
+    switching: bool = True,
+    max_step: float = inf,
+) -> Propagator:
+    """Return the propagator of a scene: derived, specialised, emitted and compiled, or taken from the cache.
+
+    Parameters
+    ----------
+    scene : Scene, str or Path
+        A scene, the name of a shipped one, or the path of a scene file.
+    method : str
+        One of :data:`symrot.propagation.method.METHODS`; ``"scipy:LSODA"`` and the like for SciPy's.
+    tolerance : float, optional
+        Error of the trajectory to aim for: attitude in rad, angular velocity relative to its size; default: the
+        scene's own.
+    torque : optional
+        One more torque, N m, that is no formula: a function of (t, omega, quaternion) that returns three numbers; a C
+        function of ctypes, ``int (double t, const double omega[3], const double quaternion[4], double torque[3], void
+        *user)``, which returns 0, with ``user`` null; or a table (times, samples of shape (n, 3)), which is
+        interpolated by cubic splines between the switching times. The method is then ``dop853``.
+    switching_times : array, optional
+        Times, s, at which that torque jumps: the motion is stepped exactly to each and started anew. A function is
+        asked just inside them; a table has two samples at each, before and after the jump.
+    torque_frame : str
+        ``"body"`` or ``"space"``: whose components that torque has.
+    state : str
+        ``"quaternion"``, or an Euler sequence such as ``"ZXZ"`` to step its angles instead, for teaching; see
+        :mod:`symrot.propagation.euler_state`.
+    switching : bool
+        Whether such angles are exchanged for those of a regular sequence before they reach gimbal lock; ``stats``
+        counts how often.
+    max_step : float
+        Longest step, s, under such a torque: shorter than its narrowest feature. Formulas need none, and tables have
+        that of their samples.
+
+    Raises
+    ------
+    InputError
+        For a scene or an option that cannot be used.
+    CompilerError
+        If ``dop853`` is asked for and there is no compiler, or the compiler refuses the kernel.
+    """
+    if not isinstance(scene, Scene):
+        scene = load_scene(scene)
+    aim = float(scene.tolerance) if tolerance is None else _tolerance(tolerance)
+    if scene.table is not None:
+        if torque is not None:
+            raise InputError(
+                f"torque: expected none for a scene with a torque of kind table, got {number.show(torque)}"
+            )
+        samples = scene.table
+        torque, switching_times, torque_frame = samples[:2], samples.switching_times, samples.frame
+    if state != "quaternion":
+        if torque is not None:
+            raise InputError(f"state: expected 'quaternion' for a torque that is no formula, got {state!r}")
+        if switched(scene):
+            raise InputError(f"state: expected 'quaternion' for torques that jump or bend, got {state!r}")
+        from symrot.propagation.euler_state import EulerPropagator
+
+        return EulerPropagator(scene, method, aim, state, switching)
+    if torque is None:
+        if max_step != inf:
+            raise InputError(
+                f"max_step: expected none without a torque that is no formula, got {number.show(max_step)}"
+            )
+        if switched(scene):
+            from symrot.propagation.switched.motion import SwitchedPropagator
+
+            return SwitchedPropagator(scene, method, aim)
+        return Propagator(scene, method, aim)
+    if method not in ("auto", "dop853"):
+        raise InputError(f"method: expected 'auto' or 'dop853' for a torque that is no formula, got {method!r}")
+    if switched(scene):
+        raise InputError(
+            f"torque: expected none beside formulas that jump or bend (abs, sign, ..), got {number.show(torque)}"
+        )
+    from symrot.propagation.external_torque import DrivenPropagator
+
+    return DrivenPropagator(scene, aim, torque, switching_times, torque_frame, _longest_step(max_step))
+
+
+def _longest_step(max_step: float) -> float:
+    longest = float(real_array(max_step, "max_step", "a positive number of seconds"))
+    if not longest > 0.0:
+        raise InputError(f"max_step: expected a positive number of seconds, got {number.show(max_step)}")
+    return longest
+
+
+def _tolerance(tolerance: float) -> float:
+    from symrot.scene.scene import TOLERANCES
+
+    low, high = TOLERANCES
+    found = float(number.read(tolerance, "tolerance"))
+    if not float(low) <= found <= float(high):  # as doubles: 0.01 is above 1/100
+        raise InputError(f"tolerance: expected a number from {float(low):g} to {float(high):g}, got {tolerance}")
+    return found
+
+
+def propagate(
+    scene: Scene | str | Path, method: str = "auto", tolerance: float | None = None, events: Any = None
+) -> Trajectory:
+    """Return the motion of a scene at its own sample times; see :func:`propagator` and :class:`Propagator`."""
+    return propagator(scene, method, tolerance)(events=events)

@@ -1,0 +1,56 @@
+"""Where a motion under torques with switches stands: its clock, its states and what was spent on the way."""
+
+from collections import deque
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from symrot.propagation.motion import Motion
+from symrot.propagation.switched.instant import Instant
+from symrot.propagation.switched.regimes import Modes, Regime
+
+__all__ = ["CHATTER", "RunState"]
+
+CHATTER = 50  # switches that are remembered
+
+
+class RunState:
+    """A motion on its way from the start to one end, on a clock that shows 0 at the last switch.
+
+    Attributes
+    ----------
+    zero : Instant
+        When that clock shows 0.
+    t, end, start : float
+        The present time, and when the motion ends and started, s, on that clock.
+    span, side : float
+        Length of the whole motion, s, and its direction, 1 or -1.
+    y : array, shape (N,)
+        The states at ``t``.
+    spent, mark : int, (int, float)
+        SciPy's evaluations; those, and the way, when the pace was judged last.
+    interrupt : KeyboardInterrupt or None
+        One that came while SciPy followed the motion beyond a switch.
+    recent : deque of Instant
+        The last switches.
+    """
+
+    def __init__(self, motion: Motion, end: float, modes: Modes) -> None:
+        self.motion, self.modes, self.span = motion, modes, abs(end - motion.start)
+        self.side = 1.0 if end >= motion.start else -1.0
+        self.zero = Instant(motion.start)
+        self.t, self.end = 0.0, float(self.zero.since(end))
+        self.y = np.array(motion.plan.initial_state, dtype=np.float64)
+        self.spent, self.mark = 0, (0, 0.0)
+        self.interrupt: KeyboardInterrupt | None = None
+        self.recent: deque[Instant] = deque(maxlen=CHATTER)
+
+    @property
+    def start(self) -> float:
+        return Instant(self.motion.start) - self.zero
+
+    def clock(self, regime: Regime, stepped: Any) -> Callable[[float], tuple[Any, list[float]]] | None:
+        """Return the clock of a regime from now on, with what is stepped; None where its rates do not hold the time."""
+        parameters = regime.rates_since(self.modes, self.zero)
+        return (lambda since: (stepped, parameters(since))) if parameters else None

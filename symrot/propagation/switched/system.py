@@ -1,0 +1,185 @@
+"""What motions under torques with switches have in common: their switches, and the smooth motions between these."""
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from fractions import Fraction
+from functools import cached_property
+from typing import Any
+
+from symrot.formula.exact_numbers import PI
+from symrot.formula.float_functions import FLOAT_FUNCTIONS
+from symrot.formula.switches import chosen, hold
+from symrot.formula.tree import evaluate, names, parse, rename, text
+from symrot.planning.plan import Plan
+from symrot.propagation.method import Choice
+from symrot.propagation.motion import on_own_clock
+from symrot.propagation.steppers.cut_off import CutOff
+from symrot.propagation.switched.regimes import Modes, Regime
+
+__all__ = ["SwitchedSystem"]
+
+STATES = frozenset({*(f"omega_{i}" for i in (1, 2, 3)), *(f"q{i}" for i in range(4))})
+
+
+class SwitchedSystem:
+    """The switches of all torques of a plan, and one regime for each way in which they can stand."""
+
+    def __init__(self, plan: Plan, choice: Choice, tolerance: float) -> None:
+        self.plan, self.choice, self.tolerance = plan, choice, tolerance
+        self.start = float(plan.scene.span.start)
+
+    @cached_property
+    def switches(self) -> list[dict[str, Any]]:
+        """The switches of all torques, their modes named as the constants of the plan."""
+        listed = []
+        for torque in self.plan.structure["torques"]:
+            prefix = torque["prefix"]
+            own = {name: f"{prefix}{name}" for name in torque.get("parameters", ())}
+            for switch in torque.get("switches", ()):
+                where = tuple((rename(parse(share), own), value) for share, value in switch["where"])
+                guard = rename(parse(switch.get("choices", switch["guard"]), switching=True), own)
+                listed.append({**switch, "mode": own[switch["mode"]], "guard": guard, "where": where, "prefix": prefix})
+        return listed
+
+    @cached_property
+    def twins(self) -> dict[str, list[str]]:
+        """The modes of one torque that have the same guard as a mode, itself included: those that jump come first.
+
+        As of sign(omega_3) and abs(omega_3) in the friction of a bearing that is greater at rest.
+        """
+        alike: dict[Any, list[str]] = {}
+        for switch in sorted(self.switches, key=_bends):
+            if switch["kind"] == "sign":
+                alike.setdefault((switch["prefix"], switch["guard"], switch["where"]), []).append(switch["mode"])
+        return {mode: modes for modes in alike.values() for mode in modes}
+
+    @cached_property
+    def settled(self) -> set[str]:
+        """The modes whose guards never change: they hold neither the time, nor a state, nor a mode that does."""
+        settled = set[str]()
+        for switch in self.switches:
+            if names(switch["guard"]) <= self.constants.keys() - ({each["mode"] for each in self.switches} - settled):
+                settled.add(switch["mode"])
+        return settled
+
+    @cached_property
+    def constants(self) -> dict[str, Fraction]:
+        return {"pi": PI, **self.plan.constants}
+
+    def initial_modes(self) -> Modes:
+        """Return the modes at the start; a guard that is zero there counts as positive, until the motion tells."""
+        return dict(self._initial_modes[0])
+
+    @property
+    def undecided(self) -> set[str]:
+        """The modes whose guards are zero at the start, and not only because of the time."""
+        return self._initial_modes[1]
+
+    @cached_property
+    def _initial_modes(self) -> tuple[Modes, set[str]]:
+        return self._modes_at_start({})
+
+    def beside_start(self, mode: str, sign: int) -> Modes:
+        """Return the modes on one side of a guard that is zero at the start: those with it in their guards follow."""
+        return self._modes_at_start({mode: sign})[0]
+
+    def _modes_at_start(self, given: Modes) -> tuple[Modes, set[str]]:
+        start, modes, undecided = self.plan.scene.initial, Modes(), set[str]()
+        values: dict[str, float] = {name: float(value) for name, value in self.constants.items()}
+        values |= {"t": self.start, **{f"omega_{i + 1}": float(value) for i, value in enumerate(start.omega_b)}}
+        values |= {f"q{i}": float(value) for i, value in enumerate(start.quaternion)}
+        for switch in self.switches:
+            if not hold(switch["where"], modes):
+                modes[switch["mode"]] = 0 if switch["kind"] == "floor" else 1
+                values[switch["mode"]] = float(modes[switch["mode"]])
+                continue
+            try:
+                guard = float(evaluate(chosen(switch["guard"], modes), values, FLOAT_FUNCTIONS, float))
+            except (ArithmeticError, ValueError):
+                raise CutOff(self.start, f"{switch['label']} has no value there") from None
+            modes[switch["mode"]] = math.floor(guard) if switch["kind"] == "floor" else -1 if guard < 0.0 else 1
+            if guard == 0.0 and switch["mode"] in self.settled:
+                modes[switch["mode"]] = 0 if switch["kind"] == "floor" else switch["at_zero"]
+            modes[switch["mode"]] = given.get(switch["mode"], modes[switch["mode"]])
+            values[switch["mode"]] = float(modes[switch["mode"]])
+            if guard == 0.0 and switch["kind"] == "sign" and names(switch["guard"]) & STATES:
+                undecided.add(switch["mode"])
+        return modes, undecided
+
+    def regime(self, held: frozenset[str], modes: Modes) -> Regime:
+        """Return the smooth motion while the guards of some modes stay at zero; derived when first asked for.
+
+        The other modes count where they choose between the parts of a ``where``.
+        """
+        key = held, tuple(modes.values()) if self._chooses else ()
+        if key not in self._regimes:
+            tied = {twin: mode for mode in held for twin in self.twins[mode][1:]}
+            torques = [_chosen(torque, modes, held, tied) for torque in self.plan.structure["torques"]]
+            content = held, json.dumps(torques, sort_keys=True)
+            if content not in self._regime_of:
+                plan = replace(self.plan, structure=self.plan.structure | {"torques": torques})
+                switches = [
+                    {**switch, "guard": chosen(switch["guard"], modes, held)}
+                    for switch in self.switches
+                    if switch["mode"] not in self.settled
+                    and switch["mode"] not in tied
+                    and (not self._chooses or hold(switch["where"], modes, held))
+                ]
+                own = on_own_clock(plan, self.choice, self.tolerance)
+                self._regime_of[content] = Regime(self.constants, self.switches, own, held, switches)
+            self._regimes[key] = self._regime_of[content]
+        return self._regimes[key]
+
+    @cached_property
+    def _chooses(self) -> bool:
+        """Whether a ``where`` has a part that must not be evaluated where it does not hold."""
+        torques = self.plan.structure["torques"]
+        return any("choices" in part for torque in torques for part in (torque, *torque.get("switches", ())))
+
+    @cached_property
+    def _regimes(self) -> dict[tuple[frozenset[str], tuple[int, ...]], Regime]:
+        return {}
+
+    @cached_property
+    def _regime_of(self) -> dict[tuple[frozenset[str], str], Regime]:
+        return {}
+
+
+def _bends(switch: Mapping[str, Any]) -> bool:
+    """Return whether a formula bends at a switch, and does not jump: where its guard is zero its mode is at will."""
+    return bool(switch["at_zero"] == 1)
+
+
+def _chosen(torque: dict[str, Any], modes: Modes, held: frozenset[str], tied: Mapping[str, str]) -> dict[str, Any]:
+    """Return a torque with the parts of its formulas that hold under some modes, and those of its modes that are held.
+
+    Its guards that do not matter are left out. Modes with the guard of a held one are ``tied`` to that: where the
+    formula jumps there they take its value.
+    """
+    prefix, names = torque["prefix"], torque.get("parameters", ())
+    if own := sorted(name for name in names if prefix + name in held):
+        torque = {**torque, "held": own}
+    switches = torque.get("switches", ())
+    jumping = [switch["mode"] for switch in switches if not _bends(switch)]
+    same = {name: tied[prefix + name].removeprefix(prefix) for name in jumping if prefix + name in tied}
+    if not same and not any("choices" in part for part in (torque, *switches)):
+        return torque
+    values = {name: modes[prefix + name] for name in names if prefix + name in modes}
+
+    def read(formula: str) -> str:
+        return text(chosen(rename(parse(formula, switching=True), same), values, own))
+
+    return {
+        **{key: value for key, value in torque.items() if key != "choices"},
+        "formulas": list(map(read, torque.get("choices", torque["formulas"]))),
+        "switches": [
+            {
+                **{key: value for key, value in switch.items() if key != "choices"},
+                "guard": read(switch.get("choices", switch["guard"])),
+            }
+            for switch in switches
+            if hold([(parse(share), value) for share, value in switch["where"]], values, own)
+        ],
+    }
