@@ -14,7 +14,7 @@ from symrot.formula import exact_numbers as number
 from symrot.planning import plan as planner
 from symrot.planning.plan import make_plan, structure_key
 from symrot.propagation import compiled_models as kernels
-from symrot.propagation import motion, propagator
+from symrot.propagation import motion, propagate, propagator
 from symrot.propagation.steppers import taylor
 from symrot.scene.scene import Initial, Scene, load_scene
 
@@ -88,12 +88,12 @@ def same_bits(one, other):
 def test_another_start_gives_the_bits_of_another_scene(name, method):
     """Twice each: the first start of a structure is prepared, later ones take over what it has."""
     given = SCENES[name]
-    called = propagator.propagator(given, method)
+    called = propagate.propagator(given, method)
     times = np.linspace(*map(float, given.span[:2]), 6)
     for omega, quaternion in [*STARTS.values()] * 2:
-        alone = propagator.propagator(started(given, omega, quaternion), method)
+        alone = propagate.propagator(started(given, omega, quaternion), method)
         same_bits(called(times, omega=omega, quaternion=quaternion), alone(times))
-    assert called(times).y.tobytes() == propagator.propagator(given, method)(times).y.tobytes()
+    assert called(times).y.tobytes() == propagate.propagator(given, method)(times).y.tobytes()
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -124,7 +124,7 @@ LOOKED_UP = [
 def test_a_second_start_of_a_structure_looks_nothing_up(name, method, monkeypatch):
     """Neither principal axes nor libraries, compilers, orders, forms, plans: calls of them are counted."""
     given = SCENES[name]
-    called = propagator.propagator(given, method)
+    called = propagate.propagator(given, method)
     times = np.linspace(*map(float, given.span[:2]), 6)
     for omega, quaternion in STARTS.values():
         called(times, omega=omega, quaternion=quaternion)
@@ -157,7 +157,7 @@ def test_doubles_settle_which_torques_lie_along_an_axis(monkeypatch):
 
 def test_quantities_of_a_changed_start_use_one_kernel(monkeypatch):
     """The kernel of energy and momentum is fetched once for a structure, not for every trajectory."""
-    called = propagator.propagator(PRISM)
+    called = propagate.propagator(PRISM)
     assert called(omega=(0.1, 0.2, 0.3)).invariants
     monkeypatch.setattr(motion, "scene_kernel", None)
     drift = [max(i.drift for i in called(omega=(0.1, 0.2, 0.3 + k)).invariants) for k in range(3)]
@@ -171,9 +171,9 @@ def test_a_driven_motion_from_another_start_looks_nothing_up(monkeypatch):
         return -0.1 * omega
 
     omega, times = (0.4, 0.0, 1.25), np.linspace(0, 2, 5)
-    called = propagator.propagator(SCENES["top"], torque=torque)
+    called = propagate.propagator(SCENES["top"], torque=torque)
     called(times, omega=(1.0, 0.0, 2.0))
-    alone = propagator.propagator(started(SCENES["top"], omega, None), torque=torque)(times)
+    alone = propagate.propagator(started(SCENES["top"], omega, None), torque=torque)(times)
     monkeypatch.setattr(library, "build", None)
     monkeypatch.setattr(library, "fetch", None)
     assert called(times, omega=omega).y.tobytes() == alone.y.tobytes()
