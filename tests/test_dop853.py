@@ -40,6 +40,7 @@ def small(text, states, parameters=1, scale=1.0):
 # ------------------------------------------------------------------------------------------------ accuracy
 
 
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("name", MOTIONS)
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-8, 1e-10, 1e-12])
 def test_the_error_of_the_trajectory_stays_near_the_tolerance(name, tolerance):

@@ -23,6 +23,7 @@ def test_unknown_scipy_methods_are_refused_with_the_list(text):
         fallback.method_name(text)
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize(
     "method, tolerance",
     [

@@ -51,6 +51,7 @@ IMPULSES = {  # torque of t, c and w -> its integral from 0
 }
 
 
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("method", STEPPED)
 @pytest.mark.parametrize(
     ("torque", "start", "c", "w", "stop", "tolerance"),
@@ -106,6 +107,7 @@ def test_a_periodic_pulse_is_seen_every_time(method):
     assert np.abs(omega - true / 3).max() < ALLOWED * 1e-12 * true.max() / 3 + 4 * 2**-52 * k
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("method", ["taylor", "dop853"])
 @pytest.mark.parametrize("omega", [(0.01, 0.02, 0.03), (0.1, 0, 0.2)], ids=str)
 @pytest.mark.parametrize(
