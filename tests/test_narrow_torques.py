@@ -175,7 +175,7 @@ from symrot.errors import PropagationError
 for torque in ("exp(t**3)", "exp(exp(t))", "cosh(100*t)", "1/(t-1/3)**3"):
     scene = symrot.Scene.from_dict({"schema": 1, "body": {"principal": [1, 2, 3]}, "initial": {"omega": [0, 0, 1]},
         "span": {"t": [0, 20]}, "torque": [{"kind": "expression", "torque": ["0", "0", torque]}]})
-    for method in ("auto", "taylor", "dop853"):
+    for method in ("taylor", "dop853"):
         try:
             symrot.propagator(scene, method, 1e-10)([20.0])
         except PropagationError as error:
@@ -183,7 +183,7 @@ for torque in ("exp(t**3)", "exp(exp(t))", "cosh(100*t)", "1/(t-1/3)**3"):
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=80)
     assert done.returncode == 0, done.stderr
-    assert len([line for line in done.stdout.splitlines() if "t =" in line]) == 4 * 3, done.stdout
+    assert len([line for line in done.stdout.splitlines() if "t =" in line]) == 4 * 2, done.stdout
 
 
 @pytest.mark.parametrize("method", STEPPED)
