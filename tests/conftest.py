@@ -105,9 +105,14 @@ def quick_compiler_words(shared_directory: Path) -> str | None:
 
 
 @pytest.fixture
-def quick_compiler(quick_compiler_words: str | None, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Compile for a test that judges motions and messages; others judge speed and bits under the flags that ship."""
-    if quick_compiler_words is not None:
+def quick_compiler(
+    request: pytest.FixtureRequest, quick_compiler_words: str | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Compile for a test that judges motions and messages; others judge speed and bits under the flags that ship.
+
+    In a module of such tests, the mark ``long_motion`` keeps the flags that ship for one that computes for seconds.
+    """
+    if quick_compiler_words is not None and request.node.get_closest_marker("long_motion") is None:
         monkeypatch.setenv("CC", quick_compiler_words)
 
 

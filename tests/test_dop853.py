@@ -327,6 +327,7 @@ def test_a_file_that_is_no_stepper_is_refused(tmp_path):
             dop853.integrate(path, **GOOD)
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("states", [1, 2, 3, 4, 5, 8, 11, 13])
 def test_any_number_of_states_can_be_stepped(states):
     """Decays at rates 1..N, each state in a block of its own; widths below, at and above the unrolled ones."""

@@ -70,6 +70,7 @@ def test_compiled_coefficients_are_those_of_the_recurrences(width):
         compare(dict(zip(["x", "y", *(f"s{i}" for i in range(len(group) - 2))], group, strict=True)), width)
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_compiled_polynomial_systems(name):
     compare(SYSTEMS[name], None)

@@ -132,6 +132,7 @@ def test_a_tumbling_body_meets_every_pulse(method, omega, torque, parameters, fe
     assert attitude_apart(states[:, 3:], true[:, 3:]).max() < limit * max(1, truth.growth[1])
 
 
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("method", STEPPED)
 @pytest.mark.parametrize("w", [0.03, 0.003, 0.001, 0.0001])
 def test_a_bump_of_the_angle_does_its_work(method, w):
@@ -167,6 +168,7 @@ def test_an_ensemble_meets_the_pulse(method):
     assert np.abs(ensemble.omega[:, 2, 2] - np.array(starts)[:, 2] - sqrt(pi)).max() < ALLOWED * 1e-10 * 1.8
 
 
+@pytest.mark.long_motion
 def test_overflow_and_poles_end_in_a_sentence():
     """Every method says how far it came, within a time that only a run without an end exceeds."""
     code = """
@@ -186,6 +188,7 @@ for torque in ("exp(t**3)", "exp(exp(t))", "cosh(100*t)", "1/(t-1/3)**3"):
     assert len([line for line in done.stdout.splitlines() if "t =" in line]) == 4 * 2, done.stdout
 
 
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("method", STEPPED)
 @pytest.mark.parametrize("torque", ["step(t-c)", "(1+sign(t-c))/2", "where(t < c, 0, 1)", "(1+(t-c)/abs(t-c))/2"])
 def test_a_switch_is_located_to_the_last_bits(method, torque):
@@ -196,6 +199,7 @@ def test_a_switch_is_located_to_the_last_bits(method, torque):
     assert np.abs(omega - np.maximum(t - c, 0) / 3).max() < ALLOWED * 1e-12
 
 
+@pytest.mark.long_motion
 @pytest.mark.parametrize("method", STEPPED)
 def test_a_thruster_fires_a_thousand_times(method):
     """1000 pulses of 10 ms in 1000 s add up to m times 10 s."""

@@ -87,6 +87,7 @@ def scene(torque, omega=(0, 0, 0), stop=10.0, principal=(1, 2, 3), more=(), **pa
     return Scene.from_dict(content)
 
 
+@pytest.mark.thinned(2)
 @needs_compiler
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-9, 1e-12])

@@ -90,6 +90,7 @@ def test_compiled_coefficients_are_those_of_the_recurrences(flags):
         compare(rates, flags)
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.usefixtures("quick_compiler")
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_compiled_polynomial_systems(name):
