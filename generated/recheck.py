@@ -26,8 +26,19 @@ from pathlib import Path
 from secrets import randbelow
 
 PI = Decimal("3.14159265358979323846264338327950288419716939937510582097494459230781640628620899862803482534211707")
-SINE = cache(lambda x: sum((-1) ** k * (x % (2 * PI)) ** (2 * k + 1) / math.factorial(2 * k + 1) for k in range(60)))
-PLAIN = {"sin": SINE, "cos": lambda x: SINE(x + PI / 2), "sqrt": Decimal.sqrt, "fabs": abs}
+
+
+@cache
+def sine(x):
+    """Return the sine by 60 terms of its series, those of high powers first."""
+    x = x % (2 * PI)
+    square, total = x * x, 1
+    for k in range(118, 0, -2):
+        total = 1 - total * square / (k * (k + 1))
+    return x * total
+
+
+PLAIN = {"sin": sine, "cos": lambda x: sine(x + PI / 2), "sqrt": Decimal.sqrt, "fabs": abs}
 PLAIN |= {"copysign": Decimal.copy_sign, "nearly_": lambda y, x: Decimal(math.atan2(y, x))}
 OTHERS = ("tan", "asin", "acos", "atan", "exp", "log", "sinh", "cosh", "tanh")  # any functions, in laws too
 MEANS = {"atan2": "closer_(x, y, closer_(x, y, nearly_(x, y)))", "closer_": "z + (x*cos(z) - y*sin(z))/sqrt(x*x + y*y)"}

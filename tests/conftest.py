@@ -3,8 +3,10 @@
 import gc
 import os
 import shlex
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import suppress
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +27,27 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
     from xdist.scheduler import WorkStealingScheduling
 
     return WorkStealingScheduling(config, log)
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Leave most cases of functions marked ``thinned(n)`` to ``pytest -m campaign``.
+
+    Every n-th case stays, and as many more as it takes that each value of each axis of parameters stays.
+    """
+    functions: dict[str, list[Any]] = {}
+    for item in items:
+        if item.get_closest_marker("thinned") and not item.get_closest_marker("campaign"):
+            functions.setdefault(item.nodeid.partition("[")[0], []).append(item)
+    for cases in functions.values():
+        every = cases[0].get_closest_marker("thinned").args[0]
+        values = [{(name, id(value)) for name, value in case.callspec.params.items()} for case in cases]
+        shared = {value for value, count in Counter(chain(*values)).items() if count > 1}
+        seen = set().union(*values[::every])
+        for number, (case, own) in enumerate(zip(cases, values, strict=True)):
+            if number % every and (own & shared) <= seen:
+                case.add_marker("campaign")
+            seen |= own if case.get_closest_marker("campaign") is None else set()
 
 
 def pytest_collection_finish() -> None:
@@ -58,9 +81,9 @@ def session_cache(shared_directory: Path) -> Iterator[None]:
 
 @pytest.fixture(scope="session")
 def quick_compiler_words(shared_directory: Path) -> str | None:
-    """Return a compiler that compiles the kernels of scenes at -Og, or None where there is no compiler.
+    """Return a compiler that compiles the kernels of scenes at -O0, or None where there is no compiler.
 
-    It takes 40 % of the time of -O2. Closed forms (-ffp-contract=off), which all tests load, keep their own flags.
+    It takes 25 % of the time of -O2. Closed forms (-ffp-contract=off), which all tests load, keep their own flags.
     """
     if library.missing() or os.name != "posix":
         return None
@@ -70,7 +93,7 @@ def quick_compiler_words(shared_directory: Path) -> str | None:
     own.write_text(
         "#!/bin/sh\n"
         'case " $* " in\n'
-        f'*" -ffp-contract=fast "*) exec {command} "$@" -Og -fno-schedule-insns ;;\n'
+        f'*" -ffp-contract=fast "*) exec {command} "$@" -O0 ;;\n'
         f'*) exec {command} "$@" ;;\n'
         "esac\n"
     )
@@ -82,9 +105,14 @@ def quick_compiler_words(shared_directory: Path) -> str | None:
 
 
 @pytest.fixture
-def quick_compiler(quick_compiler_words: str | None, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Compile for a test that judges motions and messages; others judge speed and bits under the flags that ship."""
-    if quick_compiler_words is not None:
+def quick_compiler(
+    request: pytest.FixtureRequest, quick_compiler_words: str | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Compile for a test that judges motions and messages; others judge speed and bits under the flags that ship.
+
+    In a module of such tests, the mark ``long_motion`` keeps the flags that ship for one that computes for seconds.
+    """
+    if quick_compiler_words is not None and request.node.get_closest_marker("long_motion") is None:
         monkeypatch.setenv("CC", quick_compiler_words)
 
 

@@ -33,6 +33,7 @@ def verdicts(directory, text, compiler="gcc", flags=("-O2", *STRICT), against=No
 # --- what compilers make of kernels -----------------------------------------------------------------------------------
 
 
+@pytest.mark.thinned(2)
 @needs_objdump
 @pytest.mark.parametrize("compiler", HERE)
 @pytest.mark.parametrize(

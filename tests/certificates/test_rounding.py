@@ -177,6 +177,7 @@ def rows_of(name, suffix="", points=3000, budget=BUDGET):
     return compare(operations, bounds, measure(operations, given.box, bounds, given.region, points), name)
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("name", SLICE)
 @pytest.mark.parametrize("suffix", ["", "f"], ids=["double", "float"])
 def test_no_error_is_larger_than_its_bound_nor_the_bound_far_from_it(name, suffix):

@@ -267,6 +267,7 @@ def test_complex_numbers_that_are_written_out_stay_readable_in_the_core_and_are_
 FUNCTIONS = ("log", "exp", "sqrt", "sin", "asin", "acos", "atan", "cosh", "tanh", "abs", "tan")
 
 
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("deep", [5, 12, 50])
 @pytest.mark.parametrize("function", FUNCTIONS)
 def test_a_tower_of_functions_has_an_answer(function, deep):

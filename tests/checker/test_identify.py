@@ -64,6 +64,7 @@ def test_the_whole_file_is_as_printed():
 # -- names ------------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("sequence", SEQUENCES)
 def test_every_sequence_is_recognised_under_other_names(sequence):
     """Matrix, passive matrix and both rate Jacobians, in angles of another name."""

@@ -75,6 +75,7 @@ def test_a_gyrostat_without_rotor_is_a_free_body():
     assert np.abs(rates - free[0]).max() < 2 * BAR and np.abs(np.abs((attitudes * free[1]).sum(axis=1)) - 1).max() < BAR
 
 
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("damping", [0, 0.125, 3])
 @pytest.mark.parametrize("torque", [0, 0.25, -2])
 def test_driven_and_damped_about_an_axis(torque, damping, way):

@@ -139,6 +139,7 @@ def test_s19_pendulums(omega, q0):
     assert in_bar(omega, q0, c=F(0) + F(1, 1000))
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("q0", [UPRIGHT, HANGING])
 @pytest.mark.parametrize("omega", [(F(5, 2), 0, 1), (F(9, 2), 1, -1), (F(1, 1000), 0, 3), (F(-1, 10), F(1, 10), 10)])
 def test_s20_through_the_vertical(omega, q0):

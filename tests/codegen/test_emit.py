@@ -222,6 +222,7 @@ def pointer(values):
     return values.ctypes.data_as(ctypes.c_void_p)
 
 
+@pytest.mark.thinned(3)
 @needs_cc
 @pytest.mark.parametrize("language", ["c", "c++"])
 @pytest.mark.parametrize("name", SCENES)

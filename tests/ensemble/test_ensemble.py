@@ -70,11 +70,13 @@ def test_compiled_coefficients_are_those_of_the_recurrences(width):
         compare(dict(zip(["x", "y", *(f"s{i}" for i in range(len(group) - 2))], group, strict=True)), width)
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_compiled_polynomial_systems(name):
     compare(SYSTEMS[name], None)
 
 
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("width", WIDTHS)
 @pytest.mark.parametrize("t", [0.0, 0.7, -1e5, 1e6 / 7, 1e9 / 3, 1e15 / 3])
 def test_phases_of_torques_of_time_are_as_exact_as_the_time(width, t):

@@ -87,6 +87,7 @@ def scene(torque, omega=(0, 0, 0), stop=10.0, principal=(1, 2, 3), more=(), **pa
     return Scene.from_dict(content)
 
 
+@pytest.mark.thinned(2)
 @needs_compiler
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-9, 1e-12])
@@ -210,6 +211,7 @@ def test_parameters_of_any_name_stand_in_guards():
         assert motion([2.0]).omega[0, 2] == pytest.approx(1 / 3, abs=1e-10), name
 
 
+@pytest.mark.thinned(4)
 @needs_compiler
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize(
@@ -226,6 +228,7 @@ def test_guards_that_stay_at_zero_have_the_value_at_zero(method, torque, expecte
     assert motion.omega[0, 2] == pytest.approx(0.1 + expected / 3, abs=1e-9)
 
 
+@pytest.mark.thinned(3)
 @needs_compiler
 @pytest.mark.parametrize("method", ["taylor", "dop853"])
 @pytest.mark.parametrize(
@@ -298,6 +301,7 @@ def test_a_guard_without_a_value_ends_in_a_sentence():
         symrot.propagator(scene("mod(t, 0)"))([1.0])
 
 
+@pytest.mark.thinned(4)
 @needs_compiler
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize(
@@ -332,6 +336,7 @@ FRICTIONS = {  # torque -> omega_3 from 1 rad/s, for a moment of inertia of 1
 }
 
 
+@pytest.mark.thinned(4)
 @needs_compiler
 @pytest.mark.parametrize("method", [*METHODS, "scipy:Radau", "scipy:BDF", "scipy:LSODA"])
 @pytest.mark.parametrize("torque", FRICTIONS)

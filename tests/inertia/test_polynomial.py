@@ -62,6 +62,7 @@ def test_derivatives_of_angles():
     assert sympy.trigsimp(total - sympy.diff(s * cos(theta) ** 2 * sin(theta), theta)) == 0
 
 
+@pytest.mark.thinned(5)
 @pytest.mark.parametrize("powers", [(a, b) for a in range(6) for b in range(6)])
 @pytest.mark.parametrize("quarters", [(0, 1), (0, 2), (0, 4), (1, 3), (-1, 1), (2, 3)])
 def test_integrals_of_cosines_and_sines(powers, quarters):

@@ -184,6 +184,7 @@ def test_the_two_exact_paths_agree(name):
 SLOW_FOR_SYMPY = {"tetrahedron"}  # twelve symbols; covered by the affine law below
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("name", [name for name in EXTENDED if name not in SLOW_FOR_SYMPY])
 def test_sympy_finds_the_same_integrals(name):
     """Integrand and limits of the steps, integrated by SymPy instead: measure and one second moment."""

@@ -41,6 +41,7 @@ def test_a_program_of_ones_own_builds_and_runs(compiler, language, tmp_path):
     assert compiled(program).stdout == "kernels agree\n"
 
 
+@pytest.mark.thinned(3)
 @needs_cc
 @pytest.mark.parametrize("name", ["euler_zxz_body_rates", "euler_zyx_dcm", "rotation_vector_body_jacobian", "rotation_vector_space_rates",
                                   "rotation_vector_dcm", "rotation_vector_of_quaternion", "euler_zyx_of_quaternion",

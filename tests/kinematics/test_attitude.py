@@ -147,6 +147,7 @@ def test_inverse_is_compact(sequence):
         assert {entry.as_numer_denom()[1] for entry in inverse} <= {1, sin(theta), cos(theta)}
 
 
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("sequence", SEQUENCES)
 def test_condition_number_is_that_of_the_singular_values(sequence):
     generator = random.Random(sequence)
@@ -279,6 +280,7 @@ def test_quaternion_of_euler_has_the_dcm_of_the_sequence(sequence):
     assert normal_form(quaternion.dcm_of(q) - dcm(sequence)) == zeros(3)
 
 
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("sequence", SEQUENCES)
 def test_angles_come_back_from_quaternion_and_dcm(sequence):
     proper = sequence[0] == sequence[2]

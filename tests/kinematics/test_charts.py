@@ -184,6 +184,7 @@ def test_shadow_set():
 # Conversions between charts
 
 
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("target", CHARTS)
 @pytest.mark.parametrize("source", CHARTS)
 def test_conversions_keep_the_attitude(source, target):

@@ -64,6 +64,7 @@ def test_rebuilt_rotation_is_exact_at_any_distance_from_lock(sequence):
     assert worst < 4e-16
 
 
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("sequence", SEQUENCES)
 def test_angles_agree_with_50_digits_and_with_scipy(sequence, attitudes):
     angles, locked = cv.quaternion_to_euler(attitudes, sequence)

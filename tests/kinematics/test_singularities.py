@@ -29,6 +29,7 @@ def on_circle(where, k):
     return where.contains(pi * k / 12) == S.true
 
 
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("sequence", SEQUENCES)
 def test_singular_set(sequence):
     """sin theta = 0 for proper sequences, cos theta = 0 for Tait-Bryan: the textbook answer, found."""
@@ -57,6 +58,7 @@ def test_zeros_of_known_equations():
     assert pi / 2 in uneven and pi in uneven and -pi / 2 not in uneven
 
 
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("sequence", SEQUENCES)
 def test_limits_are_what_the_inverse_does_close_by(sequence):
     """Signs of infinities, finite limits and residues against the inverse at 1e-20 rad, 50 digits."""
@@ -97,6 +99,7 @@ def test_lock_indicator_tells_the_distance(sequence):
     assert normal_form(rate_jacobian(sequence).determinant ** 2 - (1 - indicator**2)) == 0
 
 
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("sequence", SEQUENCES)
 def test_alternatives_against_numbers(sequence):
     """Attitudes all around the locked circle, as matrices: which of the other sequences lock there, numerically."""
@@ -143,6 +146,7 @@ def test_regular_at_agrees_with_numbers():
 # The dossier
 
 
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("sequence", SEQUENCES)
 def test_what_is_lost_at_lock(sequence):
     """The silent rates turn nothing, and no rates turn about the lost axis; the attitude depends on one combination."""

@@ -122,6 +122,7 @@ def test_repeated_torques_and_parameters_with_taken_names_keep_apart():
     assert plan.constants == {"A": 1, "B": 2, "C": 3, "torque_1": 1, "torque2_torque_1": 1, "torque3_A": 7}
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize(
     "name", ["torque_1", "linear_1", "torque2_linear_1", "direction_2", "omega_3", "theta", "L_1", "p0", "x0"]
 )

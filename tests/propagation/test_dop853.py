@@ -17,7 +17,9 @@ import pytest
 
 from symrot.build import cache as library
 from symrot.errors import CompilerError, InputError, PropagationError
+from symrot.propagation.propagator import propagator
 from symrot.propagation.steppers import dop853
+from symrot.scene.scene import Scene
 from tests.reference.tops import MOTIONS, RIGID_BODY, TIMES, error, parameters, state, taylor, wave
 
 
@@ -40,6 +42,7 @@ def small(text, states, parameters=1, scale=1.0):
 # ------------------------------------------------------------------------------------------------ accuracy
 
 
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("name", MOTIONS)
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-8, 1e-10, 1e-12])
 def test_the_error_of_the_trajectory_stays_near_the_tolerance(name, tolerance):
@@ -324,6 +327,7 @@ def test_a_file_that_is_no_stepper_is_refused(tmp_path):
             dop853.integrate(path, **GOOD)
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("states", [1, 2, 3, 4, 5, 8, 11, 13])
 def test_any_number_of_states_can_be_stepped(states):
     """Decays at rates 1..N, each state in a block of its own; widths below, at and above the unrolled ones."""
@@ -362,3 +366,19 @@ def test_the_benchmark_compares_like_with_like(capsys):
         assert int(evaluations) > 100
         assert float(missed) < 1e-6
     assert float(rows["symrot"][-2]) < 5e-8
+
+
+@pytest.mark.parametrize("rate", [1e-99, 1e-45, 1e45, 1e99])
+def test_steps_do_not_depend_on_the_unit_of_time(rate):
+    """Of large rates the square of the square of an error is no double: millions of steps were taken."""
+
+    def motion(unit):
+        made = Scene.from_dict({
+            "schema": 1, "body": {"principal": [2, 3, 4]}, "initial": {"omega": [0.3 * unit, unit, 0.5 * unit]},
+            "span": {"t": [0, 6 / unit]},
+        })  # fmt: skip
+        return propagator(made, "dop853", 1e-10)(np.linspace(0, 6, 4) / unit)
+
+    found, plain = motion(rate), motion(1.0)
+    assert found.stats.accepted == pytest.approx(plain.stats.accepted, abs=2)
+    assert np.abs(found.omega / rate - plain.omega).max() < 1e-9

@@ -24,6 +24,7 @@ def test_unknown_scipy_methods_are_refused_with_the_list(text):
         fallback.method_name(text)
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize(
     "method, tolerance",
     [
@@ -152,6 +153,7 @@ def test_endlessly_many_switches_are_given_up_soon_with_the_samples_before(metho
     assert caught.value.trajectory.t.tolist() == [0.5, 1.5]
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("method", list(fallback.METHODS))
 def test_a_torque_that_leaves_zero_slowly_is_followed(method):
     """Up to 1 s nothing acts, then the fifth power of the time acts on two axes."""
@@ -171,6 +173,7 @@ HYSTERETIC = {  # one that is stepped from rest by LSODA, and one that slides wh
 }  # fmt: skip
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("method", ["taylor", "scipy:LSODA", "scipy:RK45"])
 @pytest.mark.parametrize("name", HYSTERETIC)
 def test_a_torque_that_falls_behind_two_thresholds_is_followed(name, method):

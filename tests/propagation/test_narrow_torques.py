@@ -51,6 +51,7 @@ IMPULSES = {  # torque of t, c and w -> its integral from 0
 }
 
 
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("method", STEPPED)
 @pytest.mark.parametrize(
     ("torque", "start", "c", "w", "stop", "tolerance"),
@@ -136,6 +137,7 @@ def test_a_periodic_pulse_is_seen_every_time(method):
     assert np.abs(omega - true / 3).max() < ALLOWED * 1e-12 * true.max() / 3 + 4 * 2**-52 * k
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("method", ["taylor", "dop853"])
 @pytest.mark.parametrize("omega", [(0.01, 0.02, 0.03), (0.1, 0, 0.2)], ids=str)
 @pytest.mark.parametrize(
@@ -160,6 +162,7 @@ def test_a_tumbling_body_meets_every_pulse(method, omega, torque, parameters, fe
     assert attitude_apart(states[:, 3:], true[:, 3:]).max() < limit * max(1, truth.growth[1])
 
 
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("method", STEPPED)
 @pytest.mark.parametrize("w", [0.03, 0.003, 0.001, 0.0001])
 def test_a_bump_of_the_angle_does_its_work(method, w):
@@ -195,6 +198,7 @@ def test_an_ensemble_meets_the_pulse(method):
     assert np.abs(ensemble.omega[:, 2, 2] - np.array(starts)[:, 2] - sqrt(pi)).max() < ALLOWED * 1e-10 * 1.8
 
 
+@pytest.mark.long_motion
 def test_overflow_and_poles_end_in_a_sentence():
     """Every method says how far it came, within a time that only a run without an end exceeds."""
     code = """
@@ -203,7 +207,7 @@ from symrot.errors import PropagationError
 for torque in ("exp(t**3)", "exp(exp(t))", "cosh(100*t)", "1/(t-1/3)**3"):
     scene = symrot.Scene.from_dict({"schema": 1, "body": {"principal": [1, 2, 3]}, "initial": {"omega": [0, 0, 1]},
         "span": {"t": [0, 20]}, "torque": [{"kind": "expression", "torque": ["0", "0", torque]}]})
-    for method in ("auto", "taylor", "dop853"):
+    for method in ("taylor", "dop853"):
         try:
             symrot.propagator(scene, method, 1e-10)([20.0])
         except PropagationError as error:
@@ -211,9 +215,10 @@ for torque in ("exp(t**3)", "exp(exp(t))", "cosh(100*t)", "1/(t-1/3)**3"):
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=80)
     assert done.returncode == 0, done.stderr
-    assert len([line for line in done.stdout.splitlines() if "t =" in line]) == 4 * 3, done.stdout
+    assert len([line for line in done.stdout.splitlines() if "t =" in line]) == 4 * 2, done.stdout
 
 
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("method", STEPPED)
 @pytest.mark.parametrize("torque", ["step(t-c)", "(1+sign(t-c))/2", "where(t < c, 0, 1)", "(1+(t-c)/abs(t-c))/2"])
 def test_a_switch_is_located_to_the_last_bits(method, torque):
@@ -224,6 +229,7 @@ def test_a_switch_is_located_to_the_last_bits(method, torque):
     assert np.abs(omega - np.maximum(t - c, 0) / 3).max() < ALLOWED * 1e-12
 
 
+@pytest.mark.long_motion
 @pytest.mark.parametrize("method", STEPPED)
 def test_a_thruster_fires_a_thousand_times(method):
     """1000 pulses of 10 ms in 1000 s add up to m times 10 s."""

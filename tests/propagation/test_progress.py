@@ -24,6 +24,7 @@ def scene(formula, stop):
     return Scene.from_dict({"schema": 1, "title": "x", "torque": [torque], **more}, "x")
 
 
+@pytest.mark.thinned(2)
 @needs_compiler
 @pytest.mark.parametrize(
     ("name", "method"),

@@ -99,6 +99,7 @@ def test_the_reference_file_is_what_its_program_prints():
     assert [taylor.decimal(x) for line in dcm for x in line] == row["dcm"]
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.usefixtures("quick_compiler")
 @pytest.mark.parametrize("name", SCENES)
 def test_every_simplification_leaves_the_motion_alone(name):
@@ -422,6 +423,7 @@ def test_a_motion_without_closed_form_is_not_called_exact(name):
         propagate(name, method="exact")
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("name", SCENES)
 def test_taylor_and_dormand_prince_agree(name):
     series, stepped = propagate(name, method="taylor", tolerance=1e-11), propagate(name, method="dop853")

@@ -43,6 +43,7 @@ def waves(t, start):
         return Fraction(str(rest if half % 2 == 0 else mpmath.pi - rest))
 
 
+@pytest.mark.thinned(4)
 @needs_compiler
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize(

@@ -14,6 +14,7 @@ import pytest
 from symrot.bench import taylor as bench
 from symrot.build import cache as library
 from symrot.codegen.taylor.coefficients import coefficients
+from symrot.codegen.taylor.invariant_source import invariant_definitions
 from symrot.codegen.taylor.recurrences import recurrences
 from symrot.codegen.taylor.source import taylor_definitions
 from symrot.ensemble.ensemble import propagate_ensemble
@@ -89,6 +90,7 @@ def test_compiled_coefficients_are_those_of_the_recurrences(flags):
         compare(rates, flags)
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.usefixtures("quick_compiler")
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_compiled_polynomial_systems(name):
@@ -157,6 +159,7 @@ def test_code_does_not_grow_with_the_order():
 # ------------------------------------------------------------------------------------------------ accuracy
 
 
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("name", MOTIONS)
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12])
 def test_the_error_of_the_trajectory_stays_near_the_tolerance(name, tolerance):
@@ -449,6 +452,16 @@ def test_the_text_is_cplusplus_too_and_draws_no_warning(plain, tmp_path):
         subprocess.run([*command, str(tmp_path / "x.o")], input=source.encode(), check=True)
 
 
+@pytest.mark.skipif(shutil.which("gcc") is None, reason="needs gcc")
+def test_a_text_without_invariants_needs_no_optimizer_to_link(tmp_path):
+    """A call of a function that is not there is an error in C, though an optimizer drops the code around it."""
+    system = program({"x": "-k*x + t"})
+    source = taylor.translation_unit(system, (0, 1), (1.0,), invariants=invariant_definitions(system, [], ["x"], ["k"]))
+    command = ["gcc", "-x", "c", "-std=c99", "-O0", "-march=native", "-Werror=implicit-function-declaration", "-shared",
+               "-fPIC", "-Wl,-z,defs", "-", "-lm", "-o", str(tmp_path / "x.so")]  # fmt: skip
+    subprocess.run(command, input=source.encode(), check=True)
+
+
 # ------------------------------------------------------------------------------------------------ benchmark
 
 
@@ -460,6 +473,7 @@ def test_the_benchmark_runs_and_ranks():
     assert bench.best_of(runs, 1e-30, ["taylor"]) is None
 
 
+@pytest.mark.thinned(5)
 @pytest.mark.usefixtures("quick_compiler")
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-6, 1e-9, 1e-12])
 @pytest.mark.parametrize("power", range(1, 7))

@@ -94,7 +94,9 @@ class Claim:
             elif sign == "!=":
                 nonzero.extend(_entries(lhs, rhs, self.label("given")))
         source = self.sources.get("claim", "")
-        lhs, rhs = (meaning.read(side, source, self.label("claim")) for side in self.relation[1:])
+        left, right = self.relation[1:]
+        lhs = meaning.read(left, source, self.label("claim"))
+        rhs = lhs if right is left else meaning.read(right, source, self.label("claim"))
         divisors = tuple(dict.fromkeys(divisor.value for divisor in meaning.divisors))
         radicands = tuple(dict.fromkeys(meaning.radicands))
         return Problem(lhs, rhs, tuple(hypotheses), divisors, tuple(nonzero), radicands)

@@ -108,6 +108,7 @@ static const double SYMROT_SHRINK = 1.0/3.0, SYMROT_COLLAPSE = 0.1;      /* reje
 static const double SYMROT_SLACK = 1e4;   /* what enclosures exceed errors by, and less: see ENCLOSURES.md */
 static const double SYMROT_REGAIN = 1.5;  /* most that a step grows after one that was held back */
 #endif
+static const double SYMROT_LARGE = 1e80;  /* of a square: products of two such squares of errors stay finite up to it */
 static const double SYMROT_ROUND_OFF = 2.0*DBL_EPSILON;  /* no step can be asked to be better than that */
 static const double SYMROT_RATE_FLOOR = 1e-3;  /* a rate below this over h turns the body by less than this in a step */
 
@@ -372,8 +373,10 @@ SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *
         const double allowed = share > SYMROT_ROUND_OFF ? share : SYMROT_ROUND_OFF, weight = 1.0/(allowed*allowed);
         double worst = 0.0;
         for (int b = 0; b < SYMROT_COUNT; ++b) {
-            const double e5 = symrot_square_sum(error5, b), e3 = symrot_square_sum(error3, b);
-            const double error = e5*e5/((e5 + 0.01*e3)*symrot_scale_squared(y, y1, h, b) + DBL_MIN)*weight;
+            const double size = symrot_scale_squared(y, y1, h, b);
+            const double unit = size > SYMROT_LARGE || (size > 0.0 && size < 1.0/SYMROT_LARGE) ? 1.0/size : 1.0;
+            const double e5 = symrot_square_sum(error5, b)*unit, e3 = symrot_square_sum(error3, b)*unit;
+            const double error = e5*e5/((e5 + 0.01*e3)*(size*unit) + DBL_MIN)*weight;
             if (worst == worst && !(error <= worst)) worst = error;  /* a NaN stays one, whatever other blocks say */
         }
         const double factor = SYMROT_SAFETY*symrot_inverse_root_16(worst);

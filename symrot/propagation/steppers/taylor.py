@@ -48,7 +48,8 @@ FILES = {
 }
 PROJECTION = "/* PROJECTION */\n"  # where taylor.c takes projection.c
 ENCLOSURE = "/* ENCLOSURE */\n"  # and enclosure.h
-NO_INVARIANTS = "#define SYMROT_INVARIANTS 0\n#define SYMROT_INVARIANT_PARAMETERS 0\n"
+NO_INVARIANT = "#define SYMROT_INVARIANTS 0\n"
+NO_INVARIANTS = NO_INVARIANT + "#define SYMROT_INVARIANT_PARAMETERS 0\n"
 NO_ENCLOSURE = "#define SYMROT_ENCLOSED 0\n"
 MIDDLE_REACH = 3  # of the discs of symrot.codegen.enclosure.terms.REACHES: the one to begin with
 PROJECTED_EVERY = 16  # steps: by measurement, seldom enough to cost a few percent and often enough to lose nothing
@@ -129,10 +130,9 @@ def translation_unit(
     order = ORDER if order is None else order
     own = {name: c_text(path) for name, path in FILES.items()}
     definitions = taylor_definitions(program, blocks, scales, order)
-    if not invariants:
-        invariants, projection = NO_INVARIANTS, ""
-    else:
-        projection = own["projection.c"]
+    invariants = invariants or NO_INVARIANTS
+    # without invariants projection.c calls a function that is not there: an error in C, which only optimizers overlook
+    projection = "" if NO_INVARIANT in invariants else own["projection.c"]
     stepper = own["taylor.c"].replace(PROJECTION, projection)
     bounds = enclosure_source(program, order, blocks) if enclosed else NO_ENCLOSURE
     stepper = stepper.replace(ENCLOSURE, own["enclosure.h"])
