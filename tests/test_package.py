@@ -5,6 +5,8 @@ import os
 import subprocess
 import sys
 import zipfile
+from collections import Counter
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -14,7 +16,7 @@ import symrot
 ROOT = Path(__file__).parents[1]
 PACKAGE = ROOT / "symrot"
 
-ROOMS = (  # from left to right: a module imports at its top only from its own room and from rooms on its left
+ROOMS = (  # from left to right: a module imports, anywhere, only from its own room and from rooms on its left
     {"errors", "conventions", "files", "formula", "symbols"},
     {"exact"},
     {"proof"},
@@ -32,6 +34,7 @@ ROOMS = (  # from left to right: a module imports at its top only from its own r
     {"bench"},
     {"cli", "__main__"},
 )
+MOST_IN_A_ROOM = 16
 ORDER = {room: place for place, rooms in enumerate(ROOMS) for room in rooms}
 WITHOUT_SYMPY = (
     "errors", "conventions", "formula.tree", "formula.exact_numbers", "formula.program", "kinematics.conversions", "kinematics.continuity", "kinematics.rates",
@@ -47,25 +50,54 @@ def room_of(module):
 
 
 def imports_of(path):
-    """The modules of symrot that a file imports when it is imported itself."""
-    for node in ast.parse(path.read_text(encoding="utf-8")).body:
-        if isinstance(node, ast.ImportFrom) and node.module and not node.level:
-            names = (
-                [f"{node.module}.{alias.name}" for alias in node.names] if node.module == "symrot" else [node.module]
-            )
-            yield from (name for name in names if room_of(name) in ORDER)
+    """The modules of symrot that a file imports anywhere: when it is imported, in functions, or for types alone."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and node.module:
+            for name in node.names:
+                yield f"{node.module}.{name.name}" if f"{node.module}.{name.name}" in MODULES else node.module
         elif isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names if room_of(alias.name))
+            yield from (name.name for name in node.names)
 
 
-@pytest.mark.parametrize("path", sorted(PACKAGE.rglob("*.py")), ids=lambda path: str(path.relative_to(PACKAGE)))
-def test_imports_go_one_way(path):
-    own = path.relative_to(PACKAGE).with_suffix("").parts[0]
-    if own == "__init__":
-        return
-    assert own in ORDER, f"{own} has no place in the table of rooms"
-    for module in imports_of(path):
-        assert ORDER[room_of(module)] <= ORDER[own], f"{own} imports {module} from its right"
+def module_of(path):
+    return ".".join(("symrot", *path.relative_to(PACKAGE).with_suffix("").parts)).removesuffix(".__init__")
+
+
+MODULES = {module_of(path): path for path in sorted(PACKAGE.rglob("*.py"))}
+IMPORTS = {
+    module: {name for name in imports_of(path) if name in MODULES} - {module} for module, path in MODULES.items()
+}
+
+
+def backward(imports):
+    """The imports of a room from rooms to its right."""
+    return [
+        (module, name)
+        for module, names in imports.items()
+        for name in sorted(names)
+        if module != "symrot" and room_of(name) and ORDER[room_of(name)] > ORDER[room_of(module)]
+    ]
+
+
+def test_imports_go_one_way():
+    assert {room_of(module) for module in MODULES} - {None} == set(ORDER)
+    assert backward(IMPORTS) == []
+
+
+def test_no_modules_import_each_other_in_a_circle():
+    tuple(TopologicalSorter(IMPORTS).static_order())
+
+
+def test_walls_and_circles_are_noticed():
+    assert backward({"symrot.exact.decide": {"symrot.cli.main"}}) == [("symrot.exact.decide", "symrot.cli.main")]
+    with pytest.raises(CycleError):
+        tuple(TopologicalSorter({**IMPORTS, "symrot.errors": {"symrot.cli.main"}}).static_order())
+
+
+def test_no_room_is_crowded():
+    """At most 16 modules beside tables of data, so that a folder is seen at a glance."""
+    rooms = Counter(path.parent for path in MODULES.values() if path.stem != "__init__")
+    assert {str(room.relative_to(PACKAGE)): count for room, count in rooms.items() if count > MOST_IN_A_ROOM} == {}
 
 
 def run(code, **environment):
