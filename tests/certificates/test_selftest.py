@@ -170,7 +170,7 @@ def test_a_library_that_changed_this_process_is_found_out():
     """The command tests its own thread: here after its rounding was turned upward."""
     code = (
         "import ctypes, ctypes.util, sys\n"
-        "from symrot import cli\n"
+        "from symrot.cli import main as cli\n"
         "libm = ctypes.CDLL(ctypes.util.find_library('m'))\n"
         "if libm.fesetround(0x800): sys.exit(77)\n"
         "sys.exit(cli.main(['selftest']))\n"

@@ -17,7 +17,7 @@ import pytest
 
 from symrot.build import cache as library
 from symrot.errors import CompilerError, InputError, PropagationError
-from symrot.propagation.propagator import propagator
+from symrot.propagation.propagate import propagator
 from symrot.propagation.steppers import dop853
 from symrot.scene.scene import Scene
 from tests.reference.tops import MOTIONS, RIGID_BODY, TIMES, error, parameters, state, taylor, wave
