@@ -1,7 +1,8 @@
 """What ``symrot bench`` does: a table of modes, each an option of the command line.
 
-A mode takes the parsed options and a function that hears of progress; it returns an :class:`Outcome`. Modules of a mode
-are imported when it is asked for. To add one: a function here or in a module of its own, and a row of :data:`MODES`.
+A mode takes the parsed options and a callback for progress messages; it returns a :class:`ModeReport`. The modules of a
+mode are imported only when it runs. To add a mode, write a function here or in its own module and add a row to
+:data:`MODES`.
 """
 
 from argparse import ArgumentParser, Namespace
@@ -11,45 +12,45 @@ from typing import Any, NamedTuple
 
 from symrot.errors import InputError
 
-__all__ = ["MODES", "STUDIES", "Mode", "Outcome", "arguments", "run"]
+__all__ = ["MODES", "STUDIES", "Mode", "ModeReport", "arguments", "run"]
 
-Say = Callable[[str], object]
+Progress = Callable[[str], object]
 
 
-class Outcome(NamedTuple):
-    """What a mode found: data for JSON, lines for people of which the first is the title, whether all is well."""
+class ModeReport(NamedTuple):
+    """The result of a mode: data for JSON, lines of text (the first is the title), and whether the mode succeeded."""
 
-    found: Any
+    data: Any
     lines: Sequence[str]
     good: bool = True
 
 
 class Mode(NamedTuple):
-    """One mode: its option, or "" for the study of a scene; what it takes besides, what it does."""
+    """One mode: its option ("" for the study of a scene), its help text, the options it accepts, its function."""
 
     option: str
     about: str
-    takes: frozenset[str]  # of the names of options
-    run: Callable[[Namespace, Say], Outcome]
-    more: Mapping[str, Any] | None = None  # what argparse needs to know of the option beyond its name
+    takes: frozenset[str]  # names of options
+    run: Callable[[Namespace, Progress], ModeReport]
+    more: Mapping[str, Any] | None = None  # further arguments of argparse's add_argument
 
 
-def _study(options: Namespace, say: Say) -> Outcome:
+def _study(options: Namespace, say: Progress) -> ModeReport:
     from symrot.bench.comparison.work_precision import study
     from symrot.report import work_precision
     from symrot.scene.scene import load_scene
 
     _targets(options)
-    found = study(load_scene(options.scene), options.methods, options.quick, say, options.tolerances, options.rounds)
+    results = study(load_scene(options.scene), options.methods, options.quick, say, options.tolerances, options.rounds)
     if options.plot:
         from symrot.report.work_precision_plot import save
 
-        save(found, options.plot)
-    return Outcome(found, work_precision.lines(found))
+        save(results, options.plot)
+    return ModeReport(results, work_precision.lines(results))
 
 
 def _targets(options: Namespace) -> None:
-    """Refuse files that cannot be written before anything is measured."""
+    """Raise InputError for output files that cannot be written, before anything is measured."""
     from symrot.files.writing import check_target
 
     if options.out:
@@ -61,41 +62,41 @@ def _targets(options: Namespace) -> None:
         plot.require_matplotlib()
 
 
-def _compare(options: Namespace, say: Say) -> Outcome:
+def _compare(options: Namespace, say: Progress) -> ModeReport:
     from symrot.report.work_precision import compared, lines_of_comparison, read_study
 
     _targets(options)
     first, second = (read_study(Path(name)) for name in options.compare)
-    found = compared(first, second)
-    return Outcome(found, lines_of_comparison(found))
+    comparison = compared(first, second)
+    return ModeReport(comparison, lines_of_comparison(comparison))
 
 
-def _suite(options: Namespace, say: Say) -> Outcome:
+def _suite(options: Namespace, say: Progress) -> ModeReport:
     from symrot.bench.comparison import suite
 
     _targets(options)
     where = options.directory or Path("generated/bench")
-    return Outcome(*suite.run(where, options.methods, options.quick, say, options.tolerances, options.rounds))
+    return ModeReport(*suite.run(where, options.methods, options.quick, say, options.tolerances, options.rounds))
 
 
-def _skip(options: Namespace, say: Say) -> Outcome:
+def _skip(options: Namespace, say: Progress) -> ModeReport:
     from symrot.bench import skip
 
     _targets(options)
-    found = skip.measure(options.scene, options.quick, say)
+    results = skip.measure(options.scene, options.quick, say)
     if options.plot:
         from symrot.report.skip_plot import save
 
-        save(found, options.plot)
-    return Outcome(found, skip.lines(found))
+        save(results, options.plot)
+    return ModeReport(results, skip.lines(results))
 
 
-def _stability(options: Namespace, say: Say) -> Outcome:
+def _stability(options: Namespace, say: Progress) -> ModeReport:
     from symrot.bench.error_growth import stability
 
     _targets(options)
-    found = stability.report(options.scene, options.long, options.plot, say)
-    return Outcome(found, stability.lines(found))
+    results = stability.report(options.scene, options.long, options.plot, say)
+    return ModeReport(results, stability.lines(results))
 
 
 STUDIES: dict[str, str] = {
@@ -111,17 +112,17 @@ STUDIES: dict[str, str] = {
     "start": "`symrot run` from a cold and from a warm start",
     "derive": "how long deriving takes",
 }
-"""The studies of one question each: module of :mod:`symrot.bench` -> what it answers."""
+"""Studies of a single question: module of :mod:`symrot.bench` -> the question."""
 
 
-def _list(options: Namespace, say: Say) -> Outcome:
+def _list(options: Namespace, say: Progress) -> ModeReport:
     from symrot.report.layout import columns
 
-    found = [{"study": name, "about": about, "command": f"python -m symrot.bench.{name}"}
+    studies = [{"study": name, "about": about, "command": f"python -m symrot.bench.{name}"}
              for name, about in STUDIES.items()]  # fmt: skip
     modes = [(f"symrot bench {mode.option or 'SCENE'}", mode.about) for mode in MODES]
-    rows = [(item["command"], item["about"]) for item in found]
-    return Outcome(found, ["What is measured, and by which command", "", *columns([*modes, *rows])])
+    rows = [(item["command"], item["about"]) for item in studies]
+    return ModeReport(studies, ["What is measured, and by which command", "", *columns([*modes, *rows])])
 
 
 SWEEP = frozenset({"methods", "tolerances", "rounds", "quick"})
@@ -141,9 +142,9 @@ MODES: tuple[Mode, ...] = (
     Mode("--list", "list the modes, and the studies of one question each", frozenset({"json"}), _list,
          {"action": "store_true"}),
 )  # fmt: skip
-"""What ``symrot bench`` can do."""
+"""All modes of ``symrot bench``."""
 
-SPOKEN = {"scene": "SCENE", "directory": "-o"}
+OPTION_TEXTS = {"scene": "SCENE", "directory": "-o"}  # where a message does not name it --NAME
 
 
 def arguments(parser: ArgumentParser) -> None:
@@ -153,11 +154,11 @@ def arguments(parser: ArgumentParser) -> None:
     for mode in MODES:
         if mode.option:
             add(mode.option, help=mode.about, **(mode.more or {}))
-    add("--methods", metavar="NAMES", help="of exact, taylor, dop853, scipy, heyoka, DOP853, RK45, LSODA, Radau; "
-        "commas between (default: all)")  # fmt: skip
-    add("--tolerances", metavar="LIST", help="such as 1e-3,1e-6,1e-9 (default: one or two to a decade)")
-    add("--rounds", type=int, metavar="N", help="turns of each run, whose median counts (default: 9, with --quick 5)")
-    add("--quick", action="store_true", help="fewer tolerances and turns, heyoka in its default settings alone")
+    add("--methods", metavar="NAMES", help="comma-separated, of exact, taylor, dop853, scipy, heyoka, DOP853, RK45, "
+        "LSODA, Radau (default: all)")  # fmt: skip
+    add("--tolerances", metavar="LIST", help="such as 1e-3,1e-6,1e-9 (default: one or two per decade)")
+    add("--rounds", type=int, metavar="N", help="repetitions of each run; the median counts (default: 9, --quick: 5)")
+    add("--quick", action="store_true", help="fewer tolerances and repetitions, heyoka in its default settings only")
     add("--long", action="store_true", help="with --stability: 1e6 revolutions")
     add("--plot", type=Path, metavar="FILE", help="draw time against error: FILE.png, .pdf or .svg")
     add("--out", type=Path, metavar="FILE", help="write the study as FILE.json, for --compare")
@@ -165,13 +166,13 @@ def arguments(parser: ArgumentParser) -> None:
     add("--json", action="store_true", help="print JSON")
 
 
-def run(options: Namespace, say: Say) -> Outcome:
-    """Do what the options ask for.
+def run(options: Namespace, say: Progress) -> ModeReport:
+    """Run the mode that the options choose.
 
     Raises
     ------
     InputError
-        For no mode or two of them, and for an option that the mode does not take.
+        If the options choose no mode or more than one, or include an option that the mode does not accept.
     """
     asked = [mode for mode in MODES if mode.option and getattr(options, mode.option[2:])]
     names = ", ".join(mode.option for mode in MODES if mode.option)
@@ -180,8 +181,8 @@ def run(options: Namespace, say: Say) -> Outcome:
     mode = asked[0] if asked else MODES[0]
     for name in ("scene", "methods", "tolerances", "rounds", "quick", "long", "plot", "out", "directory"):
         if getattr(options, name) not in (None, False) and name not in mode.takes:
-            spoken = SPOKEN.get(name, f"--{name}")
-            raise InputError(f"bench: {mode.option or 'a SCENE'} takes no {spoken} (see `symrot bench --help`)")
+            option = OPTION_TEXTS.get(name, f"--{name}")
+            raise InputError(f"bench: {mode.option or 'a SCENE'} takes no {option} (see `symrot bench --help`)")
     if options.methods is not None or options.tolerances is not None:
         from symrot.bench.comparison.contestants import chosen, tolerances_from
 
@@ -196,6 +197,6 @@ def run(options: Namespace, say: Say) -> Outcome:
 
         from symrot.files.writing import write
 
-        text = json.dumps(outcome.found, indent=1, ensure_ascii=False) + "\n"
+        text = json.dumps(outcome.data, indent=1, ensure_ascii=False) + "\n"
         write(options.out, lambda stream: stream.write(text.encode("utf-8")))
     return outcome

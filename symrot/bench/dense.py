@@ -54,21 +54,21 @@ def _heyoka(problem: Problem, tolerance: float, times: Floats) -> dict[str, Call
         return integrator
 
     def grid() -> Floats:
-        found: Floats = begin().propagate_grid(times)[5]
-        return found
+        samples: Floats = begin().propagate_grid(times)[5]
+        return samples
 
     def output() -> Floats:
-        found: Floats = begin().propagate_until(float(times[-1]), c_output=True)[4](times)
-        return found
+        samples: Floats = begin().propagate_until(float(times[-1]), c_output=True)[4](times)
+        return samples
 
     return {"heyoka grid": grid, "heyoka c_output": output}
 
 
 def _symrot(problem: Problem, method: str, tolerance: float, times: Floats) -> Callable[[], Floats]:
-    found = propagator(problem.scene, method, tolerance)
+    propagate = propagator(problem.scene, method, tolerance)
 
     def run() -> Floats:
-        states: Floats = found(times).y.T
+        states: Floats = propagate(times).y.T
         return states
 
     return run
@@ -84,14 +84,14 @@ def measure(name: str, samples: int, rounds: int) -> list[Sampled]:
     if exact_form(problem.scene) is not None and len(problem.y0) == WHOLE:
         runs["exact", 0.0] = _symrot(problem, "exact", OURS[-1], times)
     tightest = runs["taylor", OURS[-1]]()
-    found, entries = [], []
+    sampled, entries = [], []
     for (method, tolerance), run in runs.items():
         states = run()
         measured = Measured(method, tolerance, 0, _distance(states[-1:], exact), seconds_of(run))
-        found.append(Sampled(measured, _distance(states, tightest)))
+        sampled.append(Sampled(measured, _distance(states, tightest)))
         entries.append((measured, run))
     race(entries, rounds)
-    return found
+    return sampled
 
 
 def _distance(states: Floats, exact: Floats) -> float:

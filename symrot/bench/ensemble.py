@@ -23,7 +23,7 @@ import numpy as np
 
 from symrot.bench.taylor import DECADES, MOTIONS, Floats, Run, best_of, raced, reference
 from symrot.bench.taylor import _Problem as Problem
-from symrot.build import cache as library
+from symrot.build import cache
 from symrot.ensemble import lanes
 
 __all__ = ["main", "measure"]
@@ -48,7 +48,7 @@ class Start(NamedTuple):
     def error(self, states: Floats) -> float:
         """Return the largest error of last states (n, N)."""
         pairs = zip(states[: len(self.exact)], self.exact, strict=True)
-        return float(max(self.problem.error(found, exact) for found, exact in pairs))
+        return float(max(self.problem.error(computed, exact) for computed, exact in pairs))
 
 
 def prepare(name: str, n: int, stop: float, problem: Any) -> Start:
@@ -68,13 +68,13 @@ def _references(problem: Any, y: Floats, stop: float) -> Floats:
 
     real = np.longdouble
     integrator = heyoka.taylor_adaptive(_system(problem, real), y[0].astype(real), tol=real(TIGHTEST), fp_type=real)
-    found = np.empty_like(y)
-    for row, start in zip(found, y, strict=True):
+    states = np.empty_like(y)
+    for row, start in zip(states, y, strict=True):
         integrator.time = real(0)
         integrator.state[:] = start.astype(real)
         integrator.propagate_until(real(stop))
         row[:] = integrator.state.astype(float)
-    return found
+    return states
 
 
 def _system(problem: Any, real: Callable[[float], Any] = float) -> list[tuple[Any, Any]]:
@@ -92,25 +92,25 @@ def _system(problem: Any, real: Callable[[float], Any] = float) -> list[tuple[An
 
 # ------------------------------------------------------------------------------------------------ contestants
 
-Outcome = tuple[int, Floats]  # steps of all trajectories, last states (n, N)
-Task = tuple[str, float, Callable[[], Outcome]]
+BatchEnd = tuple[int, Floats]  # steps of all trajectories, last states (n, N)
+BatchRun = tuple[str, float, Callable[[], BatchEnd]]
 
 
 def _library(problem: Any, order: int, width: int | None = None) -> Any:
     source = lanes.translation_unit(problem.kernel.rates, problem.blocks, problem.scales, order, width)
-    return library.build(source, "lanes", lanes.FLAGS)
+    return cache.build(source, "lanes", lanes.FLAGS)
 
 
-def _lanes(task: lanes.Task) -> Outcome:
-    found = task.run()
-    return int(found.steps.sum()), found.states[:, 0]
+def _lanes(task: lanes.Task) -> BatchEnd:
+    result = task.run()
+    return int(result.steps.sum()), result.states[:, 0]
 
 
 def _ours(
     start: Start, tolerances: Sequence[float], orders: Iterable[int] = (), width: int | None = None
-) -> list[Task]:
+) -> list[BatchRun]:
     p = np.tile(np.array(start.problem.p), (len(start.y), 1))
-    tasks: list[Task] = []
+    tasks: list[BatchRun] = []
     for order in sorted(set(orders)) or [0]:
         for tolerance in tolerances:
             path = _library(start.problem, order or lanes.order_for(tolerance), width)
@@ -119,7 +119,7 @@ def _ours(
     return tasks
 
 
-def _batches(integrator: Any, width: int, start: Start) -> Outcome:
+def _batches(integrator: Any, width: int, start: Start) -> BatchEnd:
     """Run heyoka's integrator of a batch over the ensemble, one batch after the other."""
     states, steps = np.empty_like(start.y), 0
     for first in range(0, len(start.y), width):
@@ -131,7 +131,7 @@ def _batches(integrator: Any, width: int, start: Start) -> Outcome:
     return steps, states
 
 
-def _ensemble(propagate: Any, integrator: Any, width: int, start: Start) -> Outcome:
+def _ensemble(propagate: Any, integrator: Any, width: int, start: Start) -> BatchEnd:
     """Run heyoka's own loop over an ensemble, in one thread."""
 
     def begin(integrator: Any, i: int) -> Any:
@@ -143,18 +143,18 @@ def _ensemble(propagate: Any, integrator: Any, width: int, start: Start) -> Outc
             integrator.state[:] = start.y[i * width : (i + 1) * width].T
         return integrator
 
-    found = propagate(integrator, start.stop, len(start.y) // width, begin, max_workers=1)
-    states = np.vstack([one[0].state.T if width > 1 else one[0].state[None] for one in found])
+    results = propagate(integrator, start.stop, len(start.y) // width, begin, max_workers=1)
+    states = np.vstack([one[0].state.T if width > 1 else one[0].state[None] for one in results])
     if width == 1:
-        return sum(int(one[4]) for one in found), states
-    return sum(int(result[3]) for one in found for result in one[0].propagate_res), states
+        return sum(int(one[4]) for one in results), states
+    return sum(int(result[3]) for one in results for result in one[0].propagate_res), states
 
 
-def _heyoka(start: Start, tolerances: Sequence[float], many: bool) -> list[Task]:
+def _heyoka(start: Start, tolerances: Sequence[float], many: bool) -> list[BatchRun]:
     import heyoka
 
     system = _system(start.problem)
-    tasks: list[Task] = []
+    tasks: list[BatchRun] = []
     for tolerance in tolerances:
         for width in WIDTHS:
             first = np.ascontiguousarray(start.y[:width].T)
@@ -206,16 +206,16 @@ def _print_widths(start: Start, rounds: int) -> None:
         (f"{width} lanes", *task[1:]) for width in WIDTHS for task in _ours(start, [1e-12], [20], width)
     ]  # fmt: skip
     runs = raced(tasks, start.error, rounds, process_time)
-    said = [f"{run.name} {min(run.seconds) / run.steps * 1e9:.0f} ns" for run in runs]
-    print(f"  order 20, per trajectory and step: {', '.join(said)}")
+    texts = [f"{run.name} {min(run.seconds) / run.steps * 1e9:.0f} ns" for run in runs]
+    print(f"  order 20, per trajectory and step: {', '.join(texts)}")
 
 
 def _print_orders(start: Start, rounds: int) -> None:
     runs = raced(_ours(start, [10.0 ** (-k / 2) for k in range(2, 29)], ORDERS), start.error, rounds, process_time)
     print(f"{'  error <=':10}" + "".join(f"{order:>14}" for order in ORDERS) + "   us per trajectory (tolerance)")
     for decade in DECADES:
-        found = [best_of(runs, decade, [f"{order}"]) for order in ORDERS]
-        cells = [f"{min(r.seconds) / len(start.y) * 1e6:7.1f} {r.tolerance:.0e}" if r else "-" for r in found]
+        fastest = [best_of(runs, decade, [f"{order}"]) for order in ORDERS]
+        cells = [f"{min(r.seconds) / len(start.y) * 1e6:7.1f} {r.tolerance:.0e}" if r else "-" for r in fastest]
         print(f"{decade:10.0e}" + "".join(f"{cell:>14}" for cell in cells))
 
 

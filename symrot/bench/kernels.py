@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 
 from symrot.bench.by_hand.kernel_heyoka import LANES, heyoka_code
 from symrot.bench.by_hand.kernel_peers import PEERS_IN_C, casadi_function, counted, textbook
-from symrot.build import cache as library
+from symrot.build import cache as build_cache
 from symrot.codegen.library_kernels import kernel_program
 from symrot.codegen.printing.c_source import MATH_HEADER
 from symrot.codegen.printing.math_header import math_header
@@ -37,7 +37,7 @@ from symrot.workshop.emit import emit
 
 __all__ = ["Contestant", "contest", "main"]
 
-FLAGS = ("-std=c99", "-O3", library.NATIVE, "-fno-math-errno", "-ffp-contract=fast", "-fno-tree-slp-vectorize",
+FLAGS = ("-std=c99", "-O3", build_cache.NATIVE, "-fno-math-errno", "-ffp-contract=fast", "-fno-tree-slp-vectorize",
          "-falign-functions=64", "-falign-loops=64", "-fPIC", "-fno-semantic-interposition", "-shared")  # fmt: skip
 CACHED, MANY = 1000, 1_000_000  # no power of two, at which all arrays would share cache lines
 PROPER = ("zxz", "zyz", "xyx", "xzx", "yxy", "yzy")
@@ -69,10 +69,10 @@ class Contestant:
 @cache
 def _samples(name: str, count: int) -> list[Floats]:
     """Return inputs in the box of a kernel, one array of shape (size, count) for each argument; unit quaternions."""
-    found, draw = definition(name), np.random.default_rng(5)
+    kernel, draw = definition(name), np.random.default_rng(5)
     arrays = []
-    for argument in found.inputs:
-        box = [found.box[component] for component, *_ in argument.components]
+    for argument in kernel.inputs:
+        box = [kernel.box[component] for component, *_ in argument.components]
         values = np.array([draw.uniform(float(low), float(high), count) for low, high in box])
         arrays.append(values / np.linalg.norm(values, axis=0) if argument.name == "q" else values)
     return arrays
@@ -86,30 +86,30 @@ def _block(name: str, shape: str, count: int, place: int) -> tuple[Floats, Float
     they lay apart by another part of a page in each run, on other kinds of pages, and each second vector on two lines.
     ``place`` tells pieces with the same numbers apart.
     """
-    given = np.concatenate(_samples(name, count))
+    samples = np.concatenate(_samples(name, count))
     size = sum(a.size for a in kernel_program(name).signature.arguments if a.role == "out")
-    memory = np.empty((len(given) + size) * count + PAGE)
+    memory = np.empty((len(samples) + size) * count + PAGE)
     memory = memory[-memory.ctypes.data % PAGE // memory.itemsize :]
-    apart = np.split(memory[: (len(given) + size) * count], [given.size])
+    apart = np.split(memory[: (len(samples) + size) * count], [samples.size])
     if shape == "one":
         inputs, outputs = (part.reshape(count, -1) for part in apart)
-        inputs[:] = given.T
+        inputs[:] = samples.T
     else:
         inputs, outputs = (part.reshape(-1, count) for part in apart)
-        inputs[:] = given
+        inputs[:] = samples
     outputs[:] = 0
     return inputs, outputs
 
 
 def _addresses(name: str, shape: str, count: int, place: int) -> Any:
     """Return the addresses of the arguments of a kernel in that memory."""
-    found, offsets = [], {"in": 0, "out": 0}
+    addresses, offsets = [], {"in": 0, "out": 0}
     for argument in kernel_program(name).signature.arguments:
         block = _block(name, shape, count, place)[argument.role == "out"]
         part = slice(offsets[argument.role], None)
-        found.append((block[:, part] if shape == "one" else block[part]).ctypes.data)
+        addresses.append((block[:, part] if shape == "one" else block[part]).ctypes.data)
         offsets[argument.role] += argument.size
-    return (ctypes.c_void_p * len(found))(*found)
+    return (ctypes.c_void_p * len(addresses))(*addresses)
 
 
 def _drivers(signature: Signature, batch: bool) -> str:
@@ -120,8 +120,8 @@ def _drivers(signature: Signature, batch: bool) -> str:
     apart = [sum(a.size for a in (inputs if each in inputs else outputs)) for each in every]
     one = ", ".join(f"{'' if a.is_scalar else '&'}a[{i}][{apart[i]}*k]" for i, a in enumerate(every))
     lines = [] if batch else _batch_of_one(signature.name, inputs, outputs)
-    taken = [f"{'const ' if a in inputs else ''}double {'' if a.is_scalar else '*'}{a.name}" for a in every]
-    lines += [f"static __attribute__((noinline)) void single({', '.join(taken)})", "{",
+    parameters = [f"{'const ' if a in inputs else ''}double {'' if a.is_scalar else '*'}{a.name}" for a in every]
+    lines += [f"static __attribute__((noinline)) void single({', '.join(parameters)})", "{",
               f"    {signature.name}({', '.join(a.name for a in every)});", "}"]  # fmt: skip
     arguments = ", ".join(f"a[{i}]" for i in range(len(every)))
     return "\n".join([
@@ -199,12 +199,12 @@ def _moving(signature: Signature) -> str:
 
 def _timed(run: Callable[[int, int], object], samples: int) -> Callable[[int], float]:
     """Return a measurement: seconds per sample of ``run(repeats, place)``, repeated until the clock can see it."""
-    repeats, taken = 1, 0.0
-    while taken < SHORTEST:  # the first runs find nothing in cache
-        repeats *= 2 if taken else 1
+    repeats, elapsed = 1, 0.0
+    while elapsed < SHORTEST:  # the first runs find nothing in cache
+        repeats *= 2 if elapsed else 1
         began = perf_counter()
         run(repeats, 0)
-        taken = perf_counter() - began
+        elapsed = perf_counter() - began
 
     def measure(place: int) -> float:
         start = perf_counter()
@@ -235,7 +235,7 @@ def _in_c(
     name: str, text: str, many: int, shapes: Sequence[str] = SHAPES, prepare: Callable[[Any], object] = id
 ) -> tuple[dict[str, Callable[[int], float]], Floats]:
     """Return the measurements of a text with its drivers, and the numbers that it finds for the batch in cache."""
-    loaded = ctypes.CDLL(str(library.build(text, f"bench_{name}", FLAGS)))
+    loaded = ctypes.CDLL(str(build_cache.build(text, f"bench_{name}", FLAGS)))
     prepare(loaded)
     runs = _runs(name, loaded, shapes, many)
     runs["cached"](0)
@@ -243,9 +243,9 @@ def _in_c(
 
 
 def _symrot_text(name: str) -> str:
-    found = emit(name)
-    return found.source.replace(f'#include "{MATH_HEADER}"', math_header()).replace(
-        f'#include "{name}.h"', found.header
+    emitted = emit(name)
+    return emitted.source.replace(f'#include "{MATH_HEADER}"', math_header()).replace(
+        f'#include "{name}.h"', emitted.header
     )
 
 
@@ -257,8 +257,8 @@ def contest(name: str, many: int = MANY) -> tuple[list[Contestant], list[str]]:
     runs, reference = _in_c(name, _symrot_text(name) + _drivers(signature, True), many)
     contestants.append(Contestant("symrot", counted(emit(name).source, name), runs))
 
-    def add(tool: str, operations: Counter[str], runs: dict[str, Callable[[int], float]], found: Floats) -> None:
-        error = float(np.max(np.abs(found - reference)) / np.max(np.abs(reference)))
+    def add(tool: str, operations: Counter[str], runs: dict[str, Callable[[int], float]], outputs: Floats) -> None:
+        error = float(np.max(np.abs(outputs - reference)) / np.max(np.abs(reference)))
         if not error < 1e-11:
             raise AssertionError(f"{tool}: expected the numbers of symrot for {name}, differs by {error:.1e}")
         contestants.append(Contestant(tool, operations, runs))
@@ -292,11 +292,11 @@ def _casadi_machine(name: str, function: Any) -> tuple[dict[str, Callable[[int],
     import casadi
 
     def run(count: int) -> Callable[[int, int], object]:
-        mapped, given = function.map(count), casadi.DM(np.concatenate(_samples(name, count)))
-        return lambda repeats, place: [mapped(given) for _ in range(repeats)]
+        mapped, inputs = function.map(count), casadi.DM(np.concatenate(_samples(name, count)))
+        return lambda repeats, place: [mapped(inputs) for _ in range(repeats)]
 
-    found = np.array(function.map(CACHED)(casadi.DM(np.concatenate(_samples(name, CACHED)))))
-    return {"cached": _timed(run(CACHED), CACHED)}, found
+    outputs = np.array(function.map(CACHED)(casadi.DM(np.concatenate(_samples(name, CACHED)))))
+    return {"cached": _timed(run(CACHED), CACHED)}, outputs
 
 
 def _casadi_text(name: str, function: Any) -> str:
@@ -334,10 +334,14 @@ def measure(contestants: Sequence[Contestant], rounds: int) -> None:
 
 def _line(contestant: Contestant) -> str:
     counts = contestant.operations
-    said = ", ".join(f"{counts[kind]} {kind}" for kind in ("mul", "add", "div", "sin", "cos") if counts[kind]) or "-"
+    operations = (
+        ", ".join(f"{counts[kind]} {kind}" for kind in ("mul", "add", "div", "sin", "cos") if counts[kind]) or "-"
+    )
     total = f"{sum(counts.values())}: " if counts else ""
     times = (contestant.nanoseconds(shape) for shape in SHAPES)
-    return f"  {contestant.name:10} {total + said:38}" + "".join(f"{t:10.2f}" if t else f"{'-':>10}" for t in times)
+    return f"  {contestant.name:10} {total + operations:38}" + "".join(
+        f"{t:10.2f}" if t else f"{'-':>10}" for t in times
+    )
 
 
 def _operations(contestants: Sequence[Contestant]) -> tuple[int, int]:
@@ -353,15 +357,15 @@ def _ratios(contestants: Sequence[Contestant]) -> dict[str, float]:
     the median of their ratios, the largest over the others.
     """
     own, others = contestants[0], [c for c in contestants[1:] if c.name != FLOOR]
-    found = {}
+    ratios = {}
     for shape in SHAPES:
         rivals = [c.seconds[shape] for c in others if c.seconds[shape]]
         mine = own.seconds[shape]
         if mine and shape == "many":
-            found[shape] = max(float(np.median(np.divide(mine, each))) for each in rivals)
+            ratios[shape] = max(float(np.median(np.divide(mine, each))) for each in rivals)
         elif mine:
-            found[shape] = min(mine) / min(map(min, rivals))
-    return found
+            ratios[shape] = min(mine) / min(map(min, rivals))
+    return ratios
 
 
 def _table(name: str, contestants: Sequence[Contestant]) -> list[str]:

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symrot.bench.comparison.peers import heyoka_integrator
-from symrot.build import cache as library
+from symrot.build import cache
 from symrot.planning.plan import make_plan
 from symrot.planning.scene_kernel import bind
 from symrot.propagation.compiled_models import error_blocks, scene_kernel
@@ -56,7 +56,7 @@ def measure(omega: Sequence[Any], revolutions: float) -> dict[str, tuple[float, 
     plan = make_plan(scene)
     kernel = scene_kernel(plan)
     source = taylor.translation_unit(kernel.rates, *error_blocks(plan), 20, invariant_source(kernel, plan.states))
-    path, p = library.build(source, "taylor", taylor.FLAGS), bind(kernel.rate_parameters, plan.constants)
+    path, p = cache.build(source, "taylor", taylor.FLAGS), bind(kernel.rate_parameters, plan.constants)
     start = np.array([float(value) for value in plan.initial_state])
     stop = revolutions * 2.0 * math.pi / float(np.linalg.norm(start[:3]))
     exact = propagator(scene, method="exact")([stop])
@@ -74,7 +74,7 @@ def measure(omega: Sequence[Any], revolutions: float) -> dict[str, tuple[float, 
     peer = heyoka_integrator(kernel.rates, parameters, [float(value) for value in start], 2.0**-52, {})
     if peer is not None:
         contestants["heyoka, tol = eps"] = lambda: peer(stop)
-    found = {}
+    results = {}
     for name, run in contestants.items():
         began = perf_counter()
         state, steps = run()
@@ -82,8 +82,8 @@ def measure(omega: Sequence[Any], revolutions: float) -> dict[str, tuple[float, 
         energies = [float(np.dot(MOMENTS, np.square(each[:3]))) for each in (state, start)]
         q, r = state[3:] / np.linalg.norm(state[3:]), exact.quaternion[0]
         attitude = 4.0 * math.asin(min(float(np.linalg.norm(q - r)), float(np.linalg.norm(q + r))) / 2.0)
-        found[name] = (abs(energies[0] / energies[1] - 1.0), attitude, seconds, steps)
-    return found
+        results[name] = (abs(energies[0] / energies[1] - 1.0), attitude, seconds, steps)
+    return results
 
 
 def main(arguments: list[str] | None = None) -> None:

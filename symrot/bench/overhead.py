@@ -26,8 +26,8 @@ SAMPLES = (1, 10, 100, 1000)
 METHODS = ("taylor", "dop853", "exact")
 
 
-def _bare_stepper(found: Propagator, times: "np.ndarray[tuple[int], np.dtype[np.float64]]") -> Callable[[], object]:
-    task = found._motion.stepping
+def _bare_stepper(propagate: Propagator, times: "np.ndarray[tuple[int], np.dtype[np.float64]]") -> Callable[[], object]:
+    task = propagate._motion.stepping
     stepper, end = task.stepper, float(times[-1])
     ready = stepper.new_run.from_buffer_copy(task._ready)
     ready.pace, ready.stop = (end - task.t0) * task.pace, end
@@ -35,40 +35,40 @@ def _bare_stepper(found: Propagator, times: "np.ndarray[tuple[int], np.dtype[np.
     run = stepper.new_run()
     states = np.empty((len(times), stepper.states))
     size, place, source = ctypes.sizeof(run), ctypes.addressof(run), ctypes.addressof(ready)
-    given = (ctypes.addressof(task.p), times.ctypes.data, len(times), states.ctypes.data, None, 0, 10**9)
+    arguments = (ctypes.addressof(task.p), times.ctypes.data, len(times), states.ctypes.data, None, 0, 10**9)
     call, reset = stepper.run, ctypes.memmove
 
-    def bare(kept: object = (states, ready, run, task)) -> None:  # whose memory is used
+    def bare(alive: object = (states, ready, run, task)) -> None:  # whose memory is used
         reset(place, source, size)
-        call(place, *given)
+        call(place, *arguments)
 
     bare()
-    if run.next != len(times) or call(place, *given) != DONE:
-        raise InputError(f"{found.scene.name}: expected a motion that one call can follow")
+    if run.next != len(times) or call(place, *arguments) != DONE:
+        raise InputError(f"{propagate.scene.name}: expected a motion that one call can follow")
     return bare
 
 
-def _bare_exact(found: Propagator, times: "np.ndarray[tuple[int], np.dtype[np.float64]]") -> Callable[[], object]:
-    motion: Any = found._motion.exact
+def _bare_exact(propagate: Propagator, times: "np.ndarray[tuple[int], np.dtype[np.float64]]") -> Callable[[], object]:
+    motion: Any = propagate._motion.exact
     loops = getattr(motion, "_loops", None)
     call, constants = (loops.evaluate, loops.place) if loops else (motion._evaluate, motion._address)
     omega, quaternion = np.empty((len(times), 3)), np.empty((len(times), 4))
-    given = (constants, len(times), times.ctypes.data, omega.ctypes.data, quaternion.ctypes.data)
-    return lambda kept=(omega, quaternion): call(*given)  # type: ignore[misc]  # whose memory is used
+    arguments = (constants, len(times), times.ctypes.data, omega.ctypes.data, quaternion.ctypes.data)
+    return lambda alive=(omega, quaternion): call(*arguments)  # type: ignore[misc]  # whose memory is used
 
 
 def measure(name: str, method: str, samples: int, rounds: int) -> tuple[float, float] | None:
     """Return the seconds of ``propagator(t)`` and of the bare call, or None for a scene without that method."""
     try:
-        found = propagator(name, method)
-        if found.method != method:
+        propagate = propagator(name, method)
+        if propagate.method != method:
             return None
     except InputError:
         return None
-    times = np.linspace(0.0, float(found.scene.span.stop), samples + 1)[1:]
-    found(times)
-    bare = (_bare_exact if method == "exact" else _bare_stepper)(found, times)
-    runs: tuple[Callable[[], object], ...] = (lambda: found(times), bare)
+    times = np.linspace(0.0, float(propagate.scene.span.stop), samples + 1)[1:]
+    propagate(times)
+    bare = (_bare_exact if method == "exact" else _bare_stepper)(propagate, times)
+    runs: tuple[Callable[[], object], ...] = (lambda: propagate(times), bare)
     entries = [(Measured("", 0.0, 0, 0.0, seconds_of(run)), run) for run in runs]
     race(entries, rounds)
     return entries[0][0].median, entries[1][0].median
@@ -85,10 +85,10 @@ def main(arguments: list[str] | None = None) -> None:
     for name in options.scenes:
         for method in METHODS:
             for samples in SAMPLES:
-                found = measure(name, method, samples, options.rounds)
-                if found is None:
+                times = measure(name, method, samples, options.rounds)
+                if times is None:
                     break
-                call, bare = (seconds * 1e6 for seconds in found)
+                call, bare = (seconds * 1e6 for seconds in times)
                 every.setdefault(samples, []).append(call - bare)
                 print(f"{name:28}{method:>8}{samples:9d}{call:10.1f}{bare:10.1f}{call - bare:11.1f}")
     for samples, costs in every.items():

@@ -18,7 +18,7 @@ import numpy as np
 
 from symrot.bench.comparison.problem import Floats, Problem, State
 from symrot.bench.comparison.race import Measured, race, seconds_of
-from symrot.build import cache as library
+from symrot.build import cache
 from symrot.dynamics.torque_kinds import TORQUE_KINDS
 from symrot.errors import InputError
 from symrot.planning.plan import Plan, general_structure, make_plan
@@ -44,16 +44,16 @@ void many(long turns, const double *y, const double *p, double *dy)
 }}
 """
 
-Say = Callable[[str], object]
+Progress = Callable[[str], object]
 
 
 def rungs() -> dict[str, tuple[str, Scene]]:
     """Return the ladder, the most general first: name -> what it is, scene."""
-    found = {}
+    scenes = {}
     for name, entry in read_toml(LADDER, LADDER.name).items():
         about = str(entry.pop("about"))
-        found[name] = (about, Scene.from_dict({"title": about, **entry}, name))
-    return found
+        scenes[name] = (about, Scene.from_dict({"title": about, **entry}, name))
+    return scenes
 
 
 def _nothing(kind: str) -> Torque:
@@ -68,14 +68,14 @@ def _nothing(kind: str) -> Torque:
 
 def general_plan(scene: Scene) -> Plan:
     """Return the plan of a scene without any rule, and with a torque of every kind that the scene lacks, at zero."""
-    given = {torque.kind for torque in scene.torques}
-    left_out = ABOUT_POINT if given & set(ABOUT_CENTRE) else ABOUT_CENTRE
-    lacking = [kind for kind in TORQUE_KINDS if kind not in given and kind != "expression" and kind not in left_out]
+    kinds = {torque.kind for torque in scene.torques}
+    left_out = ABOUT_POINT if kinds & set(ABOUT_CENTRE) else ABOUT_CENTRE
+    lacking = [kind for kind in TORQUE_KINDS if kind not in kinds and kind != "expression" and kind not in left_out]
     whole = replace(scene, torques=(*scene.torques, *map(_nothing, lacking)))
     return Plan(whole, general_structure(whole), ())
 
 
-def measure(name: str | None = None, quick: bool = False, say: Say = lambda text: None) -> dict[str, Any]:
+def measure(name: str | None = None, quick: bool = False, say: Progress = lambda text: None) -> dict[str, Any]:
     """Return the rows as data for JSON: those of the ladder, or of one scene.
 
     Raises
@@ -83,8 +83,8 @@ def measure(name: str | None = None, quick: bool = False, say: Say = lambda text
     InputError
         For a scene that cannot be used, or where there is no C compiler.
     """
-    if library.missing():
-        raise InputError(f"--skip: expected a C compiler, whose kernels are compared; {library.missing()}")
+    if cache.missing():
+        raise InputError(f"--skip: expected a C compiler, whose kernels are compared; {cache.missing()}")
     ladder = rungs() if name is None else {name: (load_scene(name).title, load_scene(name))}
     rows, entries = [], []
     for about, scene in ladder.values():
@@ -118,8 +118,8 @@ def _row(about: str, scene: Scene) -> tuple[dict[str, Any], dict[str, Callable[[
         runs[f"{side} motion"] = lambda motion=motion, at=at: motion.integrate(at)  # type: ignore[misc]
         ends[side] = problem.state(motion.integrate(at)[0][0], problem.stop)
     auto, at = propagator(scene, "auto", TOLERANCE), np.array([float(scene.span.stop)])
-    found = auto(at)
-    ends["auto"] = State(found.omega[0], found.quaternion[0] if found.has_attitude else None)
+    trajectory = auto(at)
+    ends["auto"] = State(trajectory.omega[0], trajectory.quaternion[0] if trajectory.has_attitude else None)
     runs["auto motion"] = lambda: auto(at)
     row["auto"] = {"method": auto.method, "motion": None}
     row["apart"] = max(Problem.error(end, ends["general"]) for end in ends.values())
@@ -130,9 +130,7 @@ def _row(about: str, scene: Scene) -> tuple[dict[str, Any], dict[str, Callable[[
 def _evaluations(problem: Problem) -> Callable[[], object]:
     """Return a run of many evaluations of the rates, about the initial state."""
     size = len(problem.y0)
-    function = ctypes.CDLL(
-        str(library.build(problem.kernel.source + LOOP.format(states=STATES, size=size), "many"))
-    ).many
+    function = ctypes.CDLL(str(cache.build(problem.kernel.source + LOOP.format(states=STATES, size=size), "many"))).many
     function.argtypes, function.restype = (ctypes.c_long, *(ctypes.c_void_p,) * 3), None
     y: Floats = np.array(problem.y0) + 1e-3 * np.arange(STATES)[:, None]
     p, dy = np.array(problem.p or [0.0]), np.empty_like(y)
@@ -143,12 +141,12 @@ def _scaled(value: float | None, unit: float) -> str:
     return "-" if value is None else f"{value / unit:.3g}"
 
 
-def lines(found: Mapping[str, Any]) -> list[str]:
+def lines(results: Mapping[str, Any]) -> list[str]:
     """Return the lines for people; the first is the title."""
     from symrot.report.layout import columns, fields, room
 
     rows = [["motion", "states", "operations", "ns", "motion us", "auto us", "", "ends apart"]]
-    for row in found["rows"]:
+    for row in results["rows"]:
         pairs = [row[side] for side in ("general", "own")]
         rows.append(
             [
@@ -163,7 +161,7 @@ def lines(found: Mapping[str, Any]) -> list[str]:
         )  # fmt: skip
     legend = (
         "general kernel -> the scene's own: states, operations and nanoseconds of one evaluation of the rates, "
-        f"microseconds of the whole motion by Taylor series at {found['tolerance']:g}, and those of what auto takes"
+        f"microseconds of the whole motion by Taylor series at {results['tolerance']:g}, and those of what auto takes"
     )
     return ["What is saved by leaving out what a motion does not need", "",
             *columns(rows, right=(1, 2, 3, 4, 5, 7), width=room(140)), "", *fields([("", legend)])]  # fmt: skip

@@ -17,7 +17,7 @@ from statistics import median
 from tempfile import TemporaryDirectory
 from time import perf_counter
 
-from symrot.build import cache as library
+from symrot.build import cache
 from symrot.propagation.compiled_models import library_source, scene_kernel
 from symrot.workshop.emit import plan
 
@@ -47,10 +47,10 @@ def main(arguments: list[str]) -> int:
         warm = os.environ | {"SYMROT_CACHE": str(Path(directory) / "warm")}
         warm.pop("PYTHONDONTWRITEBYTECODE", None)
         source = Path(directory) / "motion.c"
-        found = plan(scene)
-        kernel = scene_kernel(found)
-        source.write_text(library_source(found, kernel), encoding="utf-8")
-        compile_it = [*library.compiler().command, *library.FLAGS, str(source), "-o", f"{directory}/motion.so", "-lm"]
+        scene_plan = plan(scene)
+        kernel = scene_kernel(scene_plan)
+        source.write_text(library_source(scene_plan, kernel), encoding="utf-8")
+        compile_it = [*cache.compiler().command, *cache.FLAGS, str(source), "-o", f"{directory}/motion.so", "-lm"]
         numpy, run = [sys.executable, "-c", "import numpy"], [*_symrot(), "run", scene]
         rows: dict[str, list[float]] = {"import numpy": [], "symrot run, warm": []}
         rows |= {"import sympy": [], "compiler call": [], "symrot run, cold": []}

@@ -48,10 +48,10 @@ def _made(name: str, torques: list[dict[str, Any]], inertia: Any, omega: list[st
     body: dict[str, Any] = {"inertia": inertia} if isinstance(inertia, dict) else {"principal": inertia}
     if any(torque["kind"] == "gravity" for torque in torques):
         body["about"] = "fixed_point"
-    given = {"omega": omega, "attitude": {"quaternion": [1, "1/3", "-1/5", "2/7"]}}
+    initial = {"omega": omega, "attitude": {"quaternion": [1, "1/3", "-1/5", "2/7"]}}
     span = {"t": [0, 20], "samples": SAMPLES}
     return Scene.from_dict(
-        {"schema": 1, "title": name, "body": body, "torque": torques, "initial": given, "span": span, **more}
+        {"schema": 1, "title": name, "body": body, "torque": torques, "initial": initial, "span": span, **more}
     )
 
 
@@ -118,12 +118,12 @@ class _Row(NamedTuple):
     calls: tuple[float, ...]
 
 
-def _row(found: Propagator, rounds: int) -> _Row:
-    scene = found.scene
+def _row(propagate: Propagator, rounds: int) -> _Row:
+    scene = propagate.scene
     (omega, quaternion), times = _start(scene), np.linspace(0.0, float(scene.span.stop), SAMPLES)
-    found(times, omega=omega, quaternion=quaternion)
+    propagate(times, omega=omega, quaternion=quaternion)
     initial = read_start(scene, omega, quaternion)
-    motion = found.motion_from(initial)
+    motion = propagate.motion_from(initial)
     parts = motion.exact if motion.choice.method == "exact" else motion.stepping
     motion.follow(times, True)
     fresh = [motion.from_start(initial) for _ in range(2 * rounds)]
@@ -138,7 +138,7 @@ def _row(found: Propagator, rounds: int) -> _Row:
         return one.exact if motion.choice.method == "exact" else one.stepping
 
     def itself(start: Initial) -> float:
-        own = found.motion_from(start)
+        own = propagate.motion_from(start)
         own.follow(times, True)
         return _in_c(own, start, times, rounds) + _median(lambda: own.follow(times, True), rounds)
 
@@ -151,7 +151,7 @@ def _row(found: Propagator, rounds: int) -> _Row:
         _median(bind, rounds),
         _median(prepare, rounds),
     )
-    calls = tuple([_median(partial(found, times, **start), rounds) for start in starts])
+    calls = tuple([_median(partial(propagate, times, **start), rounds) for start in starts])
     return _Row(costs, tuple([itself(start) for start in read]), calls)
 
 
@@ -175,22 +175,22 @@ def _in_c(motion: Any, initial: Any, times: Floats, rounds: int) -> float:
         alive = motion.from_start(initial).exact
     finally:
         forms._bound[motion.form.library] = functions
-    return _median(lambda kept=alive: functions[0](*calls[0]), rounds)  # type: ignore[misc]  # whose memory is written
+    return _median(lambda alive=alive: functions[0](*calls[0]), rounds)  # type: ignore[misc]  # whose memory is written
 
 
 def _spin_up_in_c(source: Any, times: Floats, rounds: int) -> float:
     """Return the same of a spin-up: without polynomials, and with them where samples asked for them."""
-    found, total = spin_up_compiled.functions(), 0.0
-    record, table = found.record(), np.empty(spin_up_compiled.TABLE)
-    given = source._numbers, found.limits(*spin_up_compiled.limits())
+    functions, total = spin_up_compiled.functions(), 0.0
+    record, table = functions.record(), np.empty(spin_up_compiled.TABLE)
+    arguments = source._numbers, functions.limits(*spin_up_compiled.limits())
     omega, quaternion = np.empty((SAMPLES, 3)), np.empty((SAMPLES, 4))
     samples = len(times), address(times), address(omega), address(quaternion)
     lacking = source._known[2] is not None
     for room in (None, table) if lacking else (None,):
         place = address(room), ctypes.addressof(record)
-        total += _median(lambda place=place: found.prepare(source._axis, *given, *place), rounds)  # type: ignore[misc]
+        total += _median(lambda place=place: functions.prepare(source._axis, *arguments, *place), rounds)  # type: ignore[misc]
         if lacking and room is None:  # samples are asked for before it is known
-            total += _median(lambda: found.evaluate(ctypes.addressof(record), None, *samples), rounds)
+            total += _median(lambda: functions.evaluate(ctypes.addressof(record), None, *samples), rounds)
     return total
 
 
@@ -201,11 +201,11 @@ def changed_starts(scenes: list[str], rounds: int) -> None:
     for name in scenes:
         for method in METHODS:
             try:
-                found = propagator(name, method)
+                propagate = propagator(name, method)
             except InputError:
                 continue
-            if found.method == method:
-                row = _row(found, rounds)
+            if propagate.method == method:
+                row = _row(propagate, rounds)
                 python = [call - motion for call, motion in zip(row.calls, row.motions, strict=True)]
                 cells = (*row.parts, row.motions[2], *row.calls, max(python[:2]), python[2])
                 print(f"{name:28}{method:>8}" + "".join(f"{cell:9.1f}" for cell in cells))
@@ -215,12 +215,12 @@ def _ensemble(scene: Scene, n: int, random: np.random.Generator) -> Iterator[tup
     omega, quaternion = _start(scene)
     if sum(w == 0 for w in scene.initial.omega_b) == 2 and scene.torques:
         omega = omega * [w != 0 for w in scene.initial.omega_b]  # about one axis it stays
-    given: dict[str, Any] = {
+    variations: dict[str, Any] = {
         "omega": omega * (1 + SPREAD * random.standard_normal((n, 3))),
         "quaternion": quaternion + SPREAD * random.standard_normal((n, 4)),
         "t": np.linspace(0.0, float(scene.span.stop), SAMPLES),
     }
-    yield "starts", given
+    yield "starts", variations
     if not scene.body.principal.given_axes:
         return
     moments = np.array([float(scene.body.inertia[k][k]) for k in range(3)])
@@ -229,7 +229,7 @@ def _ensemble(scene: Scene, n: int, random: np.random.Generator) -> Iterator[tup
         if scene.torques and field in scene.torques[0].values:
             value: Any = scene.torques[0].values[field]
             varied[name] = float(value if entry is None else value[entry]) * (1 + SPREAD * random.random(n))
-    yield "and " + ", ".join(varied), {**given, "parameters": varied}
+    yield "and " + ", ".join(varied), {**variations, "parameters": varied}
 
 
 def ensembles(scenes: list[str], rounds: int, most: int) -> None:
@@ -238,11 +238,11 @@ def ensembles(scenes: list[str], rounds: int, most: int) -> None:
     for name in scenes:
         scene = _scene(name)
         for n in (size for size in SIZES if size <= most):
-            for varied, given in _ensemble(scene, n, np.random.default_rng(1)):
-                auto = propagate_ensemble(scene, **given).methods[0]
+            for varied, variations in _ensemble(scene, n, np.random.default_rng(1)):
+                auto = propagate_ensemble(scene, **variations).methods[0]
                 cells = []
                 for method in ("exact", "taylor"):
-                    run = partial(propagate_ensemble, scene, method=method, **given)
+                    run = partial(propagate_ensemble, scene, method=method, **variations)
                     run()
                     cells.append(_median(run, rounds) / n)
                 print(f"{name:26}{varied:36}{n:8d}{cells[0]:9.1f}{cells[1]:9.1f}   {auto}")

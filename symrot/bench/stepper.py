@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symrot.bench.by_hand import text_by_hand
-from symrot.build import cache as library
+from symrot.build import cache
 from symrot.propagation.steppers import dop853
 
 __all__ = ["Measurement", "main", "measure"]
@@ -47,25 +47,25 @@ def measure(tolerance: float, stop: float, rounds: int) -> list[Measurement]:
     by_hand = kernel + text_by_hand("stepper_by_hand.c")
     a, b, c = MOMENTS
     p = ((b - c) / a, (c - a) / b, (a - b) / c)
-    fast = tuple("-O3" if flag == "-O2" else flag for flag in library.FLAGS)
+    fast = tuple("-O3" if flag == "-O2" else flag for flag in cache.FLAGS)
     contestants: list[tuple[str, int, Callable[[], tuple[int, Floats]]]] = [
         (
             "symrot",
             rounds,
             partial(
                 _symrot,
-                library.build(dop853.translation_unit(kernel, "free_body", 7, 3), "free_body_stepper"),
+                cache.build(dop853.translation_unit(kernel, "free_body", 7, 3), "free_body_stepper"),
                 p,
                 tolerance,
                 stop,
             ),
         ),
-        ("by hand, -O2", rounds, _by_hand(library.build(by_hand, "stepper_by_hand"), p, tolerance, stop)),
-        ("by hand, -O3", rounds, _by_hand(library.build(by_hand, "stepper_by_hand", fast), p, tolerance, stop)),
+        ("by hand, -O2", rounds, _by_hand(cache.build(by_hand, "stepper_by_hand"), p, tolerance, stop)),
+        ("by hand, -O3", rounds, _by_hand(cache.build(by_hand, "stepper_by_hand", fast), p, tolerance, stop)),
         ("solve_ivp", min(rounds, SLOW_ROUNDS), partial(_scipy, p, tolerance, stop)),
     ]
     longer = by_hand.replace("double", "long double").replace("fabs(", "fabsl(").replace("free_body", "free_body_long")
-    _, exact = _by_hand(library.build(longer, "stepper_long_double"), p, 1e-17, stop, ctypes.c_longdouble)()
+    _, exact = _by_hand(cache.build(longer, "stepper_long_double"), p, 1e-17, stop, ctypes.c_longdouble)()
     results = [Measurement(name, *_cost_and_error(run, exact)) for name, _, run in contestants]
     for turn in range(rounds):
         for (_, turns, run), result in zip(contestants, results, strict=True):
@@ -119,8 +119,8 @@ def _scipy(p: tuple[float, ...], tolerance: float, stop: float) -> tuple[int, Fl
             ]
         )
 
-    found = solve_ivp(rhs, (0.0, stop), np.array(INITIAL), method="DOP853", rtol=tolerance, atol=tolerance)
-    return int(found.nfev), found.y[:, -1]
+    solution = solve_ivp(rhs, (0.0, stop), np.array(INITIAL), method="DOP853", rtol=tolerance, atol=tolerance)
+    return int(solution.nfev), solution.y[:, -1]
 
 
 def main(arguments: list[str] | None = None) -> None:

@@ -29,7 +29,7 @@ from numpy.typing import NDArray
 
 from symrot.bench.by_hand import text_by_hand
 from symrot.bench.comparison.peers import heyoka_integrator
-from symrot.build import cache as library
+from symrot.build import cache
 from symrot.build.sources import c_text
 from symrot.codegen.taylor.coefficients import coefficients
 from symrot.codegen.taylor.recurrences import recurrences
@@ -108,7 +108,7 @@ class _Problem:
     def taylor_library(self, order: int | None = None, project: bool = True) -> Any:
         invariants = invariant_source(self.kernel, self.plan.states) if project else ""
         source = taylor.translation_unit(self.kernel.rates, self.blocks, self.scales, order, invariants)
-        return library.build(source, "taylor", taylor.FLAGS)
+        return cache.build(source, "taylor", taylor.FLAGS)
 
     @property
     def taylor_p(self) -> list[float]:
@@ -116,12 +116,12 @@ class _Problem:
 
     def error(self, state: Iterable[Any], exact: Floats) -> float:
         """Return the largest error of a state, rates relative to the largest rate."""
-        found, worst = np.array([float(value) for value in state]), 0.0
-        if not np.isfinite(found).all():
+        computed, worst = np.array([float(value) for value in state]), 0.0
+        if not np.isfinite(computed).all():
             return math.inf
         for low, high, scale in zip(self.blocks[:-1], self.blocks[1:], self.scales, strict=True):
             size = scale or float(np.linalg.norm(exact[low:high]))
-            worst = max(worst, float(abs(found[low:high] - exact[low:high]).max()) / size)
+            worst = max(worst, float(abs(computed[low:high] - exact[low:high]).max()) / size)
         return worst
 
 
@@ -134,10 +134,10 @@ def scene(name: str) -> Scene:
 
 def reference(name: str, scale: float = 1.0) -> Floats:
     """Return the last state of a motion: as kept in :data:`REFERENCES` for the whole span, else computed anew."""
-    kept = tomllib.loads(REFERENCES.read_text(encoding="utf-8")).get(name)
+    stored = tomllib.loads(REFERENCES.read_text(encoding="utf-8")).get(name)
     return (
-        np.array([float(value) for value in kept])
-        if kept and scale == 1.0
+        np.array([float(value) for value in stored])
+        if stored and scale == 1.0
         else np.array([float(value) for value in compute_reference(name, scale)])
     )
 
@@ -184,43 +184,45 @@ def _as_mpf(value: Fraction) -> Any:
 
 # ------------------------------------------------------------------------------------------------ contestants
 
-Outcome = tuple[int, Iterable[Any]]  # steps, last state
-Task = Callable[[], Outcome]
+StepsAndState = tuple[int, Iterable[Any]]  # steps, last state
+TimedRun = Callable[[], StepsAndState]
 
 
-def _stepper(follow: Callable[..., Any], path: Any, p: Sequence[float], problem: _Problem, tolerance: float) -> Task:
+def _stepper(
+    follow: Callable[..., Any], path: Any, p: Sequence[float], problem: _Problem, tolerance: float
+) -> TimedRun:
     """Return a run of one of ours, set up once and called as a propagator does."""
     motion, times = follow(path, p, problem.y0, 0.0, tolerance), np.array([problem.stop])
 
-    def task() -> Outcome:
+    def task() -> StepsAndState:
         states, stats = motion.once(times, True)
         return stats.accepted, states[0]
 
     return task
 
 
-def _heyoka(problem: _Problem, tolerance: float, settings: dict[str, bool]) -> Task | None:
+def _heyoka(problem: _Problem, tolerance: float, settings: dict[str, bool]) -> TimedRun | None:
     """Return a run of heyoka over the same right-hand side, its parameters compiled in as numbers."""
     parameters = dict(zip((name for name, _ in problem.kernel.rate_parameters), problem.p, strict=True))
     run = heyoka_integrator(problem.kernel.rates, parameters, problem.y0, tolerance, settings)
     if run is None:
         return None
 
-    def task() -> Outcome:
+    def task() -> StepsAndState:
         state, steps = run(problem.stop)
         return steps, state
 
     return task
 
 
-def _by_hand(library_: Any, method: str, problem: _Problem, steps: int) -> Task:
+def _by_hand(library_: Any, method: str, problem: _Problem, steps: int) -> TimedRun:
     """Return a run of a loop by hand."""
     function = getattr(library_, method)
     real = ctypes.c_double
     function.argtypes, function.restype = (real, real, ctypes.c_long, ctypes.c_void_p, ctypes.c_void_p), None
     start, p = np.array(problem.y0), np.array(problem.p or [0.0])
 
-    def task() -> Outcome:
+    def task() -> StepsAndState:
         state = start.copy()
         function(0.0, problem.stop, steps, state.ctypes.data, p.ctypes.data)
         return steps, state
@@ -228,7 +230,7 @@ def _by_hand(library_: Any, method: str, problem: _Problem, steps: int) -> Task:
     return task
 
 
-def _loops(problem: _Problem) -> list[tuple[str, float, Task]]:
+def _loops(problem: _Problem) -> list[tuple[str, float, TimedRun]]:
     """Return loops by hand, with the numbers of steps in the place of tolerances."""
     text = "\n".join(
         (
@@ -238,7 +240,7 @@ def _loops(problem: _Problem) -> list[tuple[str, float, Task]]:
             text_by_hand("fixed_step.c"),
         )
     )
-    loaded = ctypes.CDLL(str(library.build(text, "by_hand")))
+    loaded = ctypes.CDLL(str(cache.build(text, "by_hand")))
     turns = problem.stop * max(1.0, float(np.linalg.norm(problem.y0[: problem.blocks[1]])))
     return [
         (f"{method} by hand", float(steps), _by_hand(loaded, method, problem, steps))
@@ -247,13 +249,13 @@ def _loops(problem: _Problem) -> list[tuple[str, float, Task]]:
     ]
 
 
-def _contestants(problem: _Problem, settings: bool) -> list[tuple[str, float, Task]]:
+def _contestants(problem: _Problem, settings: bool) -> list[tuple[str, float, TimedRun]]:
     tolerances = [10.0 ** (-k / 2) for k in range(2, 29)]  # two for each decade of the table
     orders = {e: taylor.order_for(e, problem.kernel.rates) for e in tolerances}
     ours = {order: problem.taylor_library(order) for order in set(orders.values())}
-    hairer = library.build(library_source(problem.plan, problem.kernel), "motion")
+    hairer = cache.build(library_source(problem.plan, problem.kernel), "motion")
     p, q = problem.taylor_p, problem.p
-    tasks: list[tuple[str, float, Task]] = []
+    tasks: list[tuple[str, float, TimedRun]] = []
     tasks += [("taylor", e, _stepper(taylor.task, ours[orders[e]], p, problem, e)) for e in tolerances]
     tasks += [("dop853", e, _stepper(dop853.task, hairer, q, problem, e)) for e in tolerances[:-4]]
     tasks += _loops(problem)
@@ -322,8 +324,8 @@ def _print_table(name: str, runs: list[Run]) -> dict[str, list[float]]:
     print(f"{'  error <=':10}{'taylor ms':>12}" + "".join(f"{title:>14} ms{'ratio':>8}" for title, *_ in columns))
     ratios: dict[str, list[float]] = {title: [] for title, *_ in columns}
     for decade in DECADES:
-        found = best_of(runs, decade, ["taylor"])
-        line = f"{decade:10.0e}" + (f"{min(found.seconds) * 1e3:12.3f}" if found else f"{'-':>12}")
+        fastest = best_of(runs, decade, ["taylor"])
+        line = f"{decade:10.0e}" + (f"{min(fastest.seconds) * 1e3:12.3f}" if fastest else f"{'-':>12}")
         for title, names, against, decades in columns:
             ours, other = best_of(runs, decade, against), best_of(runs, decade, names)
             if ours is None or other is None or decade not in decades:
@@ -337,16 +339,16 @@ def _print_table(name: str, runs: list[Run]) -> dict[str, list[float]]:
 
 
 def _print_ratios(indent: str, ratios: dict[str, list[float]]) -> None:
-    for title, found in ratios.items():
-        if found:
-            print(f"{indent}{title}: median ratio {np.median(found):.2f}, least {min(found):.2f}")
+    for title, values in ratios.items():
+        if values:
+            print(f"{indent}{title}: median ratio {np.median(values):.2f}, least {min(values):.2f}")
 
 
 def _print_orders(name: str, rounds: int) -> None:
     """Compare orders: the least time for each decade of the error."""
     problem, exact = _Problem(name, 1.0), reference(name)
     paths = {f"{order}": problem.taylor_library(order) for order in ORDERS}
-    tasks: list[tuple[str, float, Task]] = [
+    tasks: list[tuple[str, float, TimedRun]] = [
         (order, 10.0**-k, _stepper(taylor.task, path, problem.taylor_p, problem, 10.0**-k))
         for k in range(2, 15) for order, path in paths.items()
     ]  # fmt: skip
@@ -354,8 +356,10 @@ def _print_orders(name: str, rounds: int) -> None:
     print(f"\n{name}: ms for an error, by order of the series")
     print(f"{'  error <=':10}" + "".join(f"{order:>10}" for order in paths))
     for decade in DECADES:
-        found = [best_of(runs, decade, [order]) for order in paths]
-        print(f"{decade:10.0e}" + "".join(f"{min(run.seconds) * 1e3:10.3f}" if run else f"{'-':>10}" for run in found))
+        fastest = [best_of(runs, decade, [order]) for order in paths]
+        print(
+            f"{decade:10.0e}" + "".join(f"{min(run.seconds) * 1e3:10.3f}" if run else f"{'-':>10}" for run in fastest)
+        )
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -375,8 +379,8 @@ def main(arguments: list[str] | None = None) -> None:
         if options.orders:
             _print_orders(name, options.rounds)
             continue
-        for title, found in _print_table(name, measure(name, options.rounds, not options.quick)).items():
-            every.setdefault(title, []).extend(found)
+        for title, values in _print_table(name, measure(name, options.rounds, not options.quick)).items():
+            every.setdefault(title, []).extend(values)
     if every:
         print("\nall motions and decades")
         _print_ratios("  ", every)

@@ -24,7 +24,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from symrot.build import cache as library
+from symrot.build import cache
 from symrot.codegen.printing.c_source import DOUBLE, FLOAT, MATH_HEADER, Real
 from symrot.codegen.printing.math_header import FAR, math_header
 from symrot.kernels.removable import REMOVABLE
@@ -32,7 +32,7 @@ from symrot.workshop.emit import emit
 
 __all__ = ["FUNCTIONS", "Measured", "main", "measured"]
 
-CONTRACTION = {"unfused": ("-ffp-contract=off",), "fused": ("-ffp-contract=fast", library.NATIVE)}
+CONTRACTION = {"unfused": ("-ffp-contract=off",), "fused": ("-ffp-contract=fast", cache.NATIVE)}
 FLAGS = ("-std=c99", "-O2", "-fPIC", "-shared")
 DIGITS = {"binary64": (53, -1074), "binary32": (24, -149)}  # of the fraction; exponent of the least number
 LEAST = {"binary64": 2.0**-1021, "binary32": 2.0**-125}
@@ -135,9 +135,9 @@ def _points(function: Function, real: Real, form: str, count: int) -> Floats:
     around = [split + np.arange(-40, 41) * float(np.spacing(kind(split))) for split in splits]
     wide = draw.uniform(-min(reach, far), min(reach, far), count // 4)
     close = draw.uniform(0, min(reach, 8.0), count // 4)
-    found = np.concatenate([[0.0], sizes, -sizes[:99], turns, *around, wide, close]).astype(kind).astype(float)
-    kept: Floats = found[(np.abs(found) <= reach) & (np.abs(found) >= function.beyond)][None, :]
-    return kept
+    points = np.concatenate([[0.0], sizes, -sizes[:99], turns, *around, wide, close]).astype(kind).astype(float)
+    inside: Floats = points[(np.abs(points) <= reach) & (np.abs(points) >= function.beyond)][None, :]
+    return inside
 
 
 def _directions(real: Real, count: int, kind: Any) -> Floats:
@@ -149,10 +149,10 @@ def _directions(real: Real, count: int, kind: Any) -> Floats:
     around[0][0] *= 0.5 + draw.integers(-9, 10, third // 2) * float(np.finfo(kind).eps)
     around[1][0] *= 1 + draw.integers(-9, 10, third // 2) * float(np.finfo(kind).eps)
     spread = np.exp(draw.uniform(low, high, (2, third)))
-    found = np.concatenate([[np.sin(angles), np.cos(angles)], spread, *around, around[0][::-1]], axis=1)
-    signs = draw.choice([-1.0, 1.0], found.shape)
+    directions = np.concatenate([[np.sin(angles), np.cos(angles)], spread, *around, around[0][::-1]], axis=1)
+    signs = draw.choice([-1.0, 1.0], directions.shape)
     few = np.array(list(product((0.0, 1.0, -1.0, float(np.finfo(kind).max), LEAST[real.precision]), repeat=2))).T
-    return np.concatenate([found * signs, few[:, few[1] >= 0]], axis=1).astype(kind).astype(float)
+    return np.concatenate([directions * signs, few[:, few[1] >= 0]], axis=1).astype(kind).astype(float)
 
 
 def _text(function: Function) -> str:
@@ -162,24 +162,24 @@ def _text(function: Function) -> str:
     text = math_header() + source.replace(f'#include "{function.kernel}.h"', emitted.header)
     for real in (DOUBLE, FLOAT):
         for form, prefix in function.forms:
-            taken = ", ".join(f"x[{i}*n + k]" for i in range(2 if function.name in ("arc_ratio", "atan2") else 1))
+            arguments = ", ".join(f"x[{i}*n + k]" for i in range(2 if function.name in ("arc_ratio", "atan2") else 1))
             text += (
                 f"\nvoid {form}{real.suffix}(size_t n, const {real.type} *x, {real.type} *y)\n{{\n"
                 "    for (size_t k = 0; k < n; ++k)\n"
-                f"        y[k] = {prefix}{function.name}{real.suffix}({taken});\n}}\n"
+                f"        y[k] = {prefix}{function.name}{real.suffix}({arguments});\n}}\n"
             )
     return text
 
 
-def _ulps(found: float, exact: Any, real: Real, x: float = 0.0) -> float:
+def _ulps(computed: float, exact: Any, real: Real, x: float = 0.0) -> float:
     """Return the distance to an exact value in units in the last place of that value; of 1/(2 x^2), if x is given."""
     digits, least = DIGITS[real.precision]
     if x:
-        return abs(float((found - exact) / max(ldexp(1.0, -digits) / x / x, ldexp(1.0, least))))
+        return abs(float((computed - exact) / max(ldexp(1.0, -digits) / x / x, ldexp(1.0, least))))
     if not exact:
-        return 0.0 if found == 0 else float("inf")
+        return 0.0 if computed == 0 else float("inf")
     unit = ldexp(1.0, max(frexp(float(exact))[1] - digits, least))
-    return abs(float((found - exact) / unit)) if np.isfinite(found) else float("inf")
+    return abs(float((computed - exact) / unit)) if np.isfinite(computed) else float("inf")
 
 
 def measured(points: int = 20_000, contraction: Sequence[str] = tuple(CONTRACTION)) -> Iterator[Measured]:
@@ -196,7 +196,7 @@ def measured(points: int = 20_000, contraction: Sequence[str] = tuple(CONTRACTIO
 
     for function in FUNCTIONS:
         text = _text(function)
-        built = {each: library.build(text, "ulps", (*FLAGS, *CONTRACTION[each])) for each in contraction}
+        built = {each: cache.build(text, "ulps", (*FLAGS, *CONTRACTION[each])) for each in contraction}
         for real, (form, _) in product((DOUBLE, FLOAT), function.forms):
             arguments = _points(function, real, form, points)
             with mpmath.workdps(60):
@@ -212,12 +212,12 @@ def measured(points: int = 20_000, contraction: Sequence[str] = tuple(CONTRACTIO
 
 
 def _called(loaded: ctypes.CDLL, name: str, arguments: Floats, real: Real) -> list[float]:
-    given = np.ascontiguousarray(arguments.astype(np.float32 if real.suffix else np.float64))
-    found = np.empty(given.shape[1], given.dtype)
+    inputs = np.ascontiguousarray(arguments.astype(np.float32 if real.suffix else np.float64))
+    outputs = np.empty(inputs.shape[1], inputs.dtype)
     function = getattr(loaded, name)
     function.argtypes = (ctypes.c_size_t, ctypes.c_void_p, ctypes.c_void_p)
-    function(given.shape[1], given.ctypes.data, found.ctypes.data)
-    values: list[float] = found.astype(float).tolist()
+    function(inputs.shape[1], inputs.ctypes.data, outputs.ctypes.data)
+    values: list[float] = outputs.astype(float).tolist()
     return values
 
 

@@ -170,7 +170,7 @@ def _emit(options: Namespace) -> int:
     if options.all:
         written = kernels.write_all(options.directory or Path("generated"), targets, progress)
     else:
-        bounds = kernels.kept_bounds(options.kernel, options.directory) if options.target != "numpy" else None
+        bounds = kernels.stored_bounds(options.kernel, options.directory) if options.target != "numpy" else None
         found = kernels.kernel_files(options.kernel, options.target or "c", bounds)
         if options.directory is None:
             sys.stdout.write("\n".join(found.values()))
@@ -278,7 +278,7 @@ def _bench(options: Namespace) -> int:
     outcome = command.run(options, progress)
     progress("")
     if options.json:
-        say_json(outcome.found)
+        say_json(outcome.data)
     else:
         title, *rest = outcome.lines
         say([emphasis(title, sys.stdout), *rest])

@@ -1,7 +1,8 @@
-"""Print the table of bounds that comes with symrot: ``python -m symrot.workshop.bound_table``.
+"""Print the table of rounding-error bounds that comes with symrot: ``python -m symrot.workshop.bound_table``.
 
-Bounds what changed since, on two processes; with another method (its sources differ) everything. Exit code 1 with
-``--check`` if the table is not what would be printed, as far as that is told by looking at one point of each box.
+Only kernels that changed are bounded again, by two processes; all kernels if the sources of the method changed. With
+``--check`` nothing is written, and the exit code is 1 if the table is incomplete, was found by another method, or
+contradicts the error that is computed at one point of each box.
 """
 
 import sys
@@ -20,13 +21,13 @@ from symrot.codegen.printing.c_source import DOUBLE, FLOAT, c_source
 from symrot.files.writing import write
 from symrot.kernels.library import definition, kernel_names
 
-__all__ = ["library_tasks", "missing", "understated"]
+__all__ = ["library_tasks", "table_faults", "understated"]
 
-SPARE = 1e-9  # relative, for another order of additions
+SPARE = 1e-9  # relative: other versions of NumPy add in another order
 
 
 def _texts() -> dict[str, str]:
-    """Return the C text of each kernel, whose head says nothing of rounding."""
+    """Return the C text of each kernel; its head comment does not mention rounding errors."""
     return {
         name: c_source(kernel_program(name), kernel_description(definition(name), "c"), (DOUBLE, FLOAT), True)
         for name in kernel_names()
@@ -34,40 +35,40 @@ def _texts() -> dict[str, str]:
 
 
 def library_tasks() -> dict[str, Task]:
-    """Return what has to be bounded for all kernels of the library, by key."""
-    found: dict[str, Task] = {}
+    """Return the bounding tasks of all kernels of the library, by the key of their bound in the table."""
+    by_key: dict[str, Task] = {}
     for name, text in _texts().items():
         for operations in operations_of(name, text):
-            given = problem(definition(name), operations)
-            found |= {task.key: task for task in tasks(operations, given.box, given.region).values()}
-    return found
+            kernel_problem = problem(definition(name), operations)
+            by_key |= {task.key: task for task in tasks(operations, kernel_problem.box, kernel_problem.region).values()}
+    return by_key
 
 
-def missing() -> list[str]:
-    """Return what is wrong with the table, in sentences; nothing if it is complete and of this method."""
-    wanted, known = library_tasks(), table()["bounds"]
-    said = [] if table()["method"] == method() else ["the bounds of the table were found by another method"]
-    if lacking := len(set(wanted) - set(known)):
-        said.append(f"{lacking} bounds are not in the table")
-    if others := len(set(known) - set(wanted)):
-        said.append(f"{others} bounds of the table are of nothing in the library")
-    if wrong := understated({key: task for key, task in wanted.items() if key in known}):
-        said.append(f"{len(wrong)} bounds are below what a point of their box reaches, the first that of {wrong[0]}")
-    return said
+def table_faults() -> list[str]:
+    """Return the faults of the table, a sentence each; an empty list if it is complete and of the present method."""
+    required, known = library_tasks(), table()["bounds"]
+    faults = [] if table()["method"] == method() else ["the bounds of the table were found by another method"]
+    if lacking := len(set(required) - set(known)):
+        faults.append(f"{lacking} bounds are not in the table")
+    if others := len(set(known) - set(required)):
+        faults.append(f"{others} bounds of the table belong to no kernel of the library")
+    if wrong := understated({key: task for key, task in required.items() if key in known}):
+        faults.append(f"{len(wrong)} bounds are below the error at a point of their box, the first with key {wrong[0]}")
+    return faults
 
 
-def understated(wanted: Mapping[str, Task]) -> list[str]:
-    """Return the keys of bounds in the table that a point of their box, the one they name as worst, contradicts."""
-    return [key for key, task in wanted.items() if not _may_be(task, STORE.get(key))]
+def understated(required: Mapping[str, Task]) -> list[str]:
+    """Return the keys of bounds in the table that are contradicted by the point that they name as the worst."""
+    return [key for key, task in required.items() if not _is_consistent(task, STORE.get(key))]
 
 
-def _may_be(task: Task, kept: Search | None) -> bool:
-    """Return whether a bound is finite and not below what the method finds at the point that it names."""
-    if kept is None or len(kept.worst) != len(task.low):
+def _is_consistent(task: Task, search: Search | None) -> bool:
+    """Return whether a bound is finite and not below the error that the method computes at its worst point."""
+    if search is None or len(search.worst) != len(task.low):
         return False
-    at = np.array(kept.worst)
-    inside = bool(((task.box[0] <= at) & (at <= task.box[1])).all())
-    return inside and reached(task, at) <= kept.pointwise * (1 + SPARE) and kept.pointwise <= kept.bound < inf
+    point = np.array(search.worst)
+    inside = bool(((task.box[0] <= point) & (point <= task.box[1])).all())
+    return inside and reached(task, point) <= search.pointwise * (1 + SPARE) and search.pointwise <= search.bound < inf
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -77,14 +78,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--workers", type=int, default=2, help="processes (2)")
     options = parser.parse_args(arguments)
     if options.check:
-        print("\n".join(missing()) or "the table is complete")
-        return 1 if missing() else 0
+        faults = table_faults()
+        print("\n".join(faults) or "the table is complete")
+        return 1 if faults else 0
     trusted = table()["method"] == method()
     prepare(_texts().items(), options.workers, progress=lambda line: print(line, file=sys.stderr), with_table=trusted)
-    found = [(key, STORE.get(key, trusted)) for key in library_tasks()]
-    text = printed_table((key, each) for key, each in found if each is not None)
+    searches = [(key, STORE.get(key, trusted)) for key in library_tasks()]
+    text = printed_table((key, search) for key, search in searches if search is not None)
     write(TABLE, lambda stream: stream.write(text.encode()))
-    print(f"{TABLE.name}: {len(found)} bounds")
+    print(f"{TABLE.name}: {len(searches)} bounds")
     return 0
 
 

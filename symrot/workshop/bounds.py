@@ -1,4 +1,4 @@
-"""The bounds of the rounding errors of a kernel of the library or of a scene, as `symrot bound` prints them."""
+"""Bound the rounding errors of a kernel of the library or of a scene, as `symrot bound` does."""
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -21,51 +21,52 @@ from symrot.report.layout import apart, columns
 from symrot.scene.file import shipped_names
 from symrot.scene.reader import nearest
 from symrot.workshop.emit import emit, scene_inputs
-from symrot.workshop.input_ranges import boxed
+from symrot.workshop.input_ranges import input_box
 
-__all__ = ["facts", "given", "lines", "require_known", "section", "target_facts", "target_lines"]
+__all__ = ["facts", "lines", "require_known", "rounding_problem", "section", "target_facts", "target_lines"]
 
-EMITTED = (".c", ".h", ".o", ".json")  # files that are no scenes
+EMITTED = (".c", ".h", ".o", ".json")  # suffixes of emitted and compiled files, which are not scene files
 PRECISIONS = {"double": "", "float": "f"}
 
 
-def given(kernel: str, ranges: Sequence[str], precision: str) -> tuple[Operations, Problem, dict[str, Any]]:
-    """Return the operations of a kernel of the library or of a scene, its problem, and its box with ranges replaced.
+def rounding_problem(kernel: str, ranges: Sequence[str], precision: str) -> tuple[Operations, Problem, dict[str, Any]]:
+    """Return the operations of a kernel, its rounding problem, and its box of inputs with the user's ranges.
 
     Parameters
     ----------
     kernel : str
         A kernel of the library, the name of a shipped scene or the path of a scene file.
     ranges : sequence of str
-        ``NAME=LOW:HIGH``, by component ("theta"), place ("angles[1]") or physical constant of a scene ("A"), by which
-        its parameters are enclosed; the others are the kernel's own.
+        ``NAME=LOW:HIGH``. NAME is a component ("theta"), a place ("angles[1]") or a physical constant of a scene
+        ("A"); the range of a constant encloses the parameters that depend on it. All other inputs have the kernel's
+        own ranges.
     precision : str
-        ``"double"`` or ``"float"``; a scene has the first alone.
+        ``"double"`` or ``"float"``; the kernel of a scene has only ``"double"``.
 
     Raises
     ------
     InputError
-        For a kernel or a range that is none, or a range that is lacking.
+        For an unknown kernel, a malformed range, or an input without a range.
     """
-    operations, found, inputs = (_of_library if kernel in kernel_names() else _of_scene)(kernel, precision)
-    box = boxed(found, inputs, ranges)
-    lacking = [f"--box {symbol}=LOW:HIGH" for place, symbol in found.symbols.items() if place not in box]
+    operations, kernel_problem, inputs = (_of_library if kernel in kernel_names() else _of_scene)(kernel, precision)
+    box = input_box(kernel_problem, inputs, ranges)
+    lacking = [f"--box {symbol}=LOW:HIGH" for place, symbol in kernel_problem.symbols.items() if place not in box]
     if lacking:
-        said = f"{operations.name}: expected {' '.join(lacking)} beside the ranges that the scene knows"
-        raise InputError(f"{said}, got {' '.join(ranges)[:60] or 'none'}")
-    for group in found.region.unit:
-        _check_unit(group, found, box)
-    return operations, found, {place: box[place] for place in operations.inputs}
+        message = f"{operations.name}: expected {' '.join(lacking)} in addition to the ranges that the scene knows"
+        raise InputError(f"{message}, got {' '.join(ranges)[:60] or 'no range'}")
+    for group in kernel_problem.region.unit:
+        _check_unit(group, kernel_problem, box)
+    return operations, kernel_problem, {place: box[place] for place in operations.inputs}
 
 
-def _check_unit(group: Sequence[str], found: Problem, box: Mapping[str, tuple[Fraction, Fraction]]) -> None:
-    """Refuse a box without a point whose components at some places are a unit quaternion: nothing is true there."""
+def _check_unit(group: Sequence[str], kernel_problem: Problem, box: Mapping[str, tuple[Fraction, Fraction]]) -> None:
+    """Raise InputError if the box contains no unit quaternion: every bound would hold vacuously."""
     ends = [sorted(box[place], key=abs) for place in group]
     least = sum(near * near for (near, far) in ends if near * far > 0)
     spare = Fraction(UNIT_NORM)
     if not least - spare <= 1 <= sum(far * far for _, far in ends) + spare:
-        said = ", ".join(f"{found.symbols[place]} {_said_range(*map(float, box[place]))}" for place in group)
-        raise InputError(f"--box: expected a box that holds a unit quaternion, got {said}")
+        ranges = ", ".join(f"{kernel_problem.symbols[place]} {_range_text(*map(float, box[place]))}" for place in group)
+        raise InputError(f"--box: expected a box that contains a unit quaternion, got {ranges}")
 
 
 def _of_library(kernel: str, precision: str) -> tuple[Operations, Problem, None]:
@@ -74,74 +75,74 @@ def _of_library(kernel: str, precision: str) -> tuple[Operations, Problem, None]
 
 
 def require_known(kernel: str) -> None:
-    """Refuse what is neither a kernel of the library, nor a scene, nor a file; with the nearest name that is one."""
+    """Raise InputError unless a name is a kernel of the library, a scene or a file; suggest the nearest name."""
     path = Path(kernel)
     if kernel in kernel_names() or kernel in shipped_names() or (path.exists() and path.suffix not in EMITTED):
         return
     hint = nearest(path.name, [*kernel_names(), *shipped_names()])
-    said = f"expected the name of a kernel (see `symrot emit --list`) or a scene, got {kernel[:60]!r}"
-    raise InputError(f"{said} ({hint})" if hint else said)
+    message = f"expected the name of a kernel (see `symrot emit --list`) or a scene, got {kernel[:60]!r}"
+    raise InputError(f"{message} ({hint})" if hint else message)
 
 
 def _of_scene(scene: str, precision: str) -> tuple[Operations, Problem, SceneInputs]:
     require_known(scene)
     if precision != "double":
-        raise InputError(f"--precision: expected double for a scene, whose kernel has no other, got {precision}")
-    found = emit(scene)
-    operations = read_kernel(found.source, found.name, f"{found.name}.c")
+        raise InputError(f"--precision: expected double for a scene, whose kernel is in double only, got {precision}")
+    emitted = emit(scene)
+    operations = read_kernel(emitted.source, emitted.name, f"{emitted.name}.c")
     inputs = scene_inputs(scene)
     return operations, scene_problem(inputs, operations), inputs
 
 
 def section(kernel: str, ranges: Sequence[str]) -> dict[str, Any]:
-    """Return link 4 of a kernel for its certificate, in all its precisions; parameters as for :func:`facts`."""
-    operations, found, box = given(kernel, ranges, "double")
-    single = given(kernel, ranges, "float")[0] if kernel in kernel_names() else None
-    with _spoken(kernel):
-        return rounding_section(operations, single, box, found.region)
+    """Return the rounding section of a kernel's certificate, in all its precisions; parameters as for :func:`facts`."""
+    operations, kernel_problem, box = rounding_problem(kernel, ranges, "double")
+    single = rounding_problem(kernel, ranges, "float")[0] if kernel in kernel_names() else None
+    with _in_scene_names(kernel):
+        return rounding_section(operations, single, box, kernel_problem.region)
 
 
 @contextmanager
-def _spoken(kernel: str) -> Iterator[None]:
-    """Let what is refused be said in the names of a scene."""
+def _in_scene_names(kernel: str) -> Iterator[None]:
+    """Replace the places of states in error messages ("y[2]") with the names that the scene gives them."""
     try:
         yield
     except InputError as reason:
         names = _names(kernel)
-        raise InputError(re.sub(r"\w+\[\d+\]", lambda found: names.get(found[0], found[0]), str(reason))) from None
+        raise InputError(re.sub(r"\w+\[\d+\]", lambda match: names.get(match[0], match[0]), str(reason))) from None
 
 
 def facts(kernel: str, ranges: Sequence[str], precision: str) -> dict[str, Any]:
-    """Return the bounds of a kernel on its box, with some ranges replaced: link 4 as plain data.
+    """Return the bounds of a kernel's rounding errors on its box, with the user's ranges, as plain data for JSON.
 
     Parameters
     ----------
     kernel, ranges, precision
-        As for :func:`given`.
+        As for :func:`rounding_problem`.
 
     Raises
     ------
     InputError
-        As :func:`given`, and for a box on which an output has no bound.
+        As :func:`rounding_problem`, and for a box on which an output has no bound.
     """
-    operations, found, box = given(kernel, ranges, precision)
+    operations, kernel_problem, box = rounding_problem(kernel, ranges, precision)
     own = {"kernel": operations.name, "names": _names(kernel)}
-    with _spoken(kernel):
-        return own | rounding_section(operations, None, box, found.region)
+    with _in_scene_names(kernel):
+        return own | rounding_section(operations, None, box, kernel_problem.region)
 
 
 def _names(kernel: str) -> dict[str, str]:
-    """Return what a scene calls what its kernel takes and gives: the place of a state tells nobody which it is."""
+    """Return place -> name in the scene, for inputs and outputs of its kernel: "y[2]" alone says nothing to a user."""
     if kernel in kernel_names():
         return {}
     return {place: symbol for place, (symbol, _) in scene_inputs(kernel).components.items()}
 
 
-def _said_box(box: Mapping[str, Any], names: Mapping[str, str]) -> str:
-    return ", ".join(f"{names.get(place, place)} {_said_range(*map(_value, ends))}" for place, ends in box.items())
+def _box_text(box: Mapping[str, Any], names: Mapping[str, str]) -> str:
+    return ", ".join(f"{names.get(place, place)} {_range_text(*map(_value, ends))}" for place, ends in box.items())
 
 
-def _said_range(low: float, high: float) -> str:
+def _range_text(low: float, high: float) -> str:
     if (Fraction(low), Fraction(high)) == ANY:
         return "any"
     return " .. ".join(dict.fromkeys(apart(low, high)))
@@ -158,7 +159,7 @@ def _region_lines(section: Mapping[str, Any]) -> list[str]:
 
 
 def lines(section: Mapping[str, Any]) -> list[str]:
-    """Return the bounds as lines for people."""
+    """Return the bounds of :func:`facts` as lines of text."""
     part = section["precisions"][0]
     names = section["names"]
     unit = f"2^-{DIGITS[part['precision']]}"
@@ -172,7 +173,7 @@ def lines(section: Mapping[str, Any]) -> list[str]:
     choices = sorted({choice for each in part["outputs"] for choice in each["choices"]})
     return [
         f"{section['kernel']}: no error is larger than", *columns(rows),
-        f"for {_said_box(section['box'], names)}", *_region_lines(section),
+        f"for {_box_text(section['box'], names)}", *_region_lines(section),
         f"assuming {'; '.join(section['assumptions'])}",
         *(f"choice as computed: {choice}" for choice in choices),
     ]  # fmt: skip
@@ -186,39 +187,42 @@ def target_facts(
     Parameters
     ----------
     kernel, ranges, precision
-        As for :func:`facts`; the box that is resized about its middle.
+        As for :func:`facts`; the box is resized about its middle.
     target : float
-        The largest error that is allowed.
+        The largest error that is allowed, in the unit of the output.
     variables : sequence of str
-        Inputs whose ranges are resized; if there are none, all of a kernel of the library, of a scene those with a
-        range that are not components of its quaternion.
+        Inputs whose ranges are resized. If it is empty: all inputs of a kernel of the library; of a scene, all inputs
+        with a range of nonzero finite width that are not components of its quaternion.
     """
-    operations, found, box = given(kernel, ranges, precision)
-    places = [found.place(name) for name in variables] or (None if kernel in kernel_names() else _free(found, box))
+    operations, kernel_problem, box = rounding_problem(kernel, ranges, precision)
+    places = [kernel_problem.place(name) for name in variables] or (
+        None if kernel in kernel_names() else _free(kernel_problem, box)
+    )
     for place in places or ():
         if box[place] == ANY:
-            name = found.symbols[place]
+            name = kernel_problem.symbols[place]
             raise InputError(f"--variable {name}: expected an input that {operations.name} uses, which {name} is not")
-    with _spoken(kernel):
-        size, largest = largest_box(operations, box, target, places, found.region)
-        bounds = bound_outputs(operations, largest, found.region)
+    with _in_scene_names(kernel):
+        size, largest = largest_box(operations, box, target, places, kernel_problem.region)
+        bounds = bound_outputs(operations, largest, kernel_problem.region)
     return {
         "kernel": operations.name, "names": _names(kernel), "target": target, "size": size,
         "box": {place: [float(low).hex(), float(high).hex()] for place, (low, high) in largest.items()},
         "largest_error": max(each.bound for each in bounds).hex(),
-        "unit_groups": [list(group) for group in found.region.unit], "clearance": float(found.region.clearance).hex(),
+        "unit_groups": [list(group) for group in kernel_problem.region.unit],
+        "clearance": float(kernel_problem.region.clearance).hex(),
     }  # fmt: skip
 
 
-def _free(found: Problem, box: Mapping[str, tuple[Fraction, Fraction]]) -> list[str]:
-    units = {place for group in found.region.unit for place in group}
+def _free(kernel_problem: Problem, box: Mapping[str, tuple[Fraction, Fraction]]) -> list[str]:
+    units = {place for group in kernel_problem.region.unit for place in group}
     return [place for place, (low, high) in box.items() if low < high and (low, high) != ANY and place not in units]
 
 
-def target_lines(found: Mapping[str, Any]) -> list[str]:
-    """Return the largest box as lines for people."""
+def target_lines(resized: Mapping[str, Any]) -> list[str]:
+    """Return the largest box of :func:`target_facts` as lines of text."""
     return [
-        f"{found['kernel']}: no error is larger than {found['target']:g}",
-        f"for {_said_box(found['box'], found['names'])}", *_region_lines(found),
-        f"the box given, {found['size']:.6g} times as wide about its middle",
+        f"{resized['kernel']}: no error is larger than {resized['target']:g}",
+        f"for {_box_text(resized['box'], resized['names'])}", *_region_lines(resized),
+        f"the box given, {resized['size']:.6g} times as wide about its middle",
     ]  # fmt: skip

@@ -1,4 +1,7 @@
-"""What is wrong with the files of a kernel, beside that they are not what was certified: which line, which output."""
+"""Say how the files of a kernel differ from the certified ones: the first line that differs, the output that changed.
+
+A hash tells only that a file changed; the difference tells whether the kernel still computes its formulas.
+"""
 
 from pathlib import Path
 
@@ -10,52 +13,54 @@ from symrot.errors import CertificateError, InputError
 from symrot.files.reading import read_input
 from symrot.scene.file import shipped_names
 from symrot.workshop.emit import kernel_names, scene_kernel_name, subject
-from symrot.workshop.kernel_files import kept_bounds
+from symrot.workshop.kernel_files import stored_bounds
 
-__all__ = ["explained", "kernel_of"]
+__all__ = ["difference", "kernel_of"]
 
 LONGEST = 200  # characters of a reason
 
 
 def kernel_of(name: str) -> str | None:
-    """Return the kernel of the library, or the shipped scene, whose function has a name; None for another."""
+    """Return the kernel of the library, or the shipped scene, whose function has this name; None if neither has."""
     if name in kernel_names():
         return name
     return next((scene for scene in shipped_names() if scene_kernel_name(scene) == name), None)
 
 
-def explained(certificate: Path) -> str:
-    """Return how files beside a certificate differ from what symrot emits, to go on with a sentence; or nothing."""
+def difference(certificate: Path) -> str:
+    """Return ": " and how the files next to a certificate differ from the emitted files; empty if they agree."""
     name = certificate.name.removesuffix(".cert.json")
     kernel = kernel_of(name)
     if kernel is None:
         return ""
-    emitted = subject(kernel, kept_bounds(kernel, certificate.parent))
-    for file, wanted in emitted.files.items():
+    emitted = subject(kernel, stored_bounds(kernel, certificate.parent))
+    for file, expected in emitted.files.items():
         try:
             text = read_input(certificate.parent / file, LARGEST).decode(errors="replace")
         except OSError:
             continue
-        if text != wanted:
-            return f": {_first_line(text, wanted)}{_meaning(text, emitted) if file == f'{name}.c' else ''}"
+        if text != expected:
+            return f": {_first_line(text, expected)}{_meaning(text, emitted) if file == f'{name}.c' else ''}"
     return ""
 
 
-def _first_line(text: str, wanted: str) -> str:
-    if text.replace("\r\n", "\n") == wanted:
-        return "its lines end in another way"
-    got, expected = (each.splitlines() for each in (text, wanted))
+def _first_line(text: str, emitted: str) -> str:
+    if text.replace("\r\n", "\n") == emitted:
+        return "its line endings differ"
+    actual, expected = text.splitlines(), emitted.splitlines()
     place = next(
-        (k for k, (a, b) in enumerate(zip(got, expected, strict=False)) if a != b), min(len(got), len(expected))
+        (k for k, (a, b) in enumerate(zip(actual, expected, strict=False)) if a != b), min(len(actual), len(expected))
     )
-    have, want = (
-        repr(lines[place].strip()[:LONGEST]) if place < len(lines) else "nothing" for lines in (got, expected)
-    )
-    return f"line {place + 1} is {have}, and {want} was emitted"
+    present = repr(actual[place].strip()[:LONGEST]) if place < len(actual) else "missing"
+    original = repr(expected[place].strip()[:LONGEST]) if place < len(expected) else "no such line"
+    return f"line {place + 1} is {present}, but symrot emits {original}"
 
 
 def _meaning(text: str, emitted: Subject) -> str:
-    """Return what an edited C text computes now: the formulas in other roundings, another output, nothing readable."""
+    """Return, in brackets, what an edited C text computes: its formulas with other operations, or why not its formulas.
+
+    An empty text if the operations are the same.
+    """
     file = f"{emitted.name}.c"
     symbols = {place: symbol for place, (symbol, _) in emitted.places.items()}
     formulas = {place: formula for place, (_, formula) in emitted.formulas.items()}

@@ -9,32 +9,34 @@ from itertools import repeat
 from pathlib import Path
 
 import symrot
-from symrot.build import cache as library
+from symrot.build import cache as build_cache
 from symrot.certificates.audit import LARGEST, audit, operations_of
 from symrot.certificates.certificate import Data, said_of, with_slots
 from symrot.errors import CertificateError, InputError
 from symrot.files.reading import read_input
 from symrot.scene.file import names_with_kernels
 from symrot.scene.reader import nearest
-from symrot.workshop import object_code as compiled
-from symrot.workshop.certificate_diff import explained, kernel_of
+from symrot.workshop import object_code
+from symrot.workshop.certificate_diff import difference, kernel_of
 from symrot.workshop.emit import emit, kernel_names, scene_kernel_name, subject
-from symrot.workshop.kernel_files import SCENES, certificate_files, kept_bounds, kernel_files, write_files
+from symrot.workshop.kernel_files import SCENES, certificate_files, kernel_files, stored_bounds, write_files
 from symrot.workshop.workers import workers
 
 __all__ = ["all_lines", "audit_file", "audit_files", "certify", "certify_all", "flag_lines", "lines", "refuted"]
 
-LINKS = {  # of the chain from a derivation to object code
-    1: "laws of the formulas proven", 2: "a theorem of Coq about the formulas (`symrot prove`)",
-    3: "C text = formulas, proven", 4: "rounding errors bounded on a box", 5: "object code = C text (--objects)",
+PROOFS = {  # from the derivation to the object code; the names label the lines of a certificate
+    "laws": "proven of the formulas", "Coq": "a theorem about the formulas (`symrot prove`)",
+    "C text": "proven equal to the formulas", "rounding": "errors bounded on a box",
+    "object code": "equal to the C text (--objects)",
 }  # fmt: skip
+LABEL = max(map(len, PROOFS)) + 2  # characters
 MANY = 12  # certificates: fewer are audited in this process
 
 
-def _said(data: Data) -> Data | None:
-    """Return what symrot says of the kernel that a certificate should be about, and proves; None if it knows none.
+def _proven_statement(data: Data) -> Data | None:
+    """Return what symrot itself proves about the kernel of a certificate; None if it does not know the kernel.
 
-    It is derived and proven once, and kept in the cache by the programs that do so.
+    The statement is derived and proven once, then stored in the cache under the digest of the programs.
     """
     name = data["kernel"]
     scene = str(data["regenerate"]).removeprefix("symrot emit ").removesuffix(" --target c")
@@ -43,21 +45,21 @@ def _said(data: Data) -> Data | None:
             return None
         name = scene
     bounds = data.get("rounding") if name != data["kernel"] else None  # a scene has no box of its own
-    key = f"said of {name} with {json.dumps(bounds)} by {_programs()}"
-    kept = library.fetch(key)
-    if kept is None:
-        kept = json.dumps(said_of(subject(name, bounds)))
-        library.store(key, kept)
-    found: Data = json.loads(kept)
-    return found
+    key = f"statement about {name} with {json.dumps(bounds)} by {_programs()}"
+    stored = build_cache.fetch(key)
+    if stored is None:
+        stored = json.dumps(said_of(subject(name, bounds)))
+        build_cache.store(key, stored)
+    statement: Data = json.loads(stored)
+    return statement
 
 
 @cache
 def _programs() -> str:
-    """Return the SHA-256 of all of symrot, and of the SymPy it derives with."""
+    """Return the SHA-256 of all sources of symrot and of the version of SymPy."""
     root = Path(symrot.__file__).parent
     digest = sha256(version("sympy").encode())
-    for path in sorted(each for each in root.rglob("*") if each.suffix in (".py", ".toml", ".v", ".c")):
+    for path in sorted(source for source in root.rglob("*") if source.suffix in (".py", ".toml", ".v", ".c")):
         digest.update(path.read_bytes())
     return digest.hexdigest()
 
@@ -66,88 +68,88 @@ def audit_file(
     path: Path, object_file: Path | None = None, rerun: bool = False, coq: bool = False,
     progress: Callable[[str], object] = lambda text: None,
 ) -> list[str]:  # fmt: skip
-    """Return, line by line, what of a certificate was found to hold.
+    """Check a certificate and return the statements that hold, a line each.
 
     Parameters
     ----------
     path : Path
-        NAME.cert.json, the files that it names beside it.
+        NAME.cert.json, in one folder with the files that it names.
     object_file : Path, optional
-        What a compiler made of NAME.c: compared with it, rounding for rounding.
+        NAME.c as compiled; it is compared with the C text rounding for rounding.
     rerun : bool
-        Whether bounds of rounding errors are found again; else they are compared with those that symrot knows.
+        Whether bounds of rounding errors are computed again; otherwise they are compared with the stored ones.
     coq : bool
         Whether Coq checks the theorem about the kernel.
 
     Raises
     ------
     CertificateError
-        With the first thing that does not hold.
+        If a statement does not hold; the message names the first.
     """
     progress(f"auditing {path.name} ..")
     try:
-        data, found = audit(path, _said)
+        data, report = audit(path, _proven_statement)
     except CertificateError as reason:
-        raise CertificateError(f"{reason}{explained(path)}") from None
+        raise CertificateError(f"{reason}{difference(path)}") from None
     source = path.with_name(f"{data['kernel']}.c")
     text = source.read_text(encoding="utf-8")
-    found += _bounds_again(data, text, progress) if rerun else []
+    report += _recomputed_bounds(data, text, progress) if rerun else []
     if object_file is not None:
-        found += compiled.object_lines(text, object_file, source.name)
+        report += object_code.object_lines(text, object_file, source.name)
     if coq:
-        found += _coq(data, progress)
-    return found
+        report += _coq(data, progress)
+    return report
 
 
 def audit_files(
     paths: Sequence[Path], object_file: Path | None = None, rerun: bool = False, coq: bool = False,
     progress: Callable[[str], object] = lambda text: None,
 ) -> dict[str, list[str]]:  # fmt: skip
-    """Return what :func:`audit_file` finds of each certificate; many are audited by several processes at once.
+    """Return path -> the lines of :func:`audit_file`; a long list is audited by several processes at once.
 
     Raises
     ------
     CertificateError
-        For the first one, in the order given, that does not hold.
+        For the first certificate, in the order of ``paths``, that does not hold.
     """
     if len(paths) < MANY:
         return {str(path): audit_file(path, object_file, rerun, coq, progress) for path in paths}
-    found = {}
+    reports = {}
     options = map(repeat, (object_file, rerun, coq))
     with workers() as pool:
-        for path, said in zip(paths, pool.map(audit_file, paths, *options, chunksize=8), strict=True):
+        for path, report in zip(paths, pool.map(audit_file, paths, *options, chunksize=8), strict=True):
             progress(f"audited {path.name} ..")
-            found[str(path)] = said
-    return found
+            reports[str(path)] = report
+    return reports
 
 
-def _bounds_again(data: Data, text: str, progress: Callable[[str], object]) -> list[str]:
+def _recomputed_bounds(data: Data, text: str, progress: Callable[[str], object]) -> list[str]:
     if data.get("rounding") is None:
-        raise CertificateError(f"{data['kernel']}: expected bounds to find again, and the certificate holds none")
+        raise CertificateError(f"{data['kernel']}: expected bounds to compute again, but the certificate has no bounds")
     from symrot.certificates.rounding.bounds import check_section
 
     progress("bounding ..")
     kernels = list(operations_of(data, text).values())
     check_section(data["rounding"], kernels[0], kernels[1] if len(kernels) > 1 else None, rerun=True)
-    return ["bounds of rounding errors were found again, from nothing"]
+    return ["bounds of rounding errors were computed again and agree"]
 
 
 def flag_lines(flags: str) -> list[str]:
-    """Return what holds of any certificate under the flags of a compiler, as a line.
+    """Return, as one line, which statements of any certificate hold under the flags of a compiler.
 
     Raises
     ------
     InputError
-        For a flag whose effect on rounding is not known.
+        For a flag whose effect on rounding is unknown.
     CertificateError
-        For flags under which nothing holds.
+        For flags that void the certificate.
     """
     from symrot.certificates.flags import judge
 
-    found = judge(flags)
-    if not found.accepted:
-        raise CertificateError(f"{flags}: {found.sentence()}")
-    return [f"{flags}: {found.sentence()}"]
+    effect = judge(flags)
+    if not effect.accepted:
+        raise CertificateError(f"{flags}: {effect.sentence()}")
+    return [f"{flags}: {effect.sentence()}"]
 
 
 def _coq(data: Data, progress: Callable[[str], object]) -> list[str]:
@@ -156,7 +158,7 @@ def _coq(data: Data, progress: Callable[[str], object]) -> list[str]:
     if data["coq"] is None:
         return ["no theorem of Coq is about this kernel"]
     if coqc() is None:
-        return ["Coq is not installed (Debian package coq): its theorem was not checked"]
+        return ["Coq is not installed (Debian package coq): the theorem was not checked"]
     progress("checking with Coq ..")
     result = check_kernel(data["kernel"])
     if not result:
@@ -168,48 +170,49 @@ def certify(
     kernel: str, ranges: Sequence[str] = (), directory: Path | None = None, objects: bool = False,
     bounds: bool = True, progress: Callable[[str], object] = lambda text: None,
 ) -> tuple[Data, list[Path]]:  # fmt: skip
-    """Return the certificate of a kernel, everything in it found or fetched now, and the files written.
+    """Return the certificate of a kernel, each part computed now or fetched from the cache, and the files written.
 
     Parameters
     ----------
     kernel : str
-        A kernel of the library, a scene, or NAME.c or NAME.cert.json: a file that has to be what symrot emits.
+        A kernel of the library, a scene, or a file NAME.c or NAME.cert.json exactly as symrot emits it.
     ranges : sequence of str
         ``NAME=LOW:HIGH`` for the box on which rounding errors are bounded; other ranges are the kernel's own. A
-        scene has those of its parameters, its time and its quaternion, and is bounded if any range is given.
+        scene has own ranges for its parameters, its time and its quaternion only; it is bounded if ``ranges`` is not
+        empty.
     directory : Path, optional
-        Where the kernel and its certificate are written; nowhere if left out.
+        Folder for the kernel and its certificate; without it no file is written.
     objects : bool
-        Whether the kernel is compiled, and the object code compared with it, for the compilers that are there.
+        Whether the kernel is compiled by each installed compiler and the object code compared with the C text.
     bounds : bool
         Whether rounding errors are bounded.
 
     Raises
     ------
     InputError, CertificateError
-        For a kernel that is none, an edited file, a box that cannot be, a proof that fails.
+        For an unknown kernel, an edited file, an impossible box or a proof that fails.
     """
     from symrot.workshop.bounds import require_known, section
 
     name = _emitted(kernel) if kernel.endswith((".c", ".cert.json")) else kernel
     require_known(name)
     if objects:
-        compiled.require_compiler()
+        object_code.require_compiler()
     if ranges and not bounds:
-        raise InputError(f"--box: expected no --no-bounds beside it, which leaves bounds out, got {ranges[0]!r} and it")
-    found = None
+        raise InputError(f"--box: expected no --no-bounds, which leaves the bounds out, got both, with {ranges[0]!r}")
+    rounding = None
     if bounds and (ranges or name in kernel_names()):
         progress("bounding ..")
-        found = section(name, ranges)
-    of_scene = None if name in kernel_names() else found or kept_bounds(name, directory)
+        rounding = section(name, ranges)
+    scene_bounds = None if name in kernel_names() else rounding or stored_bounds(name, directory)
     progress("proving ..")
-    texts = kernel_files(name, "c", of_scene)
-    (file, text), = certificate_files(name, directory or Path(), of_scene).items()  # fmt: skip
+    texts = kernel_files(name, "c", scene_bounds)
+    (file, text), = certificate_files(name, directory or Path(), scene_bounds).items()  # fmt: skip
     slots: Data = {key: value for key, value in json.loads(text).items() if key in ("rounding", "objects")}
-    slots |= {"rounding": found} if found else {}
+    slots |= {"rounding": rounding} if rounding else {}
     if objects:
         progress("comparing object code ..")
-        slots["objects"] = compiled.objects_of(texts, f"{json.loads(text)['kernel']}.c", _programs())
+        slots["objects"] = object_code.objects_of(texts, f"{json.loads(text)['kernel']}.c", _programs())
     text = with_slots(text, slots)
     return json.loads(text), write_files(directory, texts | {file: text}) if directory else []
 
@@ -219,107 +222,120 @@ def certify_all(
 ) -> tuple[dict[str, Data], list[Path]]:  # fmt: skip
     """Return the certificates of the library and of the kernels of shipped scenes, and the files written.
 
-    Several processes find them. What was certified by the same programs is fetched from the cache, unless it is to be
-    written or compiled.
+    Several processes share the work. Certificates made by the same version of the programs are fetched from the cache,
+    except where files are written or object code is compared.
 
     Parameters
     ----------
     directory : Path, optional
-        Where kernels and certificates are written, those of scenes in ``scenes`` below it; nowhere if left out.
+        Folder for kernels and certificates, those of scenes in its subfolder ``scenes``; without it no file is written.
     objects : bool
-        Whether the kernels are compiled, and the object code compared with them, for the compilers that are there.
+        Whether the kernels are compiled by each installed compiler and the object code compared with the C text.
     """
     if objects:
-        compiled.require_compiler()
+        object_code.require_compiler()
     names = (*kernel_names(), *names_with_kernels())
-    found: dict[str, Data] = {}
+    certificates: dict[str, Data] = {}
     written: list[Path] = []
     with workers() as pool:
         work = pool.map(_certified, names, repeat(directory), repeat(objects), chunksize=4)
         for name, (data, paths) in zip(names, work, strict=True):
             progress(f"certified {name} ..")
-            found[name] = data
+            certificates[name] = data
             written += paths
-    return found, written
+    return certificates, written
 
 
 def _certified(name: str, directory: Path | None, objects: bool) -> tuple[Data, list[Path]]:
     if directory is not None or objects:
-        room = directory and (directory if name in kernel_names() else directory / SCENES)
-        return certify(name, (), room, objects)
+        folder = directory and (directory if name in kernel_names() else directory / SCENES)
+        return certify(name, (), folder, objects)
     key = f"certified {name} by {_programs()}"
-    kept = library.fetch(key)
-    if kept is None:
-        kept = json.dumps(certify(name)[0])
-        library.store(key, kept)
-    return json.loads(kept), []
+    stored = build_cache.fetch(key)
+    if stored is None:
+        stored = json.dumps(certify(name)[0])
+        build_cache.store(key, stored)
+    return json.loads(stored), []
 
 
-def all_lines(found: Mapping[str, Data]) -> list[str]:
-    """Return which links the certificates of kernels hold, a line each, and how many hold which."""
-    links = {name: _links(data) for name, data in found.items()}
-    width = max(map(len, links))
-    said = [f"{name:<{width}}  {' '.join(str(k) if k in held else '-' for k in LINKS)}" for name, held in links.items()]
-    count = {k: sum(k in held for held in links.values()) for k in LINKS}
-    said += [f"link {k}, {what}: {count[k]} of {len(links)}" for k, what in LINKS.items()]
-    return [*said, *compiled.table({name: data.get("objects") for name, data in found.items()})]
+def all_lines(certificates: Mapping[str, Data]) -> list[str]:
+    """Return a line for each kernel with the proofs in its certificate, then a line for each proof with its count."""
+    proofs = {name: _proofs(data) for name, data in certificates.items()}
+    width = max(map(len, proofs))
+    text_lines = [
+        f"{name:<{width}}  {'  '.join(proof if proof in present else '-' * len(proof) for proof in PROOFS)}"
+        for name, present in proofs.items()
+    ]
+    for proof, meaning in PROOFS.items():
+        count = sum(proof in present for present in proofs.values())
+        text_lines.append(f"{proof}, {meaning}: {count} of {len(proofs)}")
+    return [*text_lines, *object_code.table({name: data.get("objects") for name, data in certificates.items()})]
 
 
-def refuted(found: Iterable[Data]) -> bool:
-    """Return whether object code was compared and is not the C text under flags by which its bits are to hold."""
-    return any(data.get("objects") and not compiled.holds(data["objects"]) for data in found)
+def refuted(certificates: Iterable[Data]) -> bool:
+    """Return whether object code was compared and differs from the C text under flags that must preserve its bits."""
+    return any(data.get("objects") and not object_code.holds(data["objects"]) for data in certificates)
 
 
-def _links(data: Data) -> set[int]:
-    compared = compiled.holds(data.get("objects"))
-    held = {1: data["laws"], 2: data["coq"], 3: data["readback"], 4: data.get("rounding"), 5: compared}
-    return {k for k, what in held.items() if what}
+def _proofs(data: Data) -> set[str]:
+    """Return the names of the proofs that a certificate contains, as in ``PROOFS``."""
+    compared = object_code.holds(data.get("objects"))
+    sections = (data["laws"], data["coq"], data["readback"], data.get("rounding"), compared)
+    return {proof for proof, section in zip(PROOFS, sections, strict=True) if section}
 
 
 def _emitted(path: str) -> str:
-    """Return the kernel or shipped scene that a C file or certificate is of, if the file is as symrot prints it."""
+    """Return the kernel or shipped scene of a C file or certificate; raise unless the file is exactly as emitted."""
     file = Path(path)
     name = file.name.removesuffix(".c").removesuffix(".cert.json")
     kernel = kernel_of(name)
     if kernel is None:
         hint = nearest(name, [*kernel_names(), *map(scene_kernel_name, names_with_kernels())])
-        said = f"{path}: expected a file that symrot emits of a kernel of the library or a shipped scene"
-        raise InputError(f"{said} ({hint})" if hint else f"{said}; `symrot audit` takes the certificate of any kernel")
+        message = f"{path}: expected a file that symrot emits of a kernel of the library or a shipped scene"
+        raise InputError(
+            f"{message} ({hint})" if hint else f"{message}; `symrot audit` takes the certificate of any kernel"
+        )
     try:
         text = read_input(file, LARGEST).decode().replace("\r\n", "\n")
     except (OSError, UnicodeDecodeError) as reason:
-        why = reason.strerror if isinstance(reason, OSError) else "no UTF-8"
-        said = f"a file of at most {LARGEST // 1_000_000} MB that can be read"
-        raise InputError(f"{path}: expected {said}, got {why}") from None
+        why = reason.strerror if isinstance(reason, OSError) else "bytes that are not UTF-8"
+        raise InputError(f"{path}: expected a readable file of at most {LARGEST // 1_000_000} MB, got {why}") from None
     if file.name.endswith(".cert.json"):
         audit_file(file)
-    elif text != emit(kernel, "c", kept_bounds(kernel, file.parent)).source:
-        why = explained(file.with_name(f"{name}.cert.json"))
-        raise CertificateError(f"{path}: expected the text that symrot emits for {kernel}, and it was edited{why}")
+    elif text != emit(kernel, "c", stored_bounds(kernel, file.parent)).source:
+        why = difference(file.with_name(f"{name}.cert.json"))
+        raise CertificateError(
+            f"{path}: expected the text that symrot emits for {kernel}, but the file was edited{why}"
+        )
     return kernel
 
 
 def lines(data: Data, compared: bool = True) -> list[str]:
-    """Return a certificate in words, line by line; ``compared``: what it says of object code was found just now."""
-    said = [f"{data['kernel']}: {data['title']}", f"  domain    {data['domain']}"]
-    said += [f"  link 1    {law['law']}: proven" for law in data["laws"]]
+    """Return a certificate as lines of text.
+
+    ``compared`` says that object code was compared just now; otherwise its results are from an earlier run, and the
+    text only mentions them.
+    """
+    rows = [("domain", data["domain"]), *(("laws", f"{law['law']}: proven") for law in data["laws"])]
     if data["coq"]:
-        said.append(f"  link 2    theorem {data['coq']['theorem']} of {data['coq']['file']} (`symrot prove` checks it)")
-    for name, each in data["readback"].items():
-        series = "".join(f"; series of {s[0]} leaves out less than {_short(s[3])} of it" for s in each["series"])
-        said.append(
-            f"  link 3    {name} and its batch are the formulas, {sum(each['operations'].values())} operations{series}"
+        rows.append(("Coq", f"theorem {data['coq']['theorem']} of {data['coq']['file']} (`symrot prove` checks it)"))
+    for name, function in data["readback"].items():
+        series = "".join(
+            f"; the series of {s[0]} is truncated by less than {_short(s[3])} of its value" for s in function["series"]
         )
+        count = sum(function["operations"].values())
+        rows.append(("C text", f"{name} and its batch are the formulas, {count} operations{series}"))
     for part in (data.get("rounding") or {"precisions": []})["precisions"]:
         worst = max(part["outputs"], key=lambda item: float.fromhex(item["absolute"]))
         most = f"{float.fromhex(worst['absolute']):.3g}"
-        said.append(f"  link 4    {part['precision']}: error at most {most} on the box ({worst['output']})")
+        rows.append(("rounding", f"{part['precision']}: error at most {most} on the box ({worst['output']})"))
     if compared:
-        said += compiled.lines(data.get("objects"))
+        rows += [("object code", line) for line in object_code.lines(data.get("objects"))]
     elif data.get("objects"):
-        said.append("  link 5    compared before, which is kept and not looked at (--objects compares)")
+        rows.append(("object code", "compared in an earlier run, not now (--objects compares)"))
     required = ", ".join(data["flags"]["required"])
-    return [*said, f"  flags     required {required}; void under {', '.join(data['flags']['void'])}"]
+    rows.append(("flags", f"required {required}; void under {', '.join(data['flags']['void'])}"))
+    return [f"{data['kernel']}: {data['title']}", *(f"  {label:<{LABEL}}{text}" for label, text in rows)]
 
 
 def _short(text: str) -> str:

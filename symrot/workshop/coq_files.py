@@ -1,4 +1,4 @@
-"""The theorems of Coq as files and as a table: which were checked, on which axioms they rest, what was refused."""
+"""Write the theorems for Coq as files, have Coq check them, and report the outcome, the axioms and the refusals."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -12,31 +12,31 @@ from symrot.workshop.kernel_files import write_files
 
 __all__ = ["facts", "lines", "prove"]
 
-MISSING = "no coqc was found (Debian package coq)"
+MISSING = "coqc is not on the path (Debian package coq)"
 
 
 def prove(directory: Path, demanded: bool, progress: Callable[[str], object]) -> tuple[list[Path], CoqResult | None]:
-    """Write all files of theorems into a folder and have Coq check them; return changed files and what Coq said.
+    """Write all files of theorems into a folder and have Coq check them; return the changed files and Coq's result.
 
-    Without Coq the files are written all the same and the second value is None.
+    Where Coq is not installed, the files are written and the result is None.
 
     Raises
     ------
     CertificateError
-        Where the check is demanded and there is no Coq; nothing is written then.
+        If the check is demanded and Coq is not installed; then nothing is written.
     """
-    found = coqc()
-    if demanded and found is None:
+    prover = coqc()
+    if demanded and prover is None:
         raise CertificateError(f"--check: expected Coq to check the theorems with, {MISSING}")
     progress("printing theorems ..")
     texts = coq_texts()
     written = write_files(directory, texts)
-    return written, check_texts(texts, progress=progress) if found else None
+    return written, check_texts(texts, progress=progress) if prover else None
 
 
 def facts(directory: Path, written: list[Path], result: CoqResult | None) -> dict[str, Any]:
-    """Return what :func:`prove` found, as JSON takes it."""
-    found: dict[str, Any] = {
+    """Return the outcome of :func:`prove` as plain data for JSON."""
+    report: dict[str, Any] = {
         "directory": str(directory),
         "files": [f"{name}.v" for name in (RULES, *coq_file_names(), ASSUMPTIONS)],
         "written": [str(path) for path in written],
@@ -45,21 +45,21 @@ def facts(directory: Path, written: list[Path], result: CoqResult | None) -> dic
         "checked": result is not None,
     }  # fmt: skip
     if result is not None:
-        for entry, each in zip(found["theorems"], result.theorems, strict=True):
-            entry["outcome"] = each.outcome
-        found |= {"axioms": list(result.axioms), "problems": list(result.problems), "coq": result.version,
+        for entry, theorem in zip(report["theorems"], result.theorems, strict=True):
+            entry["outcome"] = theorem.outcome
+        report |= {"axioms": list(result.axioms), "problems": list(result.problems), "coq": result.version,
                   "seconds": result.seconds, "holds": bool(result)}  # fmt: skip
-    return found
+    return report
 
 
 def lines(directory: Path, result: CoqResult | None) -> list[str]:
-    """Return what :func:`prove` found, as text."""
+    """Return the outcome of :func:`prove` as lines of text."""
     if result is None:
         count = sum(len(coq_file(name).theorems) for name in coq_file_names())
         return [f"{count} theorems written to {directory}, not checked: {MISSING}"]
-    table = columns([(each.outcome, each.name, each.file) for each in result.theorems])
+    table = columns([(theorem.outcome, theorem.name, theorem.file) for theorem in result.theorems])
     if result:
-        held = f"{len(result.theorems)} theorems hold, checked by Coq {result.version} in {result.seconds:.0f} s; "
-        return [*table, "", f"{held}nothing admitted; axioms, those of its real numbers:",
+        count = f"{len(result.theorems)} theorems hold, checked by Coq {result.version} in {result.seconds:.0f} s; "
+        return [*table, "", f"{count}nothing admitted; only the axioms of Coq's real numbers are used:",
                 *(f"  {axiom}" for axiom in result.axioms)]  # fmt: skip
     return [*table, "", *result.problems]

@@ -1,4 +1,4 @@
-"""Whether this installation can do its work: versions, extras, compiler, cache, and a kernel compiled and run."""
+"""Check this installation: versions, extras, compiler, cache, and whether a small kernel compiles and runs."""
 
 import os
 import sys
@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from symrot import __version__
-from symrot.build import cache as library
+from symrot.build import cache as build_cache
 from symrot.errors import SymrotError
 from symrot.report.layout import fields
 
@@ -32,20 +32,20 @@ def _version(package: str) -> str | None:
 
 
 def _first_line(command: tuple[str, ...]) -> str:
-    """Return what a compiler says of its version."""
+    """Return the first line that a compiler prints about its version."""
     import subprocess
 
     try:
         done = subprocess.run([*command, "--version"], capture_output=True, timeout=SECONDS_TO_ANSWER, check=False)
     except (OSError, subprocess.TimeoutExpired) as reason:
-        return f"it says no version: {reason}"
-    said = done.stdout.decode("utf-8", "replace").strip()
-    return said.splitlines()[0] if said else "it says no version"
+        return f"unknown version: {reason}"
+    output = done.stdout.decode("utf-8", "replace").strip()
+    return output.splitlines()[0] if output else "unknown version"
 
 
 @contextmanager
 def _empty_cache() -> Iterator[None]:
-    """Let the library compile into a folder of its own, so that the compiler is really run."""
+    """Use an empty cache inside the block: the compiler really runs, instead of an older result being loaded."""
     from tempfile import TemporaryDirectory
 
     before = os.environ.get("SYMROT_CACHE")
@@ -61,12 +61,12 @@ def _empty_cache() -> Iterator[None]:
 
 
 def _compiled_and_run() -> str:
-    """Return an empty text, or why a tiny kernel could not be compiled and run."""
+    """Compile and run a tiny kernel; return the reason of a failure, or an empty text."""
     import ctypes
 
     try:
         with _empty_cache():
-            function = ctypes.CDLL(str(library.build(TINY, "check"))).symrot_check
+            function = ctypes.CDLL(str(build_cache.build(TINY, "check"))).symrot_check
             function.restype, function.argtypes = ctypes.c_double, [ctypes.c_double]
             result = function(0.5)
     except (SymrotError, OSError) as reason:
@@ -81,19 +81,19 @@ def _cached(directory: Path) -> tuple[int, int]:
 
 
 def facts() -> dict[str, Any]:
-    """Return the state of this installation as data for JSON; ``problems`` are what keeps symrot from working well."""
-    cache = library.cache()
+    """Return the state of this installation as data for JSON; ``problems`` are the reasons why symrot works badly."""
+    cache = build_cache.cache()
     count, size = _cached(cache.directory)
     versions = {name: _version(name) for name in NEEDED}
     problems = [f"{name} is not installed" for name, version in versions.items() if version is None]
     compiler: dict[str, Any] | None = None
     try:
-        tool = library.compiler()
+        tool = build_cache.compiler()
         compiler = {"command": " ".join(tool.command), "version": _first_line(tool.command)}
         problems += [reason] if (reason := _compiled_and_run()) else []
     except SymrotError as reason:
         problems.append(str(reason))
-    problems += [f"the cache is not kept: {cache.reason}"] if cache.reason else []
+    problems += [f"the cache lasts for this process only: {cache.reason}"] if cache.reason else []
     return {
         "symrot": __version__,
         "python": {"version": sys.version.split()[0], "executable": sys.executable},
@@ -110,34 +110,38 @@ def _packages(versions: dict[str, str | None]) -> str:
     return ", ".join(f"{name} {version or 'missing'}" for name, version in versions.items())
 
 
-def _spoken_cache(found: dict[str, Any]) -> str:
-    kept = "" if found["kept"] else ", for this process only"
-    return f"{found['directory']}: {found['files']} files, {found['bytes'] / 1e6:.2g} MB{kept}"
+def _cache_text(cache: dict[str, Any]) -> str:
+    remark = "" if cache["kept"] else ", for this process only"
+    return f"{cache['directory']}: {cache['files']} files, {cache['bytes'] / 1e6:.2g} MB{remark}"
 
 
-def _spoken_compiler(found: dict[str, str] | None) -> str:
-    return f"{found['command']}: {found['version']}" if found else "none; scenes are stepped by SciPy, much slower"
+def _compiler_text(compiler: dict[str, str] | None) -> str:
+    return (
+        f"{compiler['command']}: {compiler['version']}"
+        if compiler
+        else "none; scenes are stepped by SciPy, much slower"
+    )
 
 
-SPOKEN: tuple[tuple[str, Callable[[dict[str, Any]], str]], ...] = (
-    ("symrot", lambda found: str(found["symrot"])),
-    ("python", lambda found: f"{found['python']['version']}, {found['python']['executable']}"),
-    ("needed", lambda found: _packages(found["needed"])),
-    ("compiler", lambda found: _spoken_compiler(found["compiler"])),
-    ("cache", lambda found: _spoken_cache(found["cache"])),
+ROWS: tuple[tuple[str, Callable[[dict[str, Any]], str]], ...] = (  # label -> text of the facts
+    ("symrot", lambda report: str(report["symrot"])),
+    ("python", lambda report: f"{report['python']['version']}, {report['python']['executable']}"),
+    ("needed", lambda report: _packages(report["needed"])),
+    ("compiler", lambda report: _compiler_text(report["compiler"])),
+    ("cache", lambda report: _cache_text(report["cache"])),
 )
 
 
-def lines(found: dict[str, Any]) -> list[str]:
-    """Return the lines for people that say what :func:`facts` says."""
-    rows = [(name, spoken(found)) for name, spoken in SPOKEN]
-    for extra, versions in found["extras"].items():
+def lines(report: dict[str, Any]) -> list[str]:
+    """Return the facts of :func:`facts` as lines of text."""
+    rows = [(name, text(report)) for name, text in ROWS]
+    for extra, versions in report["extras"].items():
         hint = "" if all(versions.values()) else f" (pip install 'symrot[{extra}]')"
         rows.append((f"[{extra}]", f"{_packages(versions)}{hint}"))
-    verdicts = found["problems"] or ["all is well: a kernel was compiled, loaded and run"]
+    verdicts = report["problems"] or ["all is well: a kernel was compiled, loaded and run"]
     return fields(rows + [("check", verdict) for verdict in verdicts])
 
 
 def clear_cache() -> int:
-    """Remove every file of ours from the cache and return how many there were."""
-    return len(library.clear())
+    """Remove every file that symrot wrote from the cache and return their number."""
+    return len(build_cache.clear())

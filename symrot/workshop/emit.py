@@ -1,4 +1,4 @@
-"""The functions that people call and that live in no single room: a plan of a scene, the text of a kernel."""
+"""Plan a scene, explain the plan, and emit the text of a kernel: public functions that draw on several packages."""
 
 import re
 from collections.abc import Mapping
@@ -38,8 +38,9 @@ class _Texts(NamedTuple):
 class Emitted(_Texts):
     """An emitted kernel: the name of its function, the text, and in C the header (empty otherwise).
 
-    ``certificate`` is the text of its certificate, proven when it is asked for; for a kernel of the library with the
-    bounds of its rounding errors on its own box, for a scene's with those it was emitted with.
+    ``certificate`` is the text of its certificate; it is proven at the first access. The certificate of a kernel of the
+    library contains the bounds of its rounding errors on its own box; that of a scene's kernel contains the bounds that
+    were passed to :func:`emit`.
     """
 
     kernel: Any = None
@@ -61,19 +62,19 @@ def _scene(source: Scene | str | Path) -> Scene:
 
 
 def plan(scene: Scene | str | Path) -> Plan:
-    """Return what is computed for a scene, what is skipped and why; :func:`explain` is a table of it.
+    """Return the plan of a scene: each item that is computed or skipped, and why; :func:`explain` prints it as a table.
 
     Parameters
     ----------
     scene : Scene, str or Path
-        A scene, the name of a shipped one, or the path of a scene file.
+        A scene, the name of a shipped scene, or the path of a scene file.
     """
-    found = _scene(scene)
-    return make_plan(found, driven=found.table is not None, switched=switched(found))
+    loaded = _scene(scene)
+    return make_plan(loaded, driven=loaded.table is not None, switched=switched(loaded))
 
 
 def explain(scene: Scene | str | Path) -> str:
-    """Return the plan of a scene as a table for people: item, kept or skipped, rule, derivation, operations saved.
+    """Return the plan of a scene as a table of text: item, kept or skipped, rule, derivation, operations saved.
 
     Parameters
     ----------
@@ -86,7 +87,7 @@ def explain(scene: Scene | str | Path) -> str:
 
 
 def _formulas(scene: Scene | str | Path) -> Plan:
-    """Return the plan of a scene whose torques are formulas, which alone has a kernel to print."""
+    """Return the plan of a scene whose torques are formulas: only such a scene has a kernel to print."""
     return make_plan(_scene(scene))
 
 
@@ -101,14 +102,14 @@ def emit(kernel: Scene | str | Path, target: str = "c", bounds: Mapping[str, Any
     target : str
         ``"c"`` (C99, valid C++) or ``"numpy"``.
     bounds : mapping, optional
-        Bounds of the rounding errors of a scene's kernel on a box of yours, for the head of its C and its certificate
-        (:func:`symrot.workshop.bounds.section`); a kernel of the library has its own.
+        Bounds of the rounding errors of a scene's kernel on a box of your choice, for the head comment of its C and for
+        its certificate (:func:`symrot.workshop.bounds.section`); a kernel of the library has its own.
 
     Raises
     ------
     InputError
-        For another target, a name that is neither a kernel nor a scene, a scene that cannot be used, or one whose
-        plan leaves nothing to integrate.
+        For an unknown target, a name that is neither a kernel nor a scene, an unusable scene, or a scene without a
+        state to integrate.
     """
     from symrot.codegen.printing.c_source import DOUBLE, FLOAT, c_header, c_source
     from symrot.codegen.printing.numpy_source import numpy_source
@@ -119,16 +120,16 @@ def emit(kernel: Scene | str | Path, target: str = "c", bounds: Mapping[str, Any
     program, description = _library_kernel(kernel, target) if is_kernel else _scene_kernel(kernel, target, bounds)
     name = program.signature.name
     if target == "numpy":
-        found = Emitted(name, numpy_source(program, description), "")
+        emitted = Emitted(name, numpy_source(program, description), "")
     else:
         reals = (DOUBLE, FLOAT) if is_kernel else (DOUBLE,)
         source = c_source(program, description, reals, is_kernel)
-        if is_kernel:  # the head says the bounds of what is under it
+        if is_kernel:  # the head comment states the bounds of the text below it: printed a second time, with them
             description = _library_kernel(kernel, target, source)[1]
             source = c_source(program, description, reals, is_kernel)
-        found = Emitted(name, source, c_header(program, description, reals))
-    found.kernel, found.bounds = kernel, bounds
-    return found
+        emitted = Emitted(name, source, c_header(program, description, reals))
+    emitted.kernel, emitted.bounds = kernel, bounds
+    return emitted
 
 
 def _is_kernel(kernel: Any) -> bool:
@@ -136,9 +137,9 @@ def _is_kernel(kernel: Any) -> bool:
 
 
 def subject(kernel: Scene | str | Path, bounds: Mapping[str, Any] | None = None) -> "Subject":
-    """Return a kernel of the library or a scene's own kernel as something to certify, with the texts emitted of it.
+    """Return the subject of a certificate: a kernel of the library or of a scene, with its emitted texts.
 
-    ``bounds`` are those that a scene's kernel is emitted with (:func:`emit`).
+    ``bounds`` are the rounding bounds that a scene's kernel is emitted with (:func:`emit`).
     """
     from symrot.certificates.subjects import library_subject, scene_subject
     from symrot.codegen.printing.c_source import MATH_HEADER
@@ -153,9 +154,9 @@ def subject(kernel: Scene | str | Path, bounds: Mapping[str, Any] | None = None)
     files[f"../numpy/{c.name}.py" if is_kernel else f"../../numpy/scenes/{c.name}.py"] = numpy.source
     if is_kernel:
         return library_subject(definition(kernel), _library_kernel(kernel, "c")[1], files)
-    found = _formulas(kernel)
-    equations = equations_of_motion(found.structure)
-    lowered, description = _scene_rates(found, equations, "c")
+    scene_plan = _formulas(kernel)
+    equations = equations_of_motion(scene_plan.structure)
+    lowered, description = _scene_rates(scene_plan, equations, "c")
     return scene_subject(equations, lowered.program, lowered.parameters, description, files)
 
 
@@ -167,7 +168,7 @@ def kernel_names() -> tuple[str, ...]:
 
 
 def _library_kernel(name: Any, target: str, source: str = "") -> tuple[Any, Any]:
-    """Return a kernel of the library, and what the emitted file says of it; of rounding errors, if its C is given."""
+    """Return the program and the description of a library kernel, with rounding bounds if its C source is passed."""
     from symrot.certificates.rounding.bounds_text import in_words
     from symrot.codegen.library_kernels import kernel_description, kernel_program
     from symrot.kernels.library import definition
@@ -182,24 +183,24 @@ def _scene_kernel(
     from symrot.codegen.scene_kernels import with_values
     from symrot.dynamics.equations import equations_of_motion
 
-    found = _formulas(scene)
-    said = contract(scene_inputs(scene), bounds) if bounds and target == "c" else ()
-    lowered, description = _scene_rates(found, equations_of_motion(found.structure), target, said)
-    return with_values(lowered.program, lowered.parameters, found.constants), description
+    scene_plan = _formulas(scene)
+    contract_lines = contract(scene_inputs(scene), bounds) if bounds and target == "c" else ()
+    lowered, description = _scene_rates(scene_plan, equations_of_motion(scene_plan.structure), target, contract_lines)
+    return with_values(lowered.program, lowered.parameters, scene_plan.constants), description
 
 
 def scene_inputs(scene: Scene | str | Path) -> "SceneInputs":
-    """Return what a scene's own kernel takes and gives, its parameters and what they are, its first and last time."""
+    """Return the arguments of a scene's own kernel, the values and formulas of its parameters, and its time span."""
     from symrot.certificates.rounding.scenes import SceneInputs
     from symrot.dynamics.equations import equations_of_motion
     from symrot.planning.scene_kernel import bind
 
-    found = _formulas(scene)
-    lowered, _ = _scene_rates(found, equations_of_motion(found.structure), "c")
-    values = tuple(bind(lowered.parameters, found.constants))
+    scene_plan = _formulas(scene)
+    lowered, _ = _scene_rates(scene_plan, equations_of_motion(scene_plan.structure), "c")
+    values = tuple(bind(lowered.parameters, scene_plan.constants))
     formulas = {f"p[{place}]": parameter for place, parameter in enumerate(lowered.parameters)}
-    arguments, constants = lowered.program.signature.arguments, found.constants
-    return SceneInputs(arguments, values, found.scene.span[:2], formulas, constants)
+    arguments, constants = lowered.program.signature.arguments, scene_plan.constants
+    return SceneInputs(arguments, values, scene_plan.scene.span[:2], formulas, constants)
 
 
 def scene_kernel_name(scene: str) -> str:
@@ -208,14 +209,16 @@ def scene_kernel_name(scene: str) -> str:
     return name if name[0].isalpha() else f"scene_{name}"
 
 
-def _scene_rates(found: Plan, equations: Any, target: str, said: tuple[Any, ...] = ()) -> tuple[Any, Any]:
-    """Return the right-hand side of a plan, and what the emitted file says of it."""
+def _scene_rates(
+    scene_plan: Plan, equations: Any, target: str, contract_lines: tuple[Any, ...] = ()
+) -> tuple[Any, Any]:
+    """Return the right-hand side of a plan's equations as a program, and the description for the emitted file."""
     from symrot.codegen.scene_kernels import rates_program, scene_description
 
-    if not found.states:
+    if not scene_plan.states:
         raise InputError(
-            f"{found.scene.name}: expected a scene with states to integrate; every state of it is constant"
+            f"{scene_plan.scene.name}: expected a scene with states to integrate; every state of it is constant"
         )
-    return rates_program(equations, scene_kernel_name(found.scene.name)), scene_description(
-        found.scene.title, found.scene.name, target, said
+    return rates_program(equations, scene_kernel_name(scene_plan.scene.name)), scene_description(
+        scene_plan.scene.title, scene_plan.scene.name, target, contract_lines
     )

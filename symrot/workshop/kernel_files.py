@@ -1,4 +1,4 @@
-"""Emitted kernels as files: one, or the library and those of all shipped scenes, and whether the files are stale."""
+"""Write emitted kernels as files, one or all, and compare the files on disk with the kernels emitted now."""
 
 import json
 import os
@@ -23,15 +23,15 @@ from symrot.scene.file import names_with_kernels
 from symrot.workshop.emit import emit
 from symrot.workshop.workers import workers
 
-__all__ = ["certificate_files", "kept_bounds", "kernel_files", "kernel_lines", "stale", "write_all", "write_files"]
+__all__ = ["certificate_files", "kernel_files", "kernel_lines", "stale", "stored_bounds", "write_all", "write_files"]
 
 SUFFIXES = {"c": (".c", ".h", ".json", ".txt", ".in"), "numpy": (".py",)}
 RECHECK = "recheck.py"  # re-checks certificates without symrot
-SCENES = "scenes"  # under the folder of each target: the kernels of shipped scenes; those of the library beside it
+SCENES = "scenes"  # subfolder of each target's folder for the kernels of shipped scenes; the library is directly in it
 
 
 def kernel_lines() -> list[str]:
-    """Return a line for each kernel of the library: its name and what it computes."""
+    """Return a line for each kernel of the library: its name and its title."""
     width = max(map(len, kernel_names()))
     return [f"{name:<{width}}  {definition(name).title}" for name in kernel_names()]
 
@@ -39,36 +39,36 @@ def kernel_lines() -> list[str]:
 def kernel_files(kernel: str | Path, target: str, bounds: Mapping[str, Any] | None = None) -> dict[str, str]:
     """Return file name -> text of a kernel of the library or of a scene; in C the header comes first.
 
-    ``bounds`` are those that the head of a scene's C says (:func:`symrot.emit`).
+    ``bounds`` are the rounding bounds for the head comment of a scene's C (:func:`symrot.emit`).
     """
-    found = emit(kernel, target, bounds)
+    emitted = emit(kernel, target, bounds)
     if target == "numpy":
-        return {f"{found.name}.py": found.source}
+        return {f"{emitted.name}.py": emitted.source}
     from symrot.codegen.printing.c_source import MATH_HEADER
     from symrot.codegen.printing.math_header import math_header
 
-    shared = {MATH_HEADER: math_header()} if f'"{MATH_HEADER}"' in found.source else {}
-    return {f"{found.name}.h": found.header, f"{found.name}.c": found.source} | shared
+    shared = {MATH_HEADER: math_header()} if f'"{MATH_HEADER}"' in emitted.source else {}
+    return {f"{emitted.name}.h": emitted.header, f"{emitted.name}.c": emitted.source} | shared
 
 
 def certificate_files(
     kernel: str | Path, directory: Path, bounds: Mapping[str, Any] | None = None
 ) -> dict[str, str]:  # fmt: skip
-    """Return file name -> text of the certificate of a kernel; verdicts on object code that still hold are kept.
+    """Return file name -> text of the certificate of a kernel; verdicts on object code on disk are kept if they hold.
 
-    Bounds of rounding errors are those of the kernel's own box; of a scene, those that it is emitted with.
+    Bounds of rounding errors are on the kernel's own box; for a scene, they are ``bounds``.
     """
-    found = emit(kernel, "c", bounds)
-    name = f"{found.name}.cert.json"
-    own = json.loads(found.certificate).get("rounding")
-    return {name: with_slots(found.certificate, _slots(directory / name) | {"rounding": own})}
+    emitted = emit(kernel, "c", bounds)
+    name = f"{emitted.name}.cert.json"
+    own = json.loads(emitted.certificate).get("rounding")
+    return {name: with_slots(emitted.certificate, _slots(directory / name) | {"rounding": own})}
 
 
-def kept_bounds(kernel: str | Path, directory: Path | None) -> Mapping[str, Any] | None:
-    """Return the bounds of rounding errors that a folder's certificate holds of a scene's kernel, as it is emitted now.
+def stored_bounds(kernel: str | Path, directory: Path | None) -> Mapping[str, Any] | None:
+    """Return the rounding bounds of a scene's kernel from its certificate in a folder, checked as in an audit.
 
-    They are those that bounding again finds, as in an audit. None for a kernel of the library, which has its own, and
-    where there are none, or they are of other operations or not what is found.
+    None for a kernel of the library, which has its own bounds; None also if there is no certificate, or if its bounds
+    are missing, belong to other operations, or fail the check.
     """
     if directory is None or kernel in kernel_names():
         return None
@@ -86,39 +86,41 @@ def kept_bounds(kernel: str | Path, directory: Path | None) -> Mapping[str, Any]
 
 
 def _slots(path: Path) -> dict[str, Any]:
-    """Return the certificate that is there, of which bounds and verdicts are kept; nothing for none."""
+    """Return the certificate on disk, whose bounds and verdicts are reused; an empty dict if it cannot be read."""
     try:
-        found = json.loads(read_input(path, LARGEST))
+        certificate = json.loads(read_input(path, LARGEST))
     except (OSError, ValueError, RecursionError):
         return {}
-    return found if isinstance(found, dict) else {}
+    return certificate if isinstance(certificate, dict) else {}
 
 
-def _files_of(name: str, room: str, targets: Sequence[str], directory: Path) -> dict[str, str]:
+def _files_of(name: str, subfolder: str, targets: Sequence[str], directory: Path) -> dict[str, str]:
     """Return path -> text of one kernel, its certificate included."""
     files: dict[str, str] = {}
     for target in targets:
-        bounds = kept_bounds(name, directory / target / room) if target == "c" else None
-        found = kernel_files(name, target, bounds)
+        bounds = stored_bounds(name, directory / target / subfolder) if target == "c" else None
+        texts = kernel_files(name, target, bounds)
         if target == "c":
-            found |= certificate_files(name, directory / target / room, bounds)
-        files |= {f"{target}/{room}{file}": text for file, text in found.items()}
+            texts |= certificate_files(name, directory / target / subfolder, bounds)
+        files |= {f"{target}/{subfolder}{file}": text for file, text in texts.items()}
     return files
 
 
 def _all_files(targets: Sequence[str], directory: Path, progress: Callable[[str], object]) -> dict[str, str]:
-    """Return path -> text of the library and of the kernels of all shipped scenes; several processes print them."""
+    """Return path -> text of the library and of the kernels of all shipped scenes, printed by several processes."""
     work = [
-        (name, room) for room, names in (("", kernel_names()), (f"{SCENES}/", names_with_kernels())) for name in names
+        (name, subfolder)
+        for subfolder, names in (("", kernel_names()), (f"{SCENES}/", names_with_kernels()))
+        for name in names
     ]
     files: dict[str, str] = {}
     with workers() as pool:
-        names, rooms = zip(*work, strict=True)
-        for name, found in zip(
-            names, pool.map(_files_of, names, rooms, repeat(targets), repeat(directory), chunksize=8), strict=True
+        names, subfolders = zip(*work, strict=True)
+        for name, texts in zip(
+            names, pool.map(_files_of, names, subfolders, repeat(targets), repeat(directory), chunksize=8), strict=True
         ):
             progress(f"emitting {name} ..")
-            files |= found
+            files |= texts
     if "c" in targets:
         files |= {f"c/{file}": text for file, text in (build_files() | selftest_files()).items()}
         files[RECHECK] = Path(recheck.__file__).read_text(encoding="utf-8")
@@ -126,18 +128,18 @@ def _all_files(targets: Sequence[str], directory: Path, progress: Callable[[str]
 
 
 def _printed_before(directory: Path, targets: Sequence[str]) -> list[str]:
-    """Return the paths of the kernels that are there, those that are no longer printed among them."""
+    """Return the paths of all kernel files on disk, including kernels that are no longer printed."""
     return [
         path.relative_to(directory).as_posix()
         for target in targets
-        for room in (directory / target, directory / target / SCENES)
-        for path in sorted(room.glob("*"))
+        for folder in (directory / target, directory / target / SCENES)
+        for path in sorted(folder.glob("*"))
         if path.suffix in SUFFIXES[target]
     ]
 
 
 def write_files(directory: Path, files: Mapping[str, str]) -> list[Path]:
-    """Write texts into a folder, made if it is not there, and return the paths that changed.
+    """Write texts into a folder, which is created if necessary, and return the paths that changed.
 
     Raises
     ------
@@ -145,12 +147,12 @@ def write_files(directory: Path, files: Mapping[str, str]) -> list[Path]:
         If the folder or a file cannot be written.
     """
     changed = []
-    for name, text in files.items():  # all that can be known to fail fails before anything is written
+    for name, text in files.items():  # foreseeable failures are raised before anything is written
         path, content = directory / name, text.encode()
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             if path.is_dir() or not os.access(path.parent, os.W_OK):
-                raise InputError(f"{str(path)!r} cannot be written: it, or the folder it is in, is not to be changed")
+                raise InputError(f"{str(path)!r} cannot be written: it is a folder, or its folder is write-protected")
             if not path.is_file() or path.read_bytes() != content:
                 changed.append((path, content))
         except OSError as reason:
@@ -161,7 +163,7 @@ def write_files(directory: Path, files: Mapping[str, str]) -> list[Path]:
 
 
 def write_all(directory: Path, targets: Sequence[str], progress: Callable[[str], object]) -> list[Path]:
-    """Write the library and the kernels of all shipped scenes, remove others, return the paths that changed."""
+    """Write the library and the kernels of all shipped scenes, remove other kernels, and return the changed paths."""
     files = _all_files(targets, directory, progress)
     changed = write_files(directory, files)
     for name in _printed_before(directory, targets):
@@ -172,15 +174,17 @@ def write_all(directory: Path, targets: Sequence[str], progress: Callable[[str],
 
 
 def stale(directory: Path, targets: Sequence[str], progress: Callable[[str], object]) -> list[str]:
-    """Return a unified diff from the kernels that are there to those that would be printed now; nothing if equal.
+    """Return a unified diff from the kernels on disk to the kernels emitted now; an empty list if they are equal.
 
     Raises
     ------
     InputError
-        If the folder is not there.
+        If the folder does not exist.
     """
     if not directory.is_dir():
-        raise InputError(f"{str(directory)!r}: expected the folder that `symrot emit --all` writes, there is none")
+        raise InputError(
+            f"{str(directory)!r}: expected the folder that `symrot emit --all` writes, which does not exist"
+        )
     files = _all_files(targets, directory, progress)
     lines: list[str] = []
     for name in sorted({*files, *_printed_before(directory, targets)}):
@@ -190,5 +194,5 @@ def stale(directory: Path, targets: Sequence[str], progress: Callable[[str], obj
         if old != new or name not in files:
             before, after = f"{path} (on disk)", f"{path} (emitted)"
             diff = list(unified_diff(old.splitlines(), new.splitlines(), before, after, lineterm=""))
-            lines += diff or [f"{path}: {'line ends differ' if name in files else 'a kernel that is not printed'}"]
+            lines += diff or [f"{path}: {'line endings differ' if name in files else 'a kernel that is not emitted'}"]
     return lines

@@ -1,11 +1,11 @@
-"""Link 5 in words and numbers: object code compared with the C text, by the compilers here or in a file of yours."""
+"""Compare object code with the C text of a kernel, from the compilers of this machine or from a user's object file."""
 
 import json
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from symrot.build import cache as library
+from symrot.build import cache
 from symrot.certificates.certificate import Data
 from symrot.certificates.flags import BITS
 from symrot.certificates.object_code.build import COMPILERS, compiler_version, objects_section
@@ -21,15 +21,15 @@ HOLDS = {IDENTICAL: "rounding for rounding: bits and bounds hold",
 
 
 def require_compiler() -> None:
-    """Refuse to compare object code where nothing compiles, or nothing reads it."""
+    """Raise InputError if no compiler or no disassembler is installed."""
     if not any(map(compiler_version, COMPILERS)):
-        raise InputError(f"--objects: expected {' or '.join(COMPILERS)} on the path to compile with, there is none")
+        raise InputError(f"--objects: expected {' or '.join(COMPILERS)} on the path to compile with, found neither")
     if missing():
         raise InputError(f"--objects: {missing()}")
 
 
 def objects_of(texts: Mapping[str, str], source: str, programs: str) -> Data:
-    """Return what compilers make of a kernel, compared with it: the objects section of a certificate.
+    """Compile a kernel, compare the object code with its C text, and return the objects section of a certificate.
 
     Parameters
     ----------
@@ -38,62 +38,61 @@ def objects_of(texts: Mapping[str, str], source: str, programs: str) -> Data:
     source : str
         The name of the C file among them.
     programs : str
-        The digest of the programs that compare: with it, the texts and the compilers unchanged the cache has it.
+        The digest of symrot's sources. The section comes from the cache if the digest, the texts and the versions of
+        the compilers are unchanged.
     """
     versions = [compiler_version(compiler) for compiler in COMPILERS]
     key = f"objects of {json.dumps([source, dict(texts), versions])} by {programs}"
-    kept = library.fetch(key)
-    if kept is None:
+    stored = cache.fetch(key)
+    if stored is None:
         with TemporaryDirectory(prefix="symrot-") as directory:
             write_files(Path(directory), texts)
-            kept = json.dumps(objects_section(Path(directory) / source))
-        library.store(key, kept)
-    found: Data = json.loads(kept)
-    return found
+            stored = json.dumps(objects_section(Path(directory) / source))
+        cache.store(key, stored)
+    section: Data = json.loads(stored)
+    return section
 
 
 def holds(section: Data | None) -> bool:
-    """Return whether object code is the C text for every compiler, under all flags by which bits are to hold."""
+    """Return whether object code is the C text for every compiler, under all flags that must preserve its bits."""
     strict = [item for item in _objects(section) if item["flags_hold"] == BITS]
-    return bool(strict) and all(each["verdict"] == IDENTICAL for item in strict for each in item["functions"])
+    return bool(strict) and all(function["verdict"] == IDENTICAL for item in strict for function in item["functions"])
 
 
 def lines(section: Data | None) -> list[str]:
-    """Return what was found of a kernel, a line for each compiler and its flags."""
-    said = [f"  link 5    {item['compiler']} {item['flags']}: {_verdict(item)}" for item in _objects(section)]
-    return [
-        *said,
-        *(f"  link 5    {each} is not on the path: not compared" for each in (section or {}).get("missing", ())),
-    ]
+    """Return the verdict on the object code of a kernel, a line for each compiler and its flags."""
+    verdicts = [f"{item['compiler']} {item['flags']}: {_verdict(item)}" for item in _objects(section)]
+    absent = (section or {}).get("missing", ())
+    return [*verdicts, *(f"{compiler} is not on the path: not compared" for compiler in absent)]
 
 
 def table(sections: Mapping[str, Data | None]) -> list[str]:
-    """Return, for each compiler and its flags, of how many kernels the object code is the C text, and of which not."""
-    found: dict[str, dict[str, Data]] = {}
+    """Return, for each compiler and its flags, how many kernels were accepted, and a line for each that was not."""
+    by_flags: dict[str, dict[str, Data]] = {}
     for name, section in sections.items():
         for item in _objects(section):
-            found.setdefault(f"{item['compiler']} {item['flags']}", {})[name] = item
-    said = []
-    for flags, items in found.items():
-        said.append(f"  {flags}: {sum(item['accepted'] for item in items.values())} of {len(items)}")
-        said += [f"    {name}: {_verdict(item)}" for name, item in items.items() if not item["accepted"]]
-    return said
+            by_flags.setdefault(f"{item['compiler']} {item['flags']}", {})[name] = item
+    text_lines = []
+    for flags, items in by_flags.items():
+        text_lines.append(f"  {flags}: {sum(item['accepted'] for item in items.values())} of {len(items)}")
+        text_lines += [f"    {name}: {_verdict(item)}" for name, item in items.items() if not item["accepted"]]
+    return text_lines
 
 
 def object_lines(text: str, path: Path, where: str) -> list[str]:
-    """Return what of an object file is the C text, line by line.
+    """Compare an object file with the C text and return a line for each function.
 
     Raises
     ------
     CertificateError
-        For the first function that is not, and how.
+        If a function differs; the message names the first and the difference.
     """
     verdicts = compare_object(text, path, where=where)
     refused = [verdict for verdict in verdicts if not verdict.accepted]
     if refused:
         raise CertificateError(f"{path}: {refused[0].sentence()}")
-    said = [f"{path}: {verdict.function} is the C text, {HOLDS[verdict.verdict]}" for verdict in verdicts]
-    return [*said, f"{path}: loops over samples are not compared; what their flags do, the certificate says"]
+    text_lines = [f"{path}: {verdict.function} is the C text, {HOLDS[verdict.verdict]}" for verdict in verdicts]
+    return [*text_lines, f"{path}: loops over samples are not compared; the certificate says what flags do to them"]
 
 
 def _objects(section: Data | None) -> Iterator[Data]:
@@ -101,11 +100,11 @@ def _objects(section: Data | None) -> Iterator[Data]:
 
 
 def _verdict(item: Data) -> str:
-    """Return what was found of one object, in words; of a refusal the first reason."""
-    verdicts = {each["verdict"] for each in item["functions"]}
+    """Return the verdict on one object as text; for a refusal, the first reason."""
+    verdicts = {function["verdict"] for function in item["functions"]}
     if item["accepted"]:
         return f"the C text, {HOLDS[IDENTICAL if verdicts == {IDENTICAL} else CONTRACTED]}"
-    refused = [each for each in item["functions"] if each["verdict"] not in HOLDS]
+    refused = [function for function in item["functions"] if function["verdict"] not in HOLDS]
     if not refused:
         return "not accepted under these flags"
     first = refused[0]

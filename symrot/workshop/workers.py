@@ -1,4 +1,4 @@
-"""Processes that work at once, and end at once when the command is interrupted."""
+"""Run work in several processes, and end them all immediately when the command is interrupted."""
 
 import os
 import signal
@@ -14,21 +14,21 @@ COUNT = min(os.cpu_count() or 1, 4)
 
 
 def _ignored(arguments: object) -> None:
-    """Say nothing of an error in a thread of a pool that is being ended."""
+    """Print nothing about an error in a thread of a pool that is shutting down."""
 
 
 @contextmanager
 def workers() -> Iterator[ProcessPoolExecutor]:
-    """Yield a pool of processes; whatever leaves the block but its end, as Ctrl-C, kills them where they are.
+    """Yield a pool of processes; an exception in the block, Ctrl-C included, kills them at once.
 
-    What they write appears by renaming (:func:`symrot.files.writing.write`, :mod:`symrot.build.cache`), so that
-    nothing stays half-written. Ctrl-C is for the first process alone, which tells the others.
+    Their files appear by renaming (:func:`symrot.files.writing.write`, :mod:`symrot.build.cache`), so that none stays
+    half-written. The processes ignore Ctrl-C; the main process receives it and ends them.
     """
     with ProcessPoolExecutor(COUNT, initializer=signal.signal, initargs=(signal.SIGINT, signal.SIG_IGN)) as pool:
         try:
             yield pool
         except BaseException:
-            threading.excepthook = _ignored  # the pool's own thread trips over what was cancelled under it
+            threading.excepthook = _ignored  # the pool's own thread fails on futures that were cancelled
             for process in active_children():
                 process.terminate()
             pool.shutdown(wait=False, cancel_futures=True)

@@ -367,12 +367,13 @@ def test_certify_and_audit(tmp_path, capsys, monkeypatch):
         "quaternion_product.c", "quaternion_product.cert.json", "quaternion_product.h"]  # fmt: skip
     assert main(["certify", "quaternion_product", "-o", "k"]) == 0
     said = capsys.readouterr().out
-    assert "link 1" in said and "link 3" in said and "link 4" in said and "-ffp-contract=off" in said
+    labels = {line.split("  ")[1].strip() for line in said.splitlines()[1:] if line.startswith("  ")}
+    assert {"laws", "C text", "rounding"} <= labels and "-ffp-contract=off" in said
     kept = Path("k/quaternion_product.cert.json").read_text(encoding="utf-8")
     assert main(["emit", "quaternion_product", "-o", "k"]) == 0
     assert Path("k/quaternion_product.cert.json").read_text(encoding="utf-8") == kept  # bounds are kept
     assert main(["audit", "k/quaternion_product.cert.json", "--rerun-bounds"]) == 0
-    assert "found again" in capsys.readouterr().out
+    assert "computed again" in capsys.readouterr().out
     assert main(["certify", "k/quaternion_product.c", "--no-bounds", "--json"]) == 0
     text = Path("k/quaternion_product.c").read_text(encoding="utf-8")
     Path("k/quaternion_product.c").write_text(text.replace(" - ", " + ", 1), encoding="utf-8")
@@ -388,14 +389,14 @@ def test_certify_and_audit(tmp_path, capsys, monkeypatch):
 
 
 def test_certify_all(tmp_path, capsys, monkeypatch):
-    """All there is, here a kernel and a scene: which links each has; written as `symrot certify KERNEL -o` does."""
+    """The table of proofs, here for one kernel and one scene; the files are those of `symrot certify KERNEL -o`."""
     monkeypatch.setattr(certificates, "kernel_names", lambda: ("quaternion_dcm",))
     monkeypatch.setattr(certificates, "names_with_kernels", lambda: ("heavy_top_loops",))
     for options in ([], ["-o", str(tmp_path)]):
         assert main(["certify", "--all", *options]) == 0
         lines = capsys.readouterr().out.splitlines()
-        links = [line.split() for line in lines[:2]]
-        assert links == [["quaternion_dcm", "1", "2", "3", "4", "-"], ["heavy_top_loops", "1", "-", "3", "-", "-"]]
+        assert lines[0] == "quaternion_dcm   laws  Coq  C text  rounding  -----------"
+        assert lines[1] == "heavy_top_loops  laws  ---  C text  --------  -----------"
         assert lines[2].endswith("2 of 2") and lines[6].endswith("0 of 2") and len(lines) == (13 if options else 7)
     assert recheck.check(tmp_path / "scenes" / "heavy_top_loops_rates.cert.json")
     for wrong in (["certify"], ["certify", "--all", "quaternion_dcm"], ["certify", "--all", "--box", "q0=0:1"]):
@@ -427,13 +428,13 @@ def test_a_kernel_may_be_named_by_what_was_emitted_of_it(path, tmp_path, capsys)
 EDITS = {  # file, what is edited -> what takes its place, what is said of it
     "sign": (".c", "omega_2*cos_psi - sin_psi", "omega_2*cos_psi + sin_psi",
              "line 49 is 'dangles[1] = omega_2*cos_psi + sin_psi*omega_3;'", "expected dangles[1] to be omega_2*cos(psi) - omega"),
-    "order": (".c", "omega_2*cos_psi - ", "cos_psi*omega_2 - ", "with other operations", "was emitted"),
+    "order": (".c", "omega_2*cos_psi - ", "cos_psi*omega_2 - ", "with other operations", "but symrot emits"),
     "arguments": (".c", "(const double angles[3], const double omega[3]", "(const double omega[3], const double angles[3]",
-                  "is 'void euler_zyx_body_rates(const double omega[3], const double angles[3]", "was emitted"),
-    "constant": (".c", "cos_theta;\n", "cos_theta*1.0000000000000002;\n", "1.0000000000000002", "was emitted"),
+                  "is 'void euler_zyx_body_rates(const double omega[3], const double angles[3]", "but symrot emits"),
+    "constant": (".c", "cos_theta;\n", "cos_theta*1.0000000000000002;\n", "1.0000000000000002", "but symrot emits"),
     "header": (".h", "double dangles[3]);", "double dangles[4]);", "double dangles[4]);'", "euler_zyx_body_rates.h is not"),
-    "more": (".h", "\n#endif\n", "\n#endif\n#define sin cos\n", "'#define sin cos', and nothing was emitted", ".h is not"),
-    "ends": (".c", "\n", "\r\n", "its lines end in another way", "is not what was certified"),
+    "more": (".h", "\n#endif\n", "\n#endif\n#define sin cos\n", "'#define sin cos', but symrot emits no such line", ".h is not"),
+    "ends": (".c", "\n", "\r\n", "its line endings differ", "is not what was certified"),
     "none": (".c", None, None, "expected euler_zyx_body_rates.c beside it", "there is none"),
 }  # fmt: skip
 
@@ -463,7 +464,7 @@ def test_an_edited_file_is_refused_with_its_line_and_what_it_computes(edit, tmp_
         (["certify", "quaternion_to_dcm"], "did you mean 'quaternion_of_dcm'?"),
         (["certify", "mine.c"], "`symrot audit` takes the certificate of any kernel"),
         (["certify", "quaternion_dc.cert.json"], "did you mean 'quaternion_dcm'?"),
-        (["certify", "nowhere/quaternion_dcm.c"], "can be read, got No such file or directory"),
+        (["certify", "nowhere/quaternion_dcm.c"], "a readable file of at most 16 MB, got No such file or directory"),
         (["bound", str(KERNELS / "quaternion_dcm.c")], "did you mean 'quaternion_dcm'?"),
         (["audit", "quaternion_dcm.c"], "its own is quaternion_dcm.cert.json"),
     ],

@@ -282,7 +282,7 @@ def test_certify_compares_object_code_and_keeps_what_it_found(tmp_path, capsys, 
     assert main(["certify", "quaternion_product", "--objects"]) == 0
     assert capsys.readouterr().out in said
     assert main(["certify", "quaternion_product", "-o", str(folder)]) == 0
-    assert "compared before, which is kept and not looked at" in capsys.readouterr().out
+    assert "compared in an earlier run, not now" in capsys.readouterr().out
     path = folder / "quaternion_product.cert.json"
     assert main(["audit", str(path)]) == 0
     assert "what it says of object code was not looked at" in capsys.readouterr().out

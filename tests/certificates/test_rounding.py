@@ -395,7 +395,7 @@ def test_the_largest_box_has_the_error_and_a_larger_one_has_not():
     [
         (["euler_zyx_body_rates", "--box", "theta=-1.6:1.6"], "cos(angles[1])"),
         (["euler_equations_principal", "--box", "A=-1:1"], "inertia[0]"),
-        (["euler_zyx_body_rates", "--box", "theta=1:-1"], "the least value first"),
+        (["euler_zyx_body_rates", "--box", "theta=1:-1"], "the smaller value first"),
         (["euler_zyx_body_rates", "--box", "theta=nan:1"], "expected a number"),
         (["euler_zyx_body_rates", "--box", "theta=0:inf"], "expected a number"),
         (["euler_zyx_body_rates", "--box", "theta"], "NAME=LOW:HIGH"),

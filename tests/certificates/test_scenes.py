@@ -15,9 +15,9 @@ from symrot.cli.main import main
 from symrot.errors import InputError
 from symrot.formula.tree import parse
 from symrot.planning.scene_kernel import bind
-from symrot.workshop.bounds import facts, given, section
+from symrot.workshop.bounds import facts, rounding_problem, section
 from symrot.workshop.emit import emit, scene_inputs
-from symrot.workshop.kernel_files import kept_bounds
+from symrot.workshop.kernel_files import stored_bounds
 
 CUBE = ("omega_1=-1:1", "omega_2=-1:1", "omega_3=-1:1")
 PART = ("q0=1/2:1", "q1=0:1/2", "q2=0:1/2", "q3=0:1/2")
@@ -35,7 +35,7 @@ def _options(ranges):
 @pytest.mark.parametrize("scene", BOXES)
 def test_no_error_is_above_its_bound(scene):
     """In exact arithmetic, at the same floating-point inputs: polynomials, so that Fractions decide."""
-    operations, _, box = given(scene, BOXES[scene], "double")
+    operations, _, box = rounding_problem(scene, BOXES[scene], "double")
     (part,) = section(scene, BOXES[scene])["precisions"]
     bounds = {each["output"]: Fraction(float.fromhex(each["absolute"])) for each in part["outputs"]}
     draw, worst = Random(5), dict.fromkeys(bounds, 0.0)
@@ -76,7 +76,7 @@ def _computed(operations, point):
 def test_certify_audit_and_emit_keep_the_bounds(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert main(["certify", "t_handle", *_options(BOXES["t_handle"]), "-o", "k"]) == 0
-    assert "link 4" in capsys.readouterr().out
+    assert "  rounding " in capsys.readouterr().out
     path = Path("k/t_handle_rates.cert.json")
     kept, source = path.read_text(encoding="utf-8"), Path("k/t_handle_rates.c").read_text(encoding="utf-8")
     head = " ".join(line.strip(" *") for line in source.splitlines())
@@ -85,7 +85,7 @@ def test_certify_audit_and_emit_keep_the_bounds(tmp_path, capsys, monkeypatch):
     )
     assert "rad/s^2 in domega_1, domega_2, domega_3" in head
     assert main(["audit", str(path), "--rerun-bounds"]) == 0
-    assert "found again" in capsys.readouterr().out
+    assert "computed again" in capsys.readouterr().out
     assert main(["emit", "t_handle", "-o", "k"]) == 0  # writes nothing: all is as it was
     assert (capsys.readouterr().out, path.read_text(encoding="utf-8")) == ("", kept)
     assert main(["certify", "t_handle", "-o", "k"]) == 0
@@ -119,7 +119,7 @@ def test_a_forged_bound_is_not_printed_again(tmp_path, capsys, monkeypatch, part
     emitted = emit("t_handle")
     check_section(data["rounding"], read_kernel(emitted.source, emitted.name, "t_handle_rates.c"), None)
     path.write_text(json.dumps(data), encoding="utf-8")
-    assert kept_bounds("t_handle", Path("k")) is None
+    assert stored_bounds("t_handle", Path("k")) is None
     assert main(["emit", "t_handle", "-o", "k"]) == 0
     assert "Errors:" not in Path("k/t_handle_rates.c").read_text(encoding="utf-8")
     assert json.loads(path.read_text(encoding="utf-8")).get("rounding") is None
@@ -141,10 +141,12 @@ def test_bounds_of_a_scene_file_and_without_any(tmp_path, capsys, monkeypatch):
 
 
 def test_time_is_the_span_of_the_scene_and_parameters_are_points():
-    _, found, box = given("gravity_gradient_satellite", [f"omega_{i}=-0.01:0.01" for i in (1, 2, 3)], "double")
+    _, found, box = rounding_problem(
+        "gravity_gradient_satellite", [f"omega_{i}=-0.01:0.01" for i in (1, 2, 3)], "double"
+    )
     assert box["t"] == (0, 28400) and found.region.unit == (("y[3]", "y[4]", "y[5]", "y[6]"),)
     assert all(low == high for place, (low, high) in box.items() if place[0] == "p")
-    _, _, free = given("t_handle", CUBE, "double")
+    _, _, free = rounding_problem("t_handle", CUBE, "double")
     emitted = emit("t_handle")
     operations = read_kernel(emitted.source, emitted.name, "t_handle_rates.c")
     assert list(free) == list(operations.inputs) and free["t"][1] > 10**308  # not used: any
@@ -161,7 +163,7 @@ def test_time_is_the_span_of_the_scene_and_parameters_are_points():
 def test_parameters_of_constants_in_their_ranges_are_in_the_box(scene, ranges):
     """Drawn constants give parameters inside, and the ends are not far outside of what is met."""
     free = [f"{symbol}=-1/2:1/2" for symbol in ("omega_1", "omega_2", "omega_3") if symbol in _states(scene)]
-    _, _, box = given(scene, [*free, *ranges], "double")
+    _, _, box = rounding_problem(scene, [*free, *ranges], "double")
     inputs, draw = scene_inputs(scene), Random(3)
     wide = {name: list(map(Fraction, ends.split(":"))) for name, ends in (text.split("=") for text in ranges)}
     for place, parameter in inputs.formulas.items():
@@ -195,9 +197,9 @@ def test_a_range_of_a_constant_is_as_wide_as_the_parameters_it_makes():
     for formula in ("1/a", "sqrt(a)", "a**-2"):
         with pytest.raises(InputError, match=r"is a finite number, got a -1 \.\. 2"):
             enclosed("p", parse(formula), {}, {"a": ends})
-    _, _, points = given("t_handle", CUBE, "double")
+    _, _, points = rounding_problem("t_handle", CUBE, "double")
     exact = scene_inputs("t_handle").constants["A"]
-    _, _, same = given(
+    _, _, same = rounding_problem(
         "t_handle", (*CUBE, f"A={exact.limit_denominator(10**9)}:{exact.limit_denominator(10**9)}"), "double"
     )
     assert all(abs(same[place][0] / points[place][0] - 1) < 1e-8 for place in ("p[0]", "p[1]", "p[2]"))
@@ -219,10 +221,10 @@ def test_what_does_not_overflow_is_bounded_to_the_largest_numbers(capsys):
             ["bound", "t_handle", *_options((*CUBE, "A=0:1"))],
             "on which p0 = (B - C)/A is a finite number, got A 0 .. 1",
         ),
-        (["bound", "t_handle", *_options((*CUBE, "A=1:2", "p0=0:1"))], "a range of p0 or of what it is made of"),
+        (["bound", "t_handle", *_options((*CUBE, "A=1:2", "p0=0:1"))], "a range of p0 or of the constants in it"),
         (["bound", "t_handle", *_options((*CUBE, "y[0]=0:1"))], "expected one range of y[0], got 'omega_1=-1:1' too"),
-        (["bound", "t_handle", *_options((*CUBE, "q0=0:1.7976931348623158e308"))], "inside that of a double"),
-        (["bound", "t_handle", *_options((*CUBE, "A=1e-300:1e-290", "B=1e20:1e30"))], "inside that of a double"),
+        (["bound", "t_handle", *_options((*CUBE, "q0=0:1.7976931348623158e308"))], "within the range of a double"),
+        (["bound", "t_handle", *_options((*CUBE, "A=1e-300:1e-290", "B=1e20:1e30"))], "within the range of a double"),
         (["bound", "t_handle", *_options((*CUBE, "=0:1"))], "expected NAME=LOW:HIGH"),
         (["bound", "t_handle", "--box", "omega_1=0:1 rad/s"], "expected a number"),
         (["bound", "t_handle", "--box", "omega_1=0:60deg"], "write it without a unit"),
@@ -233,9 +235,9 @@ def test_what_does_not_overflow_is_bounded_to_the_largest_numbers(capsys):
         (["certify", "t_handle", "--box", "omega_9=0:1"], "in its parameters, one of t, omega_1"),
         (
             ["bound", "t_handle", *_options(("omega_1=2:1", "omega_2=0:1", "omega_3=0:1"))],
-            "the least value first, got 2 to 1",
+            "the smaller value first, got 2 to 1",
         ),
-        (["bound", "t_handle", *_options((*CUBE, "q0=2:3"))], "a box that holds a unit quaternion"),
+        (["bound", "t_handle", *_options((*CUBE, "q0=2:3"))], "a box that contains a unit quaternion"),
         (["bound", "t_handle", *_options([f"omega_{i}=-1e200:1e200" for i in (1, 2, 3)])], "domega_1 has no bound"),
         (["bound", "t_handle", *_options(CUBE), "--target", "1e-13", "--variable", "t"], "which t is not"),
         (["bound", "t_handle", "--precision", "float"], "expected double for a scene"),

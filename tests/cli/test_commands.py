@@ -197,7 +197,7 @@ def test_stale_kernels_are_shown_as_a_diff(capsys, monkeypatch, tmp_path):
     assert (
         "-/* by hand */" in out
         and "+def gyrostat_rates" in out
-        and "of_no_scene.h: a kernel that is not printed" in out
+        and "of_no_scene.h: a kernel that is not emitted" in out
     )
     assert run(capsys, "emit", "--all", "-o", tmp_path)[0] == 0
     assert not extra.exists() and run(capsys, "emit", "--check", "-o", tmp_path)[0] == 0

@@ -8,7 +8,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from symrot.bench.by_hand.kernel_peers import input_names, textbook_program
-from symrot.build import cache as library
+from symrot.build import cache as build_cache
 
 __all__ = ["LANES", "heyoka_code"]
 
@@ -52,5 +52,7 @@ def _linked(directory: Path, index: int, code: bytes) -> Any:
     """Return the address of the function in an object file."""
     (directory / f"{index}.o").write_bytes(code)
     made = directory / f"{index}.so"
-    subprocess.run([*library.compiler().command, "-shared", "-o", made, directory / f"{index}.o", "-lm"], check=True)
+    subprocess.run(
+        [*build_cache.compiler().command, "-shared", "-o", made, directory / f"{index}.o", "-lm"], check=True
+    )
     return ctypes.cast(ctypes.CDLL(str(made)).cfunc, ctypes.c_void_p)

@@ -168,11 +168,11 @@ def casadi_function(name: str) -> tuple[Any, Counter[str]]:
     x = casadi.SX.sym("x", len(input_names(name)))
     values = {each: x[i] for i, each in enumerate(input_names(name))}
     functions = {each: getattr(casadi, each) for each in ("sin", "cos", "tan", "sqrt")}
-    found = casadi.cse(casadi.vertcat(*textbook_program(name).evaluate(values, functions, float).values()))
-    function = casadi.Function("peer", [x], [found])
+    outputs = casadi.cse(casadi.vertcat(*textbook_program(name).evaluate(values, functions, float).values()))
+    function = casadi.Function("peer", [x], [outputs])
     kinds = {"OP_ADD": "add", "OP_SUB": "add", "OP_MUL": "mul", "OP_SQ": "mul", "OP_TWICE": "add", "OP_DIV": "div",
              "OP_INV": "div", "OP_SIN": "sin", "OP_COS": "cos", "OP_SQRT": "sqrt"}  # fmt: skip
-    by_number = {getattr(casadi, kind): said for kind, said in kinds.items()}
+    by_number = {getattr(casadi, kind): operation for kind, operation in kinds.items()}
     counts = Counter(
         by_number[number]
         for number in (function.instruction_id(k) for k in range(function.n_instructions()))

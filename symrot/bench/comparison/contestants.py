@@ -1,10 +1,9 @@
-"""Who takes part in a work-precision study: every method of symrot, SciPy's, and heyoka in each of its settings.
+"""Define the contestants of a work-precision study: symrot's methods, SciPy's, and heyoka in each of its settings.
 
-A contestant makes, for one tolerance, a function that follows the motion from its start to a given time and returns
-the states there and the number of steps. What a user would do once is done before: deriving, compiling, heyoka's own
-compiling.
-Everything is called from Python as a user calls it. SciPy gets the NumPy kernel that symrot emits for the scene,
-narrowed to single states by the numbers of Python and :mod:`math`: half the time.
+For one tolerance, a contestant prepares a function that follows the motion from its start to a time and returns the
+states there and the number of steps. Work that a user does once (deriving, compiling, heyoka's own compiling) is part
+of the preparation and not timed. Everything is called from Python, as a user calls it. SciPy gets the NumPy kernel
+that symrot emits for the scene, rewritten for single states with Python floats and :mod:`math`: half the time.
 """
 
 from collections.abc import Callable, Sequence
@@ -16,7 +15,7 @@ import numpy as np
 
 from symrot.bench.comparison.peers import heyoka_integrator, scalar_kernel
 from symrot.bench.comparison.problem import Floats, Problem, State
-from symrot.build import cache as library
+from symrot.build import cache
 from symrot.closed_form.registry import exact_form
 from symrot.errors import InputError
 from symrot.propagation.propagate import propagator
@@ -24,8 +23,8 @@ from symrot.propagation.steppers.smoothness import roughness
 
 __all__ = ["CONTESTANTS", "Contestant", "Run", "chosen", "tolerances_from"]
 
-Outcome = tuple[Any, int]  # last states, or State; steps
-Run = Callable[[float], Outcome]
+EndState = tuple[Any, int]  # integrated states at the end, or State; number of steps
+Run = Callable[[float], EndState]
 
 
 def _half_decades(first: int, last: int) -> tuple[float, ...]:
@@ -39,8 +38,8 @@ ADAPTIVE = tuple(float(Fraction(1, 10**k)) for k in range(2, 14))  # SciPy takes
 class Contestant(NamedTuple):
     """One curve of the study.
 
-    ``group`` is the name that ``--methods`` takes; ``missing`` says why it cannot take part, or nothing;
-    ``prepare`` returns the run for a tolerance.
+    ``group`` is its name in ``--methods``; ``missing`` returns why it cannot take part, or an empty text; ``prepare``
+    returns the run for a tolerance.
     """
 
     name: str
@@ -49,10 +48,10 @@ class Contestant(NamedTuple):
     tolerances: tuple[float, ...]
     missing: Callable[[Problem], str]
     prepare: Callable[[Problem, float], Run]
-    quick: bool = True  # whether a quick study has it
+    quick: bool = True  # whether it is part of a quick study
 
     def at(self, tolerances: Sequence[float]) -> "Contestant":
-        """Return the contestant with other tolerances, those that it can hold; a closed form has none."""
+        """Return the contestant with those of the tolerances that it supports; a closed form has no tolerance."""
         least = self.tolerances[-1]
         return self._replace(tolerances=tuple(t for t in tolerances if t >= least)) if least else self
 
@@ -61,11 +60,11 @@ class Contestant(NamedTuple):
 
 
 def _exact(problem: Problem, tolerance: float) -> Run:
-    """Return the closed form, its constants computed anew each time: from an initial state to the last one."""
+    """Return a run of the closed form that computes its constants from the initial state in every call."""
     form, attitude = exact_form(problem.scene), len(problem.names) > 3
     assert form is not None
 
-    def run(stop: float) -> Outcome:
+    def run(stop: float) -> EndState:
         at = np.array([stop - problem.start])
         omega, quaternion = form.motion(problem.scene).evaluate(at, quaternion=attitude)
         return State(omega[0], None if quaternion is None else quaternion[0]), 0  # type: ignore[index]
@@ -78,13 +77,13 @@ def _no_form(problem: Problem) -> str:
 
 
 def _symrot(method: str) -> Callable[[Problem, float], Run]:
-    """Return what prepares a propagator, which is then called as a user calls it: with the time asked for."""
+    """Return a function that prepares a propagator; its run calls the propagator as a user does, with the end time."""
 
     def prepare(problem: Problem, tolerance: float) -> Run:
-        found = propagator(problem.scene, method, tolerance)
+        propagate = propagator(problem.scene, method, tolerance)
 
-        def run(stop: float) -> Outcome:
-            trajectory = found(np.array([stop]))
+        def run(stop: float) -> EndState:
+            trajectory = propagate(np.array([stop]))
             return _last(trajectory), trajectory.stats.accepted
 
         return run
@@ -93,7 +92,7 @@ def _symrot(method: str) -> Callable[[Problem, float], Run]:
 
 
 def _last(trajectory: Any) -> Any:
-    """Return the last states; of a closed form, which has more of them than are integrated, the state of the body."""
+    """Return the integrated states at the end; for a closed form, which integrates none, the state of the body."""
     if trajectory.method != "exact":
         return trajectory.y[:, 0]
     y = trajectory.y[:, 0]
@@ -101,11 +100,11 @@ def _last(trajectory: Any) -> Any:
 
 
 def _no_compiler(problem: Problem) -> str:
-    return library.missing()
+    return cache.missing()
 
 
 def _no_series(problem: Problem) -> str:
-    return roughness(problem.plan) or library.missing()
+    return roughness(problem.plan) or cache.missing()
 
 
 # ------------------------------------------------------------------------------------------------ peers
@@ -126,9 +125,11 @@ def _scipy(method: str) -> Callable[[Problem, float], Run]:
 
         right_hand_side, start = with_parameters if p else without, np.array(problem.y0)
 
-        def run(stop: float) -> Outcome:
-            found = solve(right_hand_side, (problem.start, stop), start, method=method, rtol=tolerance, atol=tolerance)
-            return found.y[:, -1] if found.success else np.full(len(start), np.nan), len(found.t) - 1
+        def run(stop: float) -> EndState:
+            solution = solve(
+                right_hand_side, (problem.start, stop), start, method=method, rtol=tolerance, atol=tolerance
+            )
+            return solution.y[:, -1] if solution.success else np.full(len(start), np.nan), len(solution.t) - 1
 
         return run
 
@@ -187,17 +188,17 @@ GROUPS = tuple(dict.fromkeys(contestant.group for contestant in CONTESTANTS))
 
 
 def chosen(methods: str | None, quick: bool) -> Sequence[Contestant]:
-    """Return the contestants of a comma-separated list of groups; of all groups without one.
+    """Return the contestants of a comma-separated list of groups, or of all groups if ``methods`` is None.
 
     Raises
     ------
     InputError
-        For a name that is no group.
+        For an unknown group.
     """
     names = [name.strip() for name in methods.split(",")] if methods is not None else list(GROUPS)
     for name in names:
         if name not in GROUPS:
-            raise InputError(f"--methods: expected names among {', '.join(GROUPS)}, with commas between, got {name!r}")
+            raise InputError(f"--methods: expected a comma-separated list of {', '.join(GROUPS)}, got {name!r}")
     return [one for one in CONTESTANTS if one.group in names and (one.quick or not quick)]
 
 
@@ -207,15 +208,16 @@ def tolerances_from(text: str) -> tuple[float, ...]:
     Raises
     ------
     InputError
-        For anything but numbers between 0 and 1 that fall.
+        Unless the text is a falling list of numbers between 0 and 1.
     """
     try:
-        found = tuple(float(part) for part in text.split(","))
+        tolerances = tuple(float(part) for part in text.split(","))
     except ValueError:
-        found = ()
-    if not found or not all(0.0 < value < 1.0 for value in found) or list(found) != sorted(set(found), reverse=True):
+        tolerances = ()
+    falling = list(tolerances) == sorted(set(tolerances), reverse=True)
+    if not tolerances or not falling or not all(0.0 < value < 1.0 for value in tolerances):
         raise InputError(
-            f"--tolerances: expected numbers between 0 and 1 that fall, commas between, such as 1e-3,1e-6,1e-9, "
+            f"--tolerances: expected falling numbers between 0 and 1, comma-separated, such as 1e-3,1e-6,1e-9, "
             f"got {text!r}"
         )
-    return found
+    return tolerances

@@ -1,8 +1,8 @@
-"""A motion to 30 digits at any of its times: Taylor series in mpmath, and for free bodies on through all periods.
+"""Compute a motion to 30 digits at any time by Taylor series in mpmath; for free bodies, after any number of periods.
 
-The angular velocity of a free body is periodic, and one period turns the body always alike: with period P and
-``R = q(P) q(0)^-1`` the attitude is ``q(t + n P) = R^n q(t)``. Series over one period so give the motion after a
-million of them, and share nothing with the closed form that they judge.
+The angular velocity of a free body is periodic, and every period adds the same rotation: with period P and
+``R = q(P) q(0)^-1`` the attitude is ``q(t + n P) = R^n q(t)``. The series of one period therefore give the motion after
+a million periods, and they share nothing with the closed form that is compared with them.
 """
 
 from fractions import Fraction
@@ -29,7 +29,7 @@ Floats = NDArray[np.float64]
 DIGITS, ORDER, TAIL = 40, 32, 1e-28
 FUNCTIONS = ("sqrt", "sin", "cos", "tan", "exp", "log", "sinh", "cosh", "tanh", "asin", "acos", "atan", "atan2")
 MOST_STEPS = 2000
-SLOWEST = 1e-8  # of the speed at the start, or rad/s: a slower body is measured as if it were so fast
+SLOWEST = 1e-8  # of the initial speed (rad/s if that is zero): errors of slower bodies are relative to it
 
 
 def _as_mpf(value: Fraction) -> Any:
@@ -37,7 +37,7 @@ def _as_mpf(value: Fraction) -> Any:
 
 
 class ExactPath:
-    """The states of a motion that is stepped, in 40 digits from the exact numbers of its scene."""
+    """The integrated states of a motion, computed in 40 digits from the exact numbers of its scene."""
 
     def __init__(self, motion: Motion) -> None:
         self.motion, plan, kernel = motion, motion.plan, motion.kernel
@@ -45,11 +45,11 @@ class ExactPath:
         self.functions = {name: getattr(mpmath, name) for name in FUNCTIONS}
         values = {"pi": number.PI, **plan.constants}
         start = plan.scene.initial
-        given = {f"omega_{i + 1}": value for i, value in enumerate(start.omega_b)} | {"theta": Fraction(0)}
-        given |= {f"q{i}": value for i, value in enumerate(start.quaternion)}
+        initial = {f"omega_{i + 1}": value for i, value in enumerate(start.omega_b)} | {"theta": Fraction(0)}
+        initial |= {f"q{i}": value for i, value in enumerate(start.quaternion)}
         with mpmath.workdps(DIGITS):
             self.parameters = {n: _as_mpf(evaluate(f, values, EXACT_FUNCTIONS)) for n, f in kernel.rate_parameters}
-            self.start = [_as_mpf(given[name]) for name in plan.states]
+            self.start = [_as_mpf(initial[name]) for name in plan.states]
             self.t0 = _as_mpf(Fraction(plan.scene.span.start))
         self.rates = sum(name.startswith("omega") for name in plan.states)
         bounds = formula_deviations(plan, kernel)
@@ -70,7 +70,7 @@ class ExactPath:
             abs(one[ORDER - k]) / (size if i < self.rates else 1) for i, one in enumerate(series) for k in (0, 1)
         )
         step = (TAIL / last) ** (mpmath.mpf(1) / ORDER) if last else mpmath.mpf(1)
-        if self.deviations:  # no step goes past a feature that its coefficients do not show
+        if self.deviations:  # a step ends before a feature of the torque that its coefficients do not show
             step = min(step, self.span)
             terms = [[float(abs(one[n] * step**n)) for n in range(1, ORDER + 1)] for one in series]
             allowed = [TAIL * float(size if first < self.rates else 1) for first in self.edges[:-1]]
@@ -92,7 +92,7 @@ class ExactPath:
         return [mpmath.polyval(one[::-1], step) for one in series]
 
     def _state(self, t: Any) -> list[Any]:
-        """Return the states at one time from the start on."""
+        """Return the states at one time, not before the start."""
         while self._end[0] < t:
             self._advance()
         low, high = 0, len(self.pieces)
@@ -104,7 +104,7 @@ class ExactPath:
         return self._sum(self.pieces[low][2], t - self.pieces[low][0])
 
     def states(self, times: Floats) -> Floats:
-        """Return the states at times from the start on, rounded, shape (n, N)."""
+        """Return the states at times not before the start, rounded to double, shape (n, N)."""
         with mpmath.workdps(DIGITS):
             return np.array([[float(x) for x in self._state(mpmath.mpf(float(t)))] for t in times])
 
@@ -114,7 +114,7 @@ class ExactPath:
         Raises
         ------
         InputError
-            If the rates do not come back within :data:`MOST_STEPS` steps.
+            If the angular velocity does not return to its initial value within :data:`MOST_STEPS` steps.
         """
         start, left = np.array([float(x) for x in self.start[: self.rates]]), False
         size = float(np.linalg.norm(start))
@@ -123,19 +123,19 @@ class ExactPath:
                 self._advance()
                 first, last, series = self.pieces[-1]
                 rates = np.array([[float(x) for x in one] for one in series[: self.rates]])
-                for k in range(8):  # a look in doubles is enough to begin from
+                for k in range(8):  # doubles suffice for the start of Newton's method
                     t = first + (last - first) * k / 8
                     now = np.array([np.polyval(one[::-1], float(t - first)) for one in rates])
                     apart = float(np.linalg.norm(now - start))
                     left |= apart > size / 4
                     if left and apart < size / 8:
-                        found = self._newton(t)
-                        if found is not None and found > self.t0:
-                            return found - self.t0
+                        root = self._newton(t)
+                        if root is not None and root > self.t0:
+                            return root - self.t0
         raise InputError("the angular velocity does not come back: expected a free body off its separatrix")
 
     def _newton(self, t: Any) -> Any:
-        """Return the time near t at which all rates are those of the start, or None."""
+        """Return the time near t at which the angular velocity has its initial value, or None."""
         start = self.start[: self.rates]
         self._state(self.t0)
         speeds = [one[1] for one in self.pieces[0][2][: self.rates]]
@@ -155,7 +155,7 @@ class ExactPath:
         return coefficients(self.system, 1, known, self.functions, _as_mpf)[index][1]
 
     def states_of_free_body(self, times: Floats) -> Floats:
-        """Return omega and quaternion of a free body at any times from the start on, however late, shape (n, 7)."""
+        """Return omega and quaternion of a free body at any times not before the start, shape (n, 7)."""
         period = self.period()
         with mpmath.workdps(DIGITS):
             first, last = self.start[self.rates :], self._state(self.t0 + period)[self.rates :]

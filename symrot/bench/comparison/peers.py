@@ -1,4 +1,4 @@
-"""heyoka and SciPy around the very right-hand sides that symrot emits, for comparisons."""
+"""Run heyoka and SciPy on the same right-hand sides that symrot emits, for comparisons."""
 
 import re
 from collections.abc import Callable, Mapping, Sequence
@@ -25,8 +25,8 @@ def heyoka_system(rates: Program, parameters: Mapping[str, float]) -> list[Any]:
     names = [name for name, *_ in rates.signature.argument("y").components]
     variables = dict(zip(names, heyoka.make_vars(*names), strict=True))
     functions = {name: getattr(heyoka, name) for name in FUNCTIONS}
-    found = rates.evaluate({**variables, **parameters, "t": heyoka.time}, functions, float)
-    return [(variables[name], found[f"d{name}"]) for name in names]
+    derivatives = rates.evaluate({**variables, **parameters, "t": heyoka.time}, functions, float)
+    return [(variables[name], derivatives[f"d{name}"]) for name in names]
 
 
 def heyoka_integrator(
@@ -53,10 +53,9 @@ def heyoka_integrator(
 
 
 def scalar_kernel(program: Program) -> Callable[..., Any]:
-    """Return ``f(t, y, p)`` for SciPy: the emitted NumPy kernel as an expert narrows it to one state at a time.
+    """Return ``f(t, y, p)`` for SciPy: the emitted NumPy kernel, rewritten for one state at a time as an expert would.
 
-    Python's own numbers and :mod:`math` take the place of arrays of no dimension: half the time of the kernel
-    as it is. The state comes as a list.
+    Python floats and :mod:`math` replace zero-dimensional arrays, which halves the time. The state is a list.
     """
     text = numpy_source(program, UNNAMED).replace("import numpy as np", "import math\n\nimport numpy as np")
     text = re.sub(r"np\.empty\(\((\d+), \*np\.shape\(y\)\[1:\]\)\)", r"np.empty(\1)", text)

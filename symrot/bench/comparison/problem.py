@@ -1,4 +1,4 @@
-"""A scene as what contestants follow: its plan and kernel, the state at the start, where it is judged, the error."""
+"""Describe a scene for a comparison of methods: plan, kernel, initial state, the times of comparison, the error."""
 
 import math
 from collections.abc import Sequence
@@ -21,22 +21,23 @@ __all__ = ["PARTS", "Problem", "State"]
 Floats = NDArray[np.float64]
 
 PARTS = (0.382, 0.618, 0.854, 1.0)
-"""Of the span, where a motion is judged: an unstable one passes through places where errors all but vanish."""
+"""Fractions of the span at which errors are measured. One time is not enough: along an unstable motion, errors come
+close to zero at some times."""
 REST = 1e-3
-"""Of the largest angular velocity where a motion is judged: slower bodies are measured as if they were so fast."""
+"""Fraction of the largest angular velocity at these times: errors of slower bodies are relative to it."""
 
 
 class State(NamedTuple):
-    """Where a body is: angular velocity (3,) in the body, rad/s; attitude (4,), or None if nobody asks."""
+    """The state of a body: angular velocity (3,) in the body frame, rad/s; attitude (4,), or None if not computed."""
 
     omega: Floats
     quaternion: Floats | None
 
 
 class Problem:
-    """A scene with its kernel bound to numbers.
+    """A scene with its kernel and the numbers of its parameters.
 
-    ``plan`` may be another one than the scene's own, such as the most general.
+    ``plan`` may differ from the scene's own plan, for example the most general one.
     """
 
     def __init__(self, scene: Scene, plan: Plan | None = None) -> None:
@@ -55,17 +56,17 @@ class Problem:
 
     @cached_property
     def p(self) -> list[float]:
-        """The parameters of the rates, each rounded once."""
+        """The values of the rate parameters, each rounded to double once."""
         return bind(self.kernel.rate_parameters, self.plan.constants)
 
     @cached_property
     def parameters(self) -> dict[str, float]:
-        """The same by name."""
+        """The values of the rate parameters, by name."""
         return dict(zip((name for name, _ in self.kernel.rate_parameters), self.p, strict=True))
 
     @property
     def names(self) -> list[str]:
-        """The quantities that a :class:`State` is made of."""
+        """The names of the quantities in a :class:`State`."""
         attitude = [f"q{i} of t" for i in range(4)] if self.plan.structure["attitude"] else []
         return [*(f"omega_{i} of t" for i in (1, 2, 3)), *attitude]
 
@@ -74,32 +75,34 @@ class Problem:
         return Motion(self.plan, Choice("scipy", ""), 1e-12)
 
     def state(self, y: Sequence[Any] | Floats, t: float) -> State:
-        """Return the state of the body for the states that were integrated, at a time."""
+        """Return the state of the body at time t from the integrated states ``y``."""
         values = np.array([[float(value) for value in y]])
         if not np.isfinite(values).all():
             return State(np.full(3, np.nan), None)
-        found = self._motion.evaluate(np.array([t]), values, self.names)[0]
-        return State(found[:3], found[3:] if len(found) > 3 else None)
+        quantities = self._motion.evaluate(np.array([t]), values, self.names)[0]
+        return State(quantities[:3], quantities[3:] if len(quantities) > 3 else None)
 
     @staticmethod
-    def error(found: State, exact: State, least: float = 0.0) -> float:
+    def error(state: State, exact: State, least: float = 0.0) -> float:
         """Return the larger of two errors: of the angular velocity, relative to its size; of the attitude, in rad.
 
-        ``least``, rad/s, is what the error of a slower body is relative to: a body that a pulse has yet to set going
-        moves at 1e-40 rad/s, of which no digit matters.
+        For a body slower than ``least``, rad/s, the error is relative to ``least``: a body that waits for a pulse may
+        rotate at 1e-40 rad/s, where relative errors mean nothing.
         """
-        if not np.isfinite(found.omega).all():
+        if not np.isfinite(state.omega).all():
             return math.inf
         size = max(float(np.linalg.norm(exact.omega)), least) or 1.0
-        worst = float(np.linalg.norm(found.omega - exact.omega)) / size
-        if found.quaternion is None or exact.quaternion is None:
+        worst = float(np.linalg.norm(state.omega - exact.omega)) / size
+        if state.quaternion is None or exact.quaternion is None:
             return worst
-        q, r = found.quaternion / np.linalg.norm(found.quaternion), exact.quaternion
+        q, r = state.quaternion / np.linalg.norm(state.quaternion), exact.quaternion
         chord = min(float(np.linalg.norm(q - r)), float(np.linalg.norm(q + r)))  # q and -q are one attitude
         return max(worst, 4.0 * math.asin(min(chord, math.sqrt(2.0)) / 2.0))
 
     @staticmethod
-    def worst(found: Sequence[State], exact: Sequence[State]) -> float:
+    def worst(states: Sequence[State], exact: Sequence[State]) -> float:
         """Return the largest of the errors at several times."""
         largest = max(float(np.linalg.norm(state.omega)) for state in exact)
-        return max(Problem.error(one, other, REST * largest) for one, other in zip(found, exact, strict=True))
+        return max(
+            Problem.error(computed, expected, REST * largest) for computed, expected in zip(states, exact, strict=True)
+        )

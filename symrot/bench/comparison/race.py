@@ -1,7 +1,7 @@
-"""Time runs against one another: in turns, so that all meet the same machine, by the time of the processor.
+"""Time runs against one another in processor time, alternately, so that all run under the same conditions.
 
-A run of microseconds is repeated until the clock can see it; a run of seconds gets fewer turns. The median of the turns
-is what counts, the least is kept beside it.
+A run of microseconds is repeated until the clock can resolve it; a run of seconds is timed in fewer rounds. The median
+of the rounds is the result; the least time is recorded too.
 """
 
 import gc
@@ -20,7 +20,7 @@ SLOW, SLOW_ROUNDS = 0.2, 2  # a run of that many seconds gets so many turns
 
 @dataclass
 class Measured:
-    """One contestant at one tolerance: what it reached, and the seconds of each turn."""
+    """One contestant at one tolerance: its steps and error, and its seconds in each round."""
 
     name: str
     tolerance: float
@@ -45,7 +45,7 @@ class Measured:
 
 
 def seconds_of(run: Callable[[], object], repeats: int = 1) -> float:
-    """Return the seconds of the processor that one run takes."""
+    """Return the processor seconds of one run."""
     began = process_time()
     for _ in range(repeats):
         run()
@@ -53,7 +53,7 @@ def seconds_of(run: Callable[[], object], repeats: int = 1) -> float:
 
 
 def rounds_for(seconds: float, rounds: int) -> int:
-    """Return how many turns a run of that length gets."""
+    """Return in how many rounds a run of this duration is timed."""
     return rounds if seconds < SLOW else min(rounds, SLOW_ROUNDS)
 
 
@@ -62,7 +62,7 @@ def _repeats(seconds: float) -> int:
 
 
 def work_ahead(measured: Iterable[Measured], rounds: int) -> float:
-    """Return about how many seconds the race takes."""
+    """Return an estimate of the seconds that the race takes."""
     return sum(one.first * _repeats(one.first) * rounds_for(one.first, rounds) for one in measured)
 
 
@@ -71,7 +71,7 @@ def race(
     rounds: int,
     turn: Callable[[int], object] = lambda number: None,
 ) -> None:
-    """Let all runs take their turns; their seconds are appended. ``turn`` hears of each round before it begins."""
+    """Time all runs alternately and append their seconds; ``turn`` is called with the number of each round."""
     collecting = gc.isenabled()
     gc.disable()
     try:

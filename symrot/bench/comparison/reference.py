@@ -1,4 +1,4 @@
-"""Where a scene's motion really leads: computations that share neither numbers nor method, and their differences.
+"""Compute reference states of a scene's motion in several independent ways, and the differences between them.
 
 ===========================  =====================  ============================  ==========================
 reference                    equations              method                        arithmetic
@@ -11,14 +11,14 @@ reference                    equations              method                      
                                                     halved likewise
 ===========================  =====================  ============================  ==========================
 
-No reference steps over a feature of a formula: the steps of the series are held to enclosures of the torque, and fixed
-steps are short wherever the steps of a motion are that is held to them.
+No reference steps over a feature of a torque, such as a narrow pulse: enclosures of the torque limit the steps of the
+series, and fixed steps are short where the stepper of the scene, limited in the same way, takes short steps.
 
-The first that can be had counts, the others are held against it: references that contradict one another are refused,
-and errors below what they differ by mean nothing. The last is computed where but one of the others can be had, as with
-torques that have no Taylor series. All start from the exact numbers of the scene, not
-from what rounding made of them: what a method loses by rounding its parameters is an error of that method. A result of
-minutes is kept in the cache of kernels.
+The first available reference is used, and the others are compared with it. References that contradict one another are
+an error; errors of methods below the difference between references mean nothing. The last reference is computed only
+where just one of the others is available, as for torques without a Taylor series. All references start from the exact
+numbers of the scene, not from rounded ones: a method that rounds its parameters makes an error by it. References that
+take minutes are stored in the cache of kernels.
 """
 
 import ctypes
@@ -36,7 +36,7 @@ import numpy as np
 
 from symrot.bench.by_hand import BY_HAND
 from symrot.bench.comparison.problem import Problem, State
-from symrot.build import cache as library
+from symrot.build import cache
 from symrot.closed_form.registry import exact_form
 from symrot.codegen.enclosure.terms import enclosure
 from symrot.codegen.taylor.coefficients import coefficients
@@ -57,39 +57,39 @@ from symrot.propagation.steppers.tableau import HEADER
 
 __all__ = ["DIGITS", "Reference", "reference"]
 
-Say = Callable[[str], object]
+Progress = Callable[[str], object]
 
 DIGITS, ORDER, TAIL = 40, 28, 1e-26
-MOST_SECONDS = 150.0  # for the series; a longer one is not begun
+MOST_SECONDS = 150.0  # for the series; it is abandoned as soon as it is bound to take longer
 MOST_LONG_SECONDS = 20.0  # for fixed steps in long double
 MOST_STEPS = 2_000_000  # likewise
 FEWEST_STEPS = 64
-GRID_TOLERANCE = 1e-8  # of the motion whose steps say where fixed steps must be short
-CONTRADICTION = 1e-6  # references this far apart are of two motions: one of them is wrong
-CONVERGED = 4e-19  # times the number of radians turned, at least one: what long double can hold
-ROUNDED = 1e-15  # likewise, from where on changes may be of rounding; larger ones are of corners in the torque
-LONG_DOUBLE_BITS = 63  # of its fraction, at least, for it to be worth the name
+GRID_TOLERANCE = 1e-8  # of the motion whose steps show where fixed steps must be short
+CONTRADICTION = 1e-6  # a larger difference between references means that one of them is wrong
+CONVERGED = 4e-19  # error per radian of rotation (at least one radian) that long double can reach
+ROUNDED = 1e-15  # per radian: smaller changes may be rounding errors, larger ones come from corners in the torque
+LONG_DOUBLE_BITS = 63  # in the fraction, at least; otherwise long double is no better than double
 LITERAL = re.compile(r"(?<![\w.])(\d+\.\d*(?:[eE][+-]?\d+)?|\d+[eE][+-]?\d+)(?![\w.])")
 CALLS = re.compile(r"\b(sqrt|sin|cos|tan|exp|log|fabs|sinh|cosh|tanh|asin|acos|atan|atan2|pow)\(")
 
 
 class Reference(NamedTuple):
-    """The states where a motion is judged, how they were found, and what the other computations say of them."""
+    """The reference states of a motion, the name of their computation, and the differences of the other ones."""
 
     states: tuple[State, ...]
     name: str
     others: tuple[tuple[str, float], ...]  # name, and its difference as errors are measured
     seconds: float
-    skipped: tuple[str, ...]  # why a reference could not be had
+    skipped: tuple[str, ...]  # reasons why a reference was not available
 
     @property
     def doubt(self) -> float:
-        """The least difference from another computation: errors below it mean nothing; nan where there is no other."""
+        """The least difference from another computation, below which errors mean nothing; nan if there is no other."""
         return min((difference for _, difference in self.others), default=math.nan)
 
     def to_json(self) -> dict[str, Any]:
         return {
-            "name": self.name, "others": [{"name": name, "difference": found} for name, found in self.others],
+            "name": self.name, "others": [{"name": name, "difference": difference} for name, difference in self.others],
             "seconds": self.seconds, "skipped": list(self.skipped),
             "states": [[*state.omega.tolist(), *([] if state.quaternion is None else state.quaternion.tolist())]
                        for state in self.states],
@@ -97,32 +97,32 @@ class Reference(NamedTuple):
 
 
 class _Unavailable(Exception):
-    """A reference that cannot be had here; the text says why."""
+    """Raised by a reference that is not available for this motion or on this machine; the text says why."""
 
 
-def reference(problem: Problem, say: Say = lambda text: None, seconds: float = MOST_SECONDS) -> Reference:
-    """Return the states where a scene's motion is judged, and how far the other references are from the first.
+def reference(problem: Problem, say: Progress = lambda text: None, seconds: float = MOST_SECONDS) -> Reference:
+    """Return the reference states of a scene's motion, and how far the other references are from them.
 
     Raises
     ------
     SymrotError
-        If none can be had: the motion ends before its span does, or there is neither series nor compiler. If none
-        confirms the first: one of them is wrong.
+        If no reference is available: the motion ends before its span does, or there is neither a Taylor series nor a
+        compiler. Also if no other reference confirms the first: one of them is wrong.
     """
     began = perf_counter()
-    found: list[tuple[str, list[State]]] = []
+    paths: list[tuple[str, list[State]]] = []
     skipped = []
     for name, compute in REFERENCES:
-        if compute is _extrapolated and len(found) > 1:
+        if compute is _extrapolated and len(paths) > 1:
             continue
         say(f"reference: {name} ..")
         try:
-            found.append((name, compute(problem, say, seconds)))
+            paths.append((name, compute(problem, say, seconds)))
         except _Unavailable as reason:
             skipped.append(f"{name}: {reason}")
-    if not found:
+    if not paths:
         raise SymrotError(f"{problem.scene.name}: expected a motion with a reference solution; {'; '.join(skipped)}")
-    (name, states), *more = found
+    (name, states), *more = paths
     others = tuple((other, problem.worst(theirs, states)) for other, theirs in more)
     result = Reference(tuple(states), name, others, perf_counter() - began, tuple(skipped))
     if others and not result.doubt <= CONTRADICTION:
@@ -162,40 +162,40 @@ def _exact_start(plan: Plan) -> list[Fraction]:
     return [Fraction(values[name]) for name in plan.states]
 
 
-def _taylor(problem: Problem, say: Say, seconds: float) -> list[State]:
-    """Return the states by Taylor series in 40 digits, from the cache if it is there."""
+def _taylor(problem: Problem, say: Progress, seconds: float) -> list[State]:
+    """Return the states by Taylor series in 40 digits, or from the cache."""
     import mpmath
 
     rough = roughness(problem.plan)
     if rough:
         raise _Unavailable(rough)
     kernel, plan = problem.kernel, problem.plan
-    given = _exact_parameters(kernel.rate_parameters, plan), _exact_start(plan)
+    exact_numbers = _exact_parameters(kernel.rate_parameters, plan), _exact_start(plan)
     where = f"{problem.start} {problem.ends}"
-    key = f"held reference {DIGITS} {ORDER} {TAIL}\n{json.dumps(kernel.data['rates'])}\n{given}\n{where}"
-    kept = library.fetch(key)
+    key = f"held reference {DIGITS} {ORDER} {TAIL}\n{json.dumps(kernel.data['rates'])}\n{exact_numbers}\n{where}"
+    stored = cache.fetch(key)
     with mpmath.workdps(DIGITS):
-        if kept is None:
-            path = _series(problem, given, say, seconds)
-            kept = json.dumps([[mpmath.nstr(value, DIGITS) for value in state] for state in path])
-            library.store(key, kept)
-        read = [[mpmath.mpf(value) for value in state] for state in json.loads(kept)]
+        if stored is None:
+            path = _series(problem, exact_numbers, say, seconds)
+            stored = json.dumps([[mpmath.nstr(value, DIGITS) for value in state] for state in path])
+            cache.store(key, stored)
+        read = [[mpmath.mpf(value) for value in state] for state in json.loads(stored)]
         return [_state(problem, state, end) for state, end in zip(read, problem.ends, strict=True)]
 
 
 def _series(
-    problem: Problem, given: tuple[dict[str, Fraction], list[Fraction]], say: Say, seconds: float
+    problem: Problem, exact_numbers: tuple[dict[str, Fraction], list[Fraction]], say: Progress, seconds: float
 ) -> list[list[Any]]:
-    """Return the integrated states where the motion is judged, step by step."""
+    """Return the integrated states at the times of comparison, computed step by step."""
     import mpmath
 
     system, functions, sizes = recurrences(problem.kernel.rates), _functions(), _sizes(problem)
-    values: dict[str, Any] = {name: _as_mpf(value) for name, value in given[0].items()}
+    values: dict[str, Any] = {name: _as_mpf(value) for name, value in exact_numbers[0].items()}
     hidden = enclosure(system)
-    deviations = hidden and Deviations(hidden, {name: float(value) for name, value in given[0].items()})
+    deviations = hidden and Deviations(hidden, {name: float(value) for name, value in exact_numbers[0].items()})
     edges = error_blocks(problem.plan)[0]
     allowed = [TAIL * max(sizes[low:high]) for low, high in pairwise(edges)]
-    state, path = [_as_mpf(value) for value in given[1]], []
+    state, path = [_as_mpf(value) for value in exact_numbers[1]], []
     now, clock = mpmath.mpf(problem.start), process_time()
     for end in problem.ends:
         while now < end:
@@ -206,7 +206,7 @@ def _series(
                 largest = max(abs(one[n]) / size for one, size in zip(series, sizes, strict=True))
                 if largest:
                     step = min(step, (TAIL / largest) ** (mpmath.mpf(1) / n))
-            if deviations:  # no step goes past a feature that its coefficients do not show
+            if deviations:  # a step ends before a feature of the torque that its coefficients do not show
                 terms = [[float(abs(one[n] * step**n)) for n in range(1, ORDER + 1)] for one in series]
                 start, length = list(map(float, state)), float(step)
                 proven = longest_followed(deviations, float(now), start, terms, length, allowed, edges, ORDER)
@@ -225,21 +225,21 @@ def _series(
 
 
 def _sizes(problem: Problem) -> list[float]:
-    """Return what each state is measured by: the size of omega, and one for an attitude."""
+    """Return the unit in which errors of each state are measured: the size of omega, and 1 for an attitude."""
     spin = float(np.linalg.norm([float(value) for value in problem.scene.initial.omega_b])) or 1.0
     return [spin if name.startswith("omega") else 1.0 for name in problem.plan.states]
 
 
 def _state(problem: Problem, last: list[Any], end: float) -> State:
-    """Return the state of the body, evaluated in as many digits as it has."""
+    """Return the state of the body from the integrated states, evaluated in their working precision."""
     import mpmath
 
     kernel, plan = problem.kernel, problem.plan
     values: dict[str, Any] = dict(zip(plan.states, last, strict=True))
     exact = _exact_parameters(kernel.quantity_parameters, plan)
     values |= {name: _as_mpf(value) for name, value in exact.items()} | {"t": mpmath.mpf(end)}
-    found = kernel.quantities.evaluate(values, _functions(), _as_mpf, problem.names)
-    ordered = [found[name] for name in problem.names]
+    quantities = kernel.quantities.evaluate(values, _functions(), _as_mpf, problem.names)
+    ordered = [quantities[name] for name in problem.names]
     norm = mpmath.sqrt(sum(q * q for q in ordered[3:])) if len(ordered) > 3 else 1
     rates, attitude = ([float(value) for value in part] for part in (ordered[:3], [q / norm for q in ordered[3:]]))
     return State(np.array(rates), np.array(attitude) if attitude else None)
@@ -249,31 +249,31 @@ def _state(problem: Problem, last: list[Any], end: float) -> State:
 
 
 def longer(source: str) -> str:
-    """Return C text with every double, literal and function of the long kind."""
+    """Return C text in which every double, literal and function is its long double version."""
     text = CALLS.sub(r"\1l(", LITERAL.sub(r"\1L", source))
     return re.sub(r"\bdouble\b", "long double", text)
 
 
-def _long_double(problem: Problem, say: Say, seconds: float) -> list[State]:
-    """Return the states by fixed steps of DOP853 around the most general equations."""
+def _long_double(problem: Problem, say: Progress, seconds: float) -> list[State]:
+    """Return the states by DOP853 with fixed steps, from the most general equations."""
     general = Problem(problem.scene, Plan(problem.scene, general_structure(problem.scene), ()))
     return _converged(general, "dop853", (HEADER, BY_HAND / "fixed_step.c"), seconds)
 
 
-def _extrapolated(problem: Problem, say: Say, seconds: float) -> list[State]:
-    """Return the states by fixed steps of extrapolated midpoint rules around the scene's own equations."""
+def _extrapolated(problem: Problem, say: Progress, seconds: float) -> list[State]:
+    """Return the states by extrapolated midpoint rules with fixed steps, from the scene's own equations."""
     return _converged(problem, "extrapolation", (BY_HAND / "extrapolation.c",), seconds)
 
 
 def _converged(general: Problem, name: str, files: Sequence[Path], seconds: float) -> list[State]:
-    """Return the states by fixed steps in long double, until smaller steps make no change."""
-    if library.missing():
+    """Return the states by fixed steps in long double, shortened until they make no difference."""
+    if cache.missing():
         raise _Unavailable("no C compiler")
     if np.finfo(np.longdouble).nmant < LONG_DOUBLE_BITS or ctypes.sizeof(ctypes.c_longdouble) == 8:
         raise _Unavailable("long double is no longer than double here")
     sizes = np.array(_sizes(general))
     turned = max(1.0, (general.stop - general.start) * max(sizes))
-    steps, before, held = max(FEWEST_STEPS, int(turned)), None, None
+    steps, before, finest = max(FEWEST_STEPS, int(turned)), None, None
     follow = _fixed_steps(general, name, files, steps, _grid(general))
     change, clock = np.inf, process_time()
     while steps <= MOST_STEPS and process_time() - clock < min(seconds, MOST_LONG_SECONDS) / 3.0:  # the next takes half
@@ -283,21 +283,22 @@ def _converged(general: Problem, name: str, files: Sequence[Path], seconds: floa
             if before is not None and now >= change and change <= ROUNDED * turned:  # rounding has taken over
                 break
             if before is not None:
-                held, change = path, min(now, change)
+                finest, change = path, min(now, change)
             if now <= CONVERGED * turned:
                 break
             before = path
         steps = int(steps * 1.5)
-    if held is None:
-        raise _Unavailable("its steps would have to be too small")
-    return [_long_state(general, state, end) for state, end in zip(held, general.ends, strict=True)]
+    if finest is None:
+        raise _Unavailable("it needs more steps than allowed")
+    return [_long_state(general, state, end) for state, end in zip(finest, general.ends, strict=True)]
 
 
 def _grid(problem: Problem) -> list[float]:
-    """Return times that no fixed step may go past: none, or the ends of steps that enclosures of the torque allow.
+    """Return times that no fixed step may pass: the ends of steps that enclosures of the torque allow, or no times.
 
-    A fixed step passes a pulse that is narrower than itself, and so do steps of half its length: they agree, and are
-    wrong. The grid is refined together with the steps, so that it decides nothing but where they are short.
+    A fixed step can miss a pulse that is narrower than the step; a step of half its length can miss it too, and then
+    both agree on a wrong result. Steps between two times of the grid are shortened like all others, so that the grid
+    decides only where steps are short.
     """
     motion = Motion(problem.plan, Choice("dop853", ""), GRID_TOLERANCE)
     if formula_deviations(problem.plan, problem.kernel) is None:
@@ -317,17 +318,17 @@ def _grid(problem: Problem) -> list[float]:
 def _fixed_steps(
     general: Problem, name: str, files: Sequence[Path], fewest: int, grid: Sequence[float]
 ) -> Callable[[int], Any]:
-    """Return a function from the number of steps to the integrated states where the motion is judged.
+    """Return a function from the number of steps to the integrated states at the times of comparison.
 
-    Each part between two times of the grid takes as many steps as its length asks for, and at least one of the
-    ``fewest`` steps; of more steps each part takes more in proportion.
+    Each interval of the grid gets steps in proportion to its length, and at least one when ``fewest`` steps are taken
+    in all; with more steps in all, this minimum grows in proportion.
     """
     parts = [
         general.kernel.source,
         f"#define N {len(general.y0)}",
         *(file.read_text(encoding="utf-8") for file in files),
     ]
-    function = getattr(ctypes.CDLL(str(library.build(longer("\n".join(parts)), "long_double"))), name)
+    function = getattr(ctypes.CDLL(str(cache.build(longer("\n".join(parts)), "long_double"))), name)
     real = ctypes.c_longdouble
     function.argtypes, function.restype = (real, real, ctypes.c_long, ctypes.c_void_p, ctypes.c_void_p), None
     p = _long(_exact_parameters(general.kernel.rate_parameters, general.plan).values())
@@ -354,8 +355,8 @@ def _long_state(general: Problem, y: Any, end: float) -> State:
     values: dict[str, Any] = dict(zip(general.plan.states, y, strict=True)) | {"t": np.longdouble(end)}
     values |= {name: _long_number(value) for name, value in exact.items()}
     functions = {"sqrt": np.sqrt, "sin": np.sin, "cos": np.cos}
-    found = general.kernel.quantities.evaluate(values, functions, _long_number, general.names)
-    ordered = np.array([found[name] for name in general.names])
+    quantities = general.kernel.quantities.evaluate(values, functions, _long_number, general.names)
+    ordered = np.array([quantities[name] for name in general.names])
     rates, attitude = ordered[:3].astype(float), ordered[3:]
     if not len(attitude):
         return State(rates, None)
@@ -363,7 +364,7 @@ def _long_state(general: Problem, y: Any, end: float) -> State:
 
 
 def _long_number(value: Fraction) -> Any:
-    """Return a number as long double, to its last bit: the nearest double and what that leaves out."""
+    """Return a number as long double, correct to its last bit: the nearest double plus its rounding error."""
     first = float(value)
     return np.longdouble(first) + np.longdouble(float(value - Fraction(first)))
 
@@ -375,18 +376,18 @@ def _long(values: Iterable[Fraction]) -> Any:
 # ------------------------------------------------------------------------------------------------ closed form
 
 
-def _closed_form(problem: Problem, say: Say, seconds: float) -> list[State]:
+def _closed_form(problem: Problem, say: Progress, seconds: float) -> list[State]:
     if exact_form(problem.scene) is None:
-        raise _Unavailable("the motion has none")
-    found = propagator(problem.scene, method="exact")(problem.ends)
-    attitude = found.quaternion if problem.plan.structure["attitude"] else [None] * len(problem.ends)
-    return list(map(State, found.omega, attitude))
+        raise _Unavailable("the motion has no closed form")
+    trajectory = propagator(problem.scene, method="exact")(problem.ends)
+    attitude = trajectory.quaternion if problem.plan.structure["attitude"] else [None] * len(problem.ends)
+    return list(map(State, trajectory.omega, attitude))
 
 
-REFERENCES: tuple[tuple[str, Callable[[Problem, Say, float], list[State]]], ...] = (
+REFERENCES: tuple[tuple[str, Callable[[Problem, Progress, float], list[State]]], ...] = (
     (f"Taylor series in {DIGITS} digits", _taylor),
     ("DOP853 in long double, general equations", _long_double),
     ("closed form", _closed_form),
     ("extrapolated midpoints in long double", _extrapolated),
 )
-"""What a motion is judged by, the best first."""
+"""The references, the most accurate first."""

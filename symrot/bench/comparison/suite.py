@@ -1,11 +1,11 @@
-"""The fixed suite: the work-precision study of one motion of each kind, its figures and its table.
+"""Run the suite: a work-precision study of one motion of each kind, with figures and a table.
 
-``symrot bench --suite`` writes into a folder, ``generated/bench`` unless told otherwise: ``suite.png`` with the ratios
-of all motions, ``motions.png`` with the curves of each, ``suite.json`` with every study, and ``suite.md``, which quotes
-them. Seconds are those of one machine: these files are not held against anything by ``--check``.
+``symrot bench --suite`` writes into a folder (default ``generated/bench``): ``suite.png`` with the ratios of all
+motions, ``motions.png`` with the curves of each motion, ``suite.json`` with every study, and ``suite.md`` with the
+table. The seconds depend on the machine, so ``--check`` does not compare these files.
 
-They are written together, when all motions are done. Until then finished ones wait in ``unfinished.json``, from where
-the same command goes on if it was interrupted.
+The files are written together after the last motion. Until then, finished studies are stored in ``unfinished.json``;
+after an interruption the same command continues from there.
 """
 
 import json
@@ -32,37 +32,37 @@ __all__ = ["SUITE", "lines", "motions", "page", "run", "summary"]
 SUITE = Path(__file__).with_name("suite.toml")
 PEERS = ("heyoka", "heyoka, best setting", "SciPy DOP853", "SciPy RK45", "SciPy LSODA", "SciPy Radau")
 
-Say = Callable[[str], object]
+Progress = Callable[[str], object]
 
 
 def motions() -> dict[str, tuple[str, Scene]]:
-    """Return the motions of the suite: name -> what it is an example of, scene."""
-    found = {}
+    """Return the motions of the suite: name -> (kind of motion, scene)."""
+    scenes = {}
     for name, entry in read_toml(SUITE, SUITE.name).items():
-        given = entry["scene"]
-        scene = load_scene(given) if isinstance(given, str) else Scene.from_dict(given, name)
-        found[name] = (str(entry["about"]), scene)
-    return found
+        entry_scene = entry["scene"]
+        scene = load_scene(entry_scene) if isinstance(entry_scene, str) else Scene.from_dict(entry_scene, name)
+        scenes[name] = (str(entry["about"]), scene)
+    return scenes
 
 
-class _Kept:
-    """The studies of an interrupted run, in a file that only the same run reads."""
+class _Checkpoint:
+    """The studies of an interrupted run, in a file that is used only by a run with the same settings."""
 
-    def __init__(self, directory: Path, **asked: Any) -> None:
+    def __init__(self, directory: Path, **settings: Any) -> None:
         self.path = directory / "unfinished.json"
-        of = {name: value for name, value in machine().items() if name != "load"}
-        self.asked = {"format": "symrot unfinished suite 1", "symrot": __version__, "machine": of, **asked}
+        host = {name: value for name, value in machine().items() if name != "load"}
+        self.settings = {"format": "symrot unfinished suite 1", "symrot": __version__, "machine": host, **settings}
         self.studies: dict[str, Any] = {}
         try:
-            found = json.loads(read_input(self.path, LARGEST_FILE))
-            if isinstance(found, dict) and isinstance(studies := found.pop("studies", None), dict):
-                self.studies = studies if found == json.loads(json.dumps(self.asked)) else {}
+            unfinished = json.loads(read_input(self.path, LARGEST_FILE))
+            if isinstance(unfinished, dict) and isinstance(studies := unfinished.pop("studies", None), dict):
+                self.studies = studies if unfinished == json.loads(json.dumps(self.settings)) else {}
         except (OSError, ValueError, RecursionError):
             self.studies = {}
 
     def add(self, name: str, one: dict[str, Any]) -> None:
         self.studies[name] = one
-        text = json.dumps({**self.asked, "studies": self.studies})
+        text = json.dumps({**self.settings, "studies": self.studies})
         write(self.path, lambda stream: stream.write(text.encode("utf-8")))
 
     def done(self) -> None:
@@ -73,16 +73,16 @@ def run(
     directory: Path,
     methods: str | None,
     quick: bool,
-    say: Say,
+    say: Progress,
     tolerances: Sequence[float] = (),
     rounds: int | None = None,
 ) -> tuple[dict[str, Any], list[str]]:
-    """Study every motion, write the files, and return data for JSON and lines for people.
+    """Study every motion, write the files, and return the results as data for JSON and as lines of text.
 
     Raises
     ------
     InputError
-        If the folder cannot be made, or nothing can be written there.
+        If the folder cannot be created or written.
     """
     try:
         directory.mkdir(parents=True, exist_ok=True)
@@ -90,41 +90,41 @@ def run(
         raise InputError(f"-o: {str(directory)!r} cannot be made: {reason.strerror or reason}") from None
     check_target(directory / "suite.json", (".json",), "-o")
     drawing = find_spec("matplotlib") is not None
-    kept = _Kept(directory, methods=methods, quick=quick, tolerances=list(tolerances), rounds=rounds)
-    earlier = len(kept.studies)
+    finished = _Checkpoint(directory, methods=methods, quick=quick, tolerances=list(tolerances), rounds=rounds)
+    earlier = len(finished.studies)
     studies, chosen = {}, motions()
     for number, (name, (about, scene)) in enumerate(chosen.items(), start=1):
 
         def tell(text: str, number: int = number) -> None:
             say(f"{number} of {len(chosen)}: {text}")
 
-        one = kept.studies.get(name)
+        one = finished.studies.get(name)
         if one is None or one["scene"]["digest"] != digest(Problem(scene)):
             began = perf_counter()
             one = {"about": about, **study(scene, methods, quick, tell, tolerances, rounds)}
             one["took"] = perf_counter() - began
-            kept.add(name, one)
+            finished.add(name, one)
         studies[name] = one
-    found = {"format": "symrot suite 1", "studies": studies, "summary": summary(studies)}
-    texts = {"suite.json": _compact(found), "suite.md": page(found)}
+    results = {"format": "symrot suite 1", "studies": studies, "summary": summary(studies)}
+    texts = {"suite.json": _compact(results), "suite.md": page(results)}
     for file, text in texts.items():
         write(directory / file, lambda stream, text=text: stream.write(text.encode("utf-8")))  # type: ignore[misc]
     if drawing:
         from symrot.report.suite_plot import save
 
-        save(found, directory)
-    kept.done()
+        save(results, directory)
+    finished.done()
     note = [] if drawing else ["", "No figures: matplotlib is not installed (pip install 'symrot[plot]')."]
     if earlier:
-        note += ["", f"{earlier} of {len(studies)} motions are of an earlier run, which was interrupted."]
-    return found, [*lines(found), *note, "", f"written to {directory}"]
+        note += ["", f"{earlier} of {len(studies)} motions come from an earlier run, which was interrupted."]
+    return results, [*lines(results), *note, "", f"written to {directory}"]
 
 
-def _compact(found: Mapping[str, Any]) -> str:
-    """Return JSON with a line for each motion, and of each number the digits that mean something."""
-    studies = found["studies"].items()
+def _compact(results: Mapping[str, Any]) -> str:
+    """Return JSON with one line for each motion and numbers rounded to their meaningful digits."""
+    studies = results["studies"].items()
     rows = ",\n".join(f"{json.dumps(name)}: {json.dumps(_short(one), ensure_ascii=False)}" for name, one in studies)
-    rest = ",\n".join(f"{json.dumps(key)}: {json.dumps(value)}" for key, value in found.items() if key != "studies")
+    rest = ",\n".join(f"{json.dumps(key)}: {json.dumps(value)}" for key, value in results.items() if key != "studies")
     return f'{{{rest},\n"studies": {{\n{rows}\n}}}}\n'
 
 
@@ -137,8 +137,8 @@ def _short(value: Any, name: str = "") -> Any:
 
 
 def summary(studies: Mapping[str, Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """Return, for each peer, over all motions and decades: median and least of how many times longer it takes."""
-    found = []
+    """Return, for each peer, the median and the least ratio of its time to symrot's, over all motions and decades."""
+    rows = []
     for peer in PEERS:
         ratios = [
             ratio
@@ -148,17 +148,17 @@ def summary(studies: Mapping[str, Mapping[str, Any]]) -> list[dict[str, Any]]:
             for ratio in item.get("stepped", {}).get("ratios", {}).values()
         ]
         if ratios:
-            found.append({"peer": peer, "median": median(ratios), "least": min(ratios), "decades": len(ratios)})
-    return found
+            rows.append({"peer": peer, "median": median(ratios), "least": min(ratios), "decades": len(ratios)})
+    return rows
 
 
 def _cell(one: Mapping[str, Any], peer: str, side: str = "stepped") -> str:
-    found = next((item for item in one["against"] if item["peer"] == peer and side in item), None)
-    return _ratio(found[side]["median"], found[side]["least"]) if found else "-"
+    comparison = next((item for item in one["against"] if item["peer"] == peer and side in item), None)
+    return _ratio(comparison[side]["median"], comparison[side]["least"]) if comparison else "-"
 
 
 def _ratio(middle: float, least: float) -> str:
-    """Return a median and the least in brackets: two digits at least, no powers of ten."""
+    """Return a median ratio and, in brackets, the least one; each with at least two digits and no power of ten."""
     return " ".join(
         form.format(f"{value:.{0 if value >= 10 else 1}f}") for form, value in (("{}", middle), ("({})", least))
     )
@@ -169,8 +169,8 @@ def _least(one: Mapping[str, Any], method: str) -> str:
     return f"{max(min(errors), ROUNDING):.0e}" if errors else "-"
 
 
-def _rows(found: Mapping[str, Any]) -> list[list[str]]:
-    studies = found["studies"].values()
+def _rows(results: Mapping[str, Any]) -> list[list[str]]:
+    studies = results["studies"].values()
     peers = [peer for peer in PEERS if any(item["peer"] == peer for one in studies for item in one["against"])]
     head = ["motion", *(peer.removeprefix("SciPy ") for peer in peers), "error: exact", "Taylor", "heyoka", "doubt"]
     rows = [head]
@@ -183,35 +183,35 @@ def _rows(found: Mapping[str, Any]) -> list[list[str]]:
                 "-" if doubt is None else f"{max(doubt, ROUNDING):.0e}",
             ]
         )  # fmt: skip
-    overall = {item["peer"]: _ratio(item["median"], item["least"]) for item in found["summary"]}
+    overall = {item["peer"]: _ratio(item["median"], item["least"]) for item in results["summary"]}
     rows.append(["all motions and decades", *(overall.get(peer, "-") for peer in peers), "", "", "", ""])
     return rows
 
 
 LEGEND = (
-    "How many times the time of symrot's steppers (closed forms left out) each takes at equal error: median over the "
-    "decades of the error from 1e-2 down, and the least in brackets. Then the least error that each reaches, and what "
-    "the references differ by. Processor time of calls from Python, medians of turns, on one core."
+    "Time of each method over the time of symrot's steppers (closed forms excluded) at equal error: median over the "
+    "decades of the error from 1e-2 down, and in brackets the least. Then the least error of each method, and the "
+    "difference between the references. Processor time of calls from Python, medians of rounds, on one core."
 )
 
 
-def lines(found: Mapping[str, Any]) -> list[str]:
-    """Return the lines for people; the first is the title."""
-    rows = _rows(found)
+def lines(results: Mapping[str, Any]) -> list[str]:
+    """Return the table as lines of text; the first is the title."""
+    rows = _rows(results)
     table = columns(rows, width=room(220), wrap=0, right=range(1, len(rows[0])))
     return ["The suite: times of others over symrot's, at equal error", "", *table, "", *columns([[LEGEND]])]
 
 
-def page(found: Mapping[str, Any]) -> str:
+def page(results: Mapping[str, Any]) -> str:
     """Return the table as a Markdown page."""
-    head, *rows = _rows(found)
-    one = next(iter(found["studies"].values()))
+    head, *rows = _rows(results)
+    one = next(iter(results["studies"].values()))
     machine = one["machine"]
     versions = ", ".join(f"{name} {machine[name]}" for name in ("python", "numpy", "scipy", "heyoka") if machine[name])
     text = ["# Time against error", "", "", ""]
-    quick, took = " --quick" if one["quick"] else "", sum(each["took"] for each in found["studies"].values())
+    quick, took = " --quick" if one["quick"] else "", sum(each["took"] for each in results["studies"].values())
     text[2] = f"Printed by `symrot bench --suite{quick}` in {took / 60.0:.0f} minutes; seconds are of one machine."
-    loads = [each["machine"]["load"][0] for each in found["studies"].values() if each["machine"]["load"]]
+    loads = [each["machine"]["load"][0] for each in results["studies"].values() if each["machine"]["load"]]
     busy = f"; {machine['cores']} cores under a load of {min(loads):.1f} to {max(loads):.1f}" if loads else ""
     text += [LEGEND, "", f"{one_line(machine['processor'])}{busy}; {versions}.", ""]
     text += [f"| {' | '.join(head)} |", f"| --- |{' ---: |' * (len(head) - 1)}"]

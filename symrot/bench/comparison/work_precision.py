@@ -1,9 +1,9 @@
-"""The work-precision study of a scene: seconds against the error reached, for every method there is.
+"""Study the time and the error of every available method on one scene (a work-precision study).
 
-Each contestant runs over a range of tolerances. The error is the largest at four times of the span, each reached by a
-run of its own, against a reference of higher precision (:mod:`symrot.bench.comparison.reference`); runs to the end are
-timed in turns (:mod:`symrot.bench.comparison.race`). At each decade of the error the fastest run counts that is at
-least as good: no curve is smoothed or extended. Decades that the references cannot tell apart are left out.
+Each contestant runs over a range of tolerances. Its error is the largest at four times of the span, each reached by a
+separate run, against a more precise reference (:mod:`symrot.bench.comparison.reference`). Runs over the whole span are
+timed alternately (:mod:`symrot.bench.comparison.race`). For each decade of the error, the fastest run with at most that
+error counts; no curve is smoothed or extended. Decades below the difference between the references are left out.
 """
 
 import hashlib
@@ -25,7 +25,7 @@ from symrot.bench.comparison.contestants import Contestant, chosen
 from symrot.bench.comparison.problem import Problem, State
 from symrot.bench.comparison.race import Measured, race, seconds_of, work_ahead
 from symrot.bench.comparison.reference import reference
-from symrot.build import cache as library
+from symrot.build import cache
 from symrot.errors import InputError, SymrotError
 from symrot.scene.scene import Scene
 
@@ -38,17 +38,17 @@ OURS = ("exact", "exact with set-up", *STEPPED)
 
 
 class Effort(NamedTuple):
-    """How much a study may spend."""
+    """The limits of a study's duration."""
 
     rounds: int
-    longest: float  # s of a run; a contestant's tighter tolerances are left out once it takes longer
-    every: int  # of the tolerances of a contestant that has two to a decade, one in so many is run
-    reference: float  # s
+    longest: float  # s: after a longer run, the tighter tolerances of its contestant are skipped
+    every: int  # of a contestant with two tolerances per decade, each such tolerance is run
+    reference: float  # s, for the computation of the reference
 
 
 FULL, QUICK = Effort(9, 1.0, 1, 150.0), Effort(5, 0.25, 2, 60.0)
 
-Say = Callable[[str], object]
+Progress = Callable[[str], object]
 Entry = tuple[Measured, Callable[[], object]]
 
 
@@ -56,7 +56,7 @@ def study(
     scene: Scene,
     methods: str | None = None,
     quick: bool = False,
-    say: Say = lambda text: None,
+    say: Progress = lambda text: None,
     tolerances: Sequence[float] = (),
     rounds: int | None = None,
 ) -> dict[str, Any]:
@@ -65,22 +65,22 @@ def study(
     Parameters
     ----------
     scene : Scene
-        The motion, from the start of its span to the end.
+        The motion, followed over its whole span.
     methods : str, optional
-        Names of :data:`symrot.bench.comparison.contestants.CONTESTANTS`' groups, commas between; default: all.
+        Groups of :data:`symrot.bench.comparison.contestants.CONTESTANTS`, comma-separated; default: all.
     quick : bool
-        Half the tolerances, fewer turns, heyoka in its default settings only.
+        Half the tolerances, fewer repetitions, heyoka in its default settings only.
     say : callable
-        Hears what is being done.
+        Called with messages about the progress.
     tolerances : sequence of float, optional
-        Falling; each method takes those that it can hold. Default: two to a decade, or one.
+        Falling; each method runs at those that it supports. Default: two per decade, or one.
     rounds : int, optional
-        Turns of each run. Default: 9, quick 5.
+        Repetitions of each run. Default: 9, quick 5.
 
     Raises
     ------
     InputError
-        For a method that is none, or a scene with nothing to integrate, or when no method can take part.
+        For an unknown method, a scene without a state to integrate, or if no method can take part.
     SymrotError
         If the references contradict one another.
     """
@@ -91,40 +91,40 @@ def study(
         taking_part = [one.at(tolerances) for one in taking_part]
         effort = effort._replace(every=1)
     problem = Problem(scene)
-    found = reference(problem, say, effort.reference)
-    entries, skipped = _entries(problem, taking_part, effort, found.states, say)
+    truth = reference(problem, say, effort.reference)
+    entries, skipped = _entries(problem, taking_part, effort, truth.states, say)
     if not entries:
-        why = "; ".join(f"{item['method']}: {item['why']}" for item in skipped) or "no tolerance that one can hold"
+        why = "; ".join(f"{item['method']}: {item['why']}" for item in skipped) or "no method supports these tolerances"
         raise InputError(f"{scene.name}: expected a method that can follow this motion; {why}")
     ahead = work_ahead((measured for measured, _ in entries), effort.rounds)
 
     def turn(number: int) -> None:
-        say(f"{scene.name}: {len(entries)} runs in turns, about {ahead:.0f} s: round {number + 1} of {effort.rounds}")
+        say(f"{scene.name}: {len(entries)} runs, about {ahead:.0f} s: round {number + 1} of {effort.rounds}")
 
     race(entries, effort.rounds, turn)
     runs = [measured.to_json() for measured, _ in entries]
-    floor = 0.0 if math.isnan(found.doubt) else found.doubt
+    floor = 0.0 if math.isnan(truth.doubt) else truth.doubt
     rows = decades(runs, floor)
     return {
         "format": FORMAT, "symrot": __version__,
         "scene": {"name": scene.name, "title": scene.title, "span": [problem.start, problem.stop],
                   "digest": digest(problem)},
-        "machine": machine(), "quick": quick, "reference": found.to_json(), "runs": runs, "decades": rows,
+        "machine": machine(), "quick": quick, "reference": truth.to_json(), "runs": runs, "decades": rows,
         "against": against(rows), "skipped": skipped,
     }  # fmt: skip
 
 
 def digest(problem: Problem) -> str:
-    """Return what tells motions apart: the same for the same body, start, torques and span, whatever the title."""
+    """Return a hash of the motion: equal for equal body, start, torques and span, whatever the title."""
     scene = problem.scene
     moving = (scene.body.inertia, scene.initial, scene.torques, scene.span.start, scene.span.stop, problem.names)
     return hashlib.sha256(repr(moving).encode()).hexdigest()[:16]
 
 
 def _entries(
-    problem: Problem, contestants: Sequence[Contestant], effort: Effort, exact: Sequence[State], say: Say
+    problem: Problem, contestants: Sequence[Contestant], effort: Effort, exact: Sequence[State], say: Progress
 ) -> tuple[list[Entry], list[dict[str, str]]]:
-    """Return every run with its error, and what was left out and why."""
+    """Return every run with its error, and the methods that were skipped with the reason."""
     entries: list[Entry] = []
     skipped = []
     for contestant in contestants:
@@ -151,20 +151,20 @@ def _entries(
 
 def _entry(problem: Problem, contestant: Contestant, tolerance: float, exact: Sequence[State]) -> Entry:
     follow = contestant.prepare(problem, tolerance)
-    found, steps = [], 0
+    states, steps = [], 0
     for end in problem.ends:
         last, steps = follow(end)
-        found.append(last if isinstance(last, State) else problem.state(last, end))
+        states.append(last if isinstance(last, State) else problem.state(last, end))
     run = partial(follow, problem.stop)
-    # what a first call costs once is over: the clock is asked about another one
-    return Measured(contestant.name, tolerance, steps, problem.worst(found, exact), seconds_of(run)), run
+    # the cost of a first call is paid by now: the time of one more call is measured
+    return Measured(contestant.name, tolerance, steps, problem.worst(states, exact), seconds_of(run)), run
 
 
 # ------------------------------------------------------------------------------------------------ reading
 
 
 def best(runs: Iterable[dict[str, Any]], error: float) -> dict[str, Any] | None:
-    """Return the fastest of some runs with at most that error, or None."""
+    """Return the fastest of the runs with at most this error, or None."""
     good = [run for run in runs if run["error"] <= error]
     return min(good, key=lambda run: float(run["seconds"]), default=None)
 
@@ -172,22 +172,22 @@ def best(runs: Iterable[dict[str, Any]], error: float) -> dict[str, Any] | None:
 def decades(runs: Sequence[dict[str, Any]], floor: float = 0.0) -> list[dict[str, Any]]:
     """Return, for each decade of the error, the fastest run and the ratios of all methods to it.
 
-    Decades below ``floor``, which the reference cannot tell apart, are left out.
+    Decades below ``floor``, the difference between the references, are left out.
     """
     names = list(dict.fromkeys(run["method"] for run in runs))
     rows = []
     for error in DECADES:
-        found = {name: run for name in names if (run := best((r for r in runs if r["method"] == name), error))}
-        if not found or error < floor:
+        fastest_runs = {name: run for name in names if (run := best((r for r in runs if r["method"] == name), error))}
+        if not fastest_runs or error < floor:
             continue
-        fastest = min(found, key=lambda name: float(found[name]["seconds"]))
-        least = float(found[fastest]["seconds"])
+        fastest = min(fastest_runs, key=lambda name: float(fastest_runs[name]["seconds"]))
+        least = float(fastest_runs[fastest]["seconds"])
         rows.append(
             {
                 "error": error, "fastest": fastest, "seconds": least,
                 "methods": {
                     name: {"seconds": run["seconds"], "ratio": run["seconds"] / least, "tolerance": run["tolerance"]}
-                    for name, run in found.items()
+                    for name, run in fastest_runs.items()
                 },
             }
         )  # fmt: skip
@@ -195,46 +195,46 @@ def decades(runs: Sequence[dict[str, Any]], floor: float = 0.0) -> list[dict[str
 
 
 def against(rows: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Return how many times longer each peer takes than symrot's steppers, and than all of symrot: median and least.
+    """Return, for each peer, the ratios of its time to that of symrot's steppers, and to that of all symrot methods.
 
-    Where heyoka ran in several settings, the fastest at each decade is a peer of its own.
+    Each with median and least. If heyoka ran in several settings, the fastest setting at each decade is one more peer.
     """
     peers = list(dict.fromkeys(name for row in rows for name in row["methods"] if name not in (*OURS, "symrot scipy")))
     settings = [name for name in peers if name.startswith("heyoka")]
     asked = [(name, (name,)) for name in peers]
     if len(settings) > 1:
         asked.append(("heyoka, best setting", tuple(settings)))
-    found = []
+    comparisons = []
     for title, names in asked:
         ratios = {key: _ratios(rows, ours, names) for key, ours in (("stepped", STEPPED), ("all", OURS))}
-        told = {
+        statistics = {
             key: {"median": median(values.values()), "least": min(values.values()), "ratios": values}
             for key, values in ratios.items()
             if values
         }
-        if told:
-            found.append({"peer": title, **told})
-    return found
+        if statistics:
+            comparisons.append({"peer": title, **statistics})
+    return comparisons
 
 
 def _ratios(rows: Sequence[dict[str, Any]], ours: Sequence[str], theirs: Sequence[str]) -> dict[str, float]:
-    """Return how many times the time of ours theirs take, by decade of the error."""
-    found = {}
+    """Return the ratio of the fastest time of ``theirs`` to that of ``ours``, by decade of the error."""
+    ratios = {}
     for row in rows:
         sides = [[row["methods"][name]["seconds"] for name in names if name in row["methods"]]
                  for names in (theirs, ours)]  # fmt: skip
         if all(sides):
-            found[f"{row['error']:.0e}"] = min(sides[0]) / min(sides[1])
-    return found
+            ratios[f"{row['error']:.0e}"] = min(sides[0]) / min(sides[1])
+    return ratios
 
 
 def machine() -> dict[str, Any]:
-    """Return what the seconds were measured on."""
+    """Return the machine and the versions with which the seconds were measured."""
     return {
         "processor": _processor(), "cores": os.cpu_count(), "load": list(os.getloadavg()) if _has_load() else None,
         "python": platform.python_version(), "numpy": np.__version__,
         **{name: _version(name) for name in ("scipy", "heyoka")},
-        "compiler": None if library.missing() else " ".join(library.compiler().command),
+        "compiler": None if cache.missing() else " ".join(cache.compiler().command),
     }  # fmt: skip
 
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from symrot.bench.by_hand import text_by_hand
 from symrot.bench.comparison.exact_path import ExactPath
-from symrot.build import cache as library
+from symrot.build import cache
 from symrot.closed_form.registry import exact_form
 from symrot.planning.plan import make_plan
 from symrot.propagation.motion import Motion
@@ -74,18 +74,18 @@ class Track:
         """Return what a method found, as any propagation returns it."""
         return Trajectory(motion or self.motion, self.times[: len(states)], states, "", Stats(0, 0, 0, 0.0), "")
 
-    def curve(self, method: str, found: Trajectory) -> Curve:
+    def curve(self, method: str, trajectory: Trajectory) -> Curve:
         """Return the errors of a method."""
-        count, blank = len(found), np.full(len(self.times), np.nan)
-        q, r = found.quaternion, self.truth.quaternion[:count]
+        count, blank = len(trajectory), np.full(len(self.times), np.nan)
+        q, r = trajectory.quaternion, self.truth.quaternion[:count]
         chord = np.minimum(*(np.linalg.norm(q - sign * r, axis=1) for sign in (1, -1)))
         attitude, rates = blank.copy(), blank.copy()
         attitude[:count] = 4.0 * np.arcsin(np.minimum(chord, math.sqrt(2.0)) / 2.0)
         size = float(np.linalg.norm(self.truth.omega, axis=1).max())
-        rates[:count] = np.linalg.norm(found.omega - self.truth.omega[:count], axis=1) / size
+        rates[:count] = np.linalg.norm(trajectory.omega - self.truth.omega[:count], axis=1) / size
         invariants = {}
-        for item in found.invariants:
-            start = found._motion.initial_quantity(item.name)
+        for item in trajectory.invariants:
+            start = trajectory._motion.initial_quantity(item.name)
             invariants[item.name] = np.abs(item.values - start) / (item.scale or 1.0)
         return Curve(method, attitude, rates, invariants)
 
@@ -125,10 +125,10 @@ def _scipy(track: Track, times: Floats) -> Trajectory | None:
     motion = track.motion
     p, rates = motion.rate_parameters, motion.rates
     span = (motion.start, float(times[-1]))
-    found = solve_ivp(
+    solution = solve_ivp(
         lambda t, y: rates(t, y, p), span, motion.plan.initial_state, "DOP853", times, rtol=SCIPY_RTOL, atol=SCIPY_ATOL
     )
-    return track.trajectory(np.ascontiguousarray(found.y.T))
+    return track.trajectory(np.ascontiguousarray(solution.y.T))
 
 
 def _rk4(normalised: bool) -> Callable[[Track, Floats], Trajectory | None]:
@@ -138,7 +138,7 @@ def _rk4(normalised: bool) -> Callable[[Track, Floats], Trajectory | None]:
             return None
         text = text_by_hand("by_hand.c")
         source = f"{motion.kernel.source}\n#define N {len(motion.plan.states)}\n{text}"
-        function = ctypes.CDLL(str(library.build(source, "by_hand"))).rk4
+        function = ctypes.CDLL(str(cache.build(source, "by_hand"))).rk4
         real, pointer = ctypes.c_double, ctypes.c_void_p
         function.argtypes, function.restype = (real, real, ctypes.c_long, ctypes.c_int, pointer, pointer), None
         y, p = np.array(motion.plan.initial_state), np.array(motion.rate_parameters or [0.0])
@@ -177,15 +177,15 @@ METHODS = (
 
 def growth(track: Track, long: bool = False, say: Callable[[str], object] = lambda text: None) -> list[Curve]:
     """Return the curves of all methods that this motion has."""
-    found = []
+    curves = []
     for method in METHODS:
         say(f"{track.scene.name}: {method.name} ..")
         turns = track.speed * (track.times - track.motion.start) / (2.0 * math.pi)
         inside = track.times[turns <= (method.most_long if long else method.most) * 1.001]
         trajectory = method.run(track, inside)
         if trajectory is not None:
-            found.append(track.curve(method.name, trajectory))
-    return found
+            curves.append(track.curve(method.name, trajectory))
+    return curves
 
 
 def exponent(revolutions: Floats, errors: Floats) -> float:
@@ -198,5 +198,5 @@ def exponent(revolutions: Floats, errors: Floats) -> float:
 
 def median_curve(curves: list[Any], name: str) -> Floats:
     """Return the median over motions of one column of curves of one method."""
-    found: Floats = np.exp(np.median(np.log(np.array([getattr(c, name) for c in curves]) + 1e-18), axis=0))
-    return found
+    medians: Floats = np.exp(np.median(np.log(np.array([getattr(c, name) for c in curves]) + 1e-18), axis=0))
+    return medians

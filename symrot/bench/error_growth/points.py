@@ -53,7 +53,7 @@ def laws() -> list[tuple[str, bool]]:
         "secant: r' = r + h omega x (r + r')/2 has |r'| = |r|":
             [secant.dot(secant) - place.dot(place), *(secant - place - half)],
     }  # fmt: skip
-    return [(name, all(is_zero(expression) for expression in found)) for name, found in claims.items()]
+    return [(name, all(is_zero(expression) for expression in expressions)) for name, expressions in claims.items()]
 
 
 def _corners(size: tuple[float, float, float]) -> Floats:
@@ -63,11 +63,11 @@ def _corners(size: tuple[float, float, float]) -> Floats:
 
 def _turned(axis: Floats, angle: float, points: Floats) -> Floats:
     """Return points turned about a unit axis."""
-    found: Floats = (
+    rotated: Floats = (
         points * math.cos(angle) + np.cross(axis, points) * math.sin(angle)
         + np.outer(points @ axis, axis) * (1.0 - math.cos(angle))
     )  # fmt: skip
-    return found
+    return rotated
 
 
 def _tangent(r: Floats, w: Floats, middle: Floats, h: float) -> Floats:
@@ -75,8 +75,8 @@ def _tangent(r: Floats, w: Floats, middle: Floats, h: float) -> Floats:
 
 
 def _rescaled(r: Floats, w: Floats, middle: Floats, h: float) -> Floats:
-    found = _tangent(r, w, middle, h)
-    scaled: Floats = found * (np.linalg.norm(r, axis=1) / np.linalg.norm(found, axis=1))[:, None]
+    moved = _tangent(r, w, middle, h)
+    scaled: Floats = moved * (np.linalg.norm(r, axis=1) / np.linalg.norm(moved, axis=1))[:, None]
     return scaled
 
 
@@ -97,7 +97,7 @@ SCHEMES = {
 
 def carried(scene: Scene, stop: float, steps: tuple[float, ...], size: Any = (1.0, 2.0, 3.0)) -> list[Carried]:
     """Return the corners of a box carried along with a motion, by each scheme and step."""
-    points, found = _corners(size), []
+    points, results = _corners(size), []
     motion = propagator(scene)
     for h in steps:
         count = round(stop / h)
@@ -114,8 +114,8 @@ def carried(scene: Scene, stop: float, steps: tuple[float, ...], size: Any = (1.
                     logarithm += 0.5 * np.log1p(h * h * (across**2).sum(axis=1) / (place**2).sum(axis=1))
             sizes = [float(np.linalg.norm(each, axis=1).max()) for each in (first, r)]
             derived = float(np.exp(logarithm.max()))
-            found.append(Carried(name, h, sizes[1] / sizes[0], derived, _strain(first, r), _apart(r, last)))
-    return found
+            results.append(Carried(name, h, sizes[1] / sizes[0], derived, _strain(first, r), _apart(r, last)))
+    return results
 
 
 def _strain(first: Floats, last: Floats) -> float:
@@ -126,5 +126,5 @@ def _strain(first: Floats, last: Floats) -> float:
     return float(ratios.max() / ratios.min() - 1.0)
 
 
-def _apart(found: Floats, expected: Floats) -> float:
-    return float(np.linalg.norm(found - expected, axis=1).max() / np.linalg.norm(expected, axis=1).max())
+def _apart(computed: Floats, expected: Floats) -> float:
+    return float(np.linalg.norm(computed - expected, axis=1).max() / np.linalg.norm(expected, axis=1).max())

@@ -62,13 +62,13 @@ def stability(scene: Scene | None = None, long: bool = False, say: Callable[[str
     say : callable
         Hears what is being done.
     """
-    found: dict[str, Any] = {"format": "symrot stability 1", "long": long}
-    found["growth"] = _of_scene(scene, long, say) if scene else _of_plates(long, say)
+    results: dict[str, Any] = {"format": "symrot stability 1", "long": long}
+    results["growth"] = _of_scene(scene, long, say) if scene else _of_plates(long, say)
     say("Euler angles as state ..")
-    found["passes"] = passes()
+    results["passes"] = passes()
     say("points of a body ..")
-    found["laws"] = [{"law": name, "holds": holds} for name, holds in laws()]
-    found["points"] = [
+    results["laws"] = [{"law": name, "holds": holds} for name, holds in laws()]
+    results["points"] = [
         {"motion": name, **each._asdict()}
         for name, body, omega, size in (
             ("steady, points across the axis", {"principal": [1, 2, 3]}, (0, 0, 1), (1.0, 2.0, 0.0)),
@@ -76,7 +76,7 @@ def stability(scene: Scene | None = None, long: bool = False, say: Callable[[str
         )
         for each in carried(_scene(name, body, omega), CARRIED_FOR, STEPS, size)
     ]
-    return _finite(found)
+    return _finite(results)
 
 
 def _of_plates(long: bool, say: Callable[[str], object]) -> dict[str, Any]:
@@ -91,17 +91,19 @@ def _of_plates(long: bool, say: Callable[[str], object]) -> dict[str, Any]:
     every = [growth(track, long, say) for track in tracks]
     curves = []
     for same in zip(*every, strict=True):
-        kept = {name: _median([c.invariants[name] for c in same], len(revolutions)) for name in same[0].invariants}
+        invariants = {
+            name: _median([c.invariants[name] for c in same], len(revolutions)) for name in same[0].invariants
+        }
         curves.append(_curve(same[0].method, revolutions, median_curve(list(same), "attitude"),
-                             median_curve(list(same), "rates"), kept))  # fmt: skip
+                             median_curve(list(same), "rates"), invariants))  # fmt: skip
     title = f"free plate, moments {PLATE}, medians of {len(STARTS)} starts"
     return {"title": title, "variable": "revolutions", "at": revolutions.tolist(), "curves": curves}
 
 
 def _median(rows: list[Floats], count: int) -> Floats:
-    found = np.full(count, np.nan)
-    found[: len(rows[0])] = np.median(rows, axis=0)
-    return found
+    medians = np.full(count, np.nan)
+    medians[: len(rows[0])] = np.median(rows, axis=0)
+    return medians
 
 
 def _of_scene(scene: Scene, long: bool, say: Callable[[str], object]) -> dict[str, Any]:
@@ -112,31 +114,33 @@ def _of_scene(scene: Scene, long: bool, say: Callable[[str], object]) -> dict[st
     track = Track(scene, times, periodic=False)
     curves = []
     for curve in growth(track, long, say):
-        kept = {name: _median([values], len(times)) for name, values in curve.invariants.items()}
-        curves.append(_curve(curve.method, None, curve.attitude, curve.rates, kept))
+        invariants = {name: _median([values], len(times)) for name, values in curve.invariants.items()}
+        curves.append(_curve(curve.method, None, curve.attitude, curve.rates, invariants))
     return {
         "title": scene.title, "variable": "t", "at": times.tolist(), "curves": curves,
         "omega": track.truth.omega.tolist(), "revolutions": track.turns(float(times[-1] - times[0])),
     }  # fmt: skip
 
 
-def _curve(method: str, at: Floats | None, attitude: Floats, rates: Floats, kept: dict[str, Floats]) -> dict[str, Any]:
+def _curve(
+    method: str, at: Floats | None, attitude: Floats, rates: Floats, invariants: dict[str, Floats]
+) -> dict[str, Any]:
     drift = np.max(
-        [values for name, values in kept.items() if name != "quaternion norm"] or [np.zeros(len(attitude))], 0
+        [values for name, values in invariants.items() if name != "quaternion norm"] or [np.zeros(len(attitude))], 0
     )
-    found: dict[str, Any] = {
+    entry: dict[str, Any] = {
         "method": method, "about": next(each.about for each in METHODS if each.name == method),
         "attitude": attitude.tolist(), "rates": rates.tolist(),
-        "invariants": {name: values.tolist() for name, values in kept.items()},
+        "invariants": {name: values.tolist() for name, values in invariants.items()},
     }  # fmt: skip
     if at is not None:
-        found["exponents"] = {"attitude": exponent(at, attitude), "invariants": exponent(at, drift)}
-    return found
+        entry["exponents"] = {"attitude": exponent(at, attitude), "invariants": exponent(at, drift)}
+    return entry
 
 
 def passes() -> list[dict[str, Any]]:
     """Return what passes by gimbal lock cost and lose: quaternion, angles that are exchanged, angles that are not."""
-    t, found = np.linspace(-3, 8, 45), []
+    t, rows = np.linspace(-3, 8, 45), []
     for distance in PASSES:
         attitude = {"sequence": SEQUENCE, "angles": ["1/5", distance, "3/10"]}
         scene = _scene("pass by gimbal lock", {"principal": [1, "6/5", 2]}, (0, "2/5", 1), attitude)
@@ -153,8 +157,8 @@ def passes() -> list[dict[str, Any]]:
             row[name] = {
                 "steps": trajectory.stats.accepted, "error": float(chord.max()), "switches": trajectory.stats.switches,
             }  # fmt: skip
-        found.append(row)
-    return found
+        rows.append(row)
+    return rows
 
 
 def scene_distance(text: str | int) -> float:
@@ -178,41 +182,41 @@ def _worst(values: Iterable[float | None]) -> float | None:
     return max((value for value in values if value is not None), default=None)
 
 
-def lines(found: Any) -> list[str]:
+def lines(results: Any) -> list[str]:
     """Return the report as a table for people."""
-    return [*_growth_lines(found["growth"]), "", *_pass_lines(found["passes"]), "", *_point_lines(found)]
+    return [*_growth_lines(results["growth"]), "", *_pass_lines(results["passes"]), "", *_point_lines(results)]
 
 
 def _growth_lines(data: Any) -> list[str]:
     at = data["at"]
     if data["variable"] == "revolutions":
-        shown = [i for i, turns in enumerate(at) if abs(math.log10(turns) % 1) < 1e-9]
-        heads = [f"1e{round(math.log10(at[i]))} rev" for i in shown]
+        places = [i for i, turns in enumerate(at) if abs(math.log10(turns) % 1) < 1e-9]
+        heads = [f"1e{round(math.log10(at[i]))} rev" for i in places]
     else:
-        shown = [round(k * (len(at) - 1) / 6) for k in range(1, 7)]
-        heads = [f"{at[i]:.4g} s" for i in shown]
-    found = [data["title"], "", "error of the attitude, rad, against 30 digits"]
+        places = [round(k * (len(at) - 1) / 6) for k in range(1, 7)]
+        heads = [f"{at[i]:.4g} s" for i in places]
+    text_lines = [data["title"], "", "error of the attitude, rad, against 30 digits"]
     rows = [["  method", *heads, *(["grows as"] if "exponents" in data["curves"][0] else [])]]
     drifts = [["  method", *heads, *rows[0][len(heads) + 1 :], "norm of q"]]
     for curve in data["curves"]:
-        rows.append([f"  {curve['method']}", *(_figure(curve["attitude"][i]) for i in shown)])
-        kept = {name: values for name, values in curve["invariants"].items() if name != "quaternion norm"}
-        worst = [_worst(values[i] for values in kept.values()) for i in shown]
+        rows.append([f"  {curve['method']}", *(_figure(curve["attitude"][i]) for i in places)])
+        invariants = {name: values for name, values in curve["invariants"].items() if name != "quaternion norm"}
+        worst = [_worst(values[i] for values in invariants.values()) for i in places]
         drifts.append([f"  {curve['method']}", *map(_figure, worst)])
         if "exponents" in curve:
             rows[-1].append(_power(curve["exponents"]["attitude"]))
             drifts[-1].append(_power(curve["exponents"]["invariants"]))
         drifts[-1].append(_figure(_worst(curve["invariants"].get("quaternion norm", []))))
     right = tuple(range(1, len(drifts[0])))
-    kept_names = [name for name in data["curves"][0]["invariants"] if name != "quaternion norm"]
-    found += columns(rows, right=right[:-1])
-    found += ["", f"largest relative drift of {', '.join(kept_names) or 'nothing: no invariant'}; "
+    invariant_names = [name for name in data["curves"][0]["invariants"] if name != "quaternion norm"]
+    text_lines += columns(rows, right=right[:-1])
+    text_lines += ["", f"largest relative drift of {', '.join(invariant_names) or 'nothing: no invariant'}; "
               "and of the norm of the quaternion, on the way", *columns(drifts, right=right)]  # fmt: skip
     notes = "; ".join(f"{each.name}: {each.about}" for each in METHODS)
     if data["variable"] == "revolutions":
         notes += f". Powers are fitted from {FROM:.0f} revolutions on; rounding alone grows as t^0.5 in an invariant, "
         notes += "t^1.5 in an angle"
-    return [*found, "", *_wrapped(f"{notes}.")]
+    return [*text_lines, "", *_wrapped(f"{notes}.")]
 
 
 def _wrapped(text: str) -> list[str]:
@@ -222,33 +226,33 @@ def _wrapped(text: str) -> list[str]:
 
 
 def _pass_lines(rows: Any) -> list[str]:
-    def told(row: Any, name: str) -> list[str]:
+    def cells(row: Any, name: str) -> list[str]:
         one = row[name]
         return ["fails", "-"] if "failed" in one else [str(one["steps"]), _figure(one["error"])]
 
     table = [["  nearest", "quaternion", "error", f"{SEQUENCE}, switched", "error", f"{SEQUENCE} alone", "error"]]
     for row in rows:
         distance = "the lock itself" if row["distance"] == 0 else f"{row['distance']:.0e} rad"
-        table.append([f"  {distance}", *told(row, "quaternion"), *told(row, "switching"), *told(row, "angles")])
-    said = [
+        table.append([f"  {distance}", *cells(row, "quaternion"), *cells(row, "switching"), *cells(row, "angles")])
+    text_lines = [
         "a pass by gimbal lock: steps of the Taylor method, and the error, by what the state is",
         *columns(table, right=tuple(range(1, 7))),
     ]
     failed = [row["angles"]["failed"] for row in rows if "failed" in row["angles"]]
-    return said + [line for text in failed[:1] for line in _wrapped(text)]
+    return text_lines + [line for text in failed[:1] for line in _wrapped(text)]
 
 
-def _point_lines(found: Any) -> list[str]:
-    said = [f"points carried along their velocity for {CARRIED_FOR:g} s", *(
-        f"  {'proven' if law['holds'] else 'NOT PROVEN'}: {law['law']}" for law in found["laws"])]  # fmt: skip
+def _point_lines(results: Any) -> list[str]:
+    text_lines = [f"points carried along their velocity for {CARRIED_FOR:g} s", *(
+        f"  {'proven' if law['holds'] else 'NOT PROVEN'}: {law['law']}" for law in results["laws"])]  # fmt: skip
     rows = [["  motion", "step", "h, s", "growth", "by the law", "strain", "error"]]
     before = ""
-    for each in found["points"]:
+    for each in results["points"]:
         name = "" if each["motion"] == before else each["motion"]
         before = each["motion"]
         rows.append([f"  {name}", each["scheme"], f"{each['h']:g}", f"{each['growth']:.10f}", f"{each['derived']:.10f}",
                      _figure(each["strain"]), _figure(each["error"])])  # fmt: skip
-    return [*said, *columns(rows, right=(2, 3, 4, 5, 6))]
+    return [*text_lines, *columns(rows, right=(2, 3, 4, 5, 6))]
 
 
 def report(scene: str | None, long: bool, plot: Path | None, say: Callable[[str], object]) -> Any:
@@ -259,12 +263,12 @@ def report(scene: str | None, long: bool, plot: Path | None, say: Callable[[str]
     InputError
         For a scene that cannot be used.
     """
-    found = stability(load_scene(scene) if scene else None, long, say)
+    results = stability(load_scene(scene) if scene else None, long, say)
     if plot:
         from symrot.bench.error_growth.stability_plot import save
 
-        save(found, plot)
-    return found
+        save(results, plot)
+    return results
 
 
 def _finite(value: Any) -> Any:

@@ -21,12 +21,12 @@ LOOKS: dict[str, dict[str, Any]] = {
 }  # fmt: skip
 
 
-def figure(found: Any) -> Any:
+def figure(results: Any) -> Any:
     """Return the page."""
     from matplotlib import rc_context
     from matplotlib.figure import Figure
 
-    data = found["growth"]
+    data = results["growth"]
     flips = "omega" in data
     with rc_context(STYLE):
         page = Figure(figsize=(9.6, 8.4 if flips else 7.4), layout="constrained")
@@ -36,8 +36,8 @@ def figure(found: Any) -> Any:
         upper = int(flips)
         _curves(page.add_subplot(rows[upper, :3]), data, "attitude")
         _curves(page.add_subplot(rows[upper, 3:]), data, "invariants")
-        _passes(page.add_subplot(rows[upper + 1, :3]), found["passes"])
-        _points(page.add_subplot(rows[upper + 1, 3:]), found["points"])
+        _passes(page.add_subplot(rows[upper + 1, :3]), results["passes"])
+        _points(page.add_subplot(rows[upper + 1, 3:]), results["points"])
         page.suptitle(
             f"Numerical stability: {one_line(data['title'])}", fontsize=12, fontweight="bold", x=0.01, ha="left"
         )
@@ -63,9 +63,9 @@ def _smoothed(at: Any, values: Any, linear: bool) -> Any:
     """Return the largest value so far along a span: an error that crosses zero is no better for it."""
     if not linear:
         return values
-    found = np.fmax.accumulate(values)
-    found[np.isnan(values)] = np.nan
-    return found
+    largest = np.fmax.accumulate(values)
+    largest[np.isnan(values)] = np.nan
+    return largest
 
 
 def _curves(axes: Any, data: Any, what: str) -> None:
@@ -74,10 +74,10 @@ def _curves(axes: Any, data: Any, what: str) -> None:
         if what == "attitude":
             values = _shown(curve["attitude"])
         else:
-            kept = [_shown(v) for name, v in curve["invariants"].items() if name != "quaternion norm"]
-            if not kept:
+            drifts = [_shown(v) for name, v in curve["invariants"].items() if name != "quaternion norm"]
+            if not drifts:
                 continue
-            values = np.max(kept, axis=0)
+            values = np.max(drifts, axis=0)
         axes.plot(at, _smoothed(at, values, linear), label=curve["method"], **LOOKS.get(curve["method"], {}))
     axes.set_yscale("log")
     if not linear:
@@ -132,23 +132,23 @@ def _passes(axes: Any, rows: Any) -> None:
 
 def _points(axes: Any, rows: Any) -> None:
     motion = rows[-1]["motion"]
-    shown = [row for row in rows if row["motion"] == motion]
+    chosen = [row for row in rows if row["motion"] == motion]
     names = {"tangent": COLOURS[1], "secant (midpoint)": COLOURS[0], "rotation": COLOURS[2]}
-    steps = sorted({row["h"] for row in shown}, reverse=True)
+    steps = sorted({row["h"] for row in chosen}, reverse=True)
     width = 0.8 / len(names)
     for number, (name, colour) in enumerate(names.items()):
-        values = [next(row["growth"] for row in shown if row["scheme"] == name and row["h"] == h) for h in steps]
+        values = [next(row["growth"] for row in chosen if row["scheme"] == name and row["h"] == h) for h in steps]
         places = np.arange(len(steps)) + (number - 1) * width
         axes.bar(places, np.array(values) - 1.0, width * 0.92, bottom=1.0, color=colour, label=name)
         for x, value in zip(places, values, strict=True):
             axes.annotate(f"{value:.3f}", (x, max(value, 1.0)), xytext=(0, 3), textcoords="offset points", ha="center",
                           fontsize=7, color=GREY)  # fmt: skip
-    tangents = [next(row["derived"] for row in shown if row["scheme"] == "tangent" and row["h"] == h) for h in steps]
+    tangents = [next(row["derived"] for row in chosen if row["scheme"] == "tangent" and row["h"] == h) for h in steps]
     axes.plot(np.arange(len(steps)) - width, tangents, "_", color="black", markersize=16, markeredgewidth=1.4,
               label=r"law: $\prod\sqrt{1+h^2|\omega\times r|^2/|r|^2}$")  # fmt: skip
     axes.axhline(1.0, color=GREY, linewidth=0.8)
     axes.set_xticks(range(len(steps)), [f"h = {h:g} s" for h in steps])
-    axes.set_ylim(0.95, 1.08 * max(row["growth"] for row in shown))
+    axes.set_ylim(0.95, 1.08 * max(row["growth"] for row in chosen))
     axes.set_axisbelow(True)
     axes.grid(True, axis="y")
     axes.set_title("Size of a body carried by its points' velocities for 10 s")
@@ -156,6 +156,6 @@ def _points(axes: Any, rows: Any) -> None:
     axes.legend(loc="upper right")
 
 
-def save(found: Any, path: Path) -> None:
+def save(results: Any, path: Path) -> None:
     """Write the page."""
-    save_page(figure(found), path, 140)
+    save_page(figure(results), path, 140)
