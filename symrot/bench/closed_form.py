@@ -1,8 +1,8 @@
-"""Measure the exact motions: nanoseconds per sample, microseconds to set up, and a call from Python in all.
+"""Measure the exact motions: nanoseconds per sample, microseconds of set-up, and a complete call from Python.
 
     python -m symrot.bench.closed_form [--rounds 300]
 
-Minima of interleaved rounds, since other work on the machine only adds. Errors are the business of
+The minimum over interleaved rounds counts, since other work on the machine only adds time. Errors are tested by
 ``pytest tests/test_closed_form_*.py``.
 """
 

@@ -1,15 +1,15 @@
-"""Dense output: 20 000 samples of one motion against heyoka's, at equal error.
+"""Measure dense output: 20 000 samples of one motion against heyoka's, at equal error.
 
     python -m symrot.bench.dense [--samples 20000] [--rounds 15] [--motion NAME]
 
 The motions are those of :mod:`symrot.bench.taylor`. symrot is called as a user calls it, ``propagator(t)``; heyoka by
 ``propagate_grid``, and by ``propagate_until`` with ``c_output``, whose continuous output is then evaluated at all
-times at once. Times are ready before the clock runs. Both sweep their tolerances; the error is that of the last sample
-against a series in 40 digits, and the largest distance of all samples from those of symrot's tightest run is shown
-beside it. Each run of heyoka is compared with symrot's fastest that is at least as good. Runs take turns; the median
-of the processor's time counts.
+times at once. The array of times is made before the clock starts. Both run at several tolerances. The error of a run is
+that of its last sample against a series in 40 digits; the table also has the largest distance of its samples from those
+of symrot's tightest run. Each run of heyoka is compared with the fastest run of symrot whose error is not larger. Runs
+alternate; the median of the processor time counts.
 
-heyoka is no requirement: ``pip install heyoka``.
+heyoka is optional: ``pip install heyoka``.
 """
 
 import argparse
@@ -27,7 +27,7 @@ from symrot.propagation.propagate import propagator
 
 __all__ = ["Sampled", "main", "measure"]
 
-OURS = tuple(10.0**-k for k in range(4, 15))  # from where errors are as large as those of the loosest peer
+OURS = tuple(10.0**-k for k in range(4, 15))  # from a tolerance whose errors are as large as the loosest peer's
 WHOLE = 7  # states: angular velocity and attitude
 PEERS = (1e-9, 1e-12, 2.0**-52)
 
@@ -40,7 +40,7 @@ class Sampled(NamedTuple):
 
 
 def _heyoka(problem: Problem, tolerance: float, times: Floats) -> dict[str, Callable[[], Floats]]:
-    """Return heyoka's ways to sample a motion; none where it is not installed."""
+    """Return heyoka's two methods of sampling a motion by name; an empty dict if heyoka is not installed."""
     try:
         import heyoka
     except ImportError:

@@ -1,6 +1,6 @@
-"""How long deriving takes: every Euler sequence with rates, inverse and determinant in both frames; every solid.
+"""Measure derivations: every Euler sequence with rates, inverse and determinant in both frames, and every solid.
 
-``python -m symrot.bench.derive`` prints seconds of processor time, SymPy's import left out.
+``python -m symrot.bench.derive`` prints seconds of processor time, without the import of SymPy.
 """
 
 import sys

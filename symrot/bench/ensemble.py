@@ -2,13 +2,13 @@
 
     python -m symrot.bench.ensemble [--rounds 9] [--orders] [--motion NAME] [--many 4096]
 
-The motions are those of :mod:`symrot.bench.taylor`, from initial states that differ by a tenth: eight trajectories over
-the whole span, and 4096 over a twentieth of it. heyoka compiles the same right-hand side, its constants as numbers; it
-runs as batches of 4 and of 8 and, for the many, through ``ensemble_propagate_until`` and its batch form with one
-thread. Runs are interleaved; the least time of the processor counts, since that of a clock grows with what else the
-machine does. The error is the largest of all trajectories (of the first 16 of the many) against heyoka in long double,
-which is held against a series in 40 digits. At each decade of the error the table takes the fastest run that is at
-least as good.
+The motions are those of :mod:`symrot.bench.taylor`, from initial states that differ by a tenth: 8 trajectories over the
+whole span, and 4096 trajectories over a twentieth of it. heyoka compiles the same right-hand side with its constants as
+numbers. It runs in batches of 4 and of 8; the 4096 trajectories also run through ``ensemble_propagate_until`` and its
+batch form with one thread. Runs are interleaved; the least processor time counts, since wall-clock time grows with
+other work on the machine. The error is the largest of all trajectories (of 4096: the first 16) against heyoka in long
+double, which is checked against a series in 40 digits. For each decade of the error, the table has the fastest run with
+at most that error.
 
 ``--orders`` compares orders of our own series instead. heyoka is needed: ``pip install heyoka``.
 """
@@ -38,7 +38,7 @@ ENSEMBLE_TOLERANCES = (1e-6, 1e-12)  # few: each of its trajectories takes a cop
 
 
 class Start(NamedTuple):
-    """An ensemble: its motion, initial states (n, N), end, and the last states of the first of them."""
+    """An ensemble: its motion, initial states (n, N), end time, and the reference end states of its first members."""
 
     problem: Any
     y: Floats
@@ -46,7 +46,7 @@ class Start(NamedTuple):
     exact: Floats
 
     def error(self, states: Floats) -> float:
-        """Return the largest error of last states (n, N)."""
+        """Return the largest error of states (n, N) at the end."""
         pairs = zip(states[: len(self.exact)], self.exact, strict=True)
         return float(max(self.problem.error(computed, exact) for computed, exact in pairs))
 
@@ -63,7 +63,7 @@ def prepare(name: str, n: int, stop: float, problem: Any) -> Start:
 
 
 def _references(problem: Any, y: Floats, stop: float) -> Floats:
-    """Return last states in long double."""
+    """Return the states at the end, computed in long double."""
     import heyoka
 
     real = np.longdouble
@@ -120,7 +120,7 @@ def _ours(
 
 
 def _batches(integrator: Any, width: int, start: Start) -> BatchEnd:
-    """Run heyoka's integrator of a batch over the ensemble, one batch after the other."""
+    """Run heyoka's batch integrator over the ensemble, one batch after another."""
     states, steps = np.empty_like(start.y), 0
     for first in range(0, len(start.y), width):
         integrator.set_time(0.0)
@@ -132,7 +132,7 @@ def _batches(integrator: Any, width: int, start: Start) -> BatchEnd:
 
 
 def _ensemble(propagate: Any, integrator: Any, width: int, start: Start) -> BatchEnd:
-    """Run heyoka's own loop over an ensemble, in one thread."""
+    """Run heyoka's own ensemble function in one thread."""
 
     def begin(integrator: Any, i: int) -> Any:
         if width == 1:

@@ -2,13 +2,13 @@
 
     python -m symrot.bench.kernels [--rounds 63] [--many 1000000] [--kernels NAME ..]
 
-All contestants take turns in one run, on one thread, on the same memory, and compute the same numbers, which is
-checked. For batches of 10^6 rounds take turns in several pieces of memory: where the pages of one lie in the caches of
-the processor is chance, and worth up to 8 % between runs of the same machine code. What makes C is compiled with the
-same compiler and flags; heyoka's machine code, with its sines of 3.5 ulp, is linked to the same loops. CasADi's own
-evaluation is called from Python. "moves only" reads each input and writes each output of a batch with no more than a
-sum between: about what a batch of 10^6 is from the memory alone, as many samples at once ask for it; longer loops, with
-fewer samples at once in the processor, can be some percent faster.
+All contestants alternate in one run, on one thread, on the same memory, and their results are compared. For batches of
+10^6, the rounds alternate between several blocks of memory: where the pages of a block lie in the processor's caches is
+chance, and changes the time of the same machine code by up to 8 %. Tools that emit C are compiled with the same
+compiler and flags; heyoka's machine code, with its sines of 3.5 ulp, is linked to the same loops. CasADi's own
+evaluation is called from Python. "moves only" reads each input and writes each output of a batch with only a sum in
+between: roughly the time that memory access alone takes for a batch of 10^6. A kernel with a longer loop, which has
+fewer samples in flight at once, can be a few percent faster.
 """
 
 import argparse
@@ -54,7 +54,7 @@ SHAPES = ("one", "cached", "many")
 
 @dataclass
 class Contestant:
-    """One way to compute a kernel: its operations, and the seconds per sample of each shape, round by round."""
+    """A tool's version of a kernel: its operations, and its seconds per sample for each shape and round."""
 
     name: str
     operations: Counter[str]
@@ -68,7 +68,7 @@ class Contestant:
 
 @cache
 def _samples(name: str, count: int) -> list[Floats]:
-    """Return inputs in the box of a kernel, one array of shape (size, count) for each argument; unit quaternions."""
+    """Return random inputs in the box of a kernel, an array (size, count) for each argument; quaternions are unit."""
     kernel, draw = definition(name), np.random.default_rng(5)
     arrays = []
     for argument in kernel.inputs:
@@ -80,11 +80,11 @@ def _samples(name: str, count: int) -> list[Floats]:
 
 @cache
 def _block(name: str, shape: str, count: int, place: int) -> tuple[Floats, Floats]:
-    """Return inputs and outputs, the same memory for all contestants: one sample in a row, in a batch in a column.
+    """Return inputs and outputs in memory that all contestants share; a sample is a row, or in a batch a column.
 
-    The outputs follow the inputs in one piece that begins on a page and has all been written. Left to the allocator,
-    they lay apart by another part of a page in each run, on other kinds of pages, and each second vector on two lines.
-    ``place`` tells pieces with the same numbers apart.
+    The outputs follow the inputs in one block, which begins on a page boundary and has been written completely. With
+    ordinary allocation, their distance modulo a page would differ in each run, as would the kind of pages, and every
+    second vector would lie across two cache lines. ``place`` numbers the blocks, which hold the same values.
     """
     samples = np.concatenate(_samples(name, count))
     size = sum(a.size for a in kernel_program(name).signature.arguments if a.role == "out")
@@ -102,7 +102,7 @@ def _block(name: str, shape: str, count: int, place: int) -> tuple[Floats, Float
 
 
 def _addresses(name: str, shape: str, count: int, place: int) -> Any:
-    """Return the addresses of the arguments of a kernel in that memory."""
+    """Return the addresses of the arguments of a kernel in the shared memory."""
     addresses, offsets = [], {"in": 0, "out": 0}
     for argument in kernel_program(name).signature.arguments:
         block = _block(name, shape, count, place)[argument.role == "out"]
@@ -113,7 +113,7 @@ def _addresses(name: str, shape: str, count: int, place: int) -> Any:
 
 
 def _drivers(signature: Signature, batch: bool) -> str:
-    """Return C that repeats a one-sample function over samples, and a batch; the batch too, where there is none."""
+    """Return C drivers that repeat a one-sample function and a batch function; a missing batch function is added."""
     inputs = [a for a in signature.arguments if a.role == "in"]
     outputs = [a for a in signature.arguments if a.role == "out"]
     every = [*inputs, *outputs]
@@ -151,7 +151,7 @@ _REPEAT_BATCH = """void repeat_batch(size_t repeats, size_t n, double **a)
 
 
 def _batch_of_one(name: str, inputs: Sequence[Argument], outputs: Sequence[Argument]) -> list[str]:
-    """Return C of a batch around a one-sample function that is inlined into its loop."""
+    """Return C of a batch function whose loop inlines a one-sample function."""
     every = [*inputs, *outputs]
     pointers = [f"{'const ' if a in inputs else ''}double *restrict {a.name}" for a in every]
     lines = [f"static void batch(size_t n, {', '.join(pointers)})", "{", '    _Pragma("GCC ivdep")',
@@ -167,7 +167,7 @@ def _batch_of_one(name: str, inputs: Sequence[Argument], outputs: Sequence[Argum
 
 
 def _heyoka_drivers(signature: Signature) -> str:
-    """Return C that repeats heyoka's compiled functions, of one sample and of ``LANES`` neighbours in a batch."""
+    """Return C drivers that repeat heyoka's compiled functions, for one sample and for ``LANES`` samples of a batch."""
     sizes = {role: sum(a.size for a in signature.arguments if a.role == role) for role in ("in", "out")}
     out = sum(a.role == "in" for a in signature.arguments)
     return "\n".join([
@@ -198,9 +198,9 @@ def _moving(signature: Signature) -> str:
 
 
 def _timed(run: Callable[[int, int], object], samples: int) -> Callable[[int], float]:
-    """Return a measurement: seconds per sample of ``run(repeats, place)``, repeated until the clock can see it."""
+    """Return a function that times ``run(repeats, place)``, in s per sample, with enough repeats for the clock."""
     repeats, elapsed = 1, 0.0
-    while elapsed < SHORTEST:  # the first runs find nothing in cache
+    while elapsed < SHORTEST:  # the first runs start with cold caches
         repeats *= 2 if elapsed else 1
         began = perf_counter()
         run(repeats, 0)
@@ -234,7 +234,7 @@ def _call(function: Any, count: int, addresses: Sequence[Any], repeats: int, pla
 def _in_c(
     name: str, text: str, many: int, shapes: Sequence[str] = SHAPES, prepare: Callable[[Any], object] = id
 ) -> tuple[dict[str, Callable[[int], float]], Floats]:
-    """Return the measurements of a text with its drivers, and the numbers that it finds for the batch in cache."""
+    """Compile C text with its drivers; return the measurements, and its outputs for the batch that fits in cache."""
     loaded = ctypes.CDLL(str(build_cache.build(text, f"bench_{name}", FLAGS)))
     prepare(loaded)
     runs = _runs(name, loaded, shapes, many)
@@ -250,7 +250,7 @@ def _symrot_text(name: str) -> str:
 
 
 def contest(name: str, many: int = MANY) -> tuple[list[Contestant], list[str]]:
-    """Return the contestants of a kernel, symrot first, their numbers compared, and the tools that are missing."""
+    """Return the contestants of a kernel, symrot first, and the missing tools; raise if outputs do not agree."""
     contestants: list[Contestant] = []
     missing: list[str] = []
     signature = kernel_program(name).signature
@@ -288,7 +288,7 @@ def contest(name: str, many: int = MANY) -> tuple[list[Contestant], list[str]]:
 
 
 def _casadi_machine(name: str, function: Any) -> tuple[dict[str, Callable[[int], float]], Floats]:
-    """Return CasADi's own evaluation of a batch, by its map over samples."""
+    """Return the measurements and outputs of CasADi's own evaluation of a batch, with its map over samples."""
     import casadi
 
     def run(count: int) -> Callable[[int, int], object]:
@@ -324,7 +324,7 @@ def _casadi_text(name: str, function: Any) -> str:
 
 
 def measure(contestants: Sequence[Contestant], rounds: int) -> None:
-    """Let all contestants take their turns, in another order each round: what ran before decides what is in cache."""
+    """Measure all contestants in rounds, each in another order, since the caches depend on the previous contestant."""
     draw = Random(5)
     for number in range(rounds):
         for contestant in draw.sample(contestants, len(contestants)):
@@ -345,16 +345,16 @@ def _line(contestant: Contestant) -> str:
 
 
 def _operations(contestants: Sequence[Contestant]) -> tuple[int, int]:
-    """Return the operations of symrot, and the least of the others."""
+    """Return the operation count of symrot and the least count of the other tools."""
     mine, *others = (sum(c.operations.values()) for c in contestants if c.operations)
     return mine, min(others)
 
 
 def _ratios(contestants: Sequence[Contestant]) -> dict[str, float]:
-    """Return the time of symrot over that of the best of the others, for each shape.
+    """Return the ratio of symrot's time to that of the best other tool, for each shape.
 
-    Least times are compared; where the memory decides, which is shared with all that runs, the times of one round are:
-    the median of their ratios, the largest over the others.
+    The least times are compared, except for batches limited by memory, which other processes use too: there the ratio
+    is taken round by round, and the median counts, the largest over the other tools.
     """
     own, others = contestants[0], [c for c in contestants[1:] if c.name != FLOOR]
     ratios = {}
@@ -369,7 +369,7 @@ def _ratios(contestants: Sequence[Contestant]) -> dict[str, float]:
 
 
 def _table(name: str, contestants: Sequence[Contestant]) -> list[str]:
-    """Return the lines on a kernel: its contestants, and symrot to the best of the others."""
+    """Return the table of a kernel as lines: its contestants, and the ratios of symrot to the best other tool."""
     parts = [f"operations {mine} to {best}" for mine, best in (_operations(contestants),)]
     parts += [f"{shape} {ratio:.2f}" for shape, ratio in _ratios(contestants).items()]
     lines = [
@@ -388,7 +388,7 @@ def _table(name: str, contestants: Sequence[Contestant]) -> list[str]:
 
 
 def _missed(name: str, contestants: Sequence[Contestant]) -> list[str]:
-    """Return the cells in which symrot is over its bar: more operations than the best, or more than 1.05 of its ns."""
+    """Return the cells where symrot misses its goal: more operations than the best tool, or over 1.05 of its time."""
     mine, best = _operations(contestants)
     over = [f"{name} {shape} {ratio:.3f}" for shape, ratio in _ratios(contestants).items() if ratio > BAR]
     return [f"{name} operations {mine} to {best}"] * (mine > best) + over

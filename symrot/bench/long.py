@@ -2,11 +2,12 @@
 
     python -m symrot.bench.long [--revolutions 1e6] [--states 4]
 
-The Taylor stepper with and without the projection of its carry, and heyoka at its tightest, where it is installed. The
-errors at the end are those against the exact motion: of the kinetic energy, relative, and of the attitude, in rad;
-medians over the initial states. The runs follow one another state by state, so that all meet the same machine.
+The contestants are the Taylor stepper with and without the projection of its carry, and heyoka, if it is installed, at
+its tightest tolerance. The table has the errors at the end against the exact motion: relative error of the kinetic
+energy, and error of the attitude in rad; medians over the initial states. All contestants run from one initial state
+before the next, so that they run under the same conditions.
 
-heyoka is no requirement: ``pip install heyoka``.
+heyoka is optional: ``pip install heyoka``.
 """
 
 import argparse
@@ -51,7 +52,7 @@ def _scene(omega: Sequence[Any]) -> Scene:
 
 
 def measure(omega: Sequence[Any], revolutions: float) -> dict[str, tuple[float, float, float, int]]:
-    """Return, for each contestant, the relative error of the energy, that of the attitude in rad, seconds and steps."""
+    """Return, for each contestant: relative error of the energy, error of the attitude in rad, seconds, steps."""
     scene = _scene(omega)
     plan = make_plan(scene)
     kernel = scene_kernel(plan)

@@ -1,9 +1,9 @@
-"""What a call from Python costs beyond the work: ``propagator(t)`` against the bare call of the same function in C.
+"""Measure the overhead of a call from Python: ``propagator(t)`` against the bare call of the same C function.
 
     python -m symrot.bench.overhead [--rounds 25] [SCENE ...]
 
-The bare call gets addresses that are ready and a run that is set back by one copy of its bytes: nothing of it is
-Python's but the call. Runs take turns; medians of the processor's time.
+For the bare call, all addresses are prepared, and one copy of bytes resets the state of the run; only the call itself
+is Python. Runs alternate; the medians of processor time count.
 """
 
 import argparse

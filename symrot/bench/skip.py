@@ -1,10 +1,10 @@
-"""What specialisation saves: each motion through the most general kernel, and through the scene's own.
+"""Measure what specialisation saves: each motion with the most general kernel and with the scene's own.
 
-The general kernel has a full tensor, the full attitude and every kind of torque that can act together, each of its
-constants free; a motion without some torque gives it zeros. Both follow the same motion by Taylor series at the same
-tolerance; their ends must agree, or the table says so and the command fails. Nanoseconds are those of one evaluation
-of the rates in C, one after another over many states; microseconds those of the whole motion. The last column is what
-`auto` takes, which steps nothing where there is a closed form.
+The general kernel has a full tensor, the full attitude and all kinds of torque that can act together, each with free
+constants, which are zero for a torque that the motion lacks. Both kernels follow the same motion by Taylor series at
+the same tolerance. Their final states must agree; otherwise the table says so and the command fails. Nanoseconds are
+per evaluation of the rates in C, in a loop over many states; microseconds are for the whole motion. The last column is
+the time of `auto`, which uses a closed form where there is one.
 """
 
 import ctypes
@@ -48,7 +48,7 @@ Progress = Callable[[str], object]
 
 
 def rungs() -> dict[str, tuple[str, Scene]]:
-    """Return the ladder, the most general first: name -> what it is, scene."""
+    """Return the ladder of scenes, the most general first: name -> (description, scene)."""
     scenes = {}
     for name, entry in read_toml(LADDER, LADDER.name).items():
         about = str(entry.pop("about"))
@@ -57,7 +57,7 @@ def rungs() -> dict[str, tuple[str, Scene]]:
 
 
 def _nothing(kind: str) -> Torque:
-    """Return a torque of a kind that does nothing."""
+    """Return a torque of a kind, with constants that make it zero."""
     zeros: dict[str, Any] = {
         "scalar": Fraction(0), "vector": (Fraction(0),) * 3, "scalar or vector": (Fraction(0),) * 3,
         "attitude": (Fraction(1), *(Fraction(0),) * 3),
@@ -67,7 +67,7 @@ def _nothing(kind: str) -> Torque:
 
 
 def general_plan(scene: Scene) -> Plan:
-    """Return the plan of a scene without any rule, and with a torque of every kind that the scene lacks, at zero."""
+    """Return the plan of a scene with no rule applied and a zero torque of every kind that the scene lacks."""
     kinds = {torque.kind for torque in scene.torques}
     left_out = ABOUT_POINT if kinds & set(ABOUT_CENTRE) else ABOUT_CENTRE
     lacking = [kind for kind in TORQUE_KINDS if kind not in kinds and kind != "expression" and kind not in left_out]
@@ -76,7 +76,7 @@ def general_plan(scene: Scene) -> Plan:
 
 
 def measure(name: str | None = None, quick: bool = False, say: Progress = lambda text: None) -> dict[str, Any]:
-    """Return the rows as data for JSON: those of the ladder, or of one scene.
+    """Measure the ladder, or one scene, and return its rows as data for JSON.
 
     Raises
     ------
@@ -101,7 +101,7 @@ def measure(name: str | None = None, quick: bool = False, say: Progress = lambda
 
 
 def _row(about: str, scene: Scene) -> tuple[dict[str, Any], dict[str, Callable[[], object]]]:
-    """Return a row without its seconds, and the runs that give them."""
+    """Return a row without its times, and the runs that are timed for it."""
     plans = {"general": general_plan(scene), "own": make_plan(scene)}
     row: dict[str, Any] = {"motion": about}
     runs: dict[str, Callable[[], object]] = {}
@@ -128,7 +128,7 @@ def _row(about: str, scene: Scene) -> tuple[dict[str, Any], dict[str, Callable[[
 
 
 def _evaluations(problem: Problem) -> Callable[[], object]:
-    """Return a run of many evaluations of the rates, about the initial state."""
+    """Return a run that evaluates the rates at many states near the initial state."""
     size = len(problem.y0)
     function = ctypes.CDLL(str(cache.build(problem.kernel.source + LOOP.format(states=STATES, size=size), "many"))).many
     function.argtypes, function.restype = (ctypes.c_long, *(ctypes.c_void_p,) * 3), None
@@ -142,7 +142,7 @@ def _scaled(value: float | None, unit: float) -> str:
 
 
 def lines(results: Mapping[str, Any]) -> list[str]:
-    """Return the lines for people; the first is the title."""
+    """Return the table as lines of text; the first is the title."""
     from symrot.report.layout import columns, fields, room
 
     rows = [["motion", "states", "operations", "ns", "motion us", "auto us", "", "ends apart"]]

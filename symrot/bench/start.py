@@ -1,12 +1,12 @@
-"""How long the first result takes: `symrot run` from a warm and from a cold start, beside what it cannot do without.
+"""Measure the time to the first result: `symrot run` from a warm and a cold start, and the unavoidable part of it.
 
     python -m symrot.bench.start [ROUNDS] [SCENE]
 
-As a caller measures it: whole processes, from the shell's view, the installed ``symrot`` if there is one. Every round
-runs ``python -c 'import numpy'`` and a warm ``symrot run`` one after the other; the ratio is the median of those pairs,
-so that a machine that grows slower or faster meanwhile slows both. A cold start has an empty cache of kernels; it comes
-every tenth round, beside an import of SymPy and a compiler call: that of the scene's own library, kernel and stepper,
-with symrot's flags.
+Whole processes are timed, as seen from the shell, with the installed ``symrot`` script if there is one. Every round
+runs ``python -c 'import numpy'`` and then a warm ``symrot run``; the result is the median of their ratios, so that a
+change in the machine's speed affects both. A cold start has an empty cache of kernels. It is timed in every tenth
+round, together with its unavoidable parts: an import of SymPy, and a compiler run for the scene's own library (kernel
+and stepper) with symrot's flags.
 """
 
 import os
@@ -34,7 +34,7 @@ def _seconds(command: list[str], environment: dict[str, str]) -> float:
 
 
 def _symrot() -> list[str]:
-    """Return what a caller types: the installed script beside this Python, else the module."""
+    """Return the command of a user: the script installed next to this Python, otherwise ``python -m symrot``."""
     script = Path(sys.executable).with_name("symrot")
     return [str(script)] if script.exists() else [sys.executable, "-m", "symrot"]
 

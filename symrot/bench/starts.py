@@ -1,14 +1,16 @@
-"""What another start costs: one more call of a propagator, part by part, and one trajectory of an ensemble.
+"""Measure a change of the start: one more call of a propagator, part by part, and one trajectory of an ensemble.
 
     python -m symrot.bench.starts [--rounds 300] [SCENE ...]
     python -m symrot.bench.starts --ensembles [--most 100000] [--rounds 5] [SCENE ...]
 
-The first table has a row for each scene and method, in microseconds: to read the start, to plan it (its structure is
-known), to bind parameters, to set up the motion (constants of a closed form; the task of a stepper), the motion itself
-(all that is done in C, and the call of it); then whole calls at 101 times with another angular velocity, attitude, or
-both; last what of the dearer of the first two, and of the third, is not the motion itself (each start has its own:
-printed is that of both). The second has microseconds per trajectory of 101 samples, in closed form and by steps, with
-other starts alone and with other constants too, and the method that ``auto`` takes. Time of the processor, medians.
+The first table has a row for each scene and method, in microseconds. Its columns: reading the start; planning it (the
+structure is known); binding parameters; setting up the motion (constants of a closed form, or the task of a stepper);
+the motion itself (the work in C and the call of it); then whole calls at 101 times with another angular velocity, with
+another attitude, and with both; last, the overhead (the time of a call minus that of its own motion) of the more
+expensive of the first two calls, and of the third. The column of the motion itself is for a start with both changed.
+
+The second table has microseconds per trajectory of 101 samples, in closed form and by steps, for ensembles that vary
+only starts or starts and constants, and the method that ``auto`` chooses. Medians of processor time.
 """
 
 import argparse
@@ -95,7 +97,7 @@ VARIED = (("weight", "weight", None), ("torque_3", "torque", 2), ("angular_momen
 
 
 def _median(run: Callable[[], object], rounds: int) -> float:
-    """Return microseconds of processor time."""
+    """Return the median processor time of a function, in microseconds."""
     times = []
     for _ in range(rounds):
         began = process_time_ns()
@@ -105,7 +107,7 @@ def _median(run: Callable[[], object], rounds: int) -> float:
 
 
 def _start(scene: Scene) -> tuple[Floats, Floats]:
-    """Return a start near that of the scene, without zeros."""
+    """Return a start near that of the scene, with no component zero."""
     omega, quaternion = (np.array([float(x) for x in vector]) for vector in scene.initial)
     return omega * (1 + SPREAD) + SPREAD * abs(omega).max(), quaternion + SPREAD
 
@@ -156,7 +158,7 @@ def _row(propagate: Propagator, rounds: int) -> _Row:
 
 
 def _in_c(motion: Any, initial: Any, times: Floats, rounds: int) -> float:
-    """Return what the constants of a closed form take in C; steppers have none."""
+    """Return the microseconds in C for the constants of a closed form; zero for steppers, which have no constants."""
     if motion.choice.method != "exact":
         return 0.0
     if motion.form.library == "spin_up":
@@ -166,11 +168,11 @@ def _in_c(motion: Any, initial: Any, times: Floats, rounds: int) -> float:
         return 0.0
     calls: list[tuple[Any, ...]] = []
 
-    def heard(*given: Any) -> Any:
-        calls.append(given)
-        return functions[0](*given)
+    def recorded(*arguments: Any) -> Any:
+        calls.append(arguments)
+        return functions[0](*arguments)
 
-    forms._bound[motion.form.library] = (heard, *functions[1:])
+    forms._bound[motion.form.library] = (recorded, *functions[1:])
     try:
         alive = motion.from_start(initial).exact
     finally:
@@ -179,7 +181,7 @@ def _in_c(motion: Any, initial: Any, times: Floats, rounds: int) -> float:
 
 
 def _spin_up_in_c(source: Any, times: Floats, rounds: int) -> float:
-    """Return the same of a spin-up: without polynomials, and with them where samples asked for them."""
+    """Return the microseconds in C for the constants of a spin-up, with polynomials only if samples need them."""
     functions, total = spin_up_compiled.functions(), 0.0
     record, table = functions.record(), np.empty(spin_up_compiled.TABLE)
     arguments = source._numbers, functions.limits(*spin_up_compiled.limits())

@@ -2,9 +2,9 @@
 
     python -m symrot.bench.stepper [--tolerance 1e-9] [--stop 1000] [--rounds 15]
 
-Times are compared as ratios within one run, since other work on the machine moves all of them. The program by hand is
-compiled with the flags of symrot's kernels and with ``-O3`` in the place of ``-O2``; the faster one counts. The error
-is against the program by hand in long double at a tolerance of 1e-17.
+Times are compared as ratios within one run, since other work on the machine affects all of them. The handwritten
+program is compiled with the flags of symrot's kernels, and again with ``-O3`` instead of ``-O2``; the faster version
+counts. The error is the difference from the handwritten program in long double at a tolerance of 1e-17.
 """
 
 import argparse

@@ -1,4 +1,4 @@
-"""Switched torques against their closed forms: error, steps, switches and time, for tolerances from 1e-6 to 1e-12.
+"""Compare switched torques with their closed forms: error, steps, switches and time at tolerances 1e-6 to 1e-12.
 
 Dry friction stops a wheel and lets it go again, a relay swings a body in parabolas, a thruster fires 10 ms in each of
 1000 seconds. Run it as ``python -m symrot.bench.switches``.
@@ -36,7 +36,7 @@ class Problem(NamedTuple):
 
 
 def _friction(times: Floats) -> Floats:
-    """Return omega_3 under 2 sin t - sign(omega_3), from rest: slipping from t = pi/6 on, for as long as it rises."""
+    """Return omega_3 under 2 sin t - sign(omega_3), from rest: from t = pi/6 the wheel slips until it stops."""
     loose = math.asin(0.5)
     slip = np.maximum(times, loose)
     rise: Floats = (2.0 * (math.cos(loose) - np.cos(slip)) - (slip - loose)) / MOMENT
@@ -44,7 +44,7 @@ def _friction(times: Floats) -> Floats:
 
 
 def _relay(times: Floats) -> Floats:
-    """Return omega_3 under -sign(angle): a period of four times 3 s, in arcs of constant torque."""
+    """Return omega_3 under -sign(angle): the period is 12 s, four arcs of constant torque."""
     phase = np.mod(times, 4.0 * MOMENT)
     swing: Floats = np.where(phase < 2 * MOMENT, 1.0 - phase / MOMENT, -1.0 + (phase - 2 * MOMENT) / MOMENT)
     return swing
@@ -74,7 +74,7 @@ def scene(problem: Problem) -> Scene:
 
 
 def _measured(problem: Problem, method: str, tolerance: float) -> tuple[float, Any, float]:
-    """Return the largest error in tolerances, at samples and between them, the stats, and the least seconds."""
+    """Return the largest error (in tolerances) at and between samples, the statistics, and the least seconds."""
     made = propagator(scene(problem), method, tolerance)
     times = np.linspace(0.0, problem.stop, 1001)
     least, motion = math.inf, made(times)

@@ -2,14 +2,14 @@
 
     python -m symrot.bench.taylor [--rounds 7] [--quick] [--orders] [--motion NAME]
 
-Each contestant runs over a range of tolerances (or of steps, for RK4 and DOP853 with a fixed step by hand); runs are
-interleaved, the least time of each counts, the error is that of the last state against a Taylor series in 40 digits.
-At each decade of the error the table takes the fastest run that is at least as good, so no curve is smoothed or
-extended. ``best heyoka`` is the fastest of its settings at each decade: default, fast math, high accuracy, compact;
-``--quick`` leaves all but the default out. Loops by hand are compared with the faster of symrot's two methods, in the
-decades where low order is at its best. ``--orders`` compares orders of our own series instead.
+Each contestant runs over a range of tolerances (handwritten RK4 and DOP853 with a fixed step: over a range of step
+counts). Runs are interleaved and the least time of each counts; the error is that of the last state against a Taylor
+series in 40 digits. For each decade of the error, the table has the fastest run with at most that error, so no curve is
+smoothed or extended. ``best heyoka`` is its fastest setting at each decade: default, fast math, high accuracy, compact;
+``--quick`` runs only the default. Handwritten loops are compared with the faster of symrot's two methods, in the
+decades where low order is at its best. ``--orders`` compares orders of symrot's own series instead.
 
-heyoka is no requirement: ``pip install heyoka``.
+heyoka is optional: ``pip install heyoka``.
 """
 
 import argparse
@@ -95,7 +95,7 @@ class Run(NamedTuple):
 
 
 class _Problem:
-    """A motion with its kernel bound to numbers."""
+    """A motion with its kernel and the numbers of its parameters."""
 
     def __init__(self, name: str, scale: float) -> None:
         self.plan: Plan = make_plan(scene(name))
@@ -133,7 +133,7 @@ def scene(name: str) -> Scene:
 
 
 def reference(name: str, scale: float = 1.0) -> Floats:
-    """Return the last state of a motion: as kept in :data:`REFERENCES` for the whole span, else computed anew."""
+    """Return the last state of a motion: from :data:`REFERENCES` for the whole span, otherwise computed now."""
     stored = tomllib.loads(REFERENCES.read_text(encoding="utf-8")).get(name)
     return (
         np.array([float(value) for value in stored])
@@ -143,7 +143,7 @@ def reference(name: str, scale: float = 1.0) -> Floats:
 
 
 def compute_reference(name: str, scale: float = 1.0) -> list[Any]:
-    """Return the last state by Taylor series in 40 digits, from the parameters as they are in the kernel."""
+    """Return the last state by Taylor series in 40 digits, from the rounded parameters of the kernel."""
     import mpmath
 
     problem = _Problem(name, scale)
@@ -191,7 +191,7 @@ TimedRun = Callable[[], StepsAndState]
 def _stepper(
     follow: Callable[..., Any], path: Any, p: Sequence[float], problem: _Problem, tolerance: float
 ) -> TimedRun:
-    """Return a run of one of ours, set up once and called as a propagator does."""
+    """Return a run of one of symrot's steppers, set up once and called as a propagator does."""
     motion, times = follow(path, p, problem.y0, 0.0, tolerance), np.array([problem.stop])
 
     def task() -> StepsAndState:
@@ -202,7 +202,7 @@ def _stepper(
 
 
 def _heyoka(problem: _Problem, tolerance: float, settings: dict[str, bool]) -> TimedRun | None:
-    """Return a run of heyoka over the same right-hand side, its parameters compiled in as numbers."""
+    """Return a run of heyoka with the same right-hand side, its parameters compiled in as numbers."""
     parameters = dict(zip((name for name, _ in problem.kernel.rate_parameters), problem.p, strict=True))
     run = heyoka_integrator(problem.kernel.rates, parameters, problem.y0, tolerance, settings)
     if run is None:
@@ -216,7 +216,7 @@ def _heyoka(problem: _Problem, tolerance: float, settings: dict[str, bool]) -> T
 
 
 def _by_hand(library_: Any, method: str, problem: _Problem, steps: int) -> TimedRun:
-    """Return a run of a loop by hand."""
+    """Return a run of a handwritten loop."""
     function = getattr(library_, method)
     real = ctypes.c_double
     function.argtypes, function.restype = (real, real, ctypes.c_long, ctypes.c_void_p, ctypes.c_void_p), None
@@ -231,7 +231,7 @@ def _by_hand(library_: Any, method: str, problem: _Problem, steps: int) -> Timed
 
 
 def _loops(problem: _Problem) -> list[tuple[str, float, TimedRun]]:
-    """Return loops by hand, with the numbers of steps in the place of tolerances."""
+    """Return the runs of handwritten loops, with step counts instead of tolerances."""
     text = "\n".join(
         (
             problem.kernel.source,
@@ -278,7 +278,7 @@ def raced(
     tasks: Sequence[tuple[str, float, Callable[[], tuple[int, Any]]]], error: Callable[[Any], float], rounds: int,
     clock: Callable[[], float] = perf_counter,
 ) -> list[Run]:  # fmt: skip
-    """Return the runs of contestants, each (name, tolerance, task), that take turns; seconds are those of ``clock``."""
+    """Time contestants (name, tolerance, task) alternately and return their runs; ``clock`` gives the seconds."""
     runs = []
     for name, tolerance, task in tasks:
         steps, states = task()
@@ -286,7 +286,7 @@ def raced(
     gc.disable()
     for _ in range(rounds):
         for (_, _, task), run in zip(tasks, runs, strict=True):
-            task()  # not counted: it finds the caches as its neighbour left them
+            task()  # not counted: the previous contestant decides what is in the caches
             began = clock()
             task()
             run.seconds.append(clock() - began)
@@ -295,7 +295,7 @@ def raced(
 
 
 def best_of(runs: Iterable[Run], error: float, names: Sequence[str]) -> Run | None:
-    """Return the fastest run of some contestants with at most that error, or None."""
+    """Return the fastest run of the named contestants with at most this error, or None."""
     good = [run for run in runs if run.name in names and run.error <= error]
     return min(good, key=lambda run: min(run.seconds), default=None)
 

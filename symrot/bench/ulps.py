@@ -1,16 +1,18 @@
-"""Measure the error of what kernels call, in units in the last place: removable singularities, sines of batches.
+"""Measure the error of the functions that kernels call, in units in the last place (ulp).
 
     python -m symrot.bench.ulps [--points 20000]
 
-Each function is taken from emitted C, compiled without and with fused operations, in double and in float, as one
-sample calls it (``one``, with the C library) and as a batch does (``batch``, without a branch, angles within the range
-of ``symrot_math.h``, all numbers for arc tangents); the reference is mpmath at 60 digits. Points: every scale from the
-least normal number to the reach below, both sides of the place where a series takes over, neighbours of multiples of
-pi/2.
+These are the functions with a removable singularity, and the sines, cosines and arc tangents of batches. Each function
+is taken from emitted C and compiled with and without fused operations, in double and in float. It is measured in the
+form for one sample (``one``, with the C library) and in the form for batches (``batch``, without a branch; angles
+within the range of ``symrot_math.h``, all numbers for arc tangents). The reference is mpmath at 60 digits. Points:
+every scale from the least normal number to the reach, both sides of the threshold where a series is used, neighbours of
+multiples of pi/2.
 
-Reach: for one sample every finite number; for a batch the range of ``symrot_math.h``, beyond which it calls what one
-sample calls; tangent_gap in ulp up to pi, before its first zero, and beyond it in units of 2^-53/x^2 (float: 2^-24):
-it falls as cos(x)/x^2 with zeros that no floating-point number hits, where a relative error has no bound.
+Reach: for one sample, every finite number; for a batch, the range of ``symrot_math.h``, outside which it calls the form
+for one sample. tangent_gap is measured in ulp up to pi, before its first zero, and beyond it in units of 2^-53/x^2
+(float: 2^-24): it falls as cos(x)/x^2, and near its zeros, which no floating-point number hits, the relative error has
+no bound.
 """
 
 import argparse
@@ -43,7 +45,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Function:
-    """A function that kernels call: its exact value in mpmath, its reach, and whether batches have a form of it."""
+    """A function that kernels call: its exact value in mpmath, its reach, and whether it has a form for batches."""
 
     name: str
     exact: Callable[..., Any]
@@ -55,7 +57,7 @@ class Function:
 
 @dataclass(frozen=True)
 class Measured:
-    """The largest error of a function in one form, and where it is."""
+    """The largest error of a function in one form, and the argument where it occurs."""
 
     name: str
     real: str
@@ -66,7 +68,7 @@ class Measured:
 
 
 def _series(name: str, x: Any) -> Any:
-    """Return a removable function by its exact series near zero, by its quotient elsewhere."""
+    """Return a function with a removable singularity: by its exact series near zero, by its quotient elsewhere."""
     import mpmath
 
     which = REMOVABLE[name]
@@ -119,7 +121,7 @@ FUNCTIONS = (
 
 
 def _points(function: Function, real: Real, form: str, count: int) -> Floats:
-    """Return arguments, one column for each; both components of a unit vector for two."""
+    """Return test arguments as columns; for a function of two arguments, the components of unit vectors."""
     draw = np.random.default_rng(3)
     far = float(FAR[real.precision])
     reach = min(function.reach, REACH[real.precision] if form == "one" else far)
@@ -141,7 +143,7 @@ def _points(function: Function, real: Real, form: str, count: int) -> Floats:
 
 
 def _directions(real: Real, count: int, kind: Any) -> Floats:
-    """Return y and x: every angle, every size and ratio that there is, and the neighbours of y = x/2, x and 2 x."""
+    """Return rows y and x: angles all around, all sizes and ratios, and the neighbours of y = x/2, x and 2 x."""
     draw, third = np.random.default_rng(4), count // 3
     low, high = np.log(LEAST[real.precision]), np.log(REACH[real.precision])
     angles = draw.uniform(-pi, pi, third)
@@ -156,7 +158,7 @@ def _directions(real: Real, count: int, kind: Any) -> Floats:
 
 
 def _text(function: Function) -> str:
-    """Return emitted C that has a function, and for each of its forms a loop over arrays."""
+    """Return emitted C that contains a function, with a loop over arrays for each of its forms."""
     emitted = emit(function.kernel)
     source = emitted.source.replace(f'#include "{MATH_HEADER}"', "")
     text = math_header() + source.replace(f'#include "{function.kernel}.h"', emitted.header)
@@ -172,7 +174,7 @@ def _text(function: Function) -> str:
 
 
 def _ulps(computed: float, exact: Any, real: Real, x: float = 0.0) -> float:
-    """Return the distance to an exact value in units in the last place of that value; of 1/(2 x^2), if x is given."""
+    """Return the error in units in the last place of the exact value; if x is not 0, in ulp of 1/(2 x^2)."""
     digits, least = DIGITS[real.precision]
     if x:
         return abs(float((computed - exact) / max(ldexp(1.0, -digits) / x / x, ldexp(1.0, least))))
@@ -188,7 +190,7 @@ def measured(points: int = 20_000, contraction: Sequence[str] = tuple(CONTRACTIO
     Parameters
     ----------
     points : int
-        About how many arguments each function is asked for.
+        Approximate number of arguments of each function.
     contraction : sequence of str
         ``"unfused"``, ``"fused"``: whether the compiler may fuse a product and a sum.
     """

@@ -451,7 +451,7 @@ def test_an_interrupted_suite_goes_on(tmp_path, monkeypatch, found):
     broken = False
     _, said = suite.run(tmp_path, None, True, lambda text: None)
     assert studied == ["first", "second"]
-    assert "1 of 2 motions are of an earlier run, which was interrupted." in said
+    assert "1 of 2 motions come from an earlier run, which was interrupted." in said
     assert not (tmp_path / "unfinished.json").exists()
     (tmp_path / "unfinished.json").write_text("{")
     suite.run(tmp_path, None, False, lambda text: None)
@@ -484,8 +484,8 @@ def test_the_command_studies_compares_and_draws(tmp_path, capsys):
         (["tumbling_prism", "--methods", "euler"], "'euler'"),
         (["tumbling_prism", "--tolerances", "1e-3,nan"], "'1e-3,nan'"),
         (["tumbling_prism", "--tolerances", "-1"], "'-1'"),
-        (["tumbling_prism", "--tolerances", "1e-9,1e-3"], "that fall"),
-        (["tumbling_prism", "--tolerances", ""], "that fall"),
+        (["tumbling_prism", "--tolerances", "1e-9,1e-3"], "expected falling numbers"),
+        (["tumbling_prism", "--tolerances", ""], "expected falling numbers"),
         (["tumbling_prism", "--rounds", "0"], "at least 1, got 0"),
         (["--skip", "--rounds", "3"], "takes no --rounds"),
         (["--suite", "-o", "/dev/null/x"], "cannot be made"),

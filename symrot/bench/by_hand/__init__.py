@@ -1,4 +1,4 @@
-"""Kernels and steppers written by hand in C, or made by other tools, for symrot to be measured against."""
+"""Provide kernels and steppers that symrot is compared with: handwritten in C, or made by other tools."""
 
 from pathlib import Path
 

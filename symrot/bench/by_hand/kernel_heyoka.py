@@ -1,4 +1,4 @@
-"""heyoka's compiled functions as addresses, so that its machine code runs in the same loops as that of other tools."""
+"""Provide heyoka's compiled functions as addresses: its machine code then runs in the same loops as other tools'."""
 
 import ctypes
 import subprocess
@@ -18,7 +18,7 @@ _LOADED = Path("/proc/self/maps")
 
 @cache
 def _function(name: str) -> Any:
-    """Return heyoka's function of the inputs of a kernel, of the textbook formulas."""
+    """Return heyoka's compiled function for the textbook formulas of a kernel."""
     import heyoka
 
     variables = dict(zip(input_names(name), heyoka.make_vars(*input_names(name)), strict=True))
@@ -28,14 +28,14 @@ def _function(name: str) -> Any:
 
 
 def heyoka_code(name: str) -> tuple[Any, Any, Any]:
-    """Return the addresses of heyoka's code for one sample, for one in a batch and for ``LANES`` of a batch.
+    """Return the addresses of heyoka's code for one sample, for one sample of a batch and for ``LANES`` of a batch.
 
-    The object code that heyoka makes is linked as it is; its sines come from the library that heyoka has loaded.
+    heyoka's object code is linked without change; its sines come from the library that heyoka has loaded.
 
     Raises
     ------
     ImportError
-        If heyoka is not installed, or this system does not tell where it lies.
+        If heyoka is not installed, or its library cannot be located on this system.
     """
     states = _function(name).llvm_states
     if not _LOADED.exists():

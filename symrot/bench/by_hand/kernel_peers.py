@@ -1,7 +1,7 @@
-"""Kernels as other tools make them of the same textbook formulas: SymPy, SymForce, CasADi, heyoka, and by hand.
+"""Make kernels from the same textbook formulas with other tools: SymPy, SymForce, CasADi, heyoka, and by hand.
 
-Each takes the formulas as they are derived, without the named quantities of symrot's own definitions. What makes C is
-compiled with the flags of symrot's kernels; a tool that is not installed is left out, and named.
+Each tool gets the formulas as derived, without the named quantities of symrot's own definitions. C code is compiled
+with the flags of symrot's kernels. A tool that is not installed is skipped, and the report names it.
 """
 
 import re
@@ -74,12 +74,12 @@ TEXTBOOK: dict[str, Callable[[], list[sympy.Expr]]] = {
 
 
 def textbook(name: str) -> list[sympy.Expr]:
-    """Return the formulas of a kernel as a textbook has them, in the order of its outputs.
+    """Return the textbook formulas of a kernel, in the order of its outputs.
 
     Raises
     ------
     InputError
-        If the kernel is none of :data:`TEXTBOOK`.
+        If the kernel is not in :data:`TEXTBOOK`.
     """
     if name not in TEXTBOOK:
         raise InputError(f"expected a kernel with a textbook formula ({', '.join(TEXTBOOK)}), got {name!r}")
@@ -92,7 +92,7 @@ def input_names(name: str) -> list[str]:
 
 
 def textbook_program(name: str) -> Program:
-    """Return the textbook formulas of a kernel as a program, nothing shared."""
+    """Return the textbook formulas of a kernel as a program without common subexpressions."""
     signature = kernel_program(name).signature
     return Program(signature, (), tuple(zip(_outputs(signature), map(to_node, textbook(name)), strict=True)))
 
@@ -102,7 +102,7 @@ def _outputs(signature: Signature) -> list[str]:
 
 
 def _program(name: str, common: Sequence[tuple[Any, Any]], results: Sequence[Any]) -> str:
-    """Return C of common terms and results, as they stand."""
+    """Return C of common terms and results, without further simplification."""
     signature = kernel_program(name).signature
     temporaries = tuple((str(symbol), _products(to_node(value))) for symbol, value in common)
     outputs = tuple(zip(_outputs(signature), (_products(to_node(value)) for value in results), strict=True))
@@ -110,7 +110,7 @@ def _program(name: str, common: Sequence[tuple[Any, Any]], results: Sequence[Any
 
 
 def _products(node: Node) -> Node:
-    """Return a formula with powers as products, as C has no powers."""
+    """Return a formula with integer powers written as products, since C has no power operator."""
     if not children(node):
         return node
     if node[0] == "**":
@@ -141,7 +141,7 @@ _REAL = {name: sympy.Symbol(name, real=True) for name in ("W", "S", "C", "I", "E
 
 
 def by_hand(name: str) -> str | None:
-    """Return C by hand, or None where there is none."""
+    """Return the handwritten C of a kernel, or None if there is no such file."""
     text = BY_HAND.read_text(encoding="utf-8")
     return text if f" {name}(" in text else None
 
@@ -150,7 +150,7 @@ PEERS_IN_C: dict[str, Callable[[str], str | None]] = {"by hand": by_hand, "SymPy
 
 
 def counted(text: str, name: str) -> Counter[str]:
-    """Return the operations of a function in C, as it is read back; equal operations count once."""
+    """Return the operations of a C function as :mod:`symrot.certificates.readback` reads it; equal ones count once."""
     text = re.sub(r"^#include.*\n", "", text, flags=re.MULTILINE)
     counts: Counter[str] = Counter()
     for node in read_kernel(text, name).nodes:
@@ -162,7 +162,7 @@ def counted(text: str, name: str) -> Counter[str]:
 
 
 def casadi_function(name: str) -> tuple[Any, Counter[str]]:
-    """Return CasADi's function of one vector of inputs, its common terms taken together, and its operations."""
+    """Return CasADi's function of one input vector, after common subexpression elimination, and its operations."""
     import casadi
 
     x = casadi.SX.sym("x", len(input_names(name)))

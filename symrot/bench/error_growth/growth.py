@@ -1,8 +1,8 @@
-"""How the error of each method grows along one motion, and what becomes of its invariants.
+"""Measure how the error of each method grows along one motion, and how its invariants drift.
 
-The truth is :class:`symrot.bench.comparison.exact_path.ExactPath`, 30 digits and more at any time. Every method is
-asked for its best: symrot's at the tightest tolerance, SciPy's at the least rtol it takes, RK4 as a textbook writes it
-with 200 steps to a turn.
+The reference is :class:`symrot.bench.comparison.exact_path.ExactPath`, with at least 30 digits at any time. Every
+method runs at its most accurate: symrot's methods at the tightest tolerance, SciPy's at the least rtol it accepts, and
+textbook RK4 with 200 steps per revolution.
 """
 
 import ctypes
@@ -35,7 +35,7 @@ FROM = 30.0  # revolutions: the power of growth is fitted from there on
 
 
 class Curve(NamedTuple):
-    """One method along one motion: errors at the times of the track, nan beyond where it was followed."""
+    """The errors of one method along one motion, at the times of the track; nan after the time where it stopped."""
 
     method: str
     attitude: Floats  # rad, shape (n,)
@@ -49,15 +49,15 @@ class Track:
     Parameters
     ----------
     scene : Scene
-        Its attitude is computed, whether its output asks for it or not.
+        Its attitude is computed even if the scene does not list it among its outputs.
     times : array, shape (n,)
-        Rising, from the start on.
+        Rising, not before the start.
     periodic : bool
-        Whether the motion is a free body's, whose truth goes on through all periods.
+        Whether the body is free: then the reference of one period is continued through all periods.
     """
 
     def __init__(self, scene: Scene, times: Floats, periodic: bool) -> None:
-        make_plan(scene)  # refuses switches: series go on where a switch would change the equations
+        make_plan(scene)  # refuses switched torques, since the reference series would run past the switch
         self.scene, self.times = scene, times
         self.motion = propagator(scene, "dop853" if self.rough(scene) else "taylor", TIGHTEST)._motion
         self.speed = max(float(np.linalg.norm([float(w) for w in scene.initial.omega_b])), 1e-300)
@@ -71,7 +71,7 @@ class Track:
         return roughness(propagator(scene, "scipy").plan)
 
     def trajectory(self, states: Floats, motion: Motion | None = None) -> Trajectory:
-        """Return what a method found, as any propagation returns it."""
+        """Return the states of a method as a trajectory."""
         return Trajectory(motion or self.motion, self.times[: len(states)], states, "", Stats(0, 0, 0, 0.0), "")
 
     def curve(self, method: str, trajectory: Trajectory) -> Curve:
@@ -155,7 +155,7 @@ def _rk4(normalised: bool) -> Callable[[Track, Floats], Trajectory | None]:
 
 
 class Method(NamedTuple):
-    """A method by name, what it is, the most revolutions it is followed through by default and at length, the run."""
+    """A method: name, description, the most revolutions it runs for (by default, and with ``--long``), and its run."""
 
     name: str
     about: str
@@ -176,7 +176,7 @@ METHODS = (
 
 
 def growth(track: Track, long: bool = False, say: Callable[[str], object] = lambda text: None) -> list[Curve]:
-    """Return the curves of all methods that this motion has."""
+    """Return the curves of all methods that can follow this motion."""
     curves = []
     for method in METHODS:
         say(f"{track.scene.name}: {method.name} ..")
@@ -189,7 +189,7 @@ def growth(track: Track, long: bool = False, say: Callable[[str], object] = lamb
 
 
 def exponent(revolutions: Floats, errors: Floats) -> float:
-    """Return k of errors that grow as t^k, fitted from :data:`FROM` revolutions on; nan where they are too few."""
+    """Return the exponent k of errors that grow as t^k, fitted after :data:`FROM` revolutions; nan for too few."""
     chosen = (revolutions >= FROM) & np.isfinite(errors) & (errors > 0.0) & (errors < 0.5)
     if int(chosen.sum()) < 4:
         return math.nan
@@ -197,6 +197,6 @@ def exponent(revolutions: Floats, errors: Floats) -> float:
 
 
 def median_curve(curves: list[Any], name: str) -> Floats:
-    """Return the median over motions of one column of curves of one method."""
+    """Return the median, over several motions, of the column ``name`` of one method's curves."""
     medians: Floats = np.exp(np.median(np.log(np.array([getattr(c, name) for c in curves]) + 1e-18), axis=0))
     return medians

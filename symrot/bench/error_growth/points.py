@@ -1,9 +1,9 @@
-"""Points of a body carried along their velocity: along the tangent the body grows, along the secant it does not.
+"""Move points of a body along their velocity: along the tangent the body grows, along the secant it does not.
 
-``r + h (omega x r)`` is longer than r: the step is across it, so the squares add up,
-``|r'|^2 = |r|^2 + h^2 |omega x r|^2``, by the factor ``sqrt(1 + (omega h)^2)`` for a point off the axis at right
-angles. The secant joins two points of the circle: ``r' = r + h omega x (r + r')/2`` keeps the length exactly. The
-laws are decided exactly when the report is made (:func:`laws`), and held against what a run step by step gives.
+``r + h (omega x r)`` is longer than r, because the step is perpendicular to r:
+``|r'|^2 = |r|^2 + h^2 |omega x r|^2``. For r perpendicular to the axis, the length grows by the factor
+``sqrt(1 + (omega h)^2)``. The secant joins two points of the circle: ``r' = r + h omega x (r + r')/2`` keeps the length
+exactly. These laws are decided exactly for every report (:func:`laws`) and compared with a step-by-step computation.
 Source: Chen, Rigid Body Rotation, slides 25-27.
 """
 
@@ -22,18 +22,18 @@ Floats = NDArray[np.float64]
 
 
 class Carried(NamedTuple):
-    """Points carried with one step size: growth of the body, what the law says of it, and where the points end."""
+    """The result of moving points with one step size: growth of the body, growth by the law, strain, and error."""
 
     scheme: str
     h: float  # s
     growth: float  # largest |r| at the end over that at the start
-    derived: float  # by the law, along the exact motion: of the tangent step, else 1
-    strain: float  # largest relative change of a distance between two points, the growth of all taken out
-    error: float  # of places, over the size of the body
+    derived: float  # growth of the tangent step by the law, along the exact motion; 1 for other schemes
+    strain: float  # largest relative change of a distance between two points, apart from uniform growth
+    error: float  # of positions, over the size of the body
 
 
 def laws() -> list[tuple[str, bool]]:
-    """Return each law of one step with whether it holds, decided exactly now."""
+    """Decide each law of one step exactly, and return it with whether it holds."""
     from sympy import Matrix, eye, symbols
 
     from symrot.exact import is_zero
@@ -43,7 +43,7 @@ def laws() -> list[tuple[str, bool]]:
     place, omega = Matrix(r), Matrix([a, b, c])
     tangent, turn = place + h * omega.cross(place), h / 2 * skew(omega)
     secant = (eye(3) - turn).inv() * (eye(3) + turn) * place  # r' = r + h omega x (r + r')/2, solved for r'
-    across = {c: -(a * r[0] + b * r[1]) / r[2]}  # omega at right angles to r
+    across = {c: -(a * r[0] + b * r[1]) / r[2]}  # omega perpendicular to r
     half = h * omega.cross(place + secant) / 2
     claims = {
         "tangent: |r'|^2 = |r|^2 + h^2 |omega x r|^2":
@@ -62,7 +62,7 @@ def _corners(size: tuple[float, float, float]) -> Floats:
 
 
 def _turned(axis: Floats, angle: float, points: Floats) -> Floats:
-    """Return points turned about a unit axis."""
+    """Return points rotated about a unit axis."""
     rotated: Floats = (
         points * math.cos(angle) + np.cross(axis, points) * math.sin(angle)
         + np.outer(points @ axis, axis) * (1.0 - math.cos(angle))
@@ -96,7 +96,7 @@ SCHEMES = {
 
 
 def carried(scene: Scene, stop: float, steps: tuple[float, ...], size: Any = (1.0, 2.0, 3.0)) -> list[Carried]:
-    """Return the corners of a box carried along with a motion, by each scheme and step."""
+    """Move the corners of a box along with a motion, and return the result for each scheme and step."""
     points, results = _corners(size), []
     motion = propagator(scene)
     for h in steps:
@@ -119,7 +119,7 @@ def carried(scene: Scene, stop: float, steps: tuple[float, ...], size: Any = (1.
 
 
 def _strain(first: Floats, last: Floats) -> float:
-    """Return how much the shape changes, beside its size: spread of the ratios of distances."""
+    """Return the change of shape, apart from the change of size: the spread of the ratios of distances."""
     pairs = np.triu_indices(len(first), 1)
     before, after = (np.linalg.norm(each[pairs[0]] - each[pairs[1]], axis=1) for each in (first, last))
     ratios = after[before > 0.0] / before[before > 0.0]

@@ -1,12 +1,12 @@
-"""Numerical stability, measured: how errors grow, what becomes of invariants, Euler singularities, points of a body.
+"""Measure numerical stability: growth of errors, drift of invariants, Euler singularities, moving points of a body.
 
     symrot bench --stability [SCENE] [--long] [--plot FILE.png] [--json]
 
-Without a scene a free plate (moments 1, 3, 4) is followed for 1e5 revolutions (``--long``: 1e6), medians over three
-starts; with one, the scene over its span. The truth has 30 digits and shares nothing with any method
-(:mod:`symrot.bench.comparison.exact_path`). Then the textbooks' claims: Euler angles as state against the quaternion as
-state, near gimbal lock and through it; the quaternion renormalised or left alone; points carried along tangents or
-secants.
+Without a scene, a free plate (moments 1, 3, 4) is followed for 1e5 revolutions (``--long``: 1e6), with medians over
+three starts; with a scene, its motion is followed over its span. The reference has 30 digits and shares nothing with
+any method (:mod:`symrot.bench.comparison.exact_path`). Then claims of textbooks are tested: Euler angles against the
+quaternion as state, near gimbal lock and through it; the quaternion with and without renormalisation; points moved
+along tangents or secants.
 """
 
 import math
@@ -29,7 +29,11 @@ __all__ = ["lines", "report", "stability"]
 Floats = NDArray[np.float64]
 
 STARTS = (("3/8", 1, "1/2"), (1, "1/4", "1/8"), ("5/8", "3/4", "-1/2"))  # rad/s, exact in doubles
-PLATE = (1, 3, 4)  # kg m^2: (B - C)/A and its like are exact in doubles too, so that all methods turn one body
+PLATE = (
+    1,
+    3,
+    4,
+)  # kg m^2: (B - C)/A and its permutations are exact in doubles, so that all methods rotate the same body
 POWERS = {False: 5, True: 6}  # of ten revolutions
 SAMPLES = 241  # of a scene
 PASSES = ("1/10", "1/1000", "1/100000", "1/10000000", "1/1000000000", 0)  # rad from gimbal lock
@@ -60,7 +64,7 @@ def stability(scene: Scene | None = None, long: bool = False, say: Callable[[str
     long : bool
         1e6 revolutions, and SciPy for 1e4.
     say : callable
-        Hears what is being done.
+        Called with messages about the progress.
     """
     results: dict[str, Any] = {"format": "symrot stability 1", "long": long}
     results["growth"] = _of_scene(scene, long, say) if scene else _of_plates(long, say)
@@ -139,7 +143,7 @@ def _curve(
 
 
 def passes() -> list[dict[str, Any]]:
-    """Return what passes by gimbal lock cost and lose: quaternion, angles that are exchanged, angles that are not."""
+    """Return steps and errors of passes near gimbal lock: with the quaternion, with switched and with fixed angles."""
     t, rows = np.linspace(-3, 8, 45), []
     for distance in PASSES:
         attitude = {"sequence": SEQUENCE, "angles": ["1/5", distance, "3/10"]}
@@ -162,12 +166,12 @@ def passes() -> list[dict[str, Any]]:
 
 
 def scene_distance(text: str | int) -> float:
-    """Return an exact number of this table as a float."""
+    """Return a distance of ``PASSES`` as a float."""
     top, _, bottom = str(text).partition("/")
     return float(top) / float(bottom or 1)
 
 
-# ------------------------------------------------------------------------------------------------ for people
+# ------------------------------------------------------------------------------------------------ as text
 
 
 def _figure(value: float | None) -> str:
@@ -183,7 +187,7 @@ def _worst(values: Iterable[float | None]) -> float | None:
 
 
 def lines(results: Any) -> list[str]:
-    """Return the report as a table for people."""
+    """Return the report as lines of text."""
     return [*_growth_lines(results["growth"]), "", *_pass_lines(results["passes"]), "", *_point_lines(results)]
 
 
@@ -256,12 +260,12 @@ def _point_lines(results: Any) -> list[str]:
 
 
 def report(scene: str | None, long: bool, plot: Path | None, say: Callable[[str], object]) -> Any:
-    """Return the report of a shipped scene or a file, of the plate without one; draw it if asked.
+    """Return the report of a shipped scene or a scene file, or of the plate if ``scene`` is None; plot it if asked to.
 
     Raises
     ------
     InputError
-        For a scene that cannot be used.
+        For an unusable scene.
     """
     results = stability(load_scene(scene) if scene else None, long, say)
     if plot:
@@ -272,7 +276,7 @@ def report(scene: str | None, long: bool, plot: Path | None, say: Callable[[str]
 
 
 def _finite(value: Any) -> Any:
-    """Return data for JSON, which knows no nan."""
+    """Return data with None in place of nan and infinities, which JSON does not have."""
     if isinstance(value, dict):
         return {key: _finite(each) for key, each in value.items()}
     if isinstance(value, list):

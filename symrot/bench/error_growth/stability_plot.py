@@ -1,4 +1,4 @@
-"""The report of :mod:`~symrot.bench.error_growth.stability` on one page: errors, singularities, growth of a body."""
+"""Plot the report of :mod:`~symrot.bench.error_growth.stability` on one page."""
 
 from pathlib import Path
 from typing import Any
@@ -22,7 +22,7 @@ LOOKS: dict[str, dict[str, Any]] = {
 
 
 def figure(results: Any) -> Any:
-    """Return the page."""
+    """Return the page as a Matplotlib figure."""
     from matplotlib import rc_context
     from matplotlib.figure import Figure
 
@@ -60,7 +60,7 @@ def _rates(axes: Any, data: Any) -> None:
 
 
 def _smoothed(at: Any, values: Any, linear: bool) -> Any:
-    """Return the largest value so far along a span: an error that crosses zero is no better for it."""
+    """Return the largest value so far along a span, since an error that crosses zero is not small there."""
     if not linear:
         return values
     largest = np.fmax.accumulate(values)
