@@ -1,6 +1,6 @@
 """The catalogue of derivations, in reading order: a folder for each chapter, a file for each derivation.
 
-Importing this package derives nothing and imports no SymPy; :func:`derivation` does both for the one asked for.
+Importing this package derives nothing and does not import SymPy; :func:`derivation` does both on demand.
 """
 
 from collections.abc import Callable
@@ -81,10 +81,10 @@ READING_ORDER: dict[str, tuple[str, ...]] = {
         "planar_linkages",
     ),
 }
-"""Chapter -> names of its derivations; a name is that of the module which derives it, in the chapter's folder."""
+"""Chapter -> names of its derivations; each is the name of a module in the chapter's folder."""
 
 SUFFIXES = {"latex": ".tex", "html": ".html"}
-"""Form of a page, besides Markdown -> how its file ends."""
+"""Format of a page, other than Markdown -> suffix of its file."""
 
 
 def names() -> tuple[str, ...]:
@@ -120,7 +120,7 @@ Say = Callable[[str], object]
 
 
 def _quiet(text: str) -> None:
-    """Say nothing."""
+    """Ignore a progress message."""
 
 
 def pages(say: Say = _quiet) -> dict[str, str]:
@@ -139,7 +139,7 @@ def pages(say: Say = _quiet) -> dict[str, str]:
         lines += ["", f"## {part}", ""]
         lines += [f"- [{derived[name].title}]({name}.md), {len(derived[name].steps)} steps" for name in members]
     lines += ["", "Printed by `symrot derive --all`; do not edit.", ""]
-    return {"README.md": "\n".join(lines)} | {f"{name}.md": found.markdown() for name, found in derived.items()}
+    return {"README.md": "\n".join(lines)} | {f"{name}.md": page.markdown() for name, page in derived.items()}
 
 
 def write_pages(directory: Path | str, form: str) -> list[Path]:
@@ -148,14 +148,14 @@ def write_pages(directory: Path | str, form: str) -> list[Path]:
     Parameters
     ----------
     directory : Path or str
-        Made if it is not there.
+        Created if it does not exist.
     form : str
         ``"latex"`` or ``"html"``.
 
     Raises
     ------
     InputError
-        For another form.
+        For an unknown format.
     """
     if form not in SUFFIXES:
         raise InputError(f"pages are written as {' or '.join(SUFFIXES)}, got {form!r}")
@@ -172,7 +172,7 @@ def write_pages(directory: Path | str, form: str) -> list[Path]:
 def derive_all(directory: Path | str, say: Say = _quiet) -> list[Path]:
     """Print every page into a directory and return the files that changed.
 
-    A page that an earlier catalogue printed, of a derivation that is no more, is removed; other files are left alone.
+    Pages of derivations that are no longer in the catalogue are removed; other files are not touched.
     """
     directory = Path(directory)
     directory.mkdir(parents=True, exist_ok=True)
@@ -192,7 +192,7 @@ def derive_all(directory: Path | str, say: Say = _quiet) -> list[Path]:
 
 
 def check(directory: Path | str, say: Say = _quiet) -> list[tuple[Path, str]]:
-    """Return the pages that are not what would be printed now, each with a unified diff; none when all are current."""
+    """Return the outdated pages, each with a unified diff; an empty list if all are current."""
     directory = Path(directory)
     printed = pages(say)
     stale = []
@@ -208,7 +208,7 @@ def check(directory: Path | str, say: Say = _quiet) -> list[tuple[Path, str]]:
 
 
 def _left_over(directory: Path, printed: dict[str, str]) -> list[Path]:
-    """Return the pages that symrot once printed into a directory and now would not."""
+    """Return the pages in a directory that symrot printed earlier but no longer prints."""
     others = (path for path in sorted(directory.glob("*.md")) if path.name not in printed and path.is_file())
     return [path for path in others if _mark(path.stem).encode() in path.read_bytes()]
 

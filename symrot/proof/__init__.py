@@ -1,1 +1,1 @@
-"""Derivations whose steps are proven when they are written, and the pages that they print."""
+"""Write derivations whose every step is proven when it is added, and print them as pages."""

@@ -1,7 +1,7 @@
-"""Derivations: chains of equations, each of which holds or cannot be written down.
+"""Build derivations: sequences of equations, each proven when it is added.
 
 A :class:`Derivation` is built step by step. A step whose two sides are not equal by the exact normal form
-(:mod:`symrot.exact`) raises :class:`ProofError`, so whatever a derivation shows has been proven while it was built.
+(:mod:`symrot.exact`) raises :class:`ProofError`, so every equation of a finished derivation has been proven.
 """
 
 from collections.abc import Mapping, Sequence
@@ -36,12 +36,12 @@ __all__ = ["Derivation", "Passage", "PrintedPage", "ProofError", "Section", "Ste
 
 
 class ProofError(SymrotError):
-    """A step of a derivation that does not hold."""
+    """Raised for a step of a derivation that does not hold."""
 
 
 @dataclass
 class PrintedPage(Page):
-    """A page that prints itself; its fields are those of :class:`symrot.proof.page.Page`."""
+    """A page with methods that print it; its fields are those of :class:`symrot.proof.page.Page`."""
 
     def markdown(self) -> str:
         """Return the page as Markdown, with the formulas in ``$$``."""
@@ -56,7 +56,7 @@ class PrintedPage(Page):
         return html_document(self)
 
     def part(self, number: int, detail: bool = False) -> "PrintedPage":
-        """Return a page with one step, from 1; in detail with every expression between its two sides.
+        """Return a page with one step (the first is 1); in detail, with every expression between its two sides.
 
         Raises
         ------
@@ -74,11 +74,11 @@ class Derivation(PrintedPage):
     Parameters
     ----------
     assumed : list of Expr
-        Expressions that are stated once not to be zero (:meth:`nonzero`).
+        Expressions that the page states once to be nonzero (:meth:`nonzero`).
     names, rates : dict
-        What names on the page mean, and how fast variables change (:meth:`notation`).
+        The meaning of names on the page, and the rates of variables (:meth:`notation`).
 
-    The others are those of :class:`symrot.proof.page.Page`.
+    The other parameters are those of :class:`symrot.proof.page.Page`.
     """
 
     assumed: list[Expr] = field(default_factory=list)
@@ -86,14 +86,14 @@ class Derivation(PrintedPage):
     rates: dict[Expr, Expr] = field(default_factory=dict)
 
     def notation(self, names: Mapping[str, Any], rates: Mapping[Expr, Expr] | None = None) -> None:
-        """Say what names on the page mean, so that the LaTeX of the steps after it is read back and decided.
+        """Declare the meaning of names, so that the LaTeX of later steps can be read back and proven.
 
         Parameters
         ----------
         names : mapping
-            LaTeX of a name -> Expr, Matrix, or a function of what is in parentheses after it.
+            LaTeX of a name -> Expr, Matrix, or a function of the arguments in parentheses after the name.
         rates : mapping, optional
-            Variable -> its rate, for dots and time derivatives.
+            Variable -> its rate, the meaning of dots and time derivatives.
         """
         self.names |= {key(name): meaning for name, meaning in names.items()}
         self.rates |= rates or {}
@@ -102,20 +102,20 @@ class Derivation(PrintedPage):
         """Begin a section."""
         self.items.append(Section(title))
 
-    def given(self, text: str, *equations: tuple[Any, Any]) -> None:
-        """State what is assumed, in words and perhaps in equations ``(left, right)``; text in a pair is LaTeX."""
+    def passage(self, text: str, *equations: tuple[Any, Any]) -> None:
+        """Add assumptions or definitions: text, and optionally equations ``(left, right)``; a str in them is LaTeX."""
         self.items.append(Passage(text, tuple(equations)))
         for left, right in equations:
             self._note(left, right)
 
     def nonzero(self, text: str, expression: Expr, named: str) -> None:
-        """State once that an expression (LaTeX ``named``) is not zero; the steps after it do not repeat that."""
+        """State that an expression (LaTeX ``named``) is not zero; later steps do not repeat this condition."""
         self.items.append(Passage(f"{text} ${named} \\neq 0$."))
         self.assumed += [part.expand() for part in (expression, *_factors(expression))]
 
     def define(self, text: str, left: Any, right: Any) -> Any:
-        """Give something a name, ``left`` (a symbol, or LaTeX), and return what it stands for."""
-        self.given(text, (left, right))
+        """Define the name ``left`` (a symbol, or LaTeX) as ``right``, and return ``right``."""
+        self.passage(text, (left, right))
         return right
 
     def step(
@@ -127,34 +127,37 @@ class Derivation(PrintedPage):
         because: str,
         relations: Sequence[Any] = (),
         named: str = "",
-        shown: Any = None,
+        display: Any = None,
         source: str = "",
         via: Sequence[tuple[str, Any, Any]] = (),
     ) -> Step:
-        """Add ``left = right``, proven; return the step.
+        """Prove ``left = right`` and add it as a step; return the step.
 
         Parameters
         ----------
         claim : str
+            The statement of the step, a sentence.
         left, right : Expr or Matrix
             Of equal shape; 0 stands for a zero matrix.
         because : str
+            The reason, for the reader.
         relations : sequence of Expr or Eq
             Hypotheses, e.g. unit norm.
         named : str
-            LaTeX to show in place of the left side.
-        shown : str, Expr or Matrix
-            To show in place of the right side: the same thing, written for a reader.
+            LaTeX to display instead of the left side.
+        display : str, Expr or Matrix
+            An equal form of the right side to display, written for a reader.
         source : str
+            Book and page, if the step is printed elsewhere.
         via : sequence of (str, Expr, Expr)
-            Equations on the way, each proven as well, shown in detail.
+            Intermediate equations, proven too, for the page in detail.
 
         Raises
         ------
         ProofError
-            If left - right does not reduce to zero: what is left of it, and a point where the sides differ.
+            If left - right does not reduce to zero; the message has the residual and a point where the sides differ.
         InputError
-            For what :func:`symrot.exact.decide.decide` refuses.
+            For expressions that :func:`symrot.exact.decide.decide` does not accept.
         """
         verdict = self._proven(claim, left, right, relations)
         for words, before, after in via:
@@ -165,28 +168,28 @@ class Derivation(PrintedPage):
         left, right = _frozen(left), _frozen(right)
         sides = left, right
         printed = (
-            self._is_shown(claim, named or None, left, sides, relations),
-            self._is_shown(claim, shown, right, sides, relations),
+            self._is_read_back(claim, named or None, left, sides, relations),
+            self._is_read_back(claim, display, right, sides, relations),
         )
         return self._add(
-            Step(claim, left, right, because, "=", hypotheses, conditions, named, shown, source, tuple(via), printed)
+            Step(claim, left, right, because, "=", hypotheses, conditions, named, display, source, tuple(via), printed)
         )
 
     def positive(self, claim: str, expression: Any, *, because: str, named: str = "") -> Step:
-        """Add ``expression > 0``, which must follow from the signs of the symbols in it; return the step.
+        """Prove ``expression > 0`` from the signs of the symbols in it, and add it as a step; return the step.
 
         Raises
         ------
         ProofError
-            If it does not follow term by term, factor by factor.
+            If it does not follow from the signs of the terms and factors.
         """
         reduced = factor(normal_form(expression))
         if reduced.is_positive is not True:
             raise ProofError(f"{self.name}, {claim!r}: the signs of the symbols do not make {reduced} positive")
-        return self._add(Step(claim, _frozen(expression), S.Zero, because, ">", named=named, shown=reduced))
+        return self._add(Step(claim, _frozen(expression), S.Zero, because, ">", named=named, display=reduced))
 
     def _proven(self, claim: str, left: Any, right: Any, relations: Sequence[Any]) -> Verdict:
-        """Return the verdict on an equation that holds; ``ProofError`` for one that does not."""
+        """Return the verdict on an equation; raise ProofError unless the equation holds."""
         verdict = decide(left, right, relations)
         if verdict.verdict != "true":
             where = f" ({verdict.counterexample})" if verdict.counterexample else ""
@@ -196,12 +199,20 @@ class Derivation(PrintedPage):
             )
         return verdict
 
-    def _is_shown(self, claim: str, shown: Any, side: Any, sides: tuple[Any, Any], relations: Sequence[Any]) -> bool:
-        """Return whether what is shown for a side is read back; ``ProofError`` where it is and is something else."""
-        if shown is None:
+    def _is_read_back(
+        self, claim: str, display: Any, side: Any, sides: tuple[Any, Any], relations: Sequence[Any]
+    ) -> bool:
+        """Return whether the displayed form of a side can be read back as mathematics, and prove it equal to the side.
+
+        Raises
+        ------
+        ProofError
+            If the displayed form can be read and is not equal to the side.
+        """
+        if display is None:
             return True
         try:
-            values = self._read(shown, sides) if isinstance(shown, str) else [shown]
+            values = self._read(display, sides) if isinstance(display, str) else [display]
         except Unread:
             return False
         values = [_as_side(value, side) for value in values]
@@ -209,13 +220,13 @@ class Derivation(PrintedPage):
             return False
         for value in values:
             if value != side:
-                self._proven(f"{claim} as it is shown, {shown}", value, side, relations)
+                self._proven(f"{claim} as displayed, {display}", value, side, relations)
         return True
 
     def _read(self, text: str, sides: tuple[Any, Any] = (S.Zero, S.Zero)) -> list[Any]:
-        """Return what a text for one side means, in each of the forms it gives, ``X = Y``.
+        """Return the values of a LaTeX text for one side: several if it is a chain ``X = Y``.
 
-        The equations beside it, ``, \\quad a = b``, say what a name means, or must hold themselves.
+        Further equations in the text, after ``, \\quad``, define a name, or else must hold.
         """
         used = {symbol for side in sides for symbol in side.free_symbols}
         names = {key(formula(symbol)): symbol for symbol in used} | self.names
@@ -226,20 +237,20 @@ class Derivation(PrintedPage):
                              for n, side in enumerate(chain))  # fmt: skip
             names.setdefault(key(chain[0]), last)
             if any(other is not None and not is_zero(other - last) for other in others):
-                raise ProofError(f"{self.name}: {text} does not hold where it is shown")
-        found = []
+                raise ProofError(f"{self.name}: {text} does not hold where it is displayed")
+        values = []
         for number, side in enumerate(main):
             try:
-                found.append(read(side, names, self.rates))
+                values.append(read(side, names, self.rates))
             except Unread:
                 if number or len(main) == 1:
                     raise
-        if len(found) < len(main):
-            self.names[key(main[0])] = found[0]
-        return found
+        if len(values) < len(main):
+            self.names[key(main[0])] = values[0]
+        return values
 
     def _note(self, left: Any, right: Any) -> None:
-        """Remember what a name stands for, if the right side says it in a formula, or in LaTeX that can be read."""
+        """Store the meaning of a name, if the right side is a formula or LaTeX that can be read."""
         if isinstance(right, str):
             try:
                 right = self._read(right)[-1]
@@ -263,24 +274,24 @@ class Derivation(PrintedPage):
 
 
 def _tidied(conditions: Sequence[Any]) -> list[Any]:
-    """Return conditions without those that others imply: a root is zero where its radicand is, a product by factor."""
-    found: dict[Any, Any] = {}
+    """Return conditions split into factors, without repetitions; a root is nonzero where its radicand is."""
+    independent: dict[Any, Any] = {}
     for condition in conditions:
         if not isinstance(condition, Ne):
-            found.setdefault((type(condition), normal_form(condition.lhs)), condition)
+            independent.setdefault((type(condition), normal_form(condition.lhs)), condition)
             continue
         for piece in Mul.make_args(condition.lhs):
             base = piece.base if piece.is_Pow and piece.exp.is_Rational else piece
             base = base.args[0] if isinstance(base, Abs) else base
             for part in (part for side in fraction(base) for part in _factors(side)):
                 value = normal_form(part)
-                if not (part.is_nonzero or value.is_number or (Ne, -value) in found):
-                    found.setdefault((Ne, value), Ne(part, 0))
-    return list(found.values())
+                if not (part.is_nonzero or value.is_number or (Ne, -value) in independent):
+                    independent.setdefault((Ne, value), Ne(part, 0))
+    return list(independent.values())
 
 
 def _factors(expression: Expr) -> list[Expr]:
-    """Return what must not vanish for a product not to: its factors, or the expression where it has none."""
+    """Return the factors of an expression, all of which must be nonzero for it to be nonzero; or the expression."""
     plain = not expression.is_number and expression.is_polynomial(*expression.free_symbols)
     factors = [base for base, _ in factor_list(expression)[1]] if plain else []
     return factors if len(factors) > 1 else [expression]
@@ -290,14 +301,14 @@ def _shape(side: Any) -> Any:
     return side.shape if isinstance(side, MatrixBase) else None
 
 
-def _as_side(shown: Any, side: Any) -> Any:
-    """Return what is shown in the shape of the side it stands for: a number for that multiple of the unit matrix."""
-    shown = _frozen(shown)
-    if isinstance(side, MatrixBase) and not isinstance(shown, MatrixBase):
-        if shown == 0:
+def _as_side(display: Any, side: Any) -> Any:
+    """Return a displayed value in the shape of its side: beside a square matrix, a number means a multiple of I."""
+    display = _frozen(display)
+    if isinstance(side, MatrixBase) and not isinstance(display, MatrixBase):
+        if display == 0:
             return ImmutableMatrix.zeros(*side.shape)
-        return ImmutableMatrix.eye(side.rows) * shown if side.is_square else shown
-    return shown
+        return ImmutableMatrix.eye(side.rows) * display if side.is_square else display
+    return display
 
 
 def _frozen(side: Any) -> Any:
@@ -308,7 +319,7 @@ def _frozen(side: Any) -> Any:
 
 
 def _short(residual: Any) -> str:
-    """Return the first wrong entry of a residual, cut to a line."""
+    """Return the first nonzero entry of a residual as text, cut to one line."""
     if isinstance(residual, MatrixBase):
         place = next(n for n, entry in enumerate(residual) if entry != 0)
         text = f"{residual[place]} in entry ({place // residual.cols + 1}, {place % residual.cols + 1})"

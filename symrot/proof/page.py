@@ -1,4 +1,4 @@
-"""A page of a derivation as data: its headings, passages and proven steps, for whatever prints it."""
+"""Represent a page of a derivation as data: headings, passages and proven steps, for the printers."""
 
 from dataclasses import dataclass, field
 from typing import Any
@@ -17,7 +17,7 @@ class Section:
 
 @dataclass(frozen=True)
 class Passage:
-    """What is given or defined, in words, perhaps with equations (left, right); nothing in it is proven."""
+    """Assumptions or definitions: text, optionally with equations (left, right); nothing in a passage is proven."""
 
     text: str
     equations: tuple[tuple[Any, Any], ...] = ()
@@ -30,28 +30,28 @@ class Step:
     Attributes
     ----------
     claim : str
-        What it says, a sentence.
+        The statement, a sentence.
     left, right : Expr or Matrix
-        As the derivation built them, not simplified.
+        The sides as the derivation built them, not simplified.
     reason : str
-        Why, the end of a sentence that begins with "because".
+        The reason, the end of a sentence that begins with "because".
     relation : str
         ``"="`` or ``">"``.
     hypotheses : tuple of Expr
-        Each is zero where the step holds.
+        Expressions that are assumed to be zero.
     conditions : tuple
         Denominators that must not vanish, radicands that must not be negative.
     named : str
-        LaTeX of what the left side is, shown in its place where its formula is long; empty otherwise.
-    shown : Any
-        The right side as a reader wants it (LaTeX, or a product left as it is), where that differs; None otherwise.
+        LaTeX to display instead of the left side where its formula is long; empty otherwise.
+    display : Any
+        The right side as displayed (LaTeX, or for example an unevaluated product) where it differs; None otherwise.
     source : str
         Book and page, where the step is printed elsewhere.
     via : tuple of (str, Expr, Expr)
-        Proven equations on the way, (words, left, right), for a reader who asks for detail.
+        Proven intermediate equations (words, left, right), for the page in detail.
     printed : (bool, bool)
-        Of each side: whether the page shows what was proven, printed from it or read back and decided; otherwise it
-        shows a name, or words in LaTeX, that stand for it.
+        For each side: True if the page displays the proven expression itself, or a form that was read back and proven
+        equal to it; False if it displays a name or words in LaTeX instead.
     """
 
     claim: str
@@ -62,7 +62,7 @@ class Step:
     hypotheses: tuple[Expr, ...] = ()
     conditions: tuple[Any, ...] = ()
     named: str = ""
-    shown: Any = None
+    display: Any = None
     source: str = ""
     via: tuple[tuple[str, Any, Any], ...] = ()
     printed: tuple[bool, bool] = (True, True)
@@ -70,23 +70,23 @@ class Step:
 
 @dataclass
 class Page:
-    """A page: what is given, and what follows from it, step by step.
+    """A page: assumptions, and the consequences that follow from them step by step.
 
     Parameters
     ----------
     name : str
-        Of the catalogue file, e.g. ``"symmetric_top"``.
+        The name of the catalogue file, e.g. ``"symmetric_top"``.
     title : str
     source : str
-        Where it is treated in print.
+        Books and pages that treat the subject.
     about : str
-        What it shows and what it is for, one paragraph.
+        The subject and its use, one paragraph.
     items : list
         Headings, passages and steps, in order.
     first : int
-        The number of the first step; not 1 on a page that shows a part of a derivation.
+        The number of the first step; not 1 on a page with a part of a derivation.
     file : str
-        The file that derives it, from the folder of symrot on; empty for a page outside the catalogue.
+        The path of the catalogue file, relative to the folder of symrot; empty for a page outside the catalogue.
     """
 
     name: str

@@ -97,7 +97,7 @@ IN_WORDS = {  # right sides that are typed in words or names beside what was pro
 @pytest.mark.parametrize("name", catalogue.names())
 def test_what_is_shown_is_what_was_proven(derived, name):
     """A side of an equation is printed from the proof, or its LaTeX is read back and decided when it is built."""
-    words = [step.shown for step in derived[name].steps if not step.printed[1]]
+    words = [step.display for step in derived[name].steps if not step.printed[1]]
     assert len(words) <= IN_WORDS.get(name, 2), words
 
 
@@ -105,13 +105,13 @@ def test_a_tampered_page_cannot_be_derived(monkeypatch):
     """One sign changed in what a catalogue page shows, and in nothing that it proves."""
     add = Derivation.step
 
-    def tampered(page, claim, left, right, *, shown=None, **others):
-        changed = shown.replace("+", "-", 1) if isinstance(shown, str) else shown
-        return add(page, claim, left, right, shown=changed, **others)
+    def tampered(page, claim, left, right, *, display=None, **others):
+        changed = display.replace("+", "-", 1) if isinstance(display, str) else display
+        return add(page, claim, left, right, display=changed, **others)
 
     monkeypatch.setattr(Derivation, "step", tampered)
     for name in ("kinetic_energy", "relative_motion", "free_body_attitude", "rodrigues", "tensor_rotation"):
-        with pytest.raises(ProofError, match="as it is shown"):
+        with pytest.raises(ProofError, match="as displayed"):
             import_module(catalogue.module_of(name)).derive()
 
 

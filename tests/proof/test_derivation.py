@@ -74,11 +74,11 @@ def test_what_is_assumed_once_is_not_repeated(page):
 
 def filled(page):
     page.section("Part, one")
-    page.given("Let", (omega_1, dphi), (r"R", eye(3)))
+    page.passage("Let", (omega_1, dphi), (r"R", eye(3)))
     assert page.define("With 50% of", A, x + 1) == x + 1
     page.step("It is.", sin(phi) ** 2 + cos(phi) ** 2, 1, because="of $[a]_\\times$ & `b_c`", named="s")
     page.step("So.", Matrix([q0**2]), Matrix([1 - q1**2 - q2**2 - q3**2]), because="norm", relations=[UNIT],
-              shown=MatMul(eye(2), Matrix(omega_b[:2])))  # fmt: skip
+              display=MatMul(eye(2), Matrix(omega_b[:2])))  # fmt: skip
     page.positive("And.", A * B, because="both are", named="p")
     return page
 
@@ -238,7 +238,7 @@ def test_what_has_no_meaning_is_not_read(text):
 
 
 @pytest.mark.parametrize(
-    "named, shown",
+    "named, display",
     [
         (r"\omega \times u", r"u \times \omega"),
         (r"\omega \times u", r"\omega \times \omega"),
@@ -247,21 +247,21 @@ def test_what_has_no_meaning_is_not_read(text):
         (r"w", r"w \times u, \quad w = 2\,\omega"),
     ],
 )
-def test_a_page_cannot_show_what_was_not_proven(page, named, shown):
+def test_a_page_cannot_show_what_was_not_proven(page, named, display):
     """The proven sides are right; what would be printed for them is not."""
     u = Matrix([q1, q2, q3])
     page.notation({r"\omega": V, "u": u})
     good = {"because": "the product is antisymmetric", "named": r"\omega \times u"}
-    step = page.step("It turns.", V.cross(u), -u.cross(V), shown=r"-u \times w, \quad w = \omega", **good)
+    step = page.step("It turns.", V.cross(u), -u.cross(V), display=r"-u \times w, \quad w = \omega", **good)
     assert step.printed == (True, True)
-    with pytest.raises(ProofError, match=r"as it is shown|where it is shown"):
-        page.step("It turns.", V.cross(u), -u.cross(V), because="of nothing", named=named, shown=shown or None)
+    with pytest.raises(ProofError, match=r"as displayed|where it is displayed"):
+        page.step("It turns.", V.cross(u), -u.cross(V), because="of nothing", named=named, display=display or None)
     assert len(page.steps) == 1
 
 
 def test_a_matrix_shown_as_a_product_is_that_product(page):
-    with pytest.raises(ProofError, match="as it is shown"):
-        page.step("No.", V, Matrix(omega_b), because="of nothing", shown=MatMul(2 * eye(3), V))
+    with pytest.raises(ProofError, match="as displayed"):
+        page.step("No.", V, Matrix(omega_b), because="of nothing", display=MatMul(2 * eye(3), V))
 
 
 def test_a_name_is_said_to_be_one(page):

@@ -25,7 +25,7 @@ def derive() -> Derivation:
             "$B$ is the axis of turn $i$, carried into the body (or into space) by the turns between."
         ),
     )
-    d.given(
+    d.passage(
         r"The angles $q = (\phi, \theta, \psi)$ are in order of application. Upper case sequences are intrinsic, about "
         r"axes of the body; lower case ones are extrinsic, about axes of space."
     )
@@ -46,7 +46,7 @@ def _sequence(d: Derivation, sequence: str) -> None:
         body * RATES,
         because=r"$\dot R = R\,[\omega_b]_\times$, all nine entries",
         named=r"\omega_b",
-        shown=MatMul(body.as_immutable(), RATES),
+        display=MatMul(body.as_immutable(), RATES),
         via=[("The rate of the matrix, all nine entries:", dcm_rate, dcm_sb * skew(body * RATES))],
     )
     d.step(
@@ -55,7 +55,7 @@ def _sequence(d: Derivation, sequence: str) -> None:
         space * RATES,
         because=r"$\dot R = [\omega_s]_\times R$, all nine entries",
         named=r"\omega_s",
-        shown=MatMul(space.as_immutable(), RATES),
+        display=MatMul(space.as_immutable(), RATES),
         via=[("The rate of the matrix, all nine entries:", dcm_rate, skew(space * RATES) * dcm_sb)],
     )
     d.step(
@@ -64,7 +64,7 @@ def _sequence(d: Derivation, sequence: str) -> None:
         eye(3),
         because="the two matrices are inverse to each other",
         named=r"\dot q",
-        shown=MatMul(body.inverse, Matrix(symbols.omega_b)),
+        display=MatMul(body.inverse, Matrix(symbols.omega_b)),
     )
     d.step(
         f"The angles lock {_values(body)}.",

@@ -57,12 +57,12 @@ def _sequence(d: Derivation, sequence: str) -> None:
         adjugate,
         because="it is the matrix of cofactors",
         named=r"\det B \; B^{-1}",
-        shown=r"\mathrm{adj}\,B",
+        display=r"\mathrm{adj}\,B",
     )
     for point in dossier.locked:
         _locked(d, sequence, adjugate, point)
     if dossier.regular_sequences:
-        d.given(f"Sequences that are regular at all these attitudes: {', '.join(dossier.regular_sequences)}.")
+        d.passage(f"Sequences that are regular at all these attitudes: {', '.join(dossier.regular_sequences)}.")
 
 
 def _locked(d: Derivation, sequence: str, adjugate: Matrix, point: LockedPoint) -> None:
@@ -95,12 +95,12 @@ def _locked(d: Derivation, sequence: str, adjugate: Matrix, point: LockedPoint) 
         strength * silent * lost.T,
         because="there the matrix of cofactors has rank one",
         named=r"\lim\, \det B\; B^{-1}",
-        shown=rf"{_sign(strength)}s\,n^{{\mathsf T}},\quad s = {_latex(silent)}",
+        display=rf"{_sign(strength)}s\,n^{{\mathsf T}},\quad s = {_latex(silent)}",
     )
 
 
 def _sign(strength: object) -> str:
-    """Return a factor in front of a product: nothing for 1."""
+    """Return a factor in front of a product as LaTeX: empty for 1, a minus sign for -1."""
     return {"1": "", "-1": "-"}.get(_latex(strength), _latex(strength))
 
 

@@ -63,7 +63,7 @@ def derive() -> Derivation:
         because="the chain rule, and unit norm",
         relations=unit,
         named=r"\dot R",
-        shown=r"R\,[\omega_b]_\times",
+        display=r"R\,[\omega_b]_\times",
     )
     d.step(
         "Conversely, the angular velocity is the vector part of twice the conjugate times the rate.",
@@ -84,7 +84,7 @@ def derive() -> Derivation:
         because="the chain rule, and unit norm",
         relations=unit,
         named=r"\dot R",
-        shown=r"[\omega_s]_\times R",
+        display=r"[\omega_s]_\times R",
     )
     d.step(
         "Both are one equation: the rate in space of the turned angular velocity is the rate in the body.",
@@ -93,7 +93,7 @@ def derive() -> Derivation:
         because=r"$\omega_s = R\,\omega_b$",
         relations=unit,
         named=r"\tfrac12 (0, R\,\omega_b)\,q",
-        shown=r"\tfrac12\,q\,(0, \omega_b)",
+        display=r"\tfrac12\,q\,(0, \omega_b)",
     )
     d.step(
         r"The opposite quaternion is the same attitude.",

@@ -48,7 +48,7 @@ def _fixed(d: Derivation, dcm_sb: Matrix, place: Matrix, body: dict) -> None:  #
         because=r"$d$ is constant, and $\dot R = R\,[\omega_b]_\times$",
         relations=UNIT,
         named=r"\frac{d}{dt} (x + R\,d)",
-        shown=r"v + R \left( \omega_b \times d \right)",
+        display=r"v + R \left( \omega_b \times d \right)",
     )
     d.step(
         "Along the line between them both points have one velocity: the line is neither stretched nor pressed.",
@@ -65,7 +65,7 @@ def _fixed(d: Derivation, dcm_sb: Matrix, place: Matrix, body: dict) -> None:  #
         because="the velocity is differentiated once more",
         relations=UNIT,
         named=r"R^{\mathsf T} (a_Q - a_P)",
-        shown=r"\dot\omega_b \times d + \omega_b \times (\omega_b \times d)",
+        display=r"\dot\omega_b \times d + \omega_b \times (\omega_b \times d)",
     )
     d.step(
         "Its second part points to the axis through $P$, and is $|\\omega|^2$ times the distance from it.",
@@ -73,7 +73,7 @@ def _fixed(d: Derivation, dcm_sb: Matrix, place: Matrix, body: dict) -> None:  #
         OMEGA * OMEGA.dot(D) - squared(OMEGA) * D,
         because="of the double cross product",
         named=r"\omega_b \times (\omega_b \times d)",
-        shown=r"\omega_b\,(\omega_b \cdot d) - |\omega_b|^2\,d",
+        display=r"\omega_b\,(\omega_b \cdot d) - |\omega_b|^2\,d",
     )
     d.notation(
         {r"\omega": OMEGA, "v_P": V, "v_Q": V + OMEGA.cross(D), "r": Matrix([symbols.r_1, symbols.r_2, symbols.r_3])}
@@ -85,7 +85,7 @@ def _fixed(d: Derivation, dcm_sb: Matrix, place: Matrix, body: dict) -> None:  #
         V + OMEGA.cross(offset),
         because="the cross product is linear",
         named=r"v_Q + \omega \times (r - d)",
-        shown=r"v_P + \omega \times r",
+        display=r"v_P + \omega \times r",
     )
 
 
@@ -94,7 +94,7 @@ def _moving(d: Derivation, dcm_sb: Matrix, place: Matrix, body: dict) -> None:  
     moving = body | pairs(symbols.offset, U) | pairs(symbols.relative_velocity, W)
     velocity = rate(place, moving)
     d.notation({"u": U, "w": W, "v_P": V, "v_Q": velocity, "a_P": A, "a_Q": rate(velocity, moving)}, moving)
-    d.given(
+    d.passage(
         r"Seen from the body, let the point move with $u$ and accelerate with $w$:", (r"\dot d", "u"), (r"\dot u", "w")
     )
     d.step(
@@ -104,7 +104,7 @@ def _moving(d: Derivation, dcm_sb: Matrix, place: Matrix, body: dict) -> None:  
         because="the velocity of the place in the body, and the velocity through the body",
         relations=UNIT,
         named=r"R^{\mathsf T} (v_Q - v_P)",
-        shown=r"\omega_b \times d + u",
+        display=r"\omega_b \times d + u",
     )
     d.step(
         "The acceleration: that of the place, Coriolis' part, and the relative one.",
@@ -113,7 +113,7 @@ def _moving(d: Derivation, dcm_sb: Matrix, place: Matrix, body: dict) -> None:  
         because="$u$ is turned by the body, and it changes the place: each gives $\\omega \\times u$ once",
         relations=UNIT,
         named=r"R^{\mathsf T} (a_Q - a_P)",
-        shown=r"\dot\omega_b \times d + \omega_b \times (\omega_b \times d) + 2\,\omega_b \times u + w",
+        display=r"\dot\omega_b \times d + \omega_b \times (\omega_b \times d) + 2\,\omega_b \times u + w",
     )
     d.step(
         "Coriolis' part does no work on the relative motion.",
@@ -128,7 +128,7 @@ def _axis(d: Derivation) -> None:
     d.section("The axis of the motion")
     center = OMEGA.cross(V) / squared(OMEGA)
     d.notation({r"\omega": OMEGA, "v": V, "d_0": center, "d": D})
-    d.given(r"Let now all components be in one frame, and take the point at $d_0$ from $P$:",
+    d.passage(r"Let now all components be in one frame, and take the point at $d_0$ from $P$:",
             ("d_0", r"\frac{\omega \times v}{|\omega|^2}"))  # fmt: skip
     d.step(
         r"Its velocity is along $\omega$: every motion of a body is, at each moment, a screw (Chasles, Mozzi).",
@@ -136,7 +136,7 @@ def _axis(d: Derivation) -> None:
         OMEGA * OMEGA.dot(V) / squared(OMEGA),
         because=r"$\omega \times (\omega \times v)$ takes away what is across $\omega$",
         named=r"v + \omega \times d_0",
-        shown=r"\frac{\omega \cdot v}{|\omega|^2}\,\omega",
+        display=r"\frac{\omega \cdot v}{|\omega|^2}\,\omega",
     )
     plane = {symbols.omega_1: 0, symbols.omega_2: 0, symbols.v_z: 0}
     d.notation({r"\omega": OMEGA.subs(plane), "v": V.subs(plane), "d_0": center.subs(plane)})
@@ -153,5 +153,5 @@ def _axis(d: Derivation) -> None:
         OMEGA.cross(D - center).subs(plane),
         because="its own velocity is zero",
         named=r"v + \omega \times d",
-        shown=r"\omega \times (d - d_0)",
+        display=r"\omega \times (d - d_0)",
     )

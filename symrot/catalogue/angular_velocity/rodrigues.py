@@ -16,13 +16,13 @@ ONE = eye(3)
 
 @dataclass(frozen=True)
 class Form:
-    """What is claimed of one set of parameters, as a formula and as a reader writes it."""
+    """The formulas claimed for one set of parameters, each as an expression and as LaTeX for a reader."""
 
     title: str
     letter: str
     rates: tuple[Symbol, ...]
     dcm: tuple[Matrix, str]
-    omega: tuple[Matrix, str]  # B_b; B_s has the skew matrix of the other sign
+    omega: tuple[Matrix, str]  # B_b; in B_s the skew matrix has the opposite sign
     inverse: tuple[Matrix, str]
 
 
@@ -82,7 +82,7 @@ def derive() -> Derivation:
         MODIFIED.dcm(),
         because="it is the projection of the opposite quaternion",
         named=r"R\left(-s/|s|^2\right)",
-        shown="R(s)",
+        display="R(s)",
     )
     return d
 
@@ -105,7 +105,7 @@ def _projection(d: Derivation, which: Projection, form: Form) -> None:
         form.dcm[0],
         because="the norm of the quaternion drops out",
         named="R",
-        shown=form.dcm[1],
+        display=form.dcm[1],
     )
     d.step("It is a rotation.", dcm_sb * dcm_sb.T, ONE, because="it is that of a unit quaternion",
            named=r"R R^{\mathsf T}")  # fmt: skip
@@ -115,7 +115,7 @@ def _projection(d: Derivation, which: Projection, form: Form) -> None:
         dcm_sb * skew(body * rates),
         because=r"all nine entries agree",
         named=r"\dot R",
-        shown=rf"R\,[B_b\,\dot {form.letter}]_\times",
+        display=rf"R\,[B_b\,\dot {form.letter}]_\times",
     )
     d.step(
         "The same matrix, collected.",
@@ -123,7 +123,7 @@ def _projection(d: Derivation, which: Projection, form: Form) -> None:
         form.omega[0],
         because="its entries are quadratic at most",
         named="B_b",
-        shown=form.omega[1],
+        display=form.omega[1],
     )
     d.step(
         "The angular velocity in space.",
@@ -131,7 +131,7 @@ def _projection(d: Derivation, which: Projection, form: Form) -> None:
         skew(space * rates) * dcm_sb,
         because="all nine entries agree",
         named=r"\dot R",
-        shown=rf"[B_s\,\dot {form.letter}]_\times R",
+        display=rf"[B_s\,\dot {form.letter}]_\times R",
     )
     d.step(
         "Its matrix is that of the body for the opposite parameters.",
@@ -139,7 +139,7 @@ def _projection(d: Derivation, which: Projection, form: Form) -> None:
         body.as_immutable().xreplace(opposite),
         because="the two differ by the sign of the skew part",
         named=f"B_s({form.letter})",
-        shown=f"B_b(-{form.letter})",
+        display=f"B_b(-{form.letter})",
     )
     d.step("The rates are polynomials in the parameters.", body.inverse * body, ONE,
            because="the two matrices are inverse to each other", named=r"B_b^{-1} B_b")  # fmt: skip
@@ -149,5 +149,5 @@ def _projection(d: Derivation, which: Projection, form: Form) -> None:
         form.inverse[0],
         because="the inverse is collected",
         named=rf"\dot {form.letter} = B_b^{{-1}} \omega_b, \quad B_b^{{-1}}",
-        shown=form.inverse[1],
+        display=form.inverse[1],
     )

@@ -27,8 +27,8 @@ def derive() -> Derivation:
     d.notation({"R": dcm_sb, "v": V, "B_b": body, "B_s": space}, pairs(symbols.rotation_vector, DV))
     d.define("Rodrigues' formula, from the eigenvalues $0, \\pm i a$ of the skew matrix; with", "a", size)
     d.step("The powers of a skew matrix repeat.", v**3, -(size**2) * v, because="Cayley and Hamilton",
-           named=r"[v]_\times^3", shown=r"-a^2\,[v]_\times")  # fmt: skip
-    d.given(
+           named=r"[v]_\times^3", display=r"-a^2\,[v]_\times")  # fmt: skip
+    d.passage(
         "Summed by the powers, the exponential series is",
         ("R", r"1 + \frac{\sin a}{a}[v]_\times + \frac{1 - \cos a}{a^2}[v]_\times^2"),
     )
@@ -39,14 +39,14 @@ def derive() -> Derivation:
         because=r"$[v]_\times$ is skew",
         named=r"R R^{\mathsf T}",
     )
-    d.step("The axis stays where it is.", dcm_sb * V, V, because=r"$v \times v = 0$", named="R v", shown="v")
+    d.step("The axis stays where it is.", dcm_sb * V, V, because=r"$v \times v = 0$", named="R v", display="v")
     d.step(
         "It is the rotation of the quaternion with half the angle.",
         dcm_of(quaternion_of_rotation_vector(V)),
         dcm_sb,
         because="double angles",
         named=r"R\left(\cos\tfrac a2,\ \tfrac{v}{a}\sin\tfrac a2\right)",
-        shown=r"e^{[v]_\times}",
+        display=r"e^{[v]_\times}",
     )
     d.section("Angular velocity")
     dcm_rate = rate(dcm_sb, pairs(symbols.rotation_vector, DV))
@@ -56,7 +56,7 @@ def derive() -> Derivation:
         dcm_sb * skew(body * DV),
         because=r"$\dot R = R\,[\omega_b]_\times$, all nine entries",
         named=r"\omega_b",
-        shown=r"\left(1 - \frac{1 - \cos a}{a^2}[v]_\times + \frac{a - \sin a}{a^3}[v]_\times^2\right) \dot v",
+        display=r"\left(1 - \frac{1 - \cos a}{a^2}[v]_\times + \frac{a - \sin a}{a^3}[v]_\times^2\right) \dot v",
     )
     d.step(
         "In space.",
@@ -64,15 +64,15 @@ def derive() -> Derivation:
         skew(space * DV) * dcm_sb,
         because=r"$\dot R = [\omega_s]_\times R$, all nine entries",
         named=r"\omega_s",
-        shown=r"\left(1 + \frac{1 - \cos a}{a^2}[v]_\times + \frac{a - \sin a}{a^3}[v]_\times^2\right) \dot v",
+        display=r"\left(1 + \frac{1 - \cos a}{a^2}[v]_\times + \frac{a - \sin a}{a^3}[v]_\times^2\right) \dot v",
     )
     d.step("One Jacobian is the transpose of the other.", body, space.T, because="only the odd term changes its sign",
-           named="B_b", shown=r"B_s^{\mathsf T}")  # fmt: skip
+           named="B_b", display=r"B_s^{\mathsf T}")  # fmt: skip
     d.step("Its inverse.", body * body.inverse, eye(3), because="the three matrices commute",
            named=r"\left(1 - \frac{1 - \cos a}{a^2}[v]_\times + \frac{a - \sin a}{a^3}[v]_\times^2\right)"
            r"\left(1 + \tfrac12 [v]_\times + \frac{1 - \tfrac a2 \cot \tfrac a2}{a^2}[v]_\times^2\right)")  # fmt: skip
     d.step("It is singular at whole turns, $a = 2\\pi, 4\\pi, \\ldots$, and nowhere else.",
            body.det(method="berkowitz"), body.determinant,
            because="there every axis gives the same attitude", named=r"\det B_b",
-           shown=r"\left(\frac{\sin (a/2)}{a/2}\right)^2")  # fmt: skip
+           display=r"\left(\frac{\sin (a/2)}{a/2}\right)^2")  # fmt: skip
     return d

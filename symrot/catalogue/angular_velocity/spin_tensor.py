@@ -37,14 +37,14 @@ def _skewness(d: Derivation) -> None:
     moving = pairs(symbols.rotation_entries, symbols.rotation_entry_rates)
     d.notation({"R": MATRIX, r"\omega": OMEGA_S, "u": U}, moving)
     spin = MATRIX_RATE * MATRIX.T
-    d.given(r"Let $R$ be any matrix that changes with time, and", (r"W", r"\dot R\,R^{\mathsf T}"))
+    d.passage(r"Let $R$ be any matrix that changes with time, and", (r"W", r"\dot R\,R^{\mathsf T}"))
     d.step(
         r"The symmetric part of $W$ is a rate. Where $R R^{\mathsf T} = 1$ stays so, it is zero: $W$ is skew.",
         spin + spin.T,
         rate(MATRIX * MATRIX.T, moving),
         because="the product rule",
         named=r"W + W^{\mathsf T}",
-        shown=r"\frac{d}{dt} \left( R R^{\mathsf T} \right)",
+        display=r"\frac{d}{dt} \left( R R^{\mathsf T} \right)",
     )
     d.step(
         r"In three dimensions a skew matrix is a vector $\omega$, and multiplying by it is the cross product.",
@@ -52,7 +52,7 @@ def _skewness(d: Derivation) -> None:
         OMEGA_S.cross(U),
         because="it has $3 \\cdot 2 / 2 = 3$ entries",
         named=r"[\omega]_\times u",
-        shown=r"\omega \times u",
+        display=r"\omega \times u",
     )
     d.step(
         "The vector is read off the matrix.",
@@ -60,7 +60,7 @@ def _skewness(d: Derivation) -> None:
         OMEGA_S,
         because="of the places of the three entries",
         named=r"\mathrm{vee}\,[\omega]_\times",
-        shown=r"\omega",
+        display=r"\omega",
     )
     d.step(
         "Its square is symmetric.",
@@ -68,7 +68,7 @@ def _skewness(d: Derivation) -> None:
         OMEGA_S * OMEGA_S.T - squared(OMEGA_S) * eye(3),
         because=r"$\omega \times (\omega \times u) = \omega\,(\omega \cdot u) - |\omega|^2 u$",
         named=r"[\omega]_\times^2",
-        shown=r"\omega\,\omega^{\mathsf T} - |\omega|^2\,\mathbf{1}",
+        display=r"\omega\,\omega^{\mathsf T} - |\omega|^2\,\mathbf{1}",
     )
 
 
@@ -84,7 +84,7 @@ def _frames(d: Derivation) -> None:
         because="a rotation keeps cross products",
         relations=unit,
         named=r"[R\,\omega_b]_\times",
-        shown=r"R\,[\omega_b]_\times R^{\mathsf T}",
+        display=r"R\,[\omega_b]_\times R^{\mathsf T}",
     )
     motion = attitude_rates()
     d.step(
@@ -94,7 +94,7 @@ def _frames(d: Derivation) -> None:
         because=r"$\dot q = \tfrac12\,q\,(0, \omega_b)$",
         relations=unit,
         named=r"\dot R R^{\mathsf T}",
-        shown=r"[R\,\omega_b]_\times",
+        display=r"[R\,\omega_b]_\times",
     )
     inner = pairs(P, quaternion_rates("space", P) * Matrix(symbols.vertical))
     outer = pairs(Q, quaternion_rates("space") * OMEGA_S)
@@ -108,7 +108,7 @@ def _frames(d: Derivation) -> None:
         because=r"$\frac{d}{dt} (R_1 R_2) = \dot R_1 R_2 + R_1 \dot R_2$",
         relations=[unit_relation(Q), unit_relation(P)],
         named=r"\frac{d}{dt} \left( R_1 R_2 \right)",
-        shown=r"\left[ \omega + R_1 \gamma \right]_\times R_1 R_2",
+        display=r"\left[ \omega + R_1 \gamma \right]_\times R_1 R_2",
     )
 
 
@@ -125,7 +125,7 @@ def _points(d: Derivation) -> None:
         because="its components in the body are constant",
         relations=unit,
         named=r"\frac{d}{dt}\,(R\,d)",
-        shown=r"\omega_s \times R\,d",
+        display=r"\omega_s \times R\,d",
     )
     d.notation({}, pairs(symbols.offset, moving))
     d.step(
@@ -135,7 +135,7 @@ def _points(d: Derivation) -> None:
         because="the product rule",
         relations=unit,
         named=r"R^{\mathsf T} \frac{d}{dt}\,(R\,d)",
-        shown=r"\dot d + \omega_b \times d",
+        display=r"\dot d + \omega_b \times d",
     )
     d.step(
         "Applied to the angular velocity itself: its rate is the same seen from both.",
@@ -144,7 +144,7 @@ def _points(d: Derivation) -> None:
         because=r"$\omega \times \omega = 0$",
         relations=unit,
         named=r"R^{\mathsf T} \dot\omega_s",
-        shown=r"\dot\omega_b",
+        display=r"\dot\omega_b",
     )
     velocity = OMEGA_S.cross(U)
     gradient = velocity.jacobian(U)
@@ -161,5 +161,5 @@ def _points(d: Derivation) -> None:
         2 * OMEGA_S,
         because=r"the gradient is $[\omega]_\times$, and the curl takes it twice",
         named=r"\mathrm{curl}\,(\omega \times r)",
-        shown=r"2\,\omega",
+        display=r"2\,\omega",
     )

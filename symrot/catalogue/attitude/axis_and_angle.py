@@ -55,7 +55,7 @@ def _forward(d: Derivation) -> None:
         because=r"$|n \times v|^2 = |v|^2 - (n \cdot v)^2$",
         relations=UNIT,
         named=r"\begin{bmatrix} |n \times v|^2 \\ (n \times v) \cdot v_\perp \end{bmatrix}",
-        shown=r"\begin{bmatrix} |v_\perp|^2 \\ 0 \end{bmatrix}",
+        display=r"\begin{bmatrix} |v_\perp|^2 \\ 0 \end{bmatrix}",
     )
     turned = along + cos(ALPHA) * across + sin(ALPHA) * N.cross(V)
     d.step(
@@ -65,7 +65,7 @@ def _forward(d: Derivation) -> None:
         because=r"a turn by $\alpha$ takes $v_\perp$ to $\cos\alpha\;v_\perp + \sin\alpha\;n \times v$",
         relations=UNIT,
         named=r"v_\parallel + \cos\alpha\;v_\perp + \sin\alpha\;n \times v",
-        shown=r"\left( 1 + \sin\alpha\,[n]_\times + (1 - \cos\alpha)\,[n]_\times^2 \right) v = R\,v",
+        display=r"\left( 1 + \sin\alpha\,[n]_\times + (1 - \cos\alpha)\,[n]_\times^2 \right) v = R\,v",
     )
     d.step(
         "All nine entries.",
@@ -74,7 +74,7 @@ def _forward(d: Derivation) -> None:
         because=r"$[n]_\times^2 = n n^{\mathsf T} - 1$ for a unit vector",
         relations=UNIT,
         named="R",
-        shown=r"\cos\alpha\;\mathbf{1} + (1 - \cos\alpha)\,n n^{\mathsf T} + \sin\alpha\,[n]_\times",
+        display=r"\cos\alpha\;\mathbf{1} + (1 - \cos\alpha)\,n n^{\mathsf T} + \sin\alpha\,[n]_\times",
     )
     d.step(
         "It is a rotation.",
@@ -115,7 +115,7 @@ def _back(d: Derivation) -> None:
         because="only one of the three terms is skew",
         relations=UNIT,
         named=r"s = \tfrac12\,\mathrm{vee} \left( R - R^{\mathsf T} \right)",
-        shown=r"\sin\alpha\;n",
+        display=r"\sin\alpha\;n",
     )
     d.step(
         r"Together they are a point of the unit circle, and $\alpha = \mathrm{atan2}\left(|s|, \tfrac12 "
@@ -133,7 +133,7 @@ def _half_turn(d: Derivation) -> None:
     d.section("At half a turn")
     half = dcm_of_axis_angle().subs(ALPHA, pi)
     d.notation({"R": Matrix(half)})
-    d.given(r"At $\alpha = \pi$ the skew part is zero, and $n = s / \sin\alpha$ has no meaning.")
+    d.passage(r"At $\alpha = \pi$ the skew part is zero, and $n = s / \sin\alpha$ has no meaning.")
     d.step(
         "But then the symmetric part is the axis alone.",
         (half + eye(3)) / 2,
@@ -141,7 +141,7 @@ def _half_turn(d: Derivation) -> None:
         because=r"$\cos\pi = -1$",
         relations=UNIT,
         named=r"\tfrac12 \left( R + 1 \right)",
-        shown=r"n\,n^{\mathsf T}",
+        display=r"n\,n^{\mathsf T}",
     )
     d.step(
         "Every column of it is along the axis; the longest is at least $1/\\sqrt 3$ long.",
@@ -169,5 +169,5 @@ def _half_turn(d: Derivation) -> None:
         because=r"$1 - \cos\alpha = 2 \sin^2 (\alpha/2)$",
         relations=UNIT,
         named=r"R + R^{\mathsf T} + (1 - \mathrm{tr}\,R)\,\mathbf{1}",
-        shown=r"4 \sin^2 \tfrac\alpha2\; n\,n^{\mathsf T}",
+        display=r"4 \sin^2 \tfrac\alpha2\; n\,n^{\mathsf T}",
     )

@@ -59,11 +59,11 @@ def _product(d: Derivation) -> None:
         because=r"$p\,(q\,v\,\bar q)\,\bar p = (p q)\,v\,\overline{(p q)}$",
         relations=units,
         named="R(p\\,q)",
-        shown="R(p)\\,R(q)",
+        display="R(p)\\,R(q)",
     )
     product = qmul(quaternion_of_axis_angle(N, ALPHA), quaternion_of_axis_angle(K, BETA))
     cosine = cos(ALPHA / 2) * cos(BETA / 2) - sin(ALPHA / 2) * sin(BETA / 2) * N.dot(K)
-    d.given(
+    d.passage(
         r"Let the first turn be by $\theta$ about $k$, the second by $\alpha$ about $n$: $R(n, \alpha)\,R(k, \theta)$."
     )
     d.step(
@@ -72,7 +72,7 @@ def _product(d: Derivation) -> None:
         cosine,
         because="the scalar part of a product of quaternions is the product of the scalars less the scalar product",
         named=r"\cos \tfrac{\text{angle}}{2}",
-        shown=r"\cos\tfrac\alpha2 \cos\tfrac\theta2 - \sin\tfrac\alpha2 \sin\tfrac\theta2\; n \cdot k",
+        display=r"\cos\tfrac\alpha2 \cos\tfrac\theta2 - \sin\tfrac\alpha2 \sin\tfrac\theta2\; n \cdot k",
     )
     vector = (
         sin(ALPHA / 2) * cos(BETA / 2) * N
@@ -85,7 +85,7 @@ def _product(d: Derivation) -> None:
         vector,
         because="the vector part of the product",
         named=r"\text{axis}\;\sin \tfrac{\text{angle}}{2}",
-        shown=r"\sin\tfrac\alpha2 \cos\tfrac\theta2\; n + \cos\tfrac\alpha2 \sin\tfrac\theta2\; k"
+        display=r"\sin\tfrac\alpha2 \cos\tfrac\theta2\; n + \cos\tfrac\alpha2 \sin\tfrac\theta2\; k"
         r" + \sin\tfrac\alpha2 \sin\tfrac\theta2\; n \times k",
     )
 
@@ -100,7 +100,7 @@ def _order(d: Derivation) -> None:
         Matrix([0, *(2 * sin(ALPHA / 2) * sin(BETA / 2) * N.cross(K))]),
         because="only the cross product changes its sign",
         named=r"q_n q_k - q_k q_n",
-        shown=r"\left( 0,\; 2 \sin\tfrac\alpha2 \sin\tfrac\theta2\; n \times k \right)",
+        display=r"\left( 0,\; 2 \sin\tfrac\alpha2 \sin\tfrac\theta2\; n \times k \right)",
     )
     quarter_x, quarter_z = (elementary_rotation(axis, pi / 2) for axis in "XZ")
     d.step(
@@ -117,7 +117,7 @@ def _order(d: Derivation) -> None:
         because=r"$[n]_\times$ commutes with itself",
         relations=AXES[:1],
         named=r"R(n, \alpha)\,R(n, \theta)",
-        shown=r"R(n, \alpha + \theta)",
+        display=r"R(n, \alpha + \theta)",
     )
     half_n, half_k = dcm_of_axis_angle(N, pi), dcm_of_axis_angle(K, pi)
     d.step(
@@ -149,7 +149,7 @@ def _small(d: Derivation) -> None:
         because=r"the commutator of two skew matrices is that of the cross product",
         named=r"\left. \frac{\partial^2 (R_n R_k - R_k R_n)}{\partial\alpha\,\partial\theta} \right|_0"
         r" = [n]_\times [k]_\times - [k]_\times [n]_\times",
-        shown=r"[n \times k]_\times",
+        display=r"[n \times k]_\times",
     )
 
 
@@ -157,7 +157,7 @@ def _frames(d: Derivation) -> None:
     d.section("Axes of space, axes of the body")
     dcm_sb = Matrix(dcm_of())
     carried = dcm_sb * K
-    d.given(r"Let the body have the attitude $R$, and turn by $\theta$ about an axis that is $k$ in the body, "
+    d.passage(r"Let the body have the attitude $R$, and turn by $\theta$ about an axis that is $k$ in the body, "
             r"so $R k$ in space.")  # fmt: skip
     d.step(
         "A turn about an axis of the body is a factor on the right.",
@@ -166,7 +166,7 @@ def _frames(d: Derivation) -> None:
         because=r"$[R k]_\times = R\,[k]_\times R^{\mathsf T}$",
         relations=[unit_relation(), squared(K) - 1],
         named=r"R(R k, \theta)\,R",
-        shown=r"R\;R(k, \theta)",
+        display=r"R\;R(k, \theta)",
     )
     d.step(
         "Hence the angle of a rotation is the same in all axes, and its axis turns like a vector.",
@@ -175,7 +175,7 @@ def _frames(d: Derivation) -> None:
         because=r"$R^{\mathsf T} R = 1$",
         relations=[unit_relation(), squared(K) - 1],
         named=r"R\;R(k, \theta)\,R^{\mathsf T}",
-        shown=r"R(R k, \theta)",
+        display=r"R(R k, \theta)",
     )
     intrinsic = [elementary_rotation("Z", symbols.phi), elementary_rotation("X", symbols.theta)]
     second_axis = intrinsic[0] * Matrix([1, 0, 0])
@@ -185,7 +185,7 @@ def _frames(d: Derivation) -> None:
         intrinsic[0] * intrinsic[1],
         because="of the first of these steps; an intrinsic sequence is the extrinsic one read backwards",
         named=r"R(R_z(\phi)\,e_x, \theta)\,R_z(\phi)",
-        shown=r"R_z(\phi)\,R_x(\theta)",
+        display=r"R_z(\phi)\,R_x(\theta)",
     )
     d.step(
         "The inverse undoes the turns in reverse order.",

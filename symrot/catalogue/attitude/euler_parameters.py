@@ -91,7 +91,7 @@ def _precession(d: Derivation) -> None:
 
 def _all(d: Derivation) -> None:
     d.section("All sequences")
-    d.given(
+    d.passage(
         "For each sequence the product of the three turns is written out, and proven to be the rotation of the angles."
     )
     for sequence in INTRINSIC_SEQUENCES:
@@ -103,7 +103,7 @@ def _all(d: Derivation) -> None:
             dcm(sequence),
             because="the quaternion of a product is the product of the quaternions",
             named="R(q)",
-            shown=rf"R_{{\mathrm{{{sequence}}}}}(\phi, \theta, \psi)",
+            display=rf"R_{{\mathrm{{{sequence}}}}}(\phi, \theta, \psi)",
         )
     d.step(
         "An extrinsic sequence is the intrinsic one read backwards, and so are its parameters.",
@@ -111,7 +111,7 @@ def _all(d: Derivation) -> None:
         Matrix(quaternion_of_euler("XYZ")).subs({PHI: PSI, PSI: PHI}, simultaneous=True),
         because="a turn about an axis of space is a factor on the left",
         named=r"q_{\mathrm{zyx}}(\phi, \theta, \psi)",
-        shown=r"q_{\mathrm{XYZ}}(\psi, \theta, \phi)",
+        display=r"q_{\mathrm{XYZ}}(\psi, \theta, \phi)",
     )
     d.step(
         "The matrix in the parameters has no sines: it is quadratic.",

@@ -35,7 +35,7 @@ def derive() -> Derivation:
             "attitude to another is orthogonal, in $D$ dimensions $D (D - 1) / 2$ numbers fix it, and in space three."
         ),
     )
-    d.given("Let $R$ be any matrix, with entries $R_{ij}$, and $u$, $v$ any vectors.")
+    d.passage("Let $R$ be any matrix, with entries $R_{ij}$, and $u$, $v$ any vectors.")
     excess = MATRIX.T * MATRIX - eye(3)
     change = squared(MATRIX * U) - squared(U)
     d.step(
@@ -44,7 +44,7 @@ def derive() -> Derivation:
         U.dot(excess * U),
         because="$|R u|^2$ is the product of $R u$ with itself",
         named="|R u|^2 - |u|^2",
-        shown=r"u^{\mathsf T} \left( R^{\mathsf T} R - 1 \right) u",
+        display=r"u^{\mathsf T} \left( R^{\mathsf T} R - 1 \right) u",
     )
     d.step(
         "If it is zero for every vector, so are its second derivatives: the matrix is orthogonal, "
@@ -53,7 +53,7 @@ def derive() -> Derivation:
         excess,
         because="the matrix of a quadratic form, being symmetric, is half its second derivatives",
         named=r"\tfrac12\, \frac{\partial^2}{\partial u\,\partial u} \left( |R u|^2 - |u|^2 \right)",
-        shown=r"R^{\mathsf T} R - 1",
+        display=r"R^{\mathsf T} R - 1",
     )
     d.step(
         "Then angles are kept as well.",
@@ -61,7 +61,7 @@ def derive() -> Derivation:
         U.dot(excess * V),
         because="the same matrix stands between two different vectors",
         named=r"R u \cdot R v - u \cdot v",
-        shown=r"u^{\mathsf T} \left( R^{\mathsf T} R - 1 \right) v",
+        display=r"u^{\mathsf T} \left( R^{\mathsf T} R - 1 \right) v",
     )
     d.step(
         r"The determinant is $1$ or $-1$.",
@@ -69,9 +69,9 @@ def derive() -> Derivation:
         MATRIX.det() ** 2,
         because=r"a matrix and its transpose have one determinant, and here the left side is $\det 1$",
         named=r"\det \left( R^{\mathsf T} R \right)",
-        shown=r"\left( \det R \right)^2",
+        display=r"\left( \det R \right)^2",
     )
-    d.given(
+    d.passage(
         "A motion cannot jump from $1$ to $-1$: the attitudes of a body have determinant 1. Those are the rotations."
     )
     d.step(
@@ -82,7 +82,7 @@ def derive() -> Derivation:
         -MATRIX.det() * excess,
         because=r"$\mathrm{adj}(R)\,R = \det R$, for every matrix",
         named=r"\left( \mathrm{adj}(R) - \det R\; R^{\mathsf T} \right) R",
-        shown=r"\det R \left( 1 - R^{\mathsf T} R \right)",
+        display=r"\det R \left( 1 - R^{\mathsf T} R \right)",
     )
     _count(d)
     _angle(d)
@@ -123,7 +123,7 @@ def _angle(d: Derivation) -> None:
     alpha = symbols.alpha
     first = Matrix([cos(alpha), sin(alpha)])
     conditions = Matrix([[first[0], first[1]], [-first[1], first[0]]])
-    d.given(
+    d.passage(
         r"In the plane, let the first column be the unit vector $(\cos\alpha, \sin\alpha)$. The second "
         "$(x, y)$ is at right "
         "angles to it, and the determinant is 1: two linear equations.",

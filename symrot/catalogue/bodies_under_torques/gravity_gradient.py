@@ -29,7 +29,7 @@ def derive() -> Derivation:
     unit = [squared(R) - 1]
     n, epsilon, mass = symbols.n, symbols.epsilon, symbols.m
     d.section("The torque")
-    d.given(
+    d.passage(
         r"A point of mass $m$ at $\rho = (x, y, z)$ from the centre of mass, which is $a = 1/\epsilon$ from the "
         r"centre of "
         r"attraction in the direction $r$, is attracted by the inverse square of its distance; on a circular orbit "
@@ -47,7 +47,7 @@ def derive() -> Derivation:
         because="the derivative at the centre of mass, where the radius has length 1",
         relations=unit,
         named=r"\frac{1}{a} \left. \frac{\partial F}{\partial \epsilon} \right|_0",
-        shown=r"m\,n^2 \left( 3\,(r \cdot \rho)\,r - \rho \right)",
+        display=r"m\,n^2 \left( 3\,(r \cdot \rho)\,r - \rho \right)",
     )
     tensor = Matrix(inertia_of_point(mass, P))
     d.notation({r"I_\rho": tensor})
@@ -58,7 +58,7 @@ def derive() -> Derivation:
         because=r"$I_\rho\, r = m\,(|\rho|^2 r - (r \cdot \rho)\,\rho)$, and the first part is along $r$",
         relations=unit,
         named=r"\tau = \rho \times \frac{1}{a} \left. \frac{\partial F}{\partial \epsilon} \right|_0",
-        shown=r"3 n^2\, r \times I_\rho\, r",
+        display=r"3 n^2\, r \times I_\rho\, r",
     )
     torque = 3 * n**2 * R.cross(TENSOR * R)
     d.notation({r"\tau": torque})
@@ -82,7 +82,7 @@ def derive() -> Derivation:
         because=r"in space it turns about the normal at the rate $n$",
         relations=[unit_relation()],
         named=r"\dot r",
-        shown=r"r \times (\omega - n\,k)",
+        display=r"r \times (\omega - n\,k)",
     )
     motion = (
         pairs(symbols.omega_b, angular_acceleration(TENSOR, OMEGA, torque))
@@ -97,7 +97,7 @@ def derive() -> Derivation:
         n * torque.dot(K),
         because="the potential depends on time through the radius",
         named=r"\frac{d}{dt} \left( \tfrac12\,\omega \cdot I\,\omega + \tfrac32 n^2\, r \cdot I\,r \right)",
-        shown=r"n\, k \cdot \tau",
+        display=r"n\, k \cdot \tau",
     )
     d.step(
         "What the orbit gives in energy it gives in angular momentum about its normal.",
@@ -105,7 +105,7 @@ def derive() -> Derivation:
         torque.dot(K),
         because="the rate of a component of angular momentum along a fixed direction is that of the torque",
         named=r"\frac{d}{dt} \left( k \cdot I\,\omega \right)",
-        shown=r"k \cdot \tau",
+        display=r"k \cdot \tau",
     )
     d.step(
         "So the energy in axes that turn with the orbit is kept (the Jacobi integral).",

@@ -40,7 +40,7 @@ def _momentum() -> tuple[Matrix, dict]:  # type: ignore[type-arg]
 
 def _torque(d: Derivation, torque: Matrix, line: Matrix, momentum: Matrix, motion: dict) -> None:  # type: ignore[type-arg]
     d.section("The torque of steady precession")
-    d.given(
+    d.passage(
         r"Angles of ZXZ. Nutation, precession $\dot\phi$ and spin $\dot\psi$ are constant, and the line of nodes, "
         r"about which the "
         "axle would tilt, is",
@@ -54,7 +54,7 @@ def _torque(d: Derivation, torque: Matrix, line: Matrix, momentum: Matrix, motio
         total * line,
         because="angular momentum lies in the plane of the vertical and the axle, and turns with it",
         named=r"\dot L_s",
-        shown=r"\left( C\,\omega_3 - A\,\dot\phi \cos\theta \right) \dot\phi \sin\theta\;e, \quad \omega_3 = \dot\psi "
+        display=r"\left( C\,\omega_3 - A\,\dot\phi \cos\theta \right) \dot\phi \sin\theta\;e, \quad \omega_3 = \dot\psi "
         r"+ \dot\phi "
         r"\cos\theta",
     )
@@ -65,7 +65,7 @@ def _torque(d: Derivation, torque: Matrix, line: Matrix, momentum: Matrix, motio
         (PRECESSION * vertical).cross(momentum),
         because=r"$L_s$ is carried round the vertical at the rate $\dot\phi$",
         named=r"\dot L_s",
-        shown=r"\dot\phi\,e_z \times L_s",
+        display=r"\dot\phi\,e_z \times L_s",
     )
     d.step(
         "It does no work.",
@@ -88,7 +88,7 @@ def _level(d: Derivation, torque: Matrix, line: Matrix, momentum: Matrix) -> Non
         C * SPIN * PRECESSION * line,
         because=r"$\cos\frac\pi2 = 0$; exact, for slow and fast precession",
         named=r"\dot L_s",
-        shown=r"C\,\dot\psi\,\dot\phi\;e",
+        display=r"C\,\dot\psi\,\dot\phi\;e",
     )
     weight = (ARM * axle).cross(Matrix([0, 0, -W]))
     d.step(
@@ -97,7 +97,7 @@ def _level(d: Derivation, torque: Matrix, line: Matrix, momentum: Matrix) -> Non
         W * ARM * line,
         because="a force downwards at a level arm",
         named=r"c_3\,a \times (-W e_z)",
-        shown=r"W c_3\;e",
+        display=r"W c_3\;e",
     )
     steady = {PRECESSION: W * ARM / (C * SPIN)}
     d.step(
@@ -106,7 +106,7 @@ def _level(d: Derivation, torque: Matrix, line: Matrix, momentum: Matrix) -> Non
         weight,
         because="torque is the rate of angular momentum",
         named=r"\left. \dot L_s \right|_{\dot\phi = W c_3 / (C \dot\psi)}",
-        shown=r"W c_3\;e",
+        display=r"W c_3\;e",
     )
     d.step(
         "The axle follows the torque: the angular momentum of the spin moves towards its direction.",
@@ -114,7 +114,7 @@ def _level(d: Derivation, torque: Matrix, line: Matrix, momentum: Matrix) -> Non
         line,
         because="a level axle, carried round the vertical",
         named=r"\frac{\partial a}{\partial \phi}",
-        shown="e",
+        display="e",
     )
     d.step(
         "Pushed round faster than that, it rises; held back, it sinks: what is missing of the moment turns about the "

@@ -27,7 +27,7 @@ def derive() -> Derivation:
     momentum_b = TENSOR * OMEGA + ROTOR
     dcm_sb = Matrix(dcm_of())
     domega = Matrix(symbols.omega_rates)
-    d.given("The total angular momentum:", (r"L_b", r"I\,\omega_b + h"))
+    d.passage("The total angular momentum:", (r"L_b", r"I\,\omega_b + h"))
     d.step(
         "Its rate in space, along the axes of the body.",
         dcm_sb.T * rate(dcm_sb * momentum_b, attitude_rates() | pairs(symbols.omega_b, domega)),
@@ -35,7 +35,7 @@ def derive() -> Derivation:
         because=r"$h$ turns with the body",
         relations=[unit_relation()],
         named=r"R^{\mathsf T} \dot L_s",
-        shown=r"I\,\dot\omega_b + \omega_b \times (I\,\omega_b + h)",
+        display=r"I\,\dot\omega_b + \omega_b \times (I\,\omega_b + h)",
     )
     acceleration = angular_acceleration(TENSOR, OMEGA, TORQUE, ROTOR)
     d.step(
@@ -45,7 +45,7 @@ def derive() -> Derivation:
         because="the tensor has an inverse",
         named=r"\dot\omega_b = I^{-1} \left( \tau_b - \omega_b \times (I\,\omega_b + h) \right)"
         r"\quad\Rightarrow\quad I\,\dot\omega_b + \omega_b \times (I\,\omega_b + h)",
-        shown=r"\tau_b",
+        display=r"\tau_b",
     )
     d.section("Without torque")
     free = attitude_rates() | pairs(symbols.omega_b, angular_acceleration(TENSOR, OMEGA, 0 * OMEGA, ROTOR))

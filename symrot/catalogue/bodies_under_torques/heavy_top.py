@@ -41,7 +41,7 @@ def derive() -> Derivation:
 
 def _lagrangian(d: Derivation, kinetic: Expr, lagrangian: Expr) -> None:
     d.section("Lagrangian and cyclic momenta")
-    d.given(r"Angles of ZXZ, axis 3 of space upwards, moments $A, A, C$ about the fixed point. The Lagrangian is",
+    d.passage(r"Angles of ZXZ, axis 3 of space upwards, moments $A, A, C$ about the fixed point. The Lagrangian is",
             (r"\mathcal L", r"T - W c_3 \cos\theta"))  # fmt: skip
     d.step(
         "The kinetic energy.",
@@ -110,7 +110,7 @@ def _potential(d: Derivation, kinetic: Expr, lagrangian: Expr) -> Expr:
         HALF * A * DTHETA**2 + potential,
         because="the rates of the cyclic angles are put in",
         named="T + V",
-        shown=r"\tfrac12\,A\,\dot\theta^2 + U(\theta), \quad U = \frac{(p_\phi - p_\psi \cos\theta)^2}{2 A "
+        display=r"\tfrac12\,A\,\dot\theta^2 + U(\theta), \quad U = \frac{(p_\phi - p_\psi \cos\theta)^2}{2 A "
         r"\sin^2\theta} + "
         r"\frac{p_\psi^2}{2 C} + W c_3 \cos\theta",
     )
@@ -123,7 +123,7 @@ def _potential(d: Derivation, kinetic: Expr, lagrangian: Expr) -> Expr:
         because="the rates are put in after differentiating",
         named=r"\frac{d}{dt} \frac{\partial \mathcal L}{\partial \dot\theta} - \frac{\partial \mathcal L}{\partial "
         r"\theta}",
-        shown=r"A\,\ddot\theta + \frac{\partial U}{\partial \theta}",
+        display=r"A\,\ddot\theta + \frac{\partial U}{\partial \theta}",
     )
     energy, height = symbols.E, Symbol("u", real=True)
     speed = 2 / A * (energy - potential) * sin(THETA) ** 2
@@ -139,7 +139,7 @@ def _potential(d: Derivation, kinetic: Expr, lagrangian: Expr) -> Expr:
         cubic.subs(height, cos(THETA)),
         because=r"$\dot u = -\dot\theta \sin\theta$ and $\tfrac12 A \dot\theta^2 = E - U$",
         named=r"\dot u^2 = \frac{2}{A} (E - U) \sin^2\theta",
-        shown=r"\frac{1 - u^2}{A} \left( 2 E - \frac{p_\psi^2}{C} - 2 W c_3 u \right) - \frac{(p_\phi - p_\psi "
+        display=r"\frac{1 - u^2}{A} \left( 2 E - \frac{p_\psi^2}{C} - 2 W c_3 u \right) - \frac{(p_\phi - p_\psi "
         r"u)^2}{A^2}",
     )
     d.step(
@@ -157,7 +157,7 @@ def _steady(d: Derivation, potential: Expr) -> None:
     slope = A * RATE**2 * cos(THETA) - P_PSI * RATE + W * ARM
     steady = {P_PHI: P_PSI * cos(THETA) + A * RATE * sin(THETA) ** 2}
     d.names.pop("U")
-    d.given(
+    d.passage(
         r"Let the axis keep its angle and precess at the rate $n$:",
         (r"p_\phi", r"p_\psi \cos\theta + A\,n \sin^2\theta"),
     )
@@ -167,10 +167,10 @@ def _steady(d: Derivation, potential: Expr) -> None:
         -sin(THETA) * slope,
         because="the potential must be stationary",
         named=r"\frac{\partial U}{\partial \theta}",
-        shown=r"-\sin\theta \left( A\,n^2 \cos\theta - p_\psi\,n + W c_3 \right)",
+        display=r"-\sin\theta \left( A\,n^2 \cos\theta - p_\psi\,n + W c_3 \right)",
     )
     fast, slow = _rates()
-    d.given(
+    d.passage(
         r"This has two roots, a fast and a slow rate, real where $p_\psi^2 \ge 4 A W c_3 \cos\theta$:",
         (r"n_\pm", r"\frac{p_\psi \pm \sqrt{p_\psi^2 - 4 A W c_3 \cos\theta}}{2 A \cos\theta}"),
     )

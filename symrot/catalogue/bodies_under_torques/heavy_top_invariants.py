@@ -25,7 +25,7 @@ def derive() -> Derivation:
         ),
     )
     d.nonzero("The tensor of inertia has an inverse,", TENSOR.det(), r"\det I")
-    d.given(r"Let $\gamma$ be the direction of gravity in the body, and $c$ the centre of mass from the fixed point:",
+    d.passage(r"Let $\gamma$ be the direction of gravity in the body, and $c$ the centre of mass from the fixed point:",
             (r"\gamma", r"R^{\mathsf T} \gamma_s"), (r"\tau_b", r"W\, c \times \gamma"))  # fmt: skip
     fixed = Matrix(symbols.normal)
     d.step(
@@ -35,7 +35,7 @@ def derive() -> Derivation:
         because=r"it is fixed in space, and $\dot R = R\,[\omega_b]_\times$",
         relations=[unit_relation()],
         named=r"\dot\gamma",
-        shown=r"\gamma \times \omega",
+        display=r"\gamma \times \omega",
     )
     weight = symbols.W * ARM.cross(DOWN)
     falling = pairs(symbols.vertical, DOWN.cross(OMEGA))
@@ -89,10 +89,10 @@ def derive() -> Derivation:
         because="energy and both angular momenta determine the transverse angular velocity",
         relations=[squared(DOWN) - 1],
         named=r"A\,\dot u^2",
-        shown=r"\left( 2 E - C \omega_3^2 + 2 W c_3\, u \right) \left( 1 - u^2 \right)"
+        display=r"\left( 2 E - C \omega_3^2 + 2 W c_3\, u \right) \left( 1 - u^2 \right)"
         r" - \frac{\left( L_\gamma - C \omega_3\, u \right)^2}{A}",
     )
-    d.given(
+    d.passage(
         "Here $2 E - C \\omega_3^2 + 2 W c_3\\, u = A (\\omega_1^2 + \\omega_2^2)$ by the energy, and "
         "$L_\\gamma$ is the "
         "component of angular momentum along $\\gamma$."

@@ -41,7 +41,7 @@ def _contacts(d: Derivation) -> Matrix:
     origin, middle = Matrix([0, 0, 0]), Matrix([sun + planet, 0, 0])
     inner, outer = Matrix([sun, 0, 0]), Matrix([sun + 2 * planet, 0, 0])
     carried = CARRIER * (sun + planet)
-    d.given(
+    d.passage(
         r"Sun $S$, planet $P$, ring $R$ and carrier $C$ turn about parallel axes. A pitch radius is the number of "
         r"teeth $Z$ times "
         r"one length $r$; the planet's axis is at $(Z_S + Z_P)\,r$ and moves with the carrier."
@@ -77,7 +77,7 @@ def _contacts(d: Derivation) -> Matrix:
 
 def _willis(d: Derivation, contacts: Matrix) -> None:
     d.section("Willis' formula")
-    d.given("Where the gears do not slip, both differences are zero.", *((entry, "0") for entry in contacts))
+    d.passage("Where the gears do not slip, both differences are zero.", *((entry, "0") for entry in contacts))
     d.step(
         "Seen from the carrier the rates of sun and ring are in the inverse ratio of their teeth, the sense reversed.",
         Z_S * (SUN - CARRIER),
@@ -137,7 +137,7 @@ def _torques(d: Derivation) -> None:
     rates = {CARRIER: (Z_S * SUN + Z_R * RING) / (Z_S + Z_R)}
     power = (sun * SUN + ring * RING + carrier * CARRIER).subs(rates)
     balance = solve([power.diff(SUN), power.diff(RING)], (ring, carrier), dict=True)[0]
-    d.given(
+    d.passage(
         r"Without friction and at constant rates the powers of the torques $\tau_1$ on the sun, $\tau_2$ on the ring "
         r"and $\tau_3$ on "
         "the carrier add to zero at all rates of sun and ring."

@@ -37,7 +37,7 @@ def _slider(d: Derivation) -> None:
     d.section("Slider-crank")
     closure = CRANK * sin(PHI) - ROD * sin(PSI)
     place = CRANK * cos(PHI) + ROD * cos(PSI)
-    d.given(
+    d.passage(
         r"A crank of length $r$ at the angle $\phi$; a rod of length $L$ goes down from its end at the angle $\psi$ "
         r"to a slider on "
         "the line through the crank's axis:",
@@ -101,7 +101,7 @@ def _four_bars(d: Derivation) -> None:
     d.section("Four bars")
     a, b, c, ground = symbols.a, symbols.b, symbols.c, symbols.h
     closure = _bar(a, PHI) + _bar(b, THETA) - _bar(c, PSI) - Matrix([ground, 0])
-    d.given(
+    d.passage(
         r"Crank $a$ at $\phi$, coupler $b$ at $\theta$, rocker $c$ at $\psi$, on a ground of length $h$:",
         (_bar(a, PHI) + _bar(b, THETA), _bar(c, PSI) + Matrix([ground, 0])),
     )

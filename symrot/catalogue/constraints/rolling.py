@@ -37,7 +37,7 @@ def _ball(d: Derivation) -> None:
     d.section("A ball on a plane")
     velocity = R * OMEGA_S.cross(UP)
     contact = -R * UP
-    d.given(r"The centre is at $R\,n$ over the point of contact, $n$ the normal of the plane, here the axis $z$.",
+    d.passage(r"The centre is at $R\,n$ over the point of contact, $n$ the normal of the plane, here the axis $z$.",
             ("v", r"R\;\omega \times n"))  # fmt: skip
     d.step(
         "With this velocity of the centre the point of contact is at rest.",
@@ -52,7 +52,7 @@ def _ball(d: Derivation) -> None:
         2 * velocity,
         because="it is twice as far from the point of contact",
         named=r"v + \omega \times R\,n",
-        shown="2 v",
+        display="2 v",
     )
     d.step(
         "Turning about the normal does not move it.",
@@ -83,7 +83,7 @@ def _wheel(d: Derivation) -> None:
         symbols.dtheta * Matrix([rim[1], R * THETA - rim[0]]),
         because="the point of contact is the instantaneous centre",
         named=r"\dot r",
-        shown=r"\dot\theta \begin{bmatrix} y \\ R\,\theta - x \end{bmatrix}",
+        display=r"\dot\theta \begin{bmatrix} y \\ R\,\theta - x \end{bmatrix}",
     )
     d.step(
         "Where it touches, it is at rest, but not without acceleration: that is towards the centre.",
@@ -102,17 +102,17 @@ def _slope(d: Derivation) -> None:
         M * acceleration - (M * G * sin(slope) - friction),
         gyration * acceleration / R - friction * R,
     )
-    d.given(
+    d.passage(
         r"A round body with the moment $C$ rolls down a slope of angle $\alpha$; along it acts friction $F_x$ "
         r"upwards. Force and "
         r"moment give $a_x$, with $a_x = R\,\ddot\theta$:",
         (r"m\,a_x", r"m g \sin\alpha - F_x"),
         (r"C\,\frac{a_x}{R}", r"F_x R"),
     )
-    found = solve(equations, (acceleration, friction), dict=True)[0]
+    solution = solve(equations, (acceleration, friction), dict=True)[0]
     d.step(
         "Its acceleration: the part of the moment that spins delays it.",
-        found[acceleration],
+        solution[acceleration],
         G * sin(slope) / (1 + gyration / (M * R**2)),
         because="friction is eliminated",
         named="a_x",
@@ -122,7 +122,7 @@ def _slope(d: Derivation) -> None:
         "Energy says the same, for friction does no work.",
         rate(
             HALF * M * speed**2 + HALF * gyration * (speed / R) ** 2 - M * G * symbols.x * sin(slope),
-            {speed: found[acceleration], symbols.x: speed},
+            {speed: solution[acceleration], symbols.x: speed},
         ),
         0,
         because=r"the force of contact acts on a point at rest",
@@ -131,14 +131,16 @@ def _slope(d: Derivation) -> None:
     bodies = {"a ring": 1, "a disk": HALF, "a ball": Rational(2, 5)}
     d.step(
         f"Shares of $g \\sin\\alpha$ for {', '.join(bodies)}: whatever mass and radius.",
-        Matrix([found[acceleration].subs(gyration, share * M * R**2) / (G * sin(slope)) for share in bodies.values()]),
+        Matrix(
+            [solution[acceleration].subs(gyration, share * M * R**2) / (G * sin(slope)) for share in bodies.values()]
+        ),
         Matrix([HALF, Rational(2, 3), Rational(5, 7)]),
         because=r"$C = m R^2,\ \tfrac12 m R^2,\ \tfrac25 m R^2$",
         named=r"\frac{a_x}{g \sin\alpha}",
     )
     d.step(
         r"It slips where friction, at most $\mu_f$ times the normal force, would not reach this ratio.",
-        found[friction] / (M * G * cos(slope)),
+        solution[friction] / (M * G * cos(slope)),
         gyration / (gyration + M * R**2) * sin(slope) / cos(slope),
         because="friction is solved for",
         named=r"\frac{F_x}{m g \cos\alpha}",
@@ -150,7 +152,7 @@ def _nonholonomic(d: Derivation) -> None:
     state = Matrix([symbols.x, symbols.y, PSI, THETA])
     roll = Matrix([R * cos(PSI), R * sin(PSI), 0, 1])
     turn = Matrix([0, 0, 1, 0])
-    d.given(
+    d.passage(
         r"An upright wheel at $(x, y)$ with heading $\psi$ and angle $\theta$ has two motions: to roll on, and to "
         r"turn on the spot.",
         (r"\text{roll}", roll),

@@ -42,7 +42,7 @@ def derive() -> Derivation:
     d.section("When it is needed")
     force = Matrix(symbols.torque_b)
     torque = dcm_of().T * force
-    d.given(
+    d.passage(
         "A torque that is constant in space, or comes from a direction of space, has the attitude in its components:",
         (r"\tau_b", r"R(q)^{\mathsf T} \tau_s"),
     )
@@ -52,6 +52,6 @@ def derive() -> Derivation:
         4 * (force[1] ** 2 + force[2] ** 2),
         because="a small turn about axis 1 turns what lies across it",
         named=r"\left| \frac{\partial \tau_b}{\partial q_1} \right|^2_{q = 1}",
-        shown=r"4 \left( \tau_{s,2}^2 + \tau_{s,3}^2 \right)",
+        display=r"4 \left( \tau_{s,2}^2 + \tau_{s,3}^2 \right)",
     )
     return d

@@ -25,7 +25,7 @@ def derive() -> Derivation:
     d.nonzero("The tensor of inertia has an inverse,", TENSOR.det(), r"\det I")
     unit = [unit_relation()]
     dcm_sb = Matrix(dcm_of())
-    d.given(
+    d.passage(
         "About the centre of mass, or a fixed point of the body, with the tensor about that point:",
         ("I", TENSOR),
         (r"L_s", r"R\,I\,\omega_b"),
@@ -41,7 +41,7 @@ def derive() -> Derivation:
         because=r"the axes of the body turn with $\dot R = R\,[\omega_b]_\times$",
         relations=unit,
         named=r"R^{\mathsf T} \dot L_s",
-        shown=r"I\,\dot\omega_b + \omega_b \times I\,\omega_b",
+        display=r"I\,\dot\omega_b + \omega_b \times I\,\omega_b",
     )
     acceleration = angular_acceleration(TENSOR, OMEGA, TORQUE)
     d.step(
@@ -51,7 +51,7 @@ def derive() -> Derivation:
         because=r"$\tau_b = R^{\mathsf T} \tau_s$, and the tensor has an inverse",
         named=r"\dot\omega_b = I^{-1} \left( \tau_b - \omega_b \times I\,\omega_b \right)"
         r"\quad\Rightarrow\quad I\,\dot\omega_b + \omega_b \times I\,\omega_b",
-        shown=r"\tau_b",
+        display=r"\tau_b",
     )
     d.section("Special axes and bodies")
     principal = angular_acceleration(diag(*symbols.principal), OMEGA, TORQUE)

@@ -27,7 +27,7 @@ def derive() -> Derivation:
         ),
     )
     dv, domega = J / M, INERTIA.inv() * PLACE.cross(J)
-    d.given(
+    d.passage(
         "The impulse $J$ at the place $d$ from the centre of mass changes momentum and angular momentum:",
         (r"m\,\Delta v", "J"),
         (r"I\,\Delta\omega", r"d \times J"),
@@ -51,7 +51,7 @@ def _place(d: Derivation, change: Matrix) -> None:
         MOBILITY * J,
         because=r"$(I^{-1} (d \times J)) \times d = -[d]_\times I^{-1} [d]_\times J$",
         named=r"\Delta v_d = \Delta v + \Delta\omega \times d",
-        shown=r"K J, \quad K = \tfrac1m\,\mathbf{1} - [d]_\times I^{-1} [d]_\times",
+        display=r"K J, \quad K = \tfrac1m\,\mathbf{1} - [d]_\times I^{-1} [d]_\times",
     )
     d.step(
         "The matrix is symmetric: a blow along one axis moves the place along another as much as conversely.",
@@ -66,7 +66,7 @@ def _place(d: Derivation, change: Matrix) -> None:
         squared(J) / M + PLACE.cross(J).dot(INERTIA.inv() * PLACE.cross(J)),
         because="both parts are positive",
         named=r"J \cdot K J",
-        shown=r"\tfrac1m\,|J|^2 + (d \times J) \cdot I^{-1} (d \times J)",
+        display=r"\tfrac1m\,|J|^2 + (d \times J) \cdot I^{-1} (d \times J)",
     )
 
 
@@ -82,7 +82,7 @@ def _energy(d: Derivation, dv: Matrix, domega: Matrix, struck: Matrix, change: M
         J.dot(struck + change / 2),
         because="kinetic energy is quadratic",
         named=r"T' - T",
-        shown=r"J \cdot \left( v_d + \tfrac12\,\Delta v_d \right)",
+        display=r"J \cdot \left( v_d + \tfrac12\,\Delta v_d \right)",
     )
     d.step(
         "A body at rest takes up half the product of impulse and velocity gained (Kelvin).",
@@ -90,7 +90,7 @@ def _energy(d: Derivation, dv: Matrix, domega: Matrix, struck: Matrix, change: M
         HALF * J.dot(MOBILITY * J),
         because="the velocity before is zero",
         named="T'",
-        shown=r"\tfrac12\,J \cdot K J",
+        display=r"\tfrac12\,J \cdot K J",
     )
 
 
@@ -100,7 +100,7 @@ def _wall(d: Derivation, struck: Matrix) -> None:
     speed = N.dot(struck)
     give = N.dot(MOBILITY * N)
     blow = -(1 + restitution) * speed / give * N
-    d.given(r"The wall has the unit normal $n$ and no friction, and the blow leaves $\epsilon$ of the speed:",
+    d.passage(r"The wall has the unit normal $n$ and no friction, and the blow leaves $\epsilon$ of the speed:",
             ("J", r"-(1 + \epsilon)\,\frac{n \cdot v_d}{n \cdot K n}\,n"))  # fmt: skip
     d.step(
         "The place leaves the wall with that fraction of the speed it came with.",
@@ -108,7 +108,7 @@ def _wall(d: Derivation, struck: Matrix) -> None:
         -restitution * speed,
         because=r"$n \cdot K J = -(1 + \epsilon)\,n \cdot v_d$",
         named=r"n \cdot v_d'",
-        shown=r"-\epsilon\,n \cdot v_d",
+        display=r"-\epsilon\,n \cdot v_d",
     )
     after = HALF * (speed + N.dot(MOBILITY * blow) + speed) * blow.dot(N)
     d.step(
@@ -118,7 +118,7 @@ def _wall(d: Derivation, struck: Matrix) -> None:
         because="the blow works on the mean of both velocities",
         relations=[squared(N) - 1],
         named=r"T - T'",
-        shown=r"\frac{1 - \epsilon^2}{2} \, \frac{(n \cdot v_d)^2}{n \cdot K n}",
+        display=r"\frac{1 - \epsilon^2}{2} \, \frac{(n \cdot v_d)^2}{n \cdot K n}",
     )
 
 
@@ -127,7 +127,7 @@ def _percussion(d: Derivation) -> None:
     x, h = symbols.x, symbols.h
     velocity = symbols.J_y / M + symbols.J_y * h / symbols.C * x
     rest = solve(velocity, x)[0]
-    d.given("A body at rest is struck across, at the distance $h$ from its centre of mass. On the line through both, "
+    d.passage("A body at rest is struck across, at the distance $h$ from its centre of mass. On the line through both, "
             "at $x$, it moves with",
             ("v_y", velocity))  # fmt: skip
     d.step(

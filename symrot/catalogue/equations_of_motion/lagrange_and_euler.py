@@ -38,7 +38,7 @@ def derive() -> Derivation:
 
 def _transposition(d: Derivation) -> None:
     d.section("The rates of the axes of the turns")
-    d.given(
+    d.passage(
         r"Let $\mu$ be any vector of constant components in the body. The product $\mu \cdot \omega = \mu \cdot B "
         r"\dot q$ is "
         "put into Lagrange's operator, for every sequence:",
@@ -54,9 +54,9 @@ def _transposition(d: Derivation) -> None:
             body.T * omega.cross(MOMENTUM),
             because="the columns of $B$ are axes that turn with the body's own turns",
             named=r"E[\mu \cdot \omega]",
-            shown=r"B^{\mathsf T} \left( \omega \times \mu \right)",
+            display=r"B^{\mathsf T} \left( \omega \times \mu \right)",
         )
-    d.given(
+    d.passage(
         r"In $\tfrac12\,\omega \cdot I\,\omega$ the vector is $\mu = I\,\omega$, which changes: that adds $B^{\mathsf "
         r"T} I "
         r"\dot\omega$. This is why gyroscopic terms appear in one form and none in the other."
@@ -75,7 +75,7 @@ def _equations(d: Derivation) -> None:
         body.T * (TENSOR * rate(omega, MOTION) + omega.cross(TENSOR * omega)),
         because="both sides are expanded in angles, rates and accelerations",
         named=r"E \left[ \tfrac12\,\omega \cdot I\,\omega \right]",
-        shown=r"B^{\mathsf T} \left( I\,\dot\omega + \omega \times I\,\omega \right)",
+        display=r"B^{\mathsf T} \left( I\,\dot\omega + \omega \times I\,\omega \right)",
     )
     principal = Matrix.diag(*symbols.principal)
     d.step(
@@ -84,7 +84,7 @@ def _equations(d: Derivation) -> None:
         symbols.C * rate(omega, MOTION)[2] - (symbols.A - symbols.B) * omega[0] * omega[1],
         because=r"the last column of $B$ is $e_3$",
         named=r"E_\psi",
-        shown=r"C\,\dot\omega_3 - (A - B)\,\omega_1 \omega_2",
+        display=r"C\,\dot\omega_3 - (A - B)\,\omega_1 \omega_2",
     )
 
 
@@ -98,7 +98,7 @@ def _torques(d: Derivation) -> None:
         (body.T * TORQUE).dot(RATES),
         because="the power of the torque is one number in both descriptions",
         named=r"\tau \cdot \omega",
-        shown=r"\left( B^{\mathsf T} \tau \right) \cdot \dot q = Q \cdot \dot q",
+        display=r"\left( B^{\mathsf T} \tau \right) \cdot \dot q = Q \cdot \dot q",
     )
     d.step(
         r"Hence $E = Q$ gives $I\,\dot\omega + \omega \times I\,\omega = \tau$, where the angles are not locked.",

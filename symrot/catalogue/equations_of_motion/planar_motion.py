@@ -46,7 +46,7 @@ def derive() -> Derivation:
         Matrix(qmul(attitude, [0, *(dtheta * axis)])) / 2,
         because=r"$\theta$ changes at the rate $\omega_3$",
         named=r"\frac{d}{dt} \left( q\, e^{k \theta/2} \right)",
-        shown=r"\tfrac12 \left( q\, e^{k \theta/2} \right) (0, 0, 0, \dot\theta)",
+        display=r"\tfrac12 \left( q\, e^{k \theta/2} \right) (0, 0, 0, \dot\theta)",
     )
     dcm_start, turning = Matrix(dcm_of()), elementary_rotation(2, theta)
     d.step(
@@ -86,5 +86,5 @@ def derive() -> Derivation:
         because="angular velocity and the angular momentum of the rotor are parallel",
         named=r"\dot\omega_b",
     )
-    d.given("Damping is along the angular velocity, component by component, and so stays on the axis too.")
+    d.passage("Damping is along the angular velocity, component by component, and so stays on the axis too.")
     return d

@@ -42,7 +42,7 @@ def _forces(d: Derivation) -> None:
         FORCE.dot(V) + POINT.cross(FORCE).dot(OMEGA),
         because="a triple product may be turned round",
         named=r"F \cdot (v + \omega \times r)",
-        shown=r"F \cdot v + (r \times F) \cdot \omega",
+        display=r"F \cdot v + (r \times F) \cdot \omega",
     )
     d.step(
         "A couple, $F$ at $r$ and $-F$ at $d$: its power does not depend on the point.",
@@ -50,7 +50,7 @@ def _forces(d: Derivation) -> None:
         (POINT - OTHER).cross(FORCE).dot(OMEGA),
         because="the velocity of the point cancels",
         named=r"F \cdot v_r - F \cdot v_d",
-        shown=r"\left( (r - d) \times F \right) \cdot \omega",
+        display=r"\left( (r - d) \times F \right) \cdot \omega",
     )
     d.step(
         "Forces between two points of the body, along their line, do no work.",
@@ -70,7 +70,7 @@ def _forces(d: Derivation) -> None:
         because="a rotation keeps scalar products",
         relations=[unit_relation()],
         named=r"\tau_s \cdot \omega_s",
-        shown=r"\tau_b \cdot \omega_b",
+        display=r"\tau_b \cdot \omega_b",
     )
 
 
@@ -85,7 +85,7 @@ def _energy(d: Derivation) -> None:
         TORQUE.dot(OMEGA),
         because=r"the gyroscopic term is at right angles to $\omega$",
         named=r"\frac{d}{dt}\,\tfrac12\,\omega \cdot I\,\omega",
-        shown=r"\tau \cdot \omega",
+        display=r"\tau \cdot \omega",
     )
     falling = pairs(symbols.velocity, FORCE / symbols.m)
     d.notation({}, falling)
@@ -95,7 +95,7 @@ def _energy(d: Derivation) -> None:
         FORCE.dot(V),
         because=r"$m\,\dot v = F$",
         named=r"\frac{d}{dt}\,\tfrac12\,m\,|v|^2",
-        shown=r"F \cdot v",
+        display=r"F \cdot v",
     )
     d.step(
         "About a fixed axis with a constant torque: work is torque times angle.",
@@ -121,7 +121,7 @@ def _kinds(d: Derivation) -> None:
         because=r"the direction of gravity $\gamma$ turns backwards in the body, $\dot\gamma = \gamma \times \omega$",
         relations=[unit_relation()],
         named=r"\dot V = -\frac{d}{dt}\,W\,c \cdot \gamma",
-        shown=r"-\left( W\,c \times \gamma \right) \cdot \omega",
+        display=r"-\left( W\,c \times \gamma \right) \cdot \omega",
     )
     d.notation({"h": Matrix(symbols.rotor)})
     rotor = Matrix(symbols.rotor)

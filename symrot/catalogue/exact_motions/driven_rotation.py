@@ -45,7 +45,7 @@ def derive() -> Derivation:
 
 def _pushed(d: Derivation) -> None:
     d.section("Constant torque")
-    d.given(
+    d.passage(
         r"The body turns [about one principal axis](planar_motion.md), of moment $C$, under the torque $\tau_3$ along "
         r"it, from $\omega_3$ at $t = 0$.",
         (r"\omega_3(t)", STEADY),
@@ -64,7 +64,7 @@ def _pushed(d: Derivation) -> None:
         STEADY,
         because="a quadratic is differentiated",
         named=r"\dot\theta(t)",
-        shown=r"\omega_3(t)",
+        display=r"\omega_3(t)",
     )
     q = Matrix(symbols.quaternion)
     d.notation({"q": q, "e_3": AXIS, r"\theta": ANGLE}, {T: S.One})
@@ -76,7 +76,7 @@ def _pushed(d: Derivation) -> None:
         quaternion_rates("body", attitude) * (STEADY * AXIS),
         because=r"the axis is fixed in the body, and in space",
         named=r"\frac{d}{dt} \left( q\,(\cos\tfrac\theta2,\ e_3 \sin\tfrac\theta2) \right)",
-        shown=r"\tfrac12\,q\,(\cos\tfrac\theta2,\ e_3 \sin\tfrac\theta2)\,(0,\ \omega_3(t)\,e_3)",
+        display=r"\tfrac12\,q\,(\cos\tfrac\theta2,\ e_3 \sin\tfrac\theta2)\,(0,\ \omega_3(t)\,e_3)",
     )
 
 
@@ -90,7 +90,7 @@ def _decay() -> tuple[Expr, Expr, Expr]:
 def _braked(d: Derivation) -> None:
     d.section("With linear damping")
     speed, angle, decay = _decay()
-    d.given(
+    d.passage(
         r"A brake adds the torque $-b_3\,\omega_3$. The rate tends to $\tau_3 / b_3$:",
         (r"\omega_3(t)", speed),
         (r"\theta(t)", angle),
@@ -101,7 +101,7 @@ def _braked(d: Derivation) -> None:
         PUSH - DRAG * speed,
         because="an exponential is its own derivative",
         named=r"C\,\dot\omega_3(t)",
-        shown=r"\tau_3 - b_3\,\omega_3(t)",
+        display=r"\tau_3 - b_3\,\omega_3(t)",
     )
     d.step(
         "It is the rate of the angle.",
@@ -109,7 +109,7 @@ def _braked(d: Derivation) -> None:
         speed,
         because="of the same derivative",
         named=r"\dot\theta(t)",
-        shown=r"\omega_3(t)",
+        display=r"\omega_3(t)",
     )
     d.step(
         "Both start as they must.",
@@ -119,7 +119,7 @@ def _braked(d: Derivation) -> None:
         named=r"\begin{bmatrix} \omega_3(0) \\ \theta(0) \end{bmatrix}",
     )
     x = symbols.v
-    d.given(
+    d.passage(
         r"For weak damping these are differences of large numbers. With $x = -b_3 t / C$ and the functions "
         r"$f_1 = (e^x - 1)/x$ and $f_2 = (e^x - 1 - x)/x^2$, which are regular at $x = 0$, they are not:"
     )
@@ -135,7 +135,7 @@ def _braked(d: Derivation) -> None:
         Matrix([START * decay + PUSH / C * T * first, START * T * first + PUSH / C * T**2 * second]),
         because="the fractions are multiplied out",
         named=r"\begin{bmatrix} \omega_3(t) \\ \theta(t) \end{bmatrix}",
-        shown=r"\begin{bmatrix} \omega_3\,e^x + \frac{\tau_3}{C}\,t\,f_1 \\ \omega_3\,t\,f_1 + \frac{\tau_3}{C}\,t^2 "
+        display=r"\begin{bmatrix} \omega_3\,e^x + \frac{\tau_3}{C}\,t\,f_1 \\ \omega_3\,t\,f_1 + \frac{\tau_3}{C}\,t^2 "
         r"f_2 \end{bmatrix}",
     )
     d.step(
@@ -154,7 +154,7 @@ def _across(d: Derivation) -> None:
     turn = (C - A) / A * symbols.theta
     d.notation({r"\theta": symbols.theta})
     omega = Matrix([first * cos(turn) - second * sin(turn), first * sin(turn) + second * cos(turn), symbols.Omega])
-    d.given(
+    d.passage(
         r"Moments $A, A, C$; $\Omega$ is the rate $\omega_3(t)$ and $\theta$ its angle, of either section above. From "
         r"$\omega_1, \omega_2$ at the start:",
         (r"\omega(t)", omega),
@@ -167,7 +167,7 @@ def _across(d: Derivation) -> None:
         Matrix(angular_acceleration(diag(A, A, C), omega, PUSH * AXIS)[:2]),
         because=r"the phase grows at the rate $\frac{C - A}{A}\,\Omega$",
         named=r"\begin{bmatrix} \dot\omega_1(t) \\ \dot\omega_2(t) \end{bmatrix}",
-        shown=r"\frac{C - A}{A}\,\Omega \begin{bmatrix} -\omega_2(t) \\ \omega_1(t) \end{bmatrix}",
+        display=r"\frac{C - A}{A}\,\Omega \begin{bmatrix} -\omega_2(t) \\ \omega_1(t) \end{bmatrix}",
     )
     d.notation({r"\theta(t)": ANGLE})
     d.step(
@@ -182,7 +182,7 @@ def _across(d: Derivation) -> None:
 def _attitude(d: Derivation) -> None:
     d.section("Its attitude")
     across, sweep, growth = symbols.omega_1, symbols.Omega, symbols.domega_3
-    d.given(
+    d.passage(
         r"In axes that turn with the transverse angular velocity, of length $\omega_1$, the angular velocity of the "
         r"body "
         r"is $(\omega_1, 0, \Omega)$ with $\Omega = \frac{C}{A}\,\omega_3(t)$, which is linear in time. The attitude "
@@ -201,7 +201,7 @@ def _attitude(d: Derivation) -> None:
         because="the quaternion equation, in pairs",
         relations=[imaginary()],
         named=r"\begin{bmatrix} \dot\alpha \\ \dot\beta \end{bmatrix}",
-        shown=r"\tfrac12 \begin{bmatrix} i \Omega\,\alpha - \omega_1\,\beta \\ \omega_1\,\alpha - i \Omega\,\beta "
+        display=r"\tfrac12 \begin{bmatrix} i \Omega\,\alpha - \omega_1\,\beta \\ \omega_1\,\alpha - i \Omega\,\beta "
         r"\end{bmatrix}",
     )
     d.step(
@@ -211,7 +211,7 @@ def _attitude(d: Derivation) -> None:
         because="the second number is eliminated",
         relations=[imaginary()],
         named=r"\ddot\alpha",
-        shown=r"\left( \frac{i}{2}\,\dot\Omega - \frac{\Omega^2 + \omega_1^2}{4} \right) \alpha",
+        display=r"\left( \frac{i}{2}\,\dot\Omega - \frac{\Omega^2 + \omega_1^2}{4} \right) \alpha",
     )
 
 
@@ -228,7 +228,7 @@ def _by_kummer(d: Derivation) -> None:
         slope: 2 * growth / sweep * (a * value - (HALF - z) * slope),
     }
     first, second = phase * value, 2 * I * sweep / across * phase * slope
-    d.given(
+    d.passage(
         r"Kummer's function $M = {}_1F_1(a; \tfrac12; z)$ and its derivative $N = dM/dz$ obey $z \frac{dN}{dz} = a M - "
         r"(\tfrac12 - z) N$. With $a = -\frac{i \omega_1^2}{8 \dot\Omega}$, $z = -\frac{i \Omega^2}{2 \dot\Omega}$, so "
         r"that $\dot z = -i \Omega$, and $E = e^{i \Omega^2 / 4 \dot\Omega}$, so that $\dot E = \frac{i}{2} \Omega E$:",
@@ -244,13 +244,13 @@ def _by_kummer(d: Derivation) -> None:
         because="of Kummer's equation",
         relations=[imaginary()],
         named=r"\begin{bmatrix} \dot\alpha \\ \dot\beta \end{bmatrix}",
-        shown=r"\tfrac12 \begin{bmatrix} i \Omega\,\alpha - \omega_1\,\beta \\ \omega_1\,\alpha - i \Omega\,\beta "
+        display=r"\tfrac12 \begin{bmatrix} i \Omega\,\alpha - \omega_1\,\beta \\ \omega_1\,\alpha - i \Omega\,\beta "
         r"\end{bmatrix}",
     )
     speed, area = Symbol("S"), Symbol("Z")
     swept = {sweep: growth, speed: sweep * growth / speed, area: growth / speed}
     angle = (sweep * speed + across**2 * area) / (2 * growth)
-    d.given(
+    d.passage(
         r"Let $S = \sqrt{\Omega^2 + \omega_1^2}$ be the rate of these axes and $Z = \operatorname{arsinh} "
         r"(\Omega/\omega_1)$, so that $\dot Z = \dot\Omega / S$."
     )
@@ -262,7 +262,7 @@ def _by_kummer(d: Derivation) -> None:
         because=r"$S^2 = \Omega^2 + \omega_1^2$",
         relations=[speed**2 - sweep**2 - across**2],
         named=r"\frac{d}{dt} \frac{\Omega S + \omega_1^2 Z}{2 \dot\Omega}",
-        shown="S",
+        display="S",
     )
 
 
@@ -280,7 +280,7 @@ def _far(d: Derivation) -> None:
         c: moved * ((a - b) / v**2 - 3 * c) / (2 * v),
     }
     n = Matrix([kappa / r * a, kappa / r**3 * c, x / r * b])
-    d.given(
+    d.passage(
         r"In the unit of time $\dot\Omega^{-1/2}$ the body turns at $(\kappa, 0, x)$, $x$ the time; $r^2 = x^2 + "
         r"\kappa^2$, $v = 1/r^2$. Let $a, b, c$ be series in $v$ with $c = -(a + 2 v a')$, $b - a = -v^2 (3 c + 2 v "
         r"c')$ and $2 (1 - \kappa^2 v) b' = \kappa^2 (b + c)$: from $a = b = 1$ at $v = 0$ each coefficient follows "
@@ -296,14 +296,14 @@ def _far(d: Derivation) -> None:
         because="a vector at rest in space turns backwards in the body",
         relations=[r**2 - x**2 - kappa**2],
         named=r"\frac{dn}{dx}",
-        shown=r"n \times (\kappa, 0, x)",
+        display=r"n \times (\kappa, 0, x)",
     )
     first, second, third = (Symbol(f"m_{k}") for k in (1, 2, 3))
     tilt = -kappa / r**2
     turning = {x: S.One, r: x / r, first: r * second - tilt * third, second: -r * first, third: tilt * first}
     squares = first**2 + second**2 + third**2
     spin = r * third + tilt * second + (second * turning[first] - first * turning[second]) / (1 + third)
-    d.given(
+    d.passage(
         r"In axes turned about the second one until the third lies along $(\kappa, 0, x)$ the body turns at $(0, "
         r"\dot\phi, r)$, $\dot\phi = -\kappa/r^2$, and $n$ is a vector $m$ near the third axis. The axes "
         r"turned on by the shortest way until the third lies along $m$ turn about it alone, at the rate $m \cdot "
@@ -317,5 +317,5 @@ def _far(d: Derivation) -> None:
         because="$m$ has length 1 and is at rest in space",
         relations=[squares - 1],
         named=r"m \cdot \omega + \frac{m_2 \dot m_1 - m_1 \dot m_2}{1 + m_3}",
-        shown=r"r + \frac{\dot\phi\,m_2}{1 + m_3}",
+        display=r"r + \frac{\dot\phi\,m_2}{1 + m_3}",
     )

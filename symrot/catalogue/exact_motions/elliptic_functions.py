@@ -39,7 +39,7 @@ def _definition(d: Derivation) -> None:
         | {rf"\mathrm {name}_w": value for name, value in zip(("sn", "cn", "dn"), W_VALUES, strict=True)},
         derivatives(),
     )
-    d.given(
+    d.passage(
         r"The functions $\mathrm{sn}, \mathrm{cn}, \mathrm{dn}$ of $u$, with the parameter $\mu = k^2$, start at "
         "$0, 1, 1$ for $u = 0$, and obey",
         *((rf"\frac{{d}}{{du}}\,\mathrm{{{name}}}", value) for name, value in derivatives().items()),
@@ -57,7 +57,7 @@ def _definition(d: Derivation) -> None:
 def _sums(d: Derivation) -> None:
     d.section("Sums of arguments")
     s, c, dn = shifted()
-    d.given(
+    d.passage(
         r"Let $\mathrm{sn}_w, \mathrm{cn}_w, \mathrm{dn}_w$ be the values at a fixed $w$, real or not, and define",
         (r"S", s),
         (r"\hat C", c),
@@ -79,7 +79,7 @@ def _sums(d: Derivation) -> None:
             because="the quotient is differentiated, and the squares of cn and dn are replaced",
             relations=BOTH,
             named=rf"\frac{{d}}{{du}}\,{name}",
-            shown=value,
+            display=value,
         )
     d.step(
         r"And they start at $\mathrm{sn}_w, \mathrm{cn}_w, \mathrm{dn}_w$. A system of differential equations has one "
@@ -96,7 +96,7 @@ def _sums(d: Derivation) -> None:
         because=r"sn is odd, cn and dn are even",
         named=r"\begin{bmatrix} \mathrm{sn}(u + w) + \mathrm{sn}(u - w) \\ \mathrm{dn}(u + w) + \mathrm{dn}(u - w) "
         r"\end{bmatrix}",
-        shown=r"\frac{2}{\Delta} \begin{bmatrix} \mathrm{sn}\,\mathrm{cn}_w\,\mathrm{dn}_w \\ "
+        display=r"\frac{2}{\Delta} \begin{bmatrix} \mathrm{sn}\,\mathrm{cn}_w\,\mathrm{dn}_w \\ "
         r"\mathrm{dn}\,\mathrm{dn}_w "
         r"\end{bmatrix}",
     )
@@ -106,7 +106,7 @@ def _zeta(d: Derivation) -> None:
     d.section("The zeta function")
     s, _, dn = shifted()
     along = derivatives()
-    d.given(
+    d.passage(
         r"Let $Z(u)$ be the odd function with $Z' = \mathrm{dn}^2 - e$, where the constant $e$ is the mean of "
         r"$\mathrm{dn}^2$, which makes it periodic; its value does not matter here."
     )
@@ -119,7 +119,7 @@ def _zeta(d: Derivation) -> None:
         because="the addition theorem of dn is put in, and the squares of cn and dn",
         relations=BOTH,
         named=r"\mathrm{dn}^2(u + w) - \mathrm{dn}^2",
-        shown=r"\frac{d}{du} \left( -\mu\,\mathrm{sn}_w\,\mathrm{sn}\,S \right)",
+        display=r"\frac{d}{du} \left( -\mu\,\mathrm{sn}_w\,\mathrm{sn}\,S \right)",
     )
     d.step(
         r"With both signs of $w$, of which $2 Z(w)$ is the constant part, $Z(u + w) - Z(u - w) - 2 Z(w)$ is this:",
@@ -127,9 +127,9 @@ def _zeta(d: Derivation) -> None:
         -2 * MU * SN_W * CN_W * DN_W * SN**2 / BELOW,
         because="$Z$ is odd",
         named=r"-\mu\,\mathrm{sn}_w\,\mathrm{sn} \left( \mathrm{sn}(u + w) + \mathrm{sn}(u - w) \right)",
-        shown=r"-\frac{2 \mu\,\mathrm{sn}_w\,\mathrm{cn}_w\,\mathrm{dn}_w\,\mathrm{sn}^2}{\Delta}",
+        display=r"-\frac{2 \mu\,\mathrm{sn}_w\,\mathrm{cn}_w\,\mathrm{dn}_w\,\mathrm{sn}^2}{\Delta}",
     )
-    d.given(
+    d.passage(
         r"Its integral over $u$ is what is called an integral of the third kind. An angle that grows at such a rate "
         "is the argument of a theta function, as the next section shows: no integral is left."
     )
@@ -138,7 +138,7 @@ def _zeta(d: Derivation) -> None:
 def _theta(d: Derivation) -> None:
     d.section("Theta functions")
     along = derivatives()
-    d.given(
+    d.passage(
         r"Jacobi's function $\Theta$ is that whose logarithm has the derivative $Z$: $\Theta' = Z\,\Theta$. It is "
         r"taken "
         r"here by this equation; that it is the series $1 + 2 \sum (-1)^n q^{n^2} \cos(n \pi u / K)$ is Jacobi's "
@@ -156,7 +156,7 @@ def _theta(d: Derivation) -> None:
         relations=squares(),
         named=r"\mathrm{dn}^2 + \frac{d}{du}\,\frac{\mathrm{cn}\,\mathrm{dn}}{\mathrm{sn}}",
     )
-    d.given(
+    d.passage(
         r"For $w$ on the imaginary axis $\Theta(u - w)$ is the complex conjugate of $\Theta(u + w)$. The argument of "
         r"$\Theta(u + w)$ therefore turns at half of $(Z(u + w) - Z(u - w))/i$ per unit of $u$: a constant, and a "
         "multiple of an integrand of the third kind.",
@@ -169,7 +169,7 @@ def _imaginary(d: Derivation) -> None:
     along = derivatives(parameter=complement)
     relations = [*squares(complement), imaginary()]
     values = Matrix([I * SN / CN, 1 / CN, DN / CN])
-    d.given(
+    d.passage(
         r"Let now sn, cn, dn belong to the argument $a$ and to the parameter $1 - \mu$. Jacobi's imaginary "
         r"transformation is that at $i a$, for the parameter $\mu$, the functions are",
         (r"\begin{bmatrix} \mathrm{sn}_w \\ \mathrm{cn}_w \\ \mathrm{dn}_w \end{bmatrix}_{w = i a}", values),
@@ -183,10 +183,10 @@ def _imaginary(d: Derivation) -> None:
         because=r"$\mathrm{dn}^2 - \mathrm{cn}^2 = \mu\,\mathrm{sn}^2$ for the parameter $1 - \mu$",
         relations=relations,
         named=r"\frac{d}{da} \begin{bmatrix} \mathrm{sn}_w \\ \mathrm{cn}_w \\ \mathrm{dn}_w \end{bmatrix}",
-        shown=r"i \begin{bmatrix} \mathrm{cn}_w\,\mathrm{dn}_w \\ -\mathrm{sn}_w\,\mathrm{dn}_w \\ "
+        display=r"i \begin{bmatrix} \mathrm{cn}_w\,\mathrm{dn}_w \\ -\mathrm{sn}_w\,\mathrm{dn}_w \\ "
         r"-\mu\,\mathrm{sn}_w\,\mathrm{cn}_w \end{bmatrix}",
     )
-    d.given(r"So $\mathrm{sn}_w$ is imaginary there, $\mathrm{cn}_w$ and $\mathrm{dn}_w$ are real and at least 1.")
+    d.passage(r"So $\mathrm{sn}_w$ is imaginary there, $\mathrm{cn}_w$ and $\mathrm{dn}_w$ are real and at least 1.")
 
 
 def _limits(d: Derivation) -> None:

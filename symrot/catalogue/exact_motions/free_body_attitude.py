@@ -54,13 +54,13 @@ def smallest_turn() -> Matrix:
 
 
 def turning_rate() -> Expr:
-    """Return the rate of the turn about the angular momentum, rad/s."""
+    """Return the rate of rotation about the angular momentum, rad/s."""
     return (2 * T + H * L3 / C) / (H + L3)
 
 
 def _two_turns(d: Derivation) -> None:
     d.section("Two turns")
-    d.given(
+    d.passage(
         r"Let axis 3 of space be along the angular momentum, of length $H$, with the components $L_1, L_2, L_3$ in the "
         r"body: $\omega = I^{-1} L$, the moments $A, B, C$ in any order. The attitude is taken apart into the smallest "
         r"turn $P$ that brings $L$ to axis 3, and a turn by $\psi$ about axis 3 after it:",
@@ -94,7 +94,7 @@ def _two_turns(d: Derivation) -> None:
         because="of the same relation",
         relations=LENGTH,
         named=r"P\,L",
-        shown=r"H\,e_3",
+        display=r"H\,e_3",
     )
     d.step(
         "In the body the angular momentum moves by Euler's equations, which keep its length and the energy.",
@@ -104,7 +104,7 @@ def _two_turns(d: Derivation) -> None:
         named=r"\frac{d}{dt} \begin{bmatrix} L \cdot L \\ L \cdot \omega \end{bmatrix}",
     )
     d.notation({"T": energy})
-    d.given(
+    d.passage(
         "Let the turn have this rate, $T$ being the energy:",
         (r"\dot\psi", r"\frac{2 T + H\,\omega_3}{H + L_3}"),
     )
@@ -115,7 +115,7 @@ def _two_turns(d: Derivation) -> None:
         because=r"$\dot L = L \times \omega$ for the components of $P$",
         relations=LENGTH,
         named=r"\frac{d}{dt} \left( R_3(\psi)\,P \right)",
-        shown=r"R\,[\omega]_\times",
+        display=r"R\,[\omega]_\times",
     )
     d.notation({"T": T, r"\dot\psi": turning_rate()})
     d.step(
@@ -136,7 +136,7 @@ def _two_turns(d: Derivation) -> None:
         because=r"$\dot L = L \times \omega$",
         relations=LENGTH,
         named=r"\dot\psi",
-        shown=r"H\,\frac{A\,\omega_1^2 + B\,\omega_2^2}{L_1^2 + L_2^2} - \frac{L_1 \dot L_2 - L_2 \dot L_1}"
+        display=r"H\,\frac{A\,\omega_1^2 + B\,\omega_2^2}{L_1^2 + L_2^2} - \frac{L_1 \dot L_2 - L_2 \dot L_1}"
         r"{L_1^2 + L_2^2}",
     )
 
@@ -147,7 +147,7 @@ def _momentum(d: Derivation) -> dict[str, Expr]:
     speed = SIGN * THREE * (C - B) / (B * C) * two / ONE
     parameter = SIGN * ONE * two * (B - A) / (A * B) / (speed * THREE)
     momentum = Matrix([ONE * CN, SIGN * two * SN, THREE * DN])
-    d.given(
+    d.passage(
         r"Call axis 2 that of the intermediate moment and axis 3 the outer axis that the polhode goes round, be its "
         r"moment the largest, $\sigma = 1$, or the smallest, $\sigma = -1$. Then $(C - A)(C - B) > 0$ and "
         r"$(B - A)(C - B) \ge 0$. Time counts from where $L_2 = 0$, with $L = (\ell_1, 0, \ell_3)$. With",
@@ -170,7 +170,7 @@ def _momentum(d: Derivation) -> dict[str, Expr]:
         because="each derivative is the product of the two other functions",
         relations=[SIGN**2 - 1],
         named=r"\dot L",
-        shown=r"L \times \omega",
+        display=r"L \times \omega",
     )
     d.step(
         "The length of the angular momentum is kept.",
@@ -196,7 +196,7 @@ def _momentum(d: Derivation) -> dict[str, Expr]:
         because=r"$\ell_2$, $p$ and $\mu$ are put in",
         relations=[SIGN**2 - 1],
         named=r"\ell_2^2",
-        shown=r"\ell_1^2 + \mu\,\ell_3^2",
+        display=r"\ell_1^2 + \mu\,\ell_3^2",
     )
     d.step(
         r"The parameter is 1 on the separatrix, where $H^2 = 2 T B$, and less elsewhere.",
@@ -212,16 +212,16 @@ def _momentum(d: Derivation) -> dict[str, Expr]:
         A * C * ((ONE**2 + THREE**2) - B * (ONE**2 / A + THREE**2 / C)),
         because="both sides are expanded",
         named=r"A (C - B)\,\ell_3^2 - C (B - A)\,\ell_1^2",
-        shown=r"A C \left( H^2 - 2 T B \right)",
+        display=r"A C \left( H^2 - 2 T B \right)",
     )
     return {"two": two, "speed": speed, "parameter": parameter}
 
 
-def _third_kind(d: Derivation, found: dict[str, Expr]) -> None:
+def _third_kind(d: Derivation, constants: dict[str, Expr]) -> None:
     d.section("The third angle as an integral of the third kind")
-    two, parameter = found["two"], found["parameter"]
+    two, parameter = constants["two"], constants["parameter"]
     d.notation({"H": H, "T": (ONE**2 / A + THREE**2 / C) / 2, r"\ell_2": two})
-    d.given(
+    d.passage(
         r"The turn $\psi$ grows at a rate that depends on $L_3 = \ell_3\,\mathrm{dn}$ alone. Made free of the sum in "
         "its denominator, it is a rational function of sn and dn."
     )
@@ -232,17 +232,17 @@ def _third_kind(d: Derivation, found: dict[str, Expr]) -> None:
         because=r"$H^2 = \ell_1^2 + \ell_3^2$",
         relations=[SIGN**2 - 1, H**2 - ONE**2 - THREE**2, *squares(parameter)],
         named=r"(H - \ell_3\,\mathrm{dn})(H + \ell_3\,\mathrm{dn})",
-        shown=r"\ell_1^2 + \mu\,\ell_3^2\,\mathrm{sn}^2 = \ell_1^2\,\Delta, \quad \Delta = 1 + \mu\,"
+        display=r"\ell_1^2 + \mu\,\ell_3^2\,\mathrm{sn}^2 = \ell_1^2\,\Delta, \quad \Delta = 1 + \mu\,"
         r"\frac{\ell_3^2}{\ell_1^2}\,\mathrm{sn}^2",
     )
     d.step(
         "The factor above it.",
         ONE**2 / A + THREE**2 / C - H**2 / C,
-        SIGN * found["speed"] * ONE * two / THREE,
+        SIGN * constants["speed"] * ONE * two / THREE,
         because=r"$p$ is put in",
         relations=[SIGN**2 - 1, H**2 - ONE**2 - THREE**2],
         named=r"2 T - \frac{H^2}{C}",
-        shown=r"\sigma\,p\,\frac{\ell_1 \ell_2}{\ell_3}",
+        display=r"\sigma\,p\,\frac{\ell_1 \ell_2}{\ell_3}",
     )
     below = 1 + MU * THREE**2 / ONE**2 * SN**2
     d.notation({"p": symbols.p, r"\mu": MU, r"\ell_2": TWO, r"\Delta": below})
@@ -256,15 +256,15 @@ def _third_kind(d: Derivation, found: dict[str, Expr]) -> None:
         because=r"both steps before are put in",
         relations=[H**2 - ONE**2 - THREE**2, *squares()],
         named=r"\dot\psi",
-        shown=r"\frac{H}{C} + \sigma\,p\,\frac{\ell_2}{\ell_1 \ell_3}\,\frac{H - \ell_3\,\mathrm{dn}}{\Delta}",
+        display=r"\frac{H}{C} + \sigma\,p\,\frac{\ell_2}{\ell_1 \ell_3}\,\frac{H - \ell_3\,\mathrm{dn}}{\Delta}",
     )
 
 
-def _theta(d: Derivation, found: dict[str, Expr]) -> None:
+def _theta(d: Derivation, constants: dict[str, Expr]) -> None:
     d.section("The third angle without an integral")
     relations = [H**2 - ONE**2 - THREE**2, TWO**2 - ONE**2 - MU * THREE**2, *squares()]
     imag = -THREE / ONE, H / ONE, TWO / ONE  # sn/i, cn, dn at w
-    d.given(
+    d.passage(
         r"Let $N$ be the function whose logarithm has the derivative $Y = \tfrac12 Z + \tfrac{i}{2}\,\mathrm{dn}$, "
         r"with "
         r"the [zeta function](elliptic_functions.md) $Z$; it is the theta function $\theta_4$ of the squared nome, "
@@ -287,7 +287,7 @@ def _theta(d: Derivation, found: dict[str, Expr]) -> None:
     # with sn_w = i s: mu sn_w cn_w dn_w sn^2 / below is i times a real term
     below = 1 + MU * s**2 * SN**2
     argument = HALF * (-2 * MU * s * c * dn * SN**2 / below) / 2 + HALF * (2 * DN * dn / below) / 2
-    d.given(
+    d.passage(
         r"For real $u$ the argument of $N(u + w)$ turns, per unit of $u$, at $(Y(u + w) - \overline{Y(u + w)})/2i$, "
         r"where the conjugate has $u - w$ for $u + w$ and $-i$ for $i$. With the sums of "
         r"[Z and dn](elliptic_functions.md) this is $Z(w)/2i$, a real constant, and a function of sn and dn."
@@ -300,7 +300,7 @@ def _theta(d: Derivation, found: dict[str, Expr]) -> None:
         relations=relations,
         named=r"\frac{-\mu\,\mathrm{sn}_w \mathrm{cn}_w \mathrm{dn}_w\,\mathrm{sn}^2 / i + \mathrm{dn}\,\mathrm{dn}_w}"
         r"{2 \Delta}",
-        shown=r"\frac{H \ell_2}{2 \ell_1 \ell_3} - \frac{\ell_2}{2 \ell_1 \ell_3}\,\frac{H - \ell_3\,\mathrm{dn}}"
+        display=r"\frac{H \ell_2}{2 \ell_1 \ell_3} - \frac{\ell_2}{2 \ell_1 \ell_3}\,\frac{H - \ell_3\,\mathrm{dn}}"
         r"{\Delta}",
     )
     d.step(
@@ -341,7 +341,7 @@ def _special(d: Derivation) -> None:
         because=r"$L_1^2 + L_2^2 = H^2 - L_3^2$",
         relations=LENGTH,
         named=r"\left. \dot\psi \right|_{B = A}",
-        shown=r"\frac{H}{A} + \left( \frac{1}{C} - \frac{1}{A} \right) L_3",
+        display=r"\frac{H}{A} + \left( \frac{1}{C} - \frac{1}{A} \right) L_3",
     )
     d.step(
         "The angular momentum goes round the axis of the body at a constant rate.",
@@ -358,4 +358,4 @@ def _special(d: Derivation) -> None:
         relations=LENGTH,
         named=r"\left. \begin{bmatrix} \dot\psi \\ \dot L \end{bmatrix} \right|_{A = B = C}",
     )
-    d.given("On the separatrix all of this is elementary: see [the separatrix](free_body_separatrix.md).")
+    d.passage("On the separatrix all of this is elementary: see [the separatrix](free_body_separatrix.md).")

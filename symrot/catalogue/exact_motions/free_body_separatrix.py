@@ -32,14 +32,14 @@ def derive() -> Derivation:
         ),
     )
     h = SHARE
-    d.given(
+    d.passage(
         r"As on the page of [the attitude](free_body_attitude.md), with $\ell_1, \ell_3$ the components of angular "
         r"momentum halfway, $H^2 = \ell_1^2 + \ell_3^2$. The intermediate moment is then no free choice:",
         ("B", MIDDLE),
         ("p", r"\sigma\,\frac{C - B}{B C}\,\frac{H\,\ell_3}{\ell_1}"),
     )
     d.section("Angular momentum in the body")
-    d.given(
+    d.passage(
         "All is rational in one hyperbolic tangent:",
         ("h", tanh(P * TIME / 2)),
         (r"\tanh p\,t", r"\frac{2 h}{1 + h^2}"),
@@ -57,7 +57,7 @@ def derive() -> Derivation:
         P / 2 * (1 - tanh(P * TIME / 2) ** 2),
         because=r"$\tanh' = 1 - \tanh^2$",
         named=r"\dot h",
-        shown=r"\tfrac{p}{2} \left( 1 - h^2 \right)",
+        display=r"\tfrac{p}{2} \left( 1 - h^2 \right)",
     )
     rising, falling = 2 * h / (1 + h**2), (1 - h**2) / (1 + h**2)
     d.notation({"h": h, r"\tanh p\,t": rising, r"\mathrm{sech}\,p\,t": falling}, _share(P))
@@ -67,7 +67,7 @@ def derive() -> Derivation:
         P * Matrix([falling**2, -rising * falling]),
         because=r"$\dot h = \tfrac{p}{2} (1 - h^2)$",
         named=r"\frac{d}{dt} \begin{bmatrix} \tanh p\,t \\ \mathrm{sech}\,p\,t \end{bmatrix}",
-        shown=r"p \begin{bmatrix} \mathrm{sech}^2\,p\,t \\ -\tanh p\,t\;\mathrm{sech}\,p\,t \end{bmatrix}",
+        display=r"p \begin{bmatrix} \mathrm{sech}^2\,p\,t \\ -\tanh p\,t\;\mathrm{sech}\,p\,t \end{bmatrix}",
     )
     d.notation({"p": SPEED, "L": momentum, r"\omega": omega, "B": MIDDLE, "H": H}, _share(SPEED))
     d.step(
@@ -77,7 +77,7 @@ def derive() -> Derivation:
         because="$B$ and $p$ are put in",
         relations=GIVEN,
         named=r"\dot L",
-        shown=r"L \times \omega",
+        display=r"L \times \omega",
     )
     d.step(
         "Angular momentum and energy are kept, and $H^2 = 2 T B$.",
@@ -112,7 +112,7 @@ def _attitude(d: Derivation, momentum: Matrix, omega: Matrix) -> None:
         because=r"$2 T = H^2 / B$",
         relations=GIVEN,
         named=r"\dot\psi = \frac{2 T + H\,\omega_3}{H + L_3}",
-        shown=r"\frac{H}{B} - \sigma\,p\,\frac{L_1}{H + L_3}",
+        display=r"\frac{H}{B} - \sigma\,p\,\frac{L_1}{H + L_3}",
     )
     d.notation({"p": P}, {TIME: Integer(1)} | _share(P))
     turned = H / MIDDLE * TIME - 2 * SIGN * atan(ONE * h / (H + THREE))
@@ -123,7 +123,7 @@ def _attitude(d: Derivation, momentum: Matrix, omega: Matrix) -> None:
         because=r"$H^2 - \ell_3^2 = \ell_1^2$",
         relations=GIVEN,
         named=r"\frac{d}{dt} \left( \frac{H}{B}\,t - 2 \sigma \arctan \frac{\ell_1\,h}{H + \ell_3} \right)",
-        shown=r"\frac{H}{B} - \sigma\,p\,\frac{L_1}{H + L_3}",
+        display=r"\frac{H}{B} - \sigma\,p\,\frac{L_1}{H + L_3}",
     )
     rotation = about * smallest_turn().subs(values)
     d.notation(
@@ -136,7 +136,7 @@ def _attitude(d: Derivation, momentum: Matrix, omega: Matrix) -> None:
         because="of the steps before",
         relations=GIVEN,
         named=r"\dot R",
-        shown=r"R\,[\omega]_\times",
+        display=r"R\,[\omega]_\times",
     )
     d.step(
         "In the end, as at the beginning, the angular momentum is along the intermediate axis, in opposite directions.",

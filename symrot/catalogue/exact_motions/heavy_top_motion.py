@@ -50,7 +50,7 @@ def _nutation(d: Derivation) -> None:
     u = symbols.gamma_3
     momentum, spin = (SUM + DIFFERENCE) / 2, (SUM - DIFFERENCE) / 2
     energy = 2 * W * ARM * (U1 + U2 + U3) - spin**2 / A
-    d.given(
+    d.passage(
         r"By [energy and momenta](heavy_top.md) the square of the rate of $u = \cos\theta$ is a cubic in $u$, positive "
         r"above its largest zero, not positive at $\pm 1$. Its zeros are $-1 \le u_1 \le u_2 \le 1 \le u_3$, and the "
         "axis nods between the first two. Conversely they give the constants:",
@@ -67,9 +67,9 @@ def _nutation(d: Derivation) -> None:
         because="both sides agree at $u = 1$, at $u = -1$, and in two coefficients",
         named=r"\frac{1 - u^2}{A} \left( 2 E - \frac{p_\psi^2}{C} - 2 W c_3 u \right) - "
         r"\frac{(p_\phi - p_\psi u)^2}{A^2}",
-        shown=r"\frac{2 W c_3}{A} (u - u_1)(u - u_2)(u - u_3)",
+        display=r"\frac{2 W c_3}{A} (u - u_1)(u - u_2)(u - u_3)",
     )
-    d.given(
+    d.passage(
         r"Let sn, cn, dn be of the argument $p\,t$ and the parameter $\mu$, time counted from where the axis is "
         "lowest:",
         ("p", SPEED),
@@ -86,7 +86,7 @@ def _nutation(d: Derivation) -> None:
         because=r"$u - u_1$, $u_2 - u$ and $u_3 - u$ are the squares of sn, cn and dn, times constants",
         relations=squares(PARAMETER),
         named=r"\dot u^2",
-        shown=r"\frac{2 W c_3}{A} (u - u_1)(u - u_2)(u - u_3)",
+        display=r"\frac{2 W c_3}{A} (u - u_1)(u - u_2)(u - u_3)",
     )
     d.step(
         "It has its acceleration too, so that it does not stay where the rate is zero.",
@@ -95,7 +95,7 @@ def _nutation(d: Derivation) -> None:
         because="the derivative of the step before, less its factor $\\dot u$; proven by itself",
         relations=squares(PARAMETER),
         named=r"\ddot u",
-        shown=r"\frac{W c_3}{A} \frac{\partial}{\partial u} (u - u_1)(u - u_2)(u - u_3)",
+        display=r"\frac{W c_3}{A} \frac{\partial}{\partial u} (u - u_1)(u - u_2)(u - u_3)",
     )
 
 
@@ -136,7 +136,7 @@ def _attitude(d: Derivation) -> None:
         sin(THETA / 2) * sin(minus),
         cos(THETA / 2) * sin(plus),
     )
-    d.given(
+    d.passage(
         r"Two complex numbers (Cayley, Klein) hold the attitude: $\alpha = \cos\tfrac\theta2\,e^{i (\phi + \psi)/2}$ "
         r"and "
         r"$\beta = \sin\tfrac\theta2\,e^{i (\phi - \psi)/2}$. The quaternion is "
@@ -150,7 +150,7 @@ def _attitude(d: Derivation) -> None:
         dcm("ZXZ"),
         because="double angles",
         named=r"R(q)",
-        shown=r"R_3(\phi)\,R_1(\theta)\,R_3(\psi)",
+        display=r"R_3(\phi)\,R_1(\theta)\,R_3(\psi)",
     )
     du = symbols.dtheta * -sin(THETA)
     u = cos(THETA)
@@ -163,7 +163,7 @@ def _attitude(d: Derivation) -> None:
         Matrix([du / (2 * (1 + u)), -du / (2 * (1 - u))]),
         because=r"$\cos^2 \tfrac\theta2 = \tfrac12 (1 + u)$, $\sin^2 \tfrac\theta2 = \tfrac12 (1 - u)$",
         named=r"\frac{d}{dt} \begin{bmatrix} \ln |\alpha| \\ \ln |\beta| \end{bmatrix}",
-        shown=r"\begin{bmatrix} \frac{\dot u}{2 (1 + u)} \\ -\frac{\dot u}{2 (1 - u)} \end{bmatrix}",
+        display=r"\begin{bmatrix} \frac{\dot u}{2 (1 + u)} \\ -\frac{\dot u}{2 (1 - u)} \end{bmatrix}",
     )
 
 
@@ -175,7 +175,7 @@ def _theta(d: Derivation) -> None:
     d.notation(
         names | {r"\mathrm{sn}(u + w)": at_sum, r"\mathrm{cn}(u + w)": c_sum, r"\mathrm{dn}(u + w)": d_sum, r"\mu": MU}
     )
-    d.given(
+    d.passage(
         r"The quotient $\mathrm{H}(u + w) / \Theta(u)$ of [theta functions](elliptic_functions.md) has the logarithmic "
         r"derivative $Z(u + w) + \frac{\mathrm{cn}\,\mathrm{dn}}{\mathrm{sn}}(u + w) - Z(u)$, which is $Z(w)$ plus "
         "(the argument is again $p\\,t$)"
@@ -197,10 +197,10 @@ def _theta(d: Derivation) -> None:
     d.notation({"p": SPEED, "u": HEIGHT, r"\dot u": rate(HEIGHT, along), r"\mu": PARAMETER, "i": I, "A": A})
     d.notation({r"p_\phi": (SUM + DIFFERENCE) / 2, r"p_\psi": (SUM - DIFFERENCE) / 2})
     for name, side, s2, c2, d2, momentum, sign in cases:
-        shown = sign if sign == "-" else "+"
+        sign_text = sign if sign == "-" else "+"
         d.notation({r"\mathrm{sn}_w": sqrt(s2), r"\mathrm{cn}_w": sqrt(c2), r"\mathrm{dn}_w": sqrt(d2)})
         d.step(
-            rf"For ${name}$ let $w$ be where $1 {shown} u$ would vanish, $\mathrm{{sn}}_w^2 = {_latex(s2)}$. Then "
+            rf"For ${name}$ let $w$ be where $1 {sign_text} u$ would vanish, $\mathrm{{sn}}_w^2 = {_latex(s2)}$. Then "
             r"$\mathrm{cn}_w^2$ and $\mathrm{dn}_w^2$ are these.",
             Matrix([1 - s2, 1 - PARAMETER * s2]),
             Matrix([c2, d2]),
@@ -213,7 +213,7 @@ def _theta(d: Derivation) -> None:
             side * (1 + side * HEIGHT),
             because="$u = u_1 + (u_2 - u_1)\\,\\mathrm{sn}^2$",
             named=r"(u_2 - u_1) \left( \mathrm{sn}^2 - \mathrm{sn}_w^2 \right)",
-            shown="1 + u" if side == 1 else "-(1 - u)",
+            display="1 + u" if side == 1 else "-(1 - u)",
         )
         d.step(
             "The real part is the rate of the length.",
@@ -221,7 +221,7 @@ def _theta(d: Derivation) -> None:
             side * rate(HEIGHT, along) / (2 * (1 + side * HEIGHT)),
             because=r"$\dot u = 2 (u_2 - u_1)\,p\,\mathrm{sn}\,\mathrm{cn}\,\mathrm{dn}$",
             named=r"p\,\frac{\mathrm{sn}\,\mathrm{cn}\,\mathrm{dn}}{\mathrm{sn}^2 - \mathrm{sn}_w^2}",
-            shown=r"\frac{\dot u}{2 (1 + u)}" if side == 1 else r"-\frac{\dot u}{2 (1 - u)}",
+            display=r"\frac{\dot u}{2 (1 + u)}" if side == 1 else r"-\frac{\dot u}{2 (1 - u)}",
         )
         d.step(
             "The imaginary part is that of the angle, with a suitable sign of $w$, "
@@ -232,9 +232,9 @@ def _theta(d: Derivation) -> None:
             because=r"$p$ and the momenta are put in, in terms of the zeros",
             relations=[imaginary()],
             named=r"\mathrm{sn}_w^2\,\mathrm{cn}_w^2\,\mathrm{dn}_w^2",
-            shown=rf"\left( \frac{{i\,(p_\phi {sign} p_\psi)}}{{2 A\,p\,(u_2 - u_1)}} \right)^2",
+            display=rf"\left( \frac{{i\,(p_\phi {sign} p_\psi)}}{{2 A\,p\,(u_2 - u_1)}} \right)^2",
         )
-    d.given(
+    d.passage(
         r"So $\alpha$ and $\beta$ are constants times $e^{i \kappa t}\,\mathrm{H}(p\,t + w) / \Theta(p\,t)$, each "
         r"with its "
         r"own $w$ and $\kappa$: their logarithmic derivatives agree up to the constants $i \kappa$, which collect $p\,"

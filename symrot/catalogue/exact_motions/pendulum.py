@@ -31,7 +31,7 @@ def derive() -> Derivation:
 
 def _plane(d: Derivation) -> None:
     d.section("In a plane")
-    d.given(
+    d.passage(
         r"Let $\theta$ be the angle from the lowest place, $A$ the moment about the axis, $W c_3$ the weight times its "
         r"arm, and $p^2 = W c_3 / A$. The equation of motion is $\ddot\theta = -p^2 \sin\theta$. Let $s, c$ stand for "
         r"$\sin\tfrac\theta2, \cos\tfrac\theta2$: they change at the rates $\tfrac12 \dot\theta\,c$ and "
@@ -71,12 +71,14 @@ def _plane(d: Derivation) -> None:
         because=r"$1 - \cos\theta = 2 s^2$",
         relations=squares(),
         named=r"\tfrac12 A\,\dot\theta^2 + W c_3 (1 - \cos\theta)",
-        shown=r"2 W c_3\,\mu",
+        display=r"2 W c_3\,\mu",
     )
 
 
-def _holds(d: Derivation, claim: str, motion: tuple[Expr, ...], along: dict[Symbol, Expr], given: list[Expr]) -> None:
-    """Add the step that sine and cosine of the half angle, and the rate, are those of a pendulum."""
+def _holds(
+    d: Derivation, claim: str, motion: tuple[Expr, ...], along: dict[Symbol, Expr], hypotheses: list[Expr]
+) -> None:
+    """Add the step that sine and cosine of the half angle, and the rate, satisfy the pendulum's equations."""
     s, c, speed = motion
     half = Rational(1, 2)
     d.notation({"s": s, "c": c, r"\dot\theta": speed, r"\ddot\theta": rate(speed, along), "p": P}, along)
@@ -85,9 +87,9 @@ def _holds(d: Derivation, claim: str, motion: tuple[Expr, ...], along: dict[Symb
         rate(Matrix([s, c, speed]), along),
         Matrix([half * speed * c, -half * speed * s, -2 * P**2 * s * c]),
         because="each derivative is put in",
-        relations=given,
+        relations=hypotheses,
         named=r"\begin{bmatrix} \dot s \\ \dot c \\ \ddot\theta \end{bmatrix}",
-        shown=r"\begin{bmatrix} \tfrac12 \dot\theta\,c \\ -\tfrac12 \dot\theta\,s \\ -2 p^2 s\,c \end{bmatrix}",
+        display=r"\begin{bmatrix} \tfrac12 \dot\theta\,c \\ -\tfrac12 \dot\theta\,s \\ -2 p^2 s\,c \end{bmatrix}",
     )
 
 
@@ -102,7 +104,7 @@ def _turning(d: Derivation) -> None:
         2 * W * ARM / A * (U2 - symbols.gamma_3) * (1 - symbols.gamma_3**2),
         because="$1 - u^2$ is a factor",
         named=r"\dot u^2",
-        shown=r"\frac{2 W c_3}{A} (u_2 - u)(1 - u^2)",
+        display=r"\frac{2 W c_3}{A} (u_2 - u)(1 - u^2)",
     )
     d.notation({"u": HEIGHT.subs(flat), r"\mu": PARAMETER.subs(flat), "p": SPEED.subs(flat)})
     d.step(
@@ -112,7 +114,7 @@ def _turning(d: Derivation) -> None:
         PARAMETER.subs(flat) * SN**2,
         because=r"$1 - \cos\theta = 2 \sin^2 \tfrac\theta2$",
         named=r"\tfrac12 (1 + u)",
-        shown=r"\mu\,\mathrm{sn}^2",
+        display=r"\mu\,\mathrm{sn}^2",
     )
     d.step(
         "The frequency is the same.",
@@ -127,7 +129,7 @@ def _spherical(d: Derivation) -> None:
     d.section("The spherical pendulum")
     u = symbols.gamma_3
     highest = -(1 + U1 * U2) / (U1 + U2)
-    d.given(
+    d.passage(
         r"Without spin, $p_\psi = 0$, but with $p_\phi \ne 0$ the axis goes round and nods between the heights $u_1$ "
         r"and $u_2$ above the support. They give the third zero and the momentum:",
         ("u_3", highest),
@@ -143,7 +145,7 @@ def _spherical(d: Derivation) -> None:
         cubic(u).subs(U3, highest),
         because=r"$u_1 u_2 + u_2 u_3 + u_3 u_1 = -1$",
         named=r"\frac{2}{A} (E - W c_3 u)(1 - u^2) - \frac{p_\phi^2}{A^2}",
-        shown=r"\frac{2 W c_3}{A} (u - u_1)(u - u_2)(u - u_3)",
+        display=r"\frac{2 W c_3}{A} (u - u_1)(u - u_2)(u - u_3)",
     )
     d.step(
         r"The square of the momentum is not negative only where $u_1 + u_2 \le 0$: halfway, the pendulum is below "

@@ -48,7 +48,7 @@ def _through(d: Derivation) -> None:
         because=r"$1 - \mathrm{sn}^2 = \mathrm{cn}^2$",
         relations=squares(),
         named=r"\sin^2 \tfrac\theta2 = \tfrac12 (1 - u)",
-        shown=r"\left( \sqrt{\tfrac12 (1 - u_1)}\,\mathrm{cn} \right)^2",
+        display=r"\left( \sqrt{\tfrac12 (1 - u_1)}\,\mathrm{cn} \right)^2",
     )
     d.step(
         "Hanging upside down at times, $u_1 = -1$: then $\\cos\\tfrac\\theta2$ is an elliptic sine.",
@@ -56,7 +56,7 @@ def _through(d: Derivation) -> None:
         (sqrt((1 + U2) / 2) * SN) ** 2,
         because=r"$u = -1 + (1 + u_2)\,\mathrm{sn}^2$",
         named=r"\cos^2 \tfrac\theta2 = \tfrac12 (1 + u)",
-        shown=r"\left( \sqrt{\tfrac12 (1 + u_2)}\,\mathrm{sn} \right)^2",
+        display=r"\left( \sqrt{\tfrac12 (1 + u_2)}\,\mathrm{sn} \right)^2",
     )
     upright = {U2: Integer(1)}
     along = derivatives(SPEED.subs(upright), PARAMETER.subs(upright))
@@ -69,7 +69,7 @@ def _through(d: Derivation) -> None:
         relations=[DN**2 - 1 + PARAMETER.subs(upright)],
         named=r"\left. \left( \frac{d}{dt} \sin\tfrac\theta2 \right)^2 \right|_{u = 1}",
     )
-    d.given(
+    d.passage(
         r"and $\phi - \psi$ changes at a constant rate, by the [partial fractions](heavy_top_motion.md), since "
         r"$p_\phi = p_\psi$. With a signed $\sin\tfrac\theta2$ the attitude is smooth."
     )
@@ -82,7 +82,7 @@ def _separatrix(d: Derivation) -> None:
     height = 1 - (1 - lowest) * (1 - h**2)
     both = {U2: Integer(1), U3: Integer(1)}
     speed = SPEED.subs(both)
-    d.given(
+    d.passage(
         r"Where $u_2 = u_3 = 1$ the parameter $\mu$ is 1, and the motion is elementary. All of it is in one hyperbolic "
         "tangent:",
         ("h", tanh(P * T)),
@@ -93,9 +93,9 @@ def _separatrix(d: Derivation) -> None:
         P * (1 - tanh(P * T) ** 2),
         because=r"$\tanh' = 1 - \tanh^2$",
         named=r"\dot h",
-        shown=r"p \left( 1 - h^2 \right)",
+        display=r"p \left( 1 - h^2 \right)",
     )
-    d.given(
+    d.passage(
         "The top rises from $u_1$, with",
         ("p", speed),
         ("u", r"1 - (1 - u_1)(1 - h^2) = 1 - (1 - u_1)\,\mathrm{sech}^2\,p\,t"),
@@ -108,7 +108,7 @@ def _separatrix(d: Derivation) -> None:
         cubic(height).subs(both),
         because="$u - 1$ is twice a factor of it",
         named=r"\dot u^2",
-        shown=r"\frac{2 W c_3}{A} (u - u_1)(u - 1)^2",
+        display=r"\frac{2 W c_3}{A} (u - u_1)(u - 1)^2",
     )
     d.step(
         "It has its acceleration too.",
@@ -116,7 +116,7 @@ def _separatrix(d: Derivation) -> None:
         cubic(symbols.gamma_3).diff(symbols.gamma_3).subs(both).subs(symbols.gamma_3, height) / 2,
         because="half the derivative of the cubic by the height",
         named=r"\ddot u",
-        shown=r"\frac{W c_3}{A} \frac{\partial}{\partial u} (u - u_1)(u - 1)^2",
+        display=r"\frac{W c_3}{A} \frac{\partial}{\partial u} (u - u_1)(u - 1)^2",
     )
     momentum = SUM.subs(both) / 2
     d.notation({r"p_\psi": momentum}, {T: Integer(1)})
@@ -136,7 +136,7 @@ def _separatrix(d: Derivation) -> None:
         because=r"$1 + u = 1 + u_1 + (1 - u_1)\,h^2$",
         named=r"\frac{d}{dt} \left( \frac{p_\psi}{2 A}\,t + \arctan \frac{2 A\,p\,h}{p_\psi} "
         r"\right)",
-        shown=r"\frac{p_\psi}{A (1 + u)}",
+        display=r"\frac{p_\psi}{A (1 + u)}",
     )
     d.step(
         "The half angle is a hyperbolic secant: the axis goes back the way it came, and does not pass the vertical.",
@@ -144,5 +144,5 @@ def _separatrix(d: Derivation) -> None:
         (1 - lowest) / 2 * (1 - h**2),
         because="$1 - u$ is put in",
         named=r"\sin^2 \tfrac\theta2",
-        shown=r"\tfrac12 (1 - u_1)\,\mathrm{sech}^2\,p\,t",
+        display=r"\tfrac12 (1 - u_1)\,\mathrm{sech}^2\,p\,t",
     )

@@ -30,7 +30,7 @@ def derive() -> Derivation:
     momentum = TENSOR * OMEGA + Matrix([0, 0, ROTOR])
     own = SPIN - momentum[2] / A
     alpha_b = angular_acceleration(TENSOR, OMEGA, 0 * OMEGA, Matrix([0, 0, ROTOR]))
-    d.given(
+    d.passage(
         r"Moments $A, A, C$, the rotor's mass included; its angular momentum relative to the body, $h_3$, along axis "
         r"3. "
         "No torque acts. The angular momentum is",
@@ -46,7 +46,7 @@ def derive() -> Derivation:
         momentum / A + own * AXIS,
         because="the tensor is $A$ times 1, but for axis 3",
         named=r"\omega",
-        shown=r"\frac{L}{A} + \nu\,e_3, \quad \nu = \frac{(A - C)\,\omega_3 - h_3}{A}",
+        display=r"\frac{L}{A} + \nu\,e_3, \quad \nu = \frac{(A - C)\,\omega_3 - h_3}{A}",
     )
     along = attitude_rates() | pairs(symbols.omega_b, alpha_b)
     d.notation({"L": momentum}, along)
@@ -85,7 +85,7 @@ def _body(d: Derivation, alpha_b: Matrix) -> None:
         solution.diff(T),
         because="sine and cosine are each other's rates",
         named=r"\dot\omega_b",
-        shown=r"\frac{d}{dt} \begin{bmatrix} \omega_1 \cos(p\,t) - \omega_2 \sin(p\,t) \\ \omega_1 \sin(p\,t) + "
+        display=r"\frac{d}{dt} \begin{bmatrix} \omega_1 \cos(p\,t) - \omega_2 \sin(p\,t) \\ \omega_1 \sin(p\,t) + "
         r"\omega_2 "
         r"\cos(p\,t) \\ \omega_3 \end{bmatrix}",
     )
@@ -99,7 +99,7 @@ def _attitude(d: Derivation) -> None:
     attitude = Matrix(qmul(about_momentum, START, about_axis))
     turned = Matrix(dcm_of(Matrix(qmul(START, about_axis)))).T * direction
     omega = 2 * symbols.p * turned + 2 * symbols.Omega * AXIS
-    d.given(
+    d.passage(
         r"Let $n$ be the direction of the angular momentum in space, $H$ its length, $q$ the attitude at the start, "
         r"and "
         r"$p = H/(2 A)$, $\Omega = \nu/2$. Then at any time the attitude is",
@@ -119,7 +119,7 @@ def _attitude(d: Derivation) -> None:
         because=r"a rotation from the left turns about an axis of space, one from the right about an axis of the body",
         relations=relations,
         named=r"\dot q(t)",
-        shown=r"\tfrac12\,q(t)\,(0,\ 2 p\,n_b + 2 \Omega\,e_3)",
+        display=r"\tfrac12\,q(t)\,(0,\ 2 p\,n_b + 2 \Omega\,e_3)",
     )
     d.step(
         r"The turn about $n$ itself does not matter for it.",
@@ -128,7 +128,7 @@ def _attitude(d: Derivation) -> None:
         because="the axis of a rotation stays where it is",
         relations=relations,
         named=r"R(t)^{\mathsf T} n",
-        shown=r"R\left( q\,(\cos(\Omega t),\ e_3 \sin(\Omega t)) \right)^{\mathsf T} n",
+        display=r"R\left( q\,(\cos(\Omega t),\ e_3 \sin(\Omega t)) \right)^{\mathsf T} n",
     )
 
 

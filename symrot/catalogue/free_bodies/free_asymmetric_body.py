@@ -45,7 +45,7 @@ def _functions(d: Derivation) -> None:
     rates = _elliptic(P, MU)
     d.notation({r"\mathrm{sn}": SN, r"\mathrm{cn}": CN, r"\mathrm{dn}": DN, r"\mu": MU, "A": A, "B": B, "C": C}, rates)
     d.notation({"a_1": FIRST, "a_3": THIRD, "I": INERTIA})
-    d.given(
+    d.passage(
         r"Let $\mathrm{sn}, \mathrm{cn}, \mathrm{dn}$ be those of the argument $p\,t$ and the parameter $\mu = k^2$. "
         r"They start "
         "at $0, 1, 1$ and obey",
@@ -84,7 +84,7 @@ def _solution(d: Derivation) -> None:
     omega = Matrix([amplitudes[0] * DN, -amplitudes[1] * SN, amplitudes[2] * CN])
     rates = _elliptic(p, parameter)
     d.notation({}, rates)
-    d.given(
+    d.passage(
         r"Let the body start with $\omega = (a_1, 0, a_3)$, on the side of the separatrix where $L^2 > 2 T B$: the "
         r"polhode "
         "goes round axis 1. The other side is the same with $A$ and $C$, axes 1 and 3, exchanged. With",
@@ -99,7 +99,7 @@ def _solution(d: Derivation) -> None:
         INERTIA * angular_acceleration(INERTIA, omega, 0 * omega),
         because="each derivative is the product of the two other functions, as each of Euler's equations asks",
         named=r"I\,\dot\omega",
-        shown=r"-\omega \times I\,\omega",
+        display=r"-\omega \times I\,\omega",
     )
     squares = [CN**2 - 1 + SN**2, DN**2 - 1 + parameter * SN**2]
     d.step(
@@ -138,7 +138,7 @@ def _constants(d: Derivation) -> None:
         ),
         because="two linear equations for the squares of the first and the third",
         named=r"\begin{bmatrix} a_1^2 \\ a_2^2 \\ a_3^2 \end{bmatrix}",
-        shown=r"\begin{bmatrix} \frac{L^2 - 2 T C}{A (A - C)} \\ \frac{2 T A - L^2}{B (A - B)} \\ "
+        display=r"\begin{bmatrix} \frac{L^2 - 2 T C}{A (A - C)} \\ \frac{2 T A - L^2}{B (A - B)} \\ "
         r"\frac{2 T A - L^2}{C (A - C)} \end{bmatrix}",
     )
     d.step(
@@ -147,7 +147,7 @@ def _constants(d: Derivation) -> None:
         (A - B) * (square - twice * C) / (A * B * C),
         because=r"$a_2$ is put in",
         named="p^2",
-        shown=r"\frac{(A - B) (L^2 - 2 T C)}{A B C}",
+        display=r"\frac{(A - B) (L^2 - 2 T C)}{A B C}",
     )
     d.step(
         "The parameter.",
@@ -155,7 +155,7 @@ def _constants(d: Derivation) -> None:
         (B - C) * (twice * A - square) / ((A - B) * (square - twice * C)),
         because=r"$a_2$ and $p$ are put in",
         named=r"\mu",
-        shown=r"\frac{(B - C) (2 T A - L^2)}{(A - B) (L^2 - 2 T C)}",
+        display=r"\frac{(B - C) (2 T A - L^2)}{(A - B) (L^2 - 2 T C)}",
     )
     d.step(
         r"It is 1 on the separatrix, $L^2 = 2 T B$, and below 1 on this side of it.",
@@ -163,7 +163,7 @@ def _constants(d: Derivation) -> None:
         (A - C) * (square - twice * B),
         because="both sides are expanded",
         named=r"(1 - \mu)\,(A - B) (L^2 - 2 T C)",
-        shown=r"(A - C) (L^2 - 2 T B)",
+        display=r"(A - C) (L^2 - 2 T B)",
     )
     d.step(
         "With two equal moments, $B = C$, it is 0, the functions are a sine, a cosine and 1, and the frequency is "
@@ -180,7 +180,7 @@ def _attitude(d: Derivation) -> None:
     d.section("The attitude: two angles without an integral")
     h, (_, theta, psi) = symbols.H, symbols.angles
     momentum = Matrix(dcm("ZXZ")).T * Matrix([0, 0, h])
-    d.given("Let axis 3 of space be along the angular momentum, of length $H$, and the angles be those of ZXZ.")
+    d.passage("Let axis 3 of space be along the angular momentum, of length $H$, and the angles be those of ZXZ.")
     d.step(
         r"Nutation and spin are read off the angular velocity: $\cos\theta = C \omega_3 / H$, $\tan\psi = A \omega_1 / "
         r"(B \omega_2)$.",
@@ -199,7 +199,7 @@ def _attitude(d: Derivation) -> None:
         h * expected.subs(dict(zip(OMEGA, omega, strict=True)), simultaneous=True),
         because=r"$\dot q = B^{-1} \omega_b$",
         named=r"\dot\phi",
-        shown=r"H\,\frac{A\,\omega_1^2 + B\,\omega_2^2}{A^2 \omega_1^2 + B^2 \omega_2^2}",
+        display=r"H\,\frac{A\,\omega_1^2 + B\,\omega_2^2}{A^2 \omega_1^2 + B^2 \omega_2^2}",
     )
     d.step(
         "The nutation swings unless two moments are equal.",

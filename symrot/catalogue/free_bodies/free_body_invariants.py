@@ -25,7 +25,9 @@ def derive() -> Derivation:
     acceleration = angular_acceleration(TENSOR, OMEGA, NONE)
     motion = attitude_rates() | pairs(symbols.omega_b, acceleration)
     momentum_b = TENSOR * OMEGA
-    d.given(r"Euler's equations without torque, full tensor:", (r"I\,\dot\omega_b", r"-\,\omega_b \times I\,\omega_b"))
+    d.passage(
+        r"Euler's equations without torque, full tensor:", (r"I\,\dot\omega_b", r"-\,\omega_b \times I\,\omega_b")
+    )
     d.step(
         "Kinetic energy is kept.",
         rate(OMEGA.dot(momentum_b) / 2, motion),

@@ -25,7 +25,7 @@ def derive() -> Derivation:
     a, b, c = symbols.principal
     alpha_b = angular_acceleration(diag(a, b, c), OMEGA, 0 * OMEGA)
     ordered = {b: smallest + first, a: smallest + first + second}
-    d.given(
+    d.passage(
         r"Moments in order, $A > B > C$, with positive differences:",
         (b, ordered[b]),
         (a, ordered[a]),
@@ -45,7 +45,7 @@ def derive() -> Derivation:
             diag(squared_rate, squared_rate),
             because="Euler's equations, linear in the disturbance, applied twice",
             named=r"\left( \partial \dot\omega / \partial \omega \right)^2 = \lambda^2\,\mathbf{1}, \quad \lambda^2",
-            shown=squared_rate,
+            display=squared_rate,
         )
     d.section("Signs")
     verdicts = (
@@ -60,7 +60,7 @@ def derive() -> Derivation:
             because="both differences have the same sign" if sign > 0 else "the differences have opposite signs",
             named=r"\lambda^2" if sign > 0 else r"-\lambda^2",
         )
-    d.given(
+    d.passage(
         r"The rate of growth is $\lambda = \Omega \sqrt{(A - B)(B - C) / (A C)}$: a body thrown like a "
         r"tennis racket turns "
         r"over after a few times $1/\lambda$."

@@ -29,7 +29,7 @@ def derive() -> Derivation:
             "herpolhode."
         ),
     )
-    d.given("Principal axes, moments $A, B, C$. Of a free body energy and the length of angular momentum are kept:",
+    d.passage("Principal axes, moments $A, B, C$. Of a free body energy and the length of angular momentum are kept:",
             ("2 T", TWICE_ENERGY), ("L^2", SQUARE))  # fmt: skip
     _rolling(d)
     _polhode(d)
@@ -50,7 +50,7 @@ def _rolling(d: Derivation) -> None:
         MOMENTUM,
         because="the gradient of a quadratic form",
         named=r"\frac{\partial T}{\partial \omega}",
-        shown=r"I\,\omega = L",
+        display=r"I\,\omega = L",
     )
     d.step(
         "So the tangent plane there is across $L$, which is fixed in space.",
@@ -66,7 +66,7 @@ def _rolling(d: Derivation) -> None:
         Matrix([TWICE_ENERGY, 0, 0]),
         because="energy and angular momentum are kept",
         named=r"\begin{bmatrix} \omega \cdot L \\ d(2 T)/dt \\ d(L^2)/dt \end{bmatrix}",
-        shown=r"\begin{bmatrix} 2 T \\ 0 \\ 0 \end{bmatrix}",
+        display=r"\begin{bmatrix} 2 T \\ 0 \\ 0 \end{bmatrix}",
     )
     d.step(
         "The point of the body that touches the plane is at rest at that moment: the ellipsoid rolls and does not "
@@ -92,7 +92,7 @@ def _rolling(d: Derivation) -> None:
 def _polhode(d: Derivation) -> None:
     d.section("The polhode")
     w1, w2, w3 = OMEGA
-    d.given("The polhode is where the ellipsoid of energy meets the ellipsoid of angular momentum.")
+    d.passage("The polhode is where the ellipsoid of energy meets the ellipsoid of angular momentum.")
     d.step(
         "It lies on a cone.",
         sum(moment * (SQUARE - TWICE_ENERGY * moment) * w**2 for moment, w in zip((A, B, C), OMEGA, strict=True)),
@@ -138,7 +138,7 @@ def _polhode(d: Derivation) -> None:
         ).subs(ordered),
         because="all coefficients are positive",
         named=r"\begin{bmatrix} L^2 - 2 T C \\ 2 T A - L^2 \end{bmatrix}",
-        shown=r"\begin{bmatrix} A (\delta_1 + \delta_2)\,\omega_1^2 + B\,\delta_1 \omega_2^2 \\ "
+        display=r"\begin{bmatrix} A (\delta_1 + \delta_2)\,\omega_1^2 + B\,\delta_1 \omega_2^2 \\ "
         r"B\,\delta_2 \omega_2^2 + C (\delta_1 + \delta_2)\,\omega_3^2 \end{bmatrix}",
     )
     d.notation({"A": A, "B": B, "T": TWICE_ENERGY / 2, "L": MOMENTUM})
@@ -169,7 +169,7 @@ def _herpolhode(d: Derivation) -> None:
         squared(OMEGA) - TWICE_ENERGY**2 / SQUARE,
         because=r"the part of $\omega$ along $L$ has the length $2 T / |L|$",
         named=r"\left| \omega - \frac{2 T}{L^2}\,L \right|^2",
-        shown=r"|\omega|^2 - \frac{(2 T)^2}{L^2}",
+        display=r"|\omega|^2 - \frac{(2 T)^2}{L^2}",
     )
     across = OMEGA - along
     d.step(

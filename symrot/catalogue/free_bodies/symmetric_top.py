@@ -50,7 +50,7 @@ def derive() -> Derivation:
         turning * Matrix([-symbols.omega_2, symbols.omega_1]),
         because="Euler's equations on axes 1 and 2",
         named=r"\begin{bmatrix} \dot\omega_1 \\ \dot\omega_2 \end{bmatrix}",
-        shown=r"\lambda \begin{bmatrix} -\omega_2 \\ \omega_1 \end{bmatrix}, \quad \lambda = \frac{C - A}{A}\,\omega_3",
+        display=r"\lambda \begin{bmatrix} -\omega_2 \\ \omega_1 \end{bmatrix}, \quad \lambda = \frac{C - A}{A}\,\omega_3",
     )
     d.step(
         "Its length is constant, so the polhode is a circle.",
@@ -70,7 +70,7 @@ def derive() -> Derivation:
         momentum / a + spin * AXIS,
         because="the tensor is $A$ times 1, but for axis 3",
         named=r"\omega",
-        shown=r"\frac{L}{A} + \frac{A - C}{A}\,\omega_3\,e_3",
+        display=r"\frac{L}{A} + \frac{A - C}{A}\,\omega_3\,e_3",
     )
     d.step(
         "So the symmetry axis turns about the fixed angular momentum, at the constant rate $|L|/A$.",
@@ -78,7 +78,7 @@ def derive() -> Derivation:
         (momentum / a).cross(AXIS),
         because="the other part is along the axis and does not move it",
         named=r"\omega \times e_3",
-        shown=r"\frac{L}{A} \times e_3",
+        display=r"\frac{L}{A} \times e_3",
     )
     d.step(
         "The angle between them is constant, $\\cos\\theta = C \\omega_3 / |L|$.",
@@ -101,12 +101,12 @@ def derive() -> Derivation:
         (a / c) ** 2 * squared(Matrix(OMEGA[:2])) / symbols.omega_3**2,
         because="the transverse part of $L$ is $A$ times that of $\\omega$, the axial part $C$ times",
         named=r"\tan^2 \angle(L, e_3)",
-        shown=r"\left( \frac{A}{C} \right)^2 \tan^2 \angle(\omega, e_3)",
+        display=r"\left( \frac{A}{C} \right)^2 \tan^2 \angle(\omega, e_3)",
     )
 
     _angles(d)
     d.section("Direct or retrograde")
-    d.given(
+    d.passage(
         r"Precession has the component $\frac{L \cdot e_3}{A}$ along the axis. The spin relative to it is "
         r"$\dot\psi = \frac{A - C}{A}\,\omega_3$. The motion is direct when both have one sign, retrograde otherwise."
     )
@@ -137,7 +137,7 @@ def _angles(d: Derivation) -> None:
     d.section("Precession, nutation and spin")
     a, c, h = symbols.A, symbols.C, symbols.H
     theta = symbols.theta
-    d.given("Let axis 3 of space be along the angular momentum, of length $H$, and the angles be those of ZXZ.")
+    d.passage("Let axis 3 of space be along the angular momentum, of length $H$, and the angles be those of ZXZ.")
     momentum = Matrix(dcm("ZXZ")).T * Matrix([0, 0, h])
     omega = diag(a, a, c).inv() * momentum
     rates = rate_jacobian("ZXZ").inverse * omega
@@ -158,7 +158,7 @@ def _angles(d: Derivation) -> None:
         -((c - a) / a * omega[2]),
         because=r"$C\,\omega_3 = H \cos\theta$",
         named=r"\dot\psi",
-        shown=r"-\frac{C - A}{A}\,\omega_3",
+        display=r"-\frac{C - A}{A}\,\omega_3",
     )
     axis_b, axis_s = AXIS, Matrix(dcm("ZXZ")).T * AXIS
     d.step(
@@ -169,7 +169,7 @@ def _angles(d: Derivation) -> None:
         rates[0] * axis_s + rates[2] * axis_b,
         because="precession is about the angular momentum, spin about the symmetry axis",
         named=r"\omega_b",
-        shown=r"\dot\phi\,R^{\mathsf T} e_3 + \dot\psi\,e_3",
+        display=r"\dot\phi\,R^{\mathsf T} e_3 + \dot\psi\,e_3",
     )
     d.step(
         "The sines of the half angles of space cone and body cone are in the ratio of spin and precession: one turn "
@@ -179,5 +179,5 @@ def _angles(d: Derivation) -> None:
         squared(omega.cross(axis_b)) * rates[2] ** 2,
         because=r"$\omega \times \omega = 0$, with the sum put in for one factor",
         named=r"\dot\phi^2\,|\omega|^2 \sin^2 \angle(\omega, L)",
-        shown=r"\dot\psi^2\,|\omega|^2 \sin^2 \angle(\omega, e_3)",
+        display=r"\dot\psi^2\,|\omega|^2 \sin^2 \angle(\omega, e_3)",
     )

@@ -42,7 +42,7 @@ def _one_particle(d: Derivation) -> None:
         mass * (squared(point) * eye(3) - point * point.T) * OMEGA,
         because=r"$r \times (\omega \times r) = |r|^2 \omega - r\,(r \cdot \omega)$",
         named=r"r \times m\,(\omega \times r)",
-        shown=r"m \left( |r|^2\,\mathbf{1} - r\,r^{\mathsf T} \right) \omega",
+        display=r"m \left( |r|^2\,\mathbf{1} - r\,r^{\mathsf T} \right) \omega",
     )
     d.step(
         "The matrix of this map, written out: moments on the diagonal, products with the minus sign beside it.",
@@ -55,7 +55,7 @@ def _one_particle(d: Derivation) -> None:
 
 def _sum(d: Derivation) -> None:
     d.section("Many particles")
-    d.given("Three particles stand for any number: every sum below is linear in the particles.")
+    d.passage("Three particles stand for any number: every sum below is linear in the particles.")
     total = sum((p.cross(m * OMEGA.cross(p)) for m, p in zip(MASSES, POINTS, strict=True)), zeros(3, 1))
     tensor = sum((Matrix(inertia_of_point(m, p)) for m, p in zip(MASSES, POINTS, strict=True)), zeros(3))
     d.step(
@@ -64,7 +64,7 @@ def _sum(d: Derivation) -> None:
         tensor * OMEGA,
         because="a sum of linear maps is the map of the sum",
         named=rf"L = {COUNT} r_i \times m_i\,(\omega \times r_i)",
-        shown=rf"\Bigl( {COUNT} m_i \left( |r_i|^2\,\mathbf{{1}} - r_i\,r_i^{{\mathsf T}} \right) \Bigr) \omega = "
+        display=rf"\Bigl( {COUNT} m_i \left( |r_i|^2\,\mathbf{{1}} - r_i\,r_i^{{\mathsf T}} \right) \Bigr) \omega = "
         rf"I\,\omega",
     )
     d.notation({"I": tensor})
@@ -80,7 +80,7 @@ def _sum(d: Derivation) -> None:
 def _center(d: Derivation) -> None:
     d.section("About any point: the part of the centre of mass")
     balance = sum((m * p for m, p in zip(MASSES, POINTS, strict=True)), zeros(3, 1))
-    d.given(
+    d.passage(
         r"Let the centre of mass be at $x$, with the velocity $v$, and the particles at $x + r_i$:",
         (rf"{COUNT} m_i\,r_i", "0"),
         ("M", rf"{COUNT} m_i"),
@@ -96,7 +96,7 @@ def _center(d: Derivation) -> None:
         because=rf"the mixed terms hold ${COUNT} m_i\,r_i = 0$",
         relations=list(balance),
         named=rf"{COUNT} (x + r_i) \times m_i \left( v + \omega \times r_i \right)",
-        shown=r"x \times M v + I\,\omega",
+        display=r"x \times M v + I\,\omega",
     )
 
 
@@ -114,7 +114,7 @@ def _properties(d: Derivation) -> None:
         sum(m * squared(OMEGA.cross(p)) for m, p in zip(MASSES, POINTS, strict=True)),
         because=r"$\omega \cdot (r \times (\omega \times r)) = |\omega \times r|^2$",
         named=r"\omega \cdot I\,\omega",
-        shown=rf"{COUNT} m_i\,|\omega \times r_i|^2",
+        display=rf"{COUNT} m_i\,|\omega \times r_i|^2",
     )
     d.step(
         "No moment exceeds the sum of the other two.",
@@ -129,7 +129,7 @@ def _properties(d: Derivation) -> None:
         sum(m * squared(p) for m, p in zip(MASSES, POINTS, strict=True)),
         because="every square is in two of the three moments",
         named=r"\tfrac12\,\mathrm{tr}\,I",
-        shown=rf"{COUNT} m_i\,|r_i|^2",
+        display=rf"{COUNT} m_i\,|r_i|^2",
     )
     about_third = Matrix([0, 0, symbols.omega_3])
     d.step(

@@ -44,9 +44,9 @@ def _sum(d: Derivation) -> None:
         HALF * OMEGA.dot(Matrix(inertia_of_point(symbols.m, point)) * OMEGA),
         because=r"$|\omega \times r|^2 = |\omega|^2 |r|^2 - (\omega \cdot r)^2$",
         named=r"\tfrac12\,m\,|\omega \times r|^2",
-        shown=r"\tfrac12\,\omega \cdot m \left( |r|^2\,\mathbf{1} - r\,r^{\mathsf T} \right) \omega",
+        display=r"\tfrac12\,\omega \cdot m \left( |r|^2\,\mathbf{1} - r\,r^{\mathsf T} \right) \omega",
     )
-    d.given(
+    d.passage(
         r"Three particles stand for any number. Let the centre of mass move with $v$, and the particles be at $r_i$ "
         r"from it:",
         (rf"{COUNT} m_i\,r_i", "0"),
@@ -62,7 +62,7 @@ def _sum(d: Derivation) -> None:
         because=rf"the mixed term is $v \cdot (\omega \times {COUNT} m_i\,r_i) = 0$",
         relations=list(balance),
         named=rf"\tfrac12 {COUNT} m_i\,|v + \omega \times r_i|^2",
-        shown=r"\tfrac12\,M\,|v|^2 + \tfrac12\,\omega \cdot I\,\omega",
+        display=r"\tfrac12\,M\,|v|^2 + \tfrac12\,\omega \cdot I\,\omega",
     )
     d.notation({"I": TENSOR, "I_O": Matrix(about_point(TENSOR, symbols.m, ARM))})
     d.step(
@@ -71,7 +71,7 @@ def _sum(d: Derivation) -> None:
         HALF * OMEGA.dot(Matrix(about_point(TENSOR, symbols.m, ARM)) * OMEGA),
         because=r"the centre of mass, at $c$ from the fixed point, moves with $\omega \times c$; parallel axes",
         named=r"\tfrac12\,m\,|\omega \times c|^2 + \tfrac12\,\omega \cdot I\,\omega",
-        shown=r"\tfrac12\,\omega \cdot I_O\,\omega",
+        display=r"\tfrac12\,\omega \cdot I_O\,\omega",
     )
 
 
@@ -85,7 +85,7 @@ def _forms(d: Derivation) -> None:
         TENSOR * OMEGA,
         because="the tensor is symmetric",
         named=r"\frac{\partial T}{\partial \omega}",
-        shown=r"I\,\omega",
+        display=r"I\,\omega",
     )
     axis = Matrix(symbols.axis)
     d.step(
@@ -94,7 +94,7 @@ def _forms(d: Derivation) -> None:
         HALF * axis.dot(TENSOR * axis) * symbols.Omega**2,
         because=r"$\omega = \Omega\,n$",
         named=r"\left. T \right|_{\omega = \Omega n}",
-        shown=r"\tfrac12 \left( n \cdot I\,n \right) \Omega^2",
+        display=r"\tfrac12 \left( n \cdot I\,n \right) \Omega^2",
     )
     dcm_sb = Matrix(dcm_of())
     turned = dcm_sb * TENSOR * dcm_sb.T
@@ -106,7 +106,7 @@ def _forms(d: Derivation) -> None:
         because=r"$R^{\mathsf T} R = 1$, twice",
         relations=[unit_relation()],
         named=r"\tfrac12\,\omega_s \cdot I_s\,\omega_s",
-        shown=r"\tfrac12\,\omega_b \cdot I_b\,\omega_b",
+        display=r"\tfrac12\,\omega_b \cdot I_b\,\omega_b",
     )
     principal = diag(*symbols.principal)
     momentum = principal * OMEGA
@@ -117,7 +117,7 @@ def _forms(d: Derivation) -> None:
         HALF * momentum.dot(principal.inv() * momentum),
         because=r"$\omega = I^{-1} L$",
         named=r"\tfrac12 \left( A\,\omega_1^2 + B\,\omega_2^2 + C\,\omega_3^2 \right)",
-        shown=r"\tfrac12 \left( \frac{L_1^2}{A} + \frac{L_2^2}{B} + \frac{L_3^2}{C} \right)",
+        display=r"\tfrac12 \left( \frac{L_1^2}{A} + \frac{L_2^2}{B} + \frac{L_3^2}{C} \right)",
     )
 
 

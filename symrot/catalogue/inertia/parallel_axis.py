@@ -31,7 +31,7 @@ def derive() -> Derivation:
         linear,
         because=r"the tensor is quadratic in $r + d$",
         named="I(r + d) - I(r) - I(d)",
-        shown=r"m \left( 2\,(d \cdot r)\,\mathbf{1} - d\,r^{\mathsf T} - r\,d^{\mathsf T} \right)",
+        display=r"m \left( 2\,(d \cdot r)\,\mathbf{1} - d\,r^{\mathsf T} - r\,d^{\mathsf T} \right)",
     )
     second = Matrix(symbols.corners[:3])
     d.step(
@@ -40,7 +40,7 @@ def derive() -> Derivation:
         linear + linear.subs(dict(zip(R, second, strict=True)), simultaneous=True),
         because="it is linear",
         named="F(r + r')",
-        shown="F(r) + F(r')",
+        display="F(r) + F(r')",
     )
     d.step(
         "There it vanishes: this is the theorem of parallel axes.",

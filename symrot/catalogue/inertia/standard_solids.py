@@ -36,7 +36,7 @@ def derive() -> Derivation:
             "from the second moments."
         ),
     )
-    d.given(
+    d.passage(
         r"With the second moments $S_{xy} = \int x\,y\,dm$ about the origin of the axes shown, and the centre of "
         "mass at $c$, the tensor about the centre of mass is",
         ("I", r"\mathrm{tr}\,S\;\mathbf{1} - S - m \left( |c|^2\,\mathbf{1} - c\,c^{\mathsf T} \right)"),
@@ -52,7 +52,7 @@ def _shape(d: Derivation, body: Solid) -> None:
     letter = MEASURE[body.shape.kind]
     d.section(body.name.replace("_", " ").capitalize())
     axes = body.shape.axes
-    d.given(
+    d.passage(
         f"{axes[0].upper()}{axes[1:].rstrip('.')}. The map, with {_limits(body)}:",
         (r"(x, y, z)^{\mathsf T}", body.position),
     )
@@ -66,7 +66,7 @@ def _shape(d: Derivation, body: Solid) -> None:
         + ",".join(map(_latex, coordinates))
         + r")}^{\mathsf T} "
         r"\frac{\partial (x,y,z)}{\partial (" + ",".join(map(_latex, coordinates)) + r")} \right)",
-        shown=None if body.jacobian.is_number else rf"\left( {_latex(body.jacobian)} \right)^2",
+        display=None if body.jacobian.is_number else rf"\left( {_latex(body.jacobian)} \right)^2",
     )
     d.step(
         "Its measure.",
@@ -85,26 +85,26 @@ def _limits(body: Solid) -> str:
 
 
 def _moments(d: Derivation, body: Solid, letter: str) -> None:
-    found: Moments = {}
-    wanted: list[tuple[int, ...]] = [(0,), (1,), (2,), (0, 0), (1, 1), (2, 2), *PRODUCTS]
+    moments: Moments = {}
+    products: list[tuple[int, ...]] = [(0,), (1,), (2,), (0, 0), (1, 1), (2, 2), *PRODUCTS]
     values = {step.quantity: step.value for step in body.steps}
-    for axes in wanted:
-        found[axes] = body.density * _integral(body, axes)
-    zero = [axes for axes in wanted if values[_quantity(axes)] == 0]
+    for axes in products:
+        moments[axes] = body.density * _integral(body, axes)
+    zero = [axes for axes in products if values[_quantity(axes)] == 0]
     if zero:
         d.step(
             "Of the first and second moments these vanish.",
-            Matrix([found[axes] for axes in zero]),
+            Matrix([moments[axes] for axes in zero]),
             0,
             because="the integrals are zero term by term",
             named=r"\frac{m}{" + letter + r"} \int \left( " + r",\ ".join(_product(axes) for axes in zero)
             + rf" \right) d{letter}",
         )  # fmt: skip
-    for axes in wanted:
+    for axes in products:
         if axes not in zero and len(axes) == 1:
             d.step(
                 f"The centre of mass along ${AXES[axes[0]]}$.",
-                found[axes] / symbols.m,
+                moments[axes] / symbols.m,
                 body.center_of_mass[axes[0]],
                 because=_antiderivatives(body, axes),
                 via=_between(body, axes),
@@ -113,20 +113,20 @@ def _moments(d: Derivation, body: Solid, letter: str) -> None:
         elif axes not in zero:
             d.step(
                 f"The second moment of ${_product(axes)}$.",
-                found[axes],
+                moments[axes],
                 values[_quantity(axes)],
                 because=_antiderivatives(body, axes),
                 via=_between(body, axes),
                 named=rf"S_{{{''.join(AXES[i] for i in axes)}}} = \frac{{m}}{{{letter}}} {_integral_sign(body, axes)}",
             )
-    _tensor(d, body, found)
+    _tensor(d, body, moments)
 
 
-def _tensor(d: Derivation, body: Solid, found: Moments) -> None:
-    second = diag(*(found[i, i] for i in range(3)))
+def _tensor(d: Derivation, body: Solid, moments: Moments) -> None:
+    second = diag(*(moments[i, i] for i in range(3)))
     for i, j in PRODUCTS:
-        second[i, j] = second[j, i] = found[i, j]
-    center = Matrix([found[i,] for i in range(3)]) / body.mass
+        second[i, j] = second[j, i] = moments[i, j]
+    center = Matrix([moments[i,] for i in range(3)]) / body.mass
     about_origin = second.trace() * eye(3) - second
     d.step(
         "The tensor of inertia about the centre of mass.",
@@ -138,7 +138,7 @@ def _tensor(d: Derivation, body: Solid, found: Moments) -> None:
 
 
 def _stages(body: Solid, axes: Sequence[int]) -> tuple[Expr, tuple[Stage, ...]]:
-    """Return a constant factor, and the integrations of the rest of a product of x, y, z over the map."""
+    """Return the integral of a product of x, y, z over the map as a constant factor and the stages of integration."""
     coordinates = [variable for variable, _, _ in body.limits]
     constant, weight = body.jacobian.as_independent(*coordinates, as_Add=False)
     for axis in axes:
@@ -153,24 +153,24 @@ def _integral(body: Solid, axes: Sequence[int]) -> Expr:
 
 
 def _antiderivatives(body: Solid, axes: Sequence[int]) -> str:
-    """Return the antiderivatives as a reason, from the innermost outwards; only the last where they are long."""
+    """Return the antiderivatives as the text of a reason, innermost first; only the last if they are long."""
     constant, stages = _stages(body, axes)
-    shown = [f"${_latex(factor_terms(stage.antiderivative))}$ in ${_latex(stage.variable)}$" for stage in stages]
+    formulas = [f"${_latex(factor_terms(stage.antiderivative))}$ in ${_latex(stage.variable)}$" for stage in stages]
     before = "" if constant == 1 else f", before the factor ${_latex(constant)}$"
-    if sum(map(len, shown)) > LONG:
-        return f"antiderivatives, from the innermost integral outwards{before}, the last one {shown[-1]}"
-    return f"the antiderivatives are {', then '.join(shown)}{before}"
+    if sum(map(len, formulas)) > LONG:
+        return f"antiderivatives, from the innermost integral outwards{before}, the last one {formulas[-1]}"
+    return f"the antiderivatives are {', then '.join(formulas)}{before}"
 
 
 def _between(body: Solid, axes: Sequence[int]) -> list[tuple[str, Expr, Expr]]:
-    """Return each antiderivative between its limits, and its value, in words and as an equation."""
-    found = []
+    """Return, for each stage, the words and the equation for the antiderivative between its limits."""
+    equations = []
     for stage in _stages(body, axes)[1]:
         upper, lower = (stage.antiderivative.subs(stage.variable, end) for end in (stage.upper, stage.lower))
         limits = f"from ${_latex(stage.lower)}$ to ${_latex(stage.upper)}$"
         words = f"Over ${_latex(stage.variable)}$ {limits}, with the antiderivative ${_latex(stage.antiderivative)}$:"
-        found.append((words, upper if lower == 0 else Add(upper, -lower, evaluate=False), stage.value))
-    return found
+        equations.append((words, upper if lower == 0 else Add(upper, -lower, evaluate=False), stage.value))
+    return equations
 
 
 def _integral_sign(body: Solid, axes: Sequence[int]) -> str:

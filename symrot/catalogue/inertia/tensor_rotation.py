@@ -30,7 +30,7 @@ def derive() -> Derivation:
         because="$R$ keeps lengths, and $(R r)(R r)^{\\mathsf T} = R\\,r\\,r^{\\mathsf T} R^{\\mathsf T}$",
         relations=unit,
         named="I(R r)",
-        shown=r"R\,I(r)\,R^{\mathsf T}",
+        display=r"R\,I(r)\,R^{\mathsf T}",
     )
     turned = dcm_sb * TENSOR * dcm_sb.T
     d.notation(
@@ -43,7 +43,7 @@ def derive() -> Derivation:
         because="$R^{\\mathsf T} R = 1$, twice",
         relations=unit,
         named=r"\omega_s \cdot I_s\,\omega_s",
-        shown=r"\omega_b \cdot I_b\,\omega_b",
+        display=r"\omega_b \cdot I_b\,\omega_b",
     )
     d.step(
         "Nor does the trace; and as the square of the tensor turns in the same way, nor its trace: with "
@@ -54,7 +54,7 @@ def derive() -> Derivation:
         because="the trace of a product is cyclic",
         relations=unit,
         named=r"\mathrm{tr}\,I_s",
-        shown=r"\mathrm{tr}\,I_b",
+        display=r"\mathrm{tr}\,I_b",
     )
     omega_s = dcm_sb * OMEGA
     d.step(
@@ -64,7 +64,7 @@ def derive() -> Derivation:
         because=r"$\dot R = [\omega_s]_\times R$",
         relations=unit,
         named=r"\dot I_s",
-        shown=r"[\omega_s]_\times I_s - I_s\,[\omega_s]_\times",
+        display=r"[\omega_s]_\times I_s - I_s\,[\omega_s]_\times",
     )
     motion = attitude_rates() | pairs(symbols.omega_b, symbols.omega_rates)
     d.notation({}, motion)
@@ -77,7 +77,7 @@ def derive() -> Derivation:
         r"$\dot\omega_s = R\,\dot\omega_b$",
         relations=unit,
         named=r"\dot I_s\,\omega_s + I_s\,\dot\omega_s",
-        shown=r"I_s\,\dot\omega_s + \omega_s \times I_s\,\omega_s",
+        display=r"I_s\,\dot\omega_s + \omega_s \times I_s\,\omega_s",
     )
     d.notation({"I_s": dcm_sb * (symbols.A * eye(3)) * dcm_sb.T})
     d.step(

@@ -1,1 +1,1 @@
-"""What several derivations use: elliptic functions, integrals, motions, power series, swept bodies."""
+"""Provide tools that several derivations use: elliptic functions, integrals, motions, power series, swept bodies."""

@@ -1,4 +1,4 @@
-"""Jacobi's elliptic functions as symbols: their derivatives, their quadratic relations, their sums of arguments."""
+"""Represent Jacobi's elliptic functions as symbols, with derivatives, quadratic relations and addition theorems."""
 
 from sympy import Expr, S, Symbol
 
@@ -19,12 +19,12 @@ def imaginary() -> Expr:
 
 
 def derivatives(speed: Expr = S.One, parameter: Expr = MU) -> dict[Symbol, Expr]:
-    """Return sn, cn, dn -> their derivatives, for an argument that grows at a speed."""
+    """Return the time derivatives of sn, cn and dn, by symbol, for an argument that grows at a given speed."""
     return {SN: speed * CN * DN, CN: -speed * SN * DN, DN: -speed * parameter * SN * CN}
 
 
 def squares(parameter: Expr = MU, fixed: bool = False) -> list[Expr]:
-    """Return the two quadratic relations, each an expression that is zero; of the values at w if ``fixed``."""
+    """Return the two quadratic relations as expressions that are zero; with ``fixed``, for the values at w."""
     s, c, d = W_VALUES if fixed else (SN, CN, DN)
     return [c**2 - 1 + s**2, d**2 - 1 + parameter * s**2]
 

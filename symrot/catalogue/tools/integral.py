@@ -1,4 +1,4 @@
-"""Iterated integrals by antiderivatives, each of which is proven by differentiating it."""
+"""Compute iterated integrals from antiderivatives, each proven by differentiation."""
 
 from dataclasses import dataclass
 from functools import cache
@@ -41,7 +41,7 @@ def _waves(cosines: int, sines: int) -> tuple[tuple[int, Expr, Expr], ...]:
 
 @cache
 def antiderivative(integrand: Expr, variable: Symbol) -> Expr:
-    """Return an antiderivative of a polynomial in the variable, or in its cosine and sine.
+    """Return an antiderivative of a polynomial in the variable, or in the cosine and sine of the variable.
 
     Raises
     ------
@@ -64,10 +64,10 @@ def antiderivative(integrand: Expr, variable: Symbol) -> Expr:
 
 @cache
 def iterated(integrand: Any, limits: tuple[tuple[Symbol, Expr, Expr], ...]) -> tuple[Stage, ...]:
-    """Return the integrations over (variable, lower, upper) in turn, the first of the limits innermost."""
+    """Integrate over each (variable, lower, upper), the first one innermost, and return all stages."""
     stages = []
     for variable, lower, upper in limits:
-        found = antiderivative(expand(integrand), variable)
-        integrand = found.subs(variable, upper) - found.subs(variable, lower)
-        stages.append(Stage(variable, found, lower, upper, integrand))
+        primitive = antiderivative(expand(integrand), variable)
+        integrand = primitive.subs(variable, upper) - primitive.subs(variable, lower)
+        stages.append(Stage(variable, primitive, lower, upper, integrand))
     return tuple(stages)

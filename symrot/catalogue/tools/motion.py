@@ -1,4 +1,4 @@
-"""Rates along a motion: the chain rule, and the motions that derivations share."""
+"""Differentiate along a motion by the chain rule, and define the motions that derivations share."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -22,7 +22,7 @@ TENSOR = Matrix(
 
 
 def pairs(variables: Sequence[Symbol], rates: Any) -> dict[Symbol, Expr]:
-    """Return variable -> its rate."""
+    """Return a mapping from each variable to its rate."""
     return dict(zip(variables, list(rates), strict=True))
 
 

@@ -1,4 +1,4 @@
-"""Linear differential equations in power series: the coefficient of any power, for an index that is a symbol."""
+"""Insert power series into linear differential equations: the coefficient of any power, for a symbolic index."""
 
 from collections.abc import Mapping
 
@@ -18,7 +18,7 @@ def coefficient(terms: Mapping[str, Mapping[int, Expr]], variable: Symbol, index
     Parameters
     ----------
     terms : mapping
-        Name of a series -> order of a derivative of it -> polynomial of the variable that multiplies it.
+        Name of a series -> order of its derivative -> polynomial in the variable that multiplies this derivative.
 
     Notes
     -----

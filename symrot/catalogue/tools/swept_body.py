@@ -1,4 +1,4 @@
-"""How a body that is swept through resonance is computed: series by their recurrences, phases without cancellation."""
+"""Derive formulas for a body swept through resonance: recurrences of series, and phases without cancellation."""
 
 from sympy import Expr, Matrix, Rational, S, Symbol, sqrt
 
@@ -14,7 +14,7 @@ V, X, R, KAPPA = Symbol("v"), Symbol("x"), Symbol("r"), Symbol("kappa")
 
 
 def far(d: Derivation) -> None:
-    """Append the coefficients of the vector at rest, and of the small angle about it."""
+    """Append the coefficients of the vector at rest, and of the small angle about this vector."""
     d.section("The coefficients far from resonance")
     _vector(d)
     _small_angle(d)
@@ -22,7 +22,7 @@ def far(d: Derivation) -> None:
 
 def _vector(d: Derivation) -> None:
     a, b, c = (indexed(name, K) for name in "abc")
-    d.given(
+    d.passage(
         r"Let $a = \sum a_k v^k$, and so on; coefficients with a negative index are zero. What follows is the "
         r"coefficient of $v^k$ in each of the three equations, which is zero."
     )
@@ -85,7 +85,7 @@ def _small_angle(d: Derivation) -> None:
     v = 1 / R**2
     slope = square * (e - v * h) / (2 * (1 - square * v))
     motion = {X: S.One, R: X / R, e: moved * slope}
-    d.given(
+    d.passage(
         r"The rate of the small angle is $\dot\phi\,m_2/(1 + m_3) = \kappa^2 h / r^5$ with $h = -c/(1 + m_3)$. Let "
         r"$\delta = \frac{x}{r} e(v)$, with $\kappa^2 e - 2 (1 - \kappa^2 v) e' = \kappa^2 v h$."
     )
@@ -108,14 +108,14 @@ def _small_angle(d: Derivation) -> None:
 
 
 def near(d: Derivation) -> None:
-    """Append Taylor's series of the attitude about a place, and its symmetry."""
+    """Append the Taylor series of the attitude about an expansion point, and its symmetry."""
     d.section("Near resonance")
     place, step = Symbol("X"), Symbol("u")
     names = r"\alpha", r"\beta"
     first = {names[0]: {1: S(2), 0: -I * (place + step)}, names[1]: {0: KAPPA}}
     second = {names[1]: {1: S(2), 0: I * (place + step)}, names[0]: {0: -KAPPA}}
     (a1, a, a0), (b1, b, b0) = ([indexed(name, K, shift) for shift in (1, 0, -1)] for name in names)
-    d.given(
+    d.passage(
         r"In the same unit of time $2 \alpha' = i x \alpha - \kappa \beta$ and $2 \beta' = \kappa \alpha - i x \beta$. "
         r"About a place $X$ let $\alpha = \sum \alpha_k u^k$ and $\beta = \sum \beta_k u^k$, $u = x - X$."
     )
@@ -153,7 +153,7 @@ def weak(d: Derivation) -> None:
     h, c = Symbol("h"), Symbol("c")
     f = sqrt(1 + 2 * c * h + h**2)
     start, speed, across, sweep, time = (Symbol(name) for name in ("Omega_0", "S_0", "W", "s", "t"))
-    d.given(
+    d.passage(
         r"For a small sweep $s = \dot\Omega$ the phase from the start on is a small difference of large values of the "
         r"formula above, and is found otherwise: with $S_0$ and $\Omega_0$ at the start, $W$ across, $c = "
         r"\Omega_0/S_0$ and $h = s t / S_0$."
@@ -173,7 +173,7 @@ def weak(d: Derivation) -> None:
         (c + h) * f,
         because="a square root is differentiated",
         named=r"(1 + 2 c h + h^2)\,\frac{df}{dh}",
-        shown="(c + h)\\,f",
+        display="(c + h)\\,f",
     )
     above, now, before = (indexed("a", K, shift) for shift in (1, 0, -1))
     recurrence = (K + 1) * above - (1 - 2 * K) * c * now - (2 - K) * before
@@ -195,15 +195,15 @@ def weak(d: Derivation) -> None:
         because="$h$ is proportional to $t$, and the series is integrated term by term",
         named=r"\frac{d}{dt} \frac{t\,h^k}{k + 1}",
     )
-    d.given(
+    d.passage(
         r"How much is left out after some terms is known: with Legendre's polynomials $P_k$ of $-c$, for "
         r"which $(k + 1) P_{k+1} = -(2 k + 1) c P_k - k P_{k-1}$, it is $a_k = (P_{k-2} - P_k)/(2 k - 1)$ from $k = 2$ "
         r"on, so that $|a_k| \le 2/(2 k - 1)$, $|c|$ being at most 1."
     )
-    found = _by_legendre(c)
+    solution = _by_legendre(c)
     d.step(
         "These obey the recurrence.",
-        recurrence.subs(found),
+        recurrence.subs(solution),
         0,
         because="every $P$ follows from two that are neighbours",
         named=r"(k + 1)\,a_{k+1} - (1 - 2 k)\,c\,a_k - (2 - k)\,a_{k-1}",
@@ -225,7 +225,7 @@ def _by_legendre(c: Expr) -> dict[Symbol, Expr]:
     """Return a_{k+1}, a_k, a_{k-1} from Legendre's P_k and P_{k-1}."""
     above, below = Symbol("P_{k}"), Symbol("P_{k-1}")
     p = {0: above, -1: below, 1: (-(2 * K + 1) * c * above - K * below) / (K + 1)}
-    for i in (-2, -3):  # the recurrence for the one above, solved for the lowest
+    for i in (-2, -3):  # the recurrence for the next higher index, solved for the lowest coefficient
         p[i] = (-(2 * (K + i) + 3) * c * p[i + 1] - (K + i + 2) * p[i + 2]) / (K + i + 1)
     return {indexed("a", K, i): (p[i - 2] - p[i]) / (2 * (K + i) - 1) for i in (1, 0, -1)}
 
@@ -238,7 +238,7 @@ def between(d: Derivation) -> None:
     half = sqrt((across**2 + together) / 2)
     z, root = (omega - start) / (2 * half), (speed + there) / (2 * half)
     squares = [speed**2 - omega**2 - across**2, there**2 - start**2 - across**2]
-    d.given(
+    d.passage(
         r"From $\Omega_0$ at the start to $\Omega = \Omega_0 + s t$ the phase is $(\Omega S - \Omega_0 S_0 + W^2 (Z - "
         r"Z_0))/(2 s)$. Let $E = S_0 S + \Omega_0 \Omega$, $D^2 = (W^2 + E)/2$ and $z = s t/(2 D)$."
     )
@@ -251,7 +251,7 @@ def between(d: Derivation) -> None:
         because=r"of $S^2 = \Omega^2 + W^2$ and $S_0^2 = \Omega_0^2 + W^2$",
         relations=squares,
         named="1 + z^2",
-        shown=r"\left( \frac{S + S_0}{2 D} \right)^2",
+        display=r"\left( \frac{S + S_0}{2 D} \right)^2",
     )
     d.step(
         r"So $Z - Z_0$ is twice the $\operatorname{arsinh}$ of $z$: both have one hyperbolic sine, $(\Omega S_0 - "
@@ -270,5 +270,5 @@ def between(d: Derivation) -> None:
         because="of the same, and $t / (2 D) = z / s$",
         relations=squares,
         named=r"E\,z\,w",
-        shown=r"\tfrac12 \left( \Omega S - \Omega_0 S_0 \right)",
+        display=r"\tfrac12 \left( \Omega S - \Omega_0 S_0 \right)",
     )

@@ -1,1 +1,1 @@
-"""How formulas are written on a page: SymPy to LaTeX, LaTeX to MathML, LaTeX read back as SymPy."""
+"""Translate the formulas of a page: SymPy to LaTeX, LaTeX to MathML, and LaTeX back to SymPy."""

@@ -1,8 +1,9 @@
-"""The LaTeX that a derivation shows, read back as mathematics: what is shown is then decided like what was derived.
+"""Read the LaTeX of a page back as mathematics, so that a displayed formula can be proven equal to the derived one.
 
 A page may write a side of an equation as a person would, ``R\\,[\\omega_b]_\\times``, where the derivation has nine
-entries. Given what the names on the page mean, the text is read again by the rules that a reader uses, and proven equal
-to what it stands for. Text with a name that has no meaning here is no formula but a name itself: :class:`Unread`.
+entries. With the declared meanings of the names on the page, the text is read by the usual rules of notation and proven
+equal to the derived expression. Text that contains a name without a declared meaning raises :class:`Unread`: it is only
+a label.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -27,45 +28,45 @@ SKEW = ("_", "\\times")
 
 
 class Unread(Exception):
-    """Text that holds a name without a meaning, or a notation that is not read back."""
+    """Raised for text that contains a name without a meaning, or an unsupported notation."""
 
 
 def key(latex: str) -> str:
-    """Return a name as it is looked up: without braces and spaces."""
+    """Return the key under which a name is looked up: the name without braces and spaces."""
     return "".join(token for token in TOKEN.findall(latex) if token not in "{}" and not token.isspace())
 
 
 def parts(latex: str) -> list[list[str]]:
-    """Return the equations of a text, set apart by ``, \\quad``, each as the list of its sides."""
-    found: list[list[str]] = [[""]]
+    """Split a text at ``, \\quad`` into equations, and return each as the list of its sides."""
+    equations: list[list[str]] = [[""]]
     depth = 0
     tokens = TOKEN.findall(latex)
     for place, token in enumerate(tokens):
         depth += (token in ("{", "(", "\\left", "\\begin")) - (token in ("}", ")", "\\right", "\\end"))
         if depth == 0 and token == "," and "".join(tokens[place + 1 :]).lstrip().startswith("\\quad"):
-            found.append([""])
+            equations.append([""])
         elif depth == 0 and token == "=":
-            found[-1].append("")
+            equations[-1].append("")
         elif token != "\\quad":
-            found[-1][-1] += token
-    return found
+            equations[-1][-1] += token
+    return equations
 
 
 def read(latex: str, names: Mapping[str, Any], rates: Mapping[Expr, Expr] | None = None) -> Any:
-    """Return the formula or matrix that a text stands for.
+    """Return the formula or matrix that a LaTeX text represents.
 
     Parameters
     ----------
     latex : str
     names : mapping
-        Key of a name (see :func:`key`) -> Expr, Matrix, or a function of those that are in parentheses after it.
+        Key of a name (see :func:`key`) -> Expr, Matrix, or a function of the arguments in parentheses after it.
     rates : mapping, optional
         Variable -> its rate, for ``\\dot x`` and ``\\frac{d}{dt}``.
 
     Raises
     ------
     Unread
-        If there is a name without a meaning, shapes do not fit, or the notation is not known here.
+        If a name has no meaning, shapes do not match, or the notation is not supported.
     """
     return _Reader(latex, names, rates or {}).whole()
 
@@ -195,15 +196,15 @@ class _Reader:
 
     def values(self, closing: str) -> list[Any]:
         bars, self.bars = self.bars, 0
-        found = [self.sum()]
+        sums = [self.sum()]
         while self.peek() == ",":
             self.next()
-            found.append(self.sum())
+            sums.append(self.sum())
         self.bars = bars
         if self.peek() != closing:
             raise Unread(f"expected {closing}")
         self.next()
-        return found
+        return sums
 
     def closed(self, opening: str, values: list[Any], closing: str) -> Any:
         if opening == "[":
@@ -255,7 +256,7 @@ class _Reader:
         return value if power is None else value**power
 
     def argument_tokens(self) -> list[str]:
-        """Return the tokens of a braced group, or one token (one digit of a number) with what belongs to it."""
+        """Return the tokens of a braced group, or a single token (one digit of a number) with its own arguments."""
         token = self.next()
         if token != "{":
             if token.isdigit() and len(token) > 1:
@@ -288,7 +289,7 @@ class _Reader:
         return sqrt(self.inside(self.argument_tokens()))
 
     def font(self) -> Any:
-        """Read a name in a font: a function of a matrix, or ``\\mathbf{1}``, or a name that was given a meaning."""
+        """Read a name in a font: a function of a matrix, ``\\mathbf{1}``, or a name with a declared meaning."""
         self.place -= 1
         start = self.place
         self.next()
@@ -330,30 +331,30 @@ class _Reader:
     # -- names ------------------------------------------------------------------------------------------------------
 
     def name(self) -> Any:
-        found = "".join(self.name_tokens())
+        text = "".join(self.name_tokens())
         if self.peek() == "(":  # a value, such as x(t), may have a meaning of its own
             stop = self.place
             while stop < len(self.tokens) and self.tokens[stop] != ")":
                 stop += 1
-            whole = found + "".join(token for token in self.tokens[self.place : stop + 1] if token not in "{}")
+            whole = text + "".join(token for token in self.tokens[self.place : stop + 1] if token not in "{}")
             if whole in self.names:
                 self.place = stop + 1
                 return self.names[whole]
-            if stop == self.place + 2 and not callable(self.names.get(found)):
+            if stop == self.place + 2 and not callable(self.names.get(text)):
                 raise Unread(whole)  # not a product: the value of a function
-        if found in self.names:
-            return self.meaning(self.names[found])
-        if found.startswith(("\\dot", "\\ddot")) and self.rates:
-            times = 2 if found.startswith("\\ddot") else 1
-            bare = found.removeprefix("\\ddot" if times == 2 else "\\dot")
+        if text in self.names:
+            return self.meaning(self.names[text])
+        if text.startswith(("\\dot", "\\ddot")) and self.rates:
+            times = 2 if text.startswith("\\ddot") else 1
+            bare = text.removeprefix("\\ddot" if times == 2 else "\\dot")
             if bare in self.names and not callable(self.names[bare]):
                 value = self.names[bare]
                 if not value.free_symbols & {part for variable in self.rates for part in variable.free_symbols}:
-                    raise Unread(found)
+                    raise Unread(text)
                 for _ in range(times):
                     value = self.rate(value)
                 return value
-        raise Unread(found)
+        raise Unread(text)
 
     def meaning(self, value: Any) -> Any:
         if callable(value) and not isinstance(value, (Expr, MatrixBase)):
@@ -418,7 +419,7 @@ def _stacked(values: list[Any]) -> Matrix:
 
 
 def _added(left: Any, right: Any) -> Any:
-    """Return a sum; a number beside a matrix is that multiple of the unit matrix."""
+    """Return a sum; a number added to a matrix means that multiple of the unit matrix."""
     if isinstance(left, MatrixBase) != isinstance(right, MatrixBase):
         matrix, scalar = (left, right) if isinstance(left, MatrixBase) else (right, left)
         if scalar == 0:
@@ -432,7 +433,7 @@ def _added(left: Any, right: Any) -> Any:
 
 
 def _multiplied(left: Any, right: Any) -> Any:
-    """Return a product: of matrices where they fit, of quaternions for two columns of four."""
+    """Return a product: the matrix product, or the quaternion product for two columns of four."""
     if isinstance(left, MatrixBase) and isinstance(right, MatrixBase):
         if left.shape == right.shape == (4, 1):
             a, u, b, v = left[0], Matrix(left[1:]), right[0], Matrix(right[1:])

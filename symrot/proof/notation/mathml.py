@@ -1,7 +1,7 @@
-"""LaTeX formulas as native MathML: the part of LaTeX that the pages use, and nothing else.
+"""Translate LaTeX formulas into native MathML: only the part of LaTeX that the pages use.
 
-One reader serves HTML and the breaking of long lines: a formula becomes a row of items, each with its LaTeX, its
-MathML, an estimate of its width, and whether a line may be broken before it. What is not known is refused.
+The same reader serves HTML and line breaking: a formula becomes a row of items, each with its LaTeX, its MathML, an
+estimate of its width, and whether a line may be broken before it. Unknown LaTeX raises InputError.
 """
 
 import re
@@ -51,7 +51,7 @@ SMALL = 0.75  # scripts, relative to the line
 
 @dataclass(frozen=True)
 class Item:
-    """One piece of a row: LaTeX, MathML, width in letters; ``kind``: "relation", "sign", "function" or ""."""
+    """One item of a row: LaTeX, MathML, width in letters; ``kind`` is "relation", "sign", "function" or ""."""
 
     latex: str
     mathml: str
@@ -83,7 +83,7 @@ class _Reader:
     # -- rows -------------------------------------------------------------------------------------------------------
 
     def row(self, *stops: str) -> list[Item]:
-        """Read items up to one of the stops, which is left; all of the rest where there are none."""
+        """Read items up to one of the stop tokens, which is not consumed; without stops, read to the end."""
         items: list[Item] = []
         while (token := self.peek()) not in stops and token:
             start = self.place
@@ -143,10 +143,10 @@ class _Reader:
         if token.isalpha():
             return Item("", f"<mi>{token}</mi>", 0.7)
         if token in "+-":
-            shown = "−" if token == "-" else token
+            character = "−" if token == "-" else token
             if after_operand:
-                return Item("", f"<mo>{shown}</mo>", 1.2, "sign")
-            return Item("", f'<mo form="prefix">{shown}</mo>', 0.7)
+                return Item("", f"<mo>{character}</mo>", 1.2, "sign")
+            return Item("", f'<mo form="prefix">{character}</mo>', 0.7)
         if token in "=<>:":
             return Item("", f"<mo>{escape(token)}</mo>", 1.4, "relation")
         if token == "|":
@@ -175,9 +175,9 @@ class _Reader:
         if name in LARGE:
             return Item("", f'<mo largeop="true">{LARGE[name]}</mo>', 1.0)
         if name in OPERATORS:
-            shown = OPERATORS[name]
-            kind = "relation" if shown in RELATIONS else ""
-            return Item("", f"<mo>{escape(shown)}</mo>", 1.2, kind)
+            operator = OPERATORS[name]
+            kind = "relation" if operator in RELATIONS else ""
+            return Item("", f"<mo>{escape(operator)}</mo>", 1.2, kind)
         if token in FENCES:
             return Item("", f'<mo stretchy="false">{FENCES[token]}</mo>', 0.4)
         if name in SIZES:
@@ -196,10 +196,10 @@ class _Reader:
             text = "".join(self.tokens[start : self.place])
             self.next()
         text = text.strip() if variant != "normal" else text
-        shown = "".join(_letter(letter, variant) for letter in text)
+        letters = "".join(_letter(letter, variant) for letter in text)
         tag = "mtext" if " " in text else "mi"
         style = ' mathvariant="normal"' if tag == "mi" else ""
-        return Item("", f"<{tag}{style}>{escape(shown)}</{tag}>", 0.6 * len(text) + 0.4)
+        return Item("", f"<{tag}{style}>{escape(letters)}</{tag}>", 0.6 * len(text) + 0.4)
 
     # -- structures -------------------------------------------------------------------------------------------------
 
@@ -261,7 +261,7 @@ class _Reader:
         return name
 
     def phantom(self) -> Item:
-        """Read a style, which means nothing here."""
+        """Read a style command and ignore it."""
         return Item("", "", 0.0)
 
 
@@ -282,7 +282,7 @@ def _fence(mark: str, form: str) -> str:
 
 
 def _letter(letter: str, variant: str) -> str:
-    """Return a letter of a font as its own character: MathML has lost most of its font attributes."""
+    """Return the Unicode character of a letter in a font, since MathML no longer has most font attributes."""
     if not (letter.isascii() and letter.isalnum()):
         return letter
     if variant == "script":
@@ -309,13 +309,13 @@ def read(latex: str) -> list[Item]:
     Raises
     ------
     InputError
-        For LaTeX that the pages do not use.
+        For unsupported LaTeX.
     """
     return _Reader(latex).row()
 
 
 def rows(latex: str, width: float) -> list[list[Item]]:
-    """Return a formula broken into lines no wider than asked where it can be: before relations, then before signs."""
+    """Break a formula into lines of a given width where possible: before relations, then before signs."""
     return _broken(read(latex), width)
 
 
@@ -334,7 +334,7 @@ def _broken(items: list[Item], width: float) -> list[list[Item]]:
 
 
 def _stacked(items: list[Item]) -> Item:
-    """Return a row as one item; a long sum as lines below each other."""
+    """Return a row as one item; a long sum becomes several lines."""
     lines = _broken(items, WIDEST)
     if len(lines) == 1:
         return _joined(items)
@@ -343,7 +343,7 @@ def _stacked(items: list[Item]) -> Item:
 
 
 def _pieces(items: list[Item], kind: str) -> Iterator[list[Item]]:
-    """Yield the items cut before each one of a kind."""
+    """Split the items before each item of a kind, and yield the pieces."""
     piece: list[Item] = []
     for item in items:
         if item.kind == kind and piece:
@@ -354,7 +354,7 @@ def _pieces(items: list[Item], kind: str) -> Iterator[list[Item]]:
 
 
 def mathml(latex: str, *, display: bool = False, width: float = WIDEST) -> str:
-    """Return a ``math`` element; a display that is too wide is broken into lines."""
+    """Return a formula as a ``math`` element; a display that is too wide is broken into lines."""
     start = '<math xmlns="http://www.w3.org/1998/Math/MathML"' + (' display="block"' if display else "") + ">"
     lines = rows(latex, width) if display else [read(latex)]
     if len(lines) == 1:

@@ -1,4 +1,4 @@
-"""Formulas as LaTeX, written as a person writes them."""
+"""Print formulas as LaTeX, in the way a person writes them."""
 
 from typing import Any
 
@@ -16,7 +16,7 @@ ROMAN = ("sn", "cn", "dn")
 
 
 class PagePrinter(LatexPrinter):  # type: ignore[misc]
-    """SymPy's LaTeX, read as a person writes it: a dot for a rate, no parentheses around a plain angle."""
+    """SymPy's LaTeX printer with a person's conventions: a dot for a rate, no parentheses around a simple angle."""
 
     def _print_Symbol(self, symbol: Symbol, style: str = "plain") -> str:
         name = symbol.name
@@ -54,7 +54,7 @@ class PagePrinter(LatexPrinter):  # type: ignore[misc]
         return rf"{self._print(scale)} {super()._print_MatrixBase(scaled)}"
 
     def _print_Add(self, expr: Expr, order: str | None = None) -> str:
-        """Print a sum with its positive terms first, so that few begin with a minus."""
+        """Print a sum with its positive terms first, so that few sums begin with a minus sign."""
         terms = self._as_ordered_terms(expr, order=order)
         terms = sorted(terms, key=lambda term: term.could_extract_minus_sign())  # stable
         text = ""
@@ -70,7 +70,7 @@ class PagePrinter(LatexPrinter):  # type: ignore[misc]
 
 
 def _common_scale(matrix: MatrixBase) -> Any:
-    """Return 1/D when every nonzero entry has the same denominator D and, times it, holds no fraction; else 1."""
+    """Return 1/D if D is the denominator of every nonzero entry and leaves no fraction inside; otherwise 1."""
     denominators = {entry.as_numer_denom()[1] for entry in matrix if entry != 0}
     if len(denominators) != 1 or len(matrix) < 2:
         return 1
@@ -86,5 +86,5 @@ _PRINTER = PagePrinter({"mat_delim": "[", "mat_str": "matrix", "fold_short_frac"
 
 
 def formula(side: Any) -> str:
-    """Return the LaTeX of an expression or matrix on one line; text is LaTeX already."""
+    """Return the LaTeX of an expression or matrix on one line; a str is LaTeX already and returned unchanged."""
     return side if isinstance(side, str) else str(_PRINTER.doprint(side)).replace("\n", " ")

@@ -1,4 +1,4 @@
-"""One step of a derivation, alone or with the way from its left side to its right side."""
+"""Extract one step of a derivation as a page, optionally with all rewritings from its left side to its right side."""
 
 from sympy import MatrixBase, factor
 
@@ -14,13 +14,13 @@ LONGEST_IN_TEXT = 100  # letters of LaTeX
 
 
 def excerpt(whole: Page, number: int, detail: bool = False) -> Page:
-    """Return a page with one step, and in detail every expression between its two sides.
+    """Return a page with one step; with ``detail``, also every expression between its two sides.
 
     Parameters
     ----------
     whole : Page
     number : int
-        Of the step, from 1.
+        The number of the step; the first is 1.
     detail : bool
 
     Raises
@@ -51,19 +51,19 @@ def _signs(step: Step) -> list[Passage]:
 
 
 def _detail(step: Step) -> list[Passage]:
-    found = chains(step.left, step.right, step.hypotheses)
+    rewritings = chains(step.left, step.right, step.hypotheses)
     passages = [Passage(words, ((left, right),)) for words, left, right in step.via]
-    if isinstance(step.left, MatrixBase) and (step.named or step.shown is not None):
+    if isinstance(step.left, MatrixBase) and (step.named or step.display is not None):
         passages.append(Passage("The two sides as they were derived:", ((formula(step.left), formula(step.right)),)))
-    if not found:
+    if not rewritings:
         both = Passage("Written out, both sides are this one expression:", ((step.named or "", step.left),))
         return [*passages, both]
-    total = 1 if found[0].entry is None else len(step.left)
-    if total > len(found):
+    total = 1 if rewritings[0].entry is None else len(step.left)
+    if total > len(rewritings):
         passages.append(
-            Passage(f"Entries that are the same expression on both sides: {total - len(found)} of {total}.")
+            Passage(f"Entries that are the same expression on both sides: {total - len(rewritings)} of {total}.")
         )
-    for chain in found:
+    for chain in rewritings:
         passages += _chain(chain)
     return passages
 
@@ -80,7 +80,7 @@ def _chain(chain: Chain) -> list[Passage]:
 
 
 def _taken(link: Link) -> tuple[tuple[str, str], ...]:
-    """Return the multiples of hypotheses that a link takes away, where they are too long for a line of text."""
+    """Return the multiples of hypotheses that a rewriting subtracts, if they are too long for a line of text."""
     terms = _terms(link)
     return () if _short(terms) else tuple((term, "0") for term in terms)
 

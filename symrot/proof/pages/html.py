@@ -1,4 +1,4 @@
-"""Derivations as HTML: one file, native MathML, no script, no network. Same derivation, same bytes."""
+"""Print derivations as HTML: one file, native MathML, no script, no network. Same derivation, same bytes."""
 
 import re
 from collections.abc import Iterator
@@ -36,7 +36,7 @@ a { color: inherit; }
 
 
 def html_document(page: Page) -> str:
-    """Return a page that stands alone."""
+    """Return a page as a self-contained HTML document."""
     parts = [f"<h1>{_prose(page.title)}</h1>"]
     if page.about:
         parts.append(f"<p>{_prose(page.about)}</p>")
@@ -77,7 +77,7 @@ def _display(latex: str) -> str:
 
 
 def _raised(prose: str) -> str:
-    """Return units with their powers raised."""
+    """Return units as HTML with their powers as superscripts."""
     return re.sub(r"\^(\d)", r"<sup>\1</sup>", prose)
 
 
@@ -93,24 +93,24 @@ PIECES = re.compile(r"\$`([^`]+)`\$|\$([^$]+)\$|`([^`]+)`|\[([^\]]+)\]\(([^)]+)\
 
 def _prose(text: str) -> str:
     """Return Markdown prose as HTML: formulas, code, links to other derivations, emphasis."""
-    shown, place = "", 0
-    for found in PIECES.finditer(text):
-        shown += escape(text[place : found.start()], quote=False)
-        quoted, plain, code, label, target, strong, emphasis = found.groups()
+    markup, place = "", 0
+    for match in PIECES.finditer(text):
+        markup += escape(text[place : match.start()], quote=False)
+        quoted, plain, code, label, target, strong, emphasis = match.groups()
         if quoted or plain:
-            after = re.match(r"[.,;:)']*", text[found.end() :])
+            after = re.match(r"[.,;:)']*", text[match.end() :])
             stop = after[0] if after else ""
             formula = mathml(quoted or plain)
-            shown += f'<span class="whole">{formula}{escape(stop)}</span>' if stop else formula
-            place = found.end() + len(stop)
+            markup += f'<span class="whole">{formula}{escape(stop)}</span>' if stop else formula
+            place = match.end() + len(stop)
             continue
         elif code:
-            shown += f"<code>{escape(code, quote=False)}</code>"
+            markup += f"<code>{escape(code, quote=False)}</code>"
         elif label:
-            shown += f'<a href="{escape(target.removesuffix(".md"))}.html">{_prose(label)}</a>'
+            markup += f'<a href="{escape(target.removesuffix(".md"))}.html">{_prose(label)}</a>'
         elif strong:
-            shown += f"<strong>{_prose(strong)}</strong>"
+            markup += f"<strong>{_prose(strong)}</strong>"
         else:
-            shown += f"<em>{_prose(emphasis)}</em>"
-        place = found.end()
-    return shown + escape(text[place:], quote=False)
+            markup += f"<em>{_prose(emphasis)}</em>"
+        place = match.end()
+    return markup + escape(text[place:], quote=False)

@@ -1,4 +1,4 @@
-"""Derivations as LaTeX documents that compile as they are. Same derivation, same bytes."""
+"""Print derivations as complete LaTeX documents. Same derivation, same bytes."""
 
 import re
 
@@ -27,7 +27,7 @@ LATEX_HEAD = r"""\documentclass[a4paper]{article}
 
 
 def latex_document(page: Page) -> str:
-    """Return a LaTeX document."""
+    """Return a page as a LaTeX document."""
     parts = [LATEX_HEAD + rf"\title{{{_prose(page.title)}}}" + "\n\\date{}\n\\begin{document}\n\\maketitle"]
     if page.about:
         parts.append(_prose(page.about))
@@ -53,7 +53,7 @@ def latex_document(page: Page) -> str:
 
 
 def _display(latex: str) -> str:
-    """Return a display, broken into lines where it is long."""
+    """Return a display formula, broken into lines if it is long."""
     lines = ["".join(item.latex for item in line) for line in rows(latex, WIDTH)]
     if len(lines) == 1:
         return f"\\fitted{{{latex}}}"

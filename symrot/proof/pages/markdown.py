@@ -1,4 +1,4 @@
-"""Derivations as Markdown, for a code-hosting site. Same derivation, same bytes."""
+"""Print derivations as Markdown for a code-hosting site. Same derivation, same bytes."""
 
 import re
 from collections.abc import Iterator
@@ -12,7 +12,7 @@ MANY_SECTIONS = 8
 
 
 def markdown(page: Page) -> str:
-    """Return a Markdown page; display formulas stand between ``$$`` on lines of their own."""
+    """Return a page as Markdown; display formulas are between ``$$`` on separate lines."""
     parts = [f"# {page.title}"]
     if page.about:
         parts.append(page.about)
@@ -41,7 +41,7 @@ MARKED = re.compile(r"\\[^A-Za-z]|[\])}]_|\*")
 
 
 def _host_safe(part: str) -> str:
-    """Return a paragraph with formulas in the line quoted as ``$`...`$`` where Markdown would spoil them."""
+    """Return a paragraph whose inline formulas are quoted as ``$`...`$`` where Markdown would corrupt them."""
     if part.startswith("$$"):
         return part
     return re.sub(r"\$([^$]+)\$", lambda m: f"$`{m[1]}`$" if MARKED.search(m[1]) else m[0], part)

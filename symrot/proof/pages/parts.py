@@ -1,4 +1,4 @@
-"""What all pages of a derivation share: equations, the remarks below them, units, and the last line."""
+"""Print the parts common to all page formats: equations, the remarks below them, units, and the footer."""
 
 from collections.abc import Iterable, Iterator
 from typing import Any
@@ -14,12 +14,12 @@ __all__ = ["equation", "footer", "passage_equations", "remarks", "units"]
 
 def equation(step: Step) -> str:
     left = step.named or formula(step.left)
-    right = formula(step.right if step.shown is None else step.shown)
+    right = formula(step.right if step.display is None else step.display)
     return f"{left} = {right} > 0" if step.relation == ">" else f"{left} = {right}"
 
 
 def remarks(step: Step) -> Iterator[str]:
-    """Yield the reason, what is assumed, where it holds, and where it is printed, as sentences."""
+    """Yield the reason, hypotheses, conditions and source of a step, each as a sentence."""
     yield f"*Why:* {step.reason}."
     if step.hypotheses:
         yield f"*Given:* {_list(map(_hypothesis, step.hypotheses))}."
@@ -30,7 +30,7 @@ def remarks(step: Step) -> Iterator[str]:
 
 
 def _hypothesis(zero: Expr) -> str:
-    """Return ``P - Q = 0`` as ``P = Q``, the terms with a minus sign on the right."""
+    """Return ``P - Q = 0`` as ``P = Q``, with the negative terms moved to the right."""
     terms = zero.expand().as_ordered_terms()
     right = [-term for term in terms if term.could_extract_minus_sign()]
     left = [term for term in terms if not term.could_extract_minus_sign()]
@@ -42,7 +42,7 @@ def _list(formulas: Iterable[str]) -> str:
 
 
 def units(page: Page) -> str:
-    """Return one sentence with the unit of every symbol that occurs."""
+    """Return one sentence with the unit of every symbol on the page."""
     sides: list[Any] = [side for step in page.steps for side in (step.left, step.right)]
     passages = (item for item in page.items if isinstance(item, Passage))
     sides += [side for passage in passages for pair in passage.equations for side in pair]
@@ -51,8 +51,8 @@ def units(page: Page) -> str:
     for symbol, unit in UNIT.items():
         if symbol in used:
             groups.setdefault(unit, []).append(f"${formula(symbol)}$")
-    shown = ((", ".join(names), "without unit" if unit == "1" else f"in {unit}") for unit, names in groups.items())
-    return "; ".join(f"{names} {unit}" for names, unit in shown)
+    phrases = ((", ".join(names), "without unit" if unit == "1" else f"in {unit}") for unit, names in groups.items())
+    return "; ".join(f"{names} {unit}" for names, unit in phrases)
 
 
 def footer(page: Page) -> str:
@@ -60,15 +60,15 @@ def footer(page: Page) -> str:
     proven = f"{count} steps, each proven" if count != 1 else "One step, proven"
     sides = [side for step in page.steps for side in step.printed]
     rest = "" if all(sides) else "; the others are names, or words, for what was proven"
-    shown = f"Printed from the proof, or read back and decided: {sum(sides)} of {len(sides)} sides{rest}."
+    sentence = f"Printed from the proof, or read back and decided: {sum(sides)} of {len(sides)} sides{rest}."
     return (
-        f"{proven} when this page was printed: the normal form of left minus right is zero. {shown} "
+        f"{proven} when this page was printed: the normal form of left minus right is zero. {sentence} "
         f"Derived in `{page.file or page.name}`, printed by `symrot derive "
         f"{page.name}`; do not edit."
     )
 
 
 def passage_equations(passage: Passage) -> Iterator[str]:
-    """Yield the equations of a passage; a pair without a left side goes on from the equation before."""
+    """Yield the equations of a passage; a pair without a left side continues the previous equation."""
     for left, right in passage.equations:
         yield f"{formula(left)} = {formula(right)}".lstrip()
