@@ -1,1 +1,1 @@
-"""Compile C, keep the result in the user's cache, load it."""
+"""Compile C and store the shared libraries in the user's cache."""

@@ -1,10 +1,10 @@
-"""Compile C source once, keep the result in the user's cache, and find it again without running a compiler.
+"""Compile C source once, store the library in the user's cache, and load it later without running a compiler.
 
-An entry is keyed by the source, the identity of the compiler (resolved path, size, time of change), the flags and the
-processor; it is named by its own checksum, so a truncated or altered file is noticed and built anew instead of loaded.
-Files appear by atomic rename, so any number of processes may build at once. The directory is private (mode 0700); one
-that belongs to another user, or that another user could exchange, is not used. Where the cache cannot be used, a
-temporary directory of this process takes its place and :func:`cache` says why.
+An entry is keyed by the source, the identity of the compiler (resolved path, size, modification time), the flags and
+the processor. A library is named by its own checksum, so a truncated or altered file is detected and rebuilt instead of
+loaded. Files appear by atomic rename, so any number of processes may build at once. The directory is private (mode
+0700); a directory that belongs to another user, or that another user could replace, is not used. If the cache cannot be
+used, a temporary directory of this process replaces it, and :func:`cache` returns the reason.
 
 Environment: ``CC`` names the compiler; ``SYMROT_CACHE`` the cache directory, else ``XDG_CACHE_HOME/symrot``, else the
 platform's own place. This module imports neither SymPy nor NumPy nor SciPy.
@@ -52,26 +52,26 @@ FLAGS = (
     "-fPIC",
     "-shared",
 )
-SCHEDULED = ("-fschedule-insns", "-fsched-pressure")  # sums in an order that suits the registers there are
+SCHEDULED = ("-fschedule-insns", "-fsched-pressure")  # order sums to suit the number of registers
 TUNING = (*SCHEDULED, "-fno-tree-pre", "-fno-gcse", "-fno-ivopts")  # numbers in memory rather than in registers
-"""Flags of gcc for long sums, each where it was measured to gain; a compiler that refuses them does without."""
+"""Flags of gcc that make long sums faster, by measurement; they are dropped for a compiler that does not know them."""
 
 COMPILERS = ("cc", "gcc", "clang")
-SECONDS_TO_COMPILE = 300  # a compiler that takes longer is taken to hang
+SECONDS_TO_COMPILE = 300  # a compiler that takes longer is stopped
 SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
-ROOM = "kernels"  # the only directory inside the cache that is written, checked and cleared
+CACHE_SUBDIR = "kernels"  # the only directory inside the cache that is written, checked and cleared
 OWN_FILE = re.compile(r"(\w+-[0-9a-f]{32}\.(so|dll|dylib|index|text)|\.symrot-\w+)\Z")
 
 
 class Compiler(NamedTuple):
-    """A C compiler: the words that start it, and what identifies the program found."""
+    """A C compiler: its command line, and the identity of its program for cache keys."""
 
     command: tuple[str, ...]
     identity: str
 
 
 class Cache(NamedTuple):
-    """Where compiled kernels are kept; ``reason`` says why it is not the user's cache, or is empty."""
+    """The directory of compiled kernels; ``reason`` says why it is not the user's cache, or is empty."""
 
     directory: Path
     reason: str
@@ -83,7 +83,7 @@ def compiler() -> Compiler:
     Raises
     ------
     CompilerError
-        If there is none; the sentence names ``CC``.
+        If there is no compiler; the message names ``CC``.
     """
     chosen = os.environ.get("CC", "").strip()
     candidates = [(chosen,), tuple(chosen.split())] if chosen else [(name,) for name in COMPILERS]
@@ -91,12 +91,12 @@ def compiler() -> Compiler:
         path = _which(command[0])
         if path is not None:
             return Compiler((path, *command[1:]), _identity(path, command[1:]))
-    wanted = f"CC={chosen!r} names no program" if chosen else f"none of {', '.join(COMPILERS)} is on the path"
-    raise CompilerError(f"a C compiler is needed: {wanted}; set CC to one")
+    reason = f"CC={chosen!r} names no program" if chosen else f"none of {', '.join(COMPILERS)} is on the path"
+    raise CompilerError(f"a C compiler is needed: {reason}; set CC to one")
 
 
 def missing() -> str:
-    """Return an empty text, or the sentence that says why there is no C compiler."""
+    """Return why there is no C compiler, a sentence; an empty text if there is one."""
     try:
         compiler()
     except CompilerError as error:
@@ -105,48 +105,48 @@ def missing() -> str:
 
 
 def cache(probe: bool = False) -> Cache:
-    """Return the directory in use and why it is a temporary one, if it is; a probe notices a full disk too."""
+    """Return the directory in use and, if it is temporary, the reason; ``probe`` writes a file to detect a full disk."""
     if probe:
         _keep(_text_name("probe"), b"")
     if _temporary.path is not None:
         return Cache(_temporary.path, _temporary.reason)
-    directory, reason = _own_room()
+    directory, reason = _user_directory()
     return Cache(_temporary.use(reason) if reason else directory, reason)
 
 
 def build(source: str, name: str, flags: tuple[str, ...] = FLAGS) -> Path:
-    """Return the shared library compiled from ``source``, from the cache where it is there and sound.
+    """Return the shared library compiled from ``source``, from the cache if it has an undamaged copy.
 
     Parameters
     ----------
     source : str
-        One whole C translation unit; it is compiled from standard input.
+        A complete C translation unit; it is compiled from standard input.
     name : str
-        Letters, digits and underscores; begins the file's name, for people.
+        Letters, digits and underscores; the beginning of the file's name, for people.
     flags : tuple of str
-        As the compiler takes them. A compiler that does not know ``-march=native`` is asked again without it.
+        Flags of the compiler. If it does not accept ``-march=native``, it runs again without this flag.
 
     Raises
     ------
     CompilerError
-        If there is no compiler, or it refuses the source: its first complaint is quoted.
+        If there is no compiler, or it rejects the source; the message quotes its first error.
     """
     tool = compiler()
-    found = built(source, name, flags)
-    return _compile(tool, source, name, _entry(tool, source, name, flags), flags) if found is None else found
+    library = built(source, name, flags)
+    return _compile(tool, source, name, _entry(tool, source, name, flags), flags) if library is None else library
 
 
 def built(source: str, name: str, flags: tuple[str, ...] = FLAGS) -> Path | None:
-    """Return the library that :func:`build` would return without compiling, or None where it would have to compile."""
+    """Return the library from the cache that :func:`build` would return, or None if it would have to compile."""
     entry = _entry(compiler(), source, name, flags)
-    for directory in _rooms():
-        if (found := _sound_library(directory, entry, name)) is not None:
-            return found
+    for directory in _directories():
+        if (library := _sound_library(directory, entry, name)) is not None:
+            return library
     return None
 
 
 class Building:
-    """A library that is compiled while its caller does something else; arguments as :func:`build`."""
+    """A library that is compiled in another thread; arguments as for :func:`build`."""
 
     def __init__(self, source: str, name: str, flags: tuple[str, ...] = FLAGS) -> None:
         self._path: Path | None = built(source, name, flags)
@@ -161,11 +161,11 @@ class Building:
     def _work(self, source: str, name: str, flags: tuple[str, ...]) -> None:
         try:
             self._path = build(source, name, flags)
-        except Exception as error:  # carried over to the thread that asks
+        except Exception as error:  # raised again in the thread that calls path()
             self._error = error
 
     def wait(self) -> None:
-        """Return when the compiler is done, well or not."""
+        """Wait until the compiler has finished or failed."""
         if self._thread is not None:
             try:
                 self._thread.join()
@@ -174,12 +174,12 @@ class Building:
                 raise
 
     def path(self) -> Path:
-        """Return the library when it is there.
+        """Wait for the compiler and return the path of the library.
 
         Raises
         ------
         CompilerError
-            As :func:`build`.
+            As for :func:`build`.
         """
         self.wait()
         if self._error is not None:
@@ -189,7 +189,7 @@ class Building:
 
 
 def stop_compilers() -> None:
-    """Kill the compilers that threads of this process wait for, as after Ctrl-C; who waits gets a CompilerError."""
+    """Kill the compilers of this process, for example after Ctrl-C; waiting callers get a CompilerError."""
     from symrot.build.compiler import stop_all
 
     stop_all()
@@ -202,7 +202,7 @@ def _entry(tool: Compiler, source: str, name: str, flags: tuple[str, ...]) -> st
 
 
 def store(key: str, text: str) -> None:
-    """Keep a small text under a key (any string). A cache that cannot be written keeps it for this process only."""
+    """Store a small text under a key (any string); if the cache cannot be written, for this process only."""
     try:
         _keep(_text_name(key), f"{_digest(text)}\n{text}".encode())
     except CompilerError:
@@ -210,20 +210,20 @@ def store(key: str, text: str) -> None:
 
 
 def fetch(key: str) -> str | None:
-    """Return the text stored under the key, or None where there is none or it is damaged."""
-    for directory in _rooms():
-        kept = _read(directory / _text_name(key))
-        if kept is not None:
-            checksum, _, text = kept.decode("utf-8", "replace").partition("\n")
+    """Return the text stored under the key, or None if it is missing or damaged."""
+    for directory in _directories():
+        content = _read(directory / _text_name(key))
+        if content is not None:
+            checksum, _, text = content.decode("utf-8", "replace").partition("\n")
             if checksum == _digest(text):
                 return text
     return _temporary.texts.get(key)
 
 
 def clear() -> tuple[Path, ...]:
-    """Remove every file of ours from the cache and return their paths; what is not ours stays where it is."""
+    """Remove every file that symrot wrote from the cache and return their paths; other files stay."""
     removed = []
-    for directory in _rooms():
+    for directory in _directories():
         for path in sorted(directory.iterdir()):
             if OWN_FILE.match(path.name) and path.is_file() and not path.is_symlink():
                 path.unlink(missing_ok=True)
@@ -235,8 +235,8 @@ def clear() -> tuple[Path, ...]:
 
 
 def _digest(text: str) -> str:
-    found: str = sha256(text.encode("utf-8", "surrogatepass")).hexdigest()[:32]
-    return found
+    digest: str = sha256(text.encode("utf-8", "surrogatepass")).hexdigest()[:32]
+    return digest
 
 
 def _which(program: str) -> str | None:
@@ -253,18 +253,18 @@ def _which(program: str) -> str | None:
 
 def _identity(path: str, arguments: tuple[str, ...]) -> str:
     real = Path(path).resolve()
-    found = real.stat()
-    return "\0".join((str(real), str(found.st_size), str(found.st_mtime_ns), *arguments))
+    status = real.stat()
+    return "\0".join((str(real), str(status.st_size), str(status.st_mtime_ns), *arguments))
 
 
 @cache_once
 def _processor() -> str:
-    """Return what tells processors apart for ``-march=native``: the first one's family, model and features."""
+    """Return the identity of the processor for ``-march=native``: family, model and features of the first one."""
     try:
         with Path("/proc/cpuinfo").open(encoding="ascii", errors="replace") as stream:
             first = stream.read(16384).split("\n\n")[0]
     except OSError:
-        # No such file: the machine's own name stands for its processor.
+        # Without this file, the name of the machine identifies its processor.
         return " ".join(os.uname()) if hasattr(os, "uname") else os.environ.get("PROCESSOR_IDENTIFIER", "")
     telling = ("vendor", "cpu family", "model", "stepping", "flags", "CPU ", "Features", "isa", "uarch", "cpu\t")
     return "\n".join(line for line in first.splitlines() if line.startswith(telling))
@@ -274,12 +274,12 @@ def _processor() -> str:
 
 
 class _Temporary:
-    """The private directory of this process, made when first needed and removed at exit."""
+    """The private directory of this process, created on first use and removed at exit."""
 
     def __init__(self) -> None:
         self.path: Path | None = None
         self.reason = ""
-        self.texts: dict[str, str] = {}  # kept here when no disk takes them
+        self.texts: dict[str, str] = {}  # used when no disk can be written
 
     def use(self, reason: str) -> Path:
         if self.path is None:
@@ -312,70 +312,71 @@ def _cache_directory() -> Path:
 
 
 def _foreign(path: Path) -> str:
-    """Return why a file or directory is not to be trusted, or an empty text."""
-    found = path.lstat()
-    if hasattr(os, "getuid") and found.st_uid != os.getuid():
-        return f"{path} belongs to another user (uid {found.st_uid})"
-    if stat.S_ISLNK(found.st_mode):
+    """Return why a file or directory must not be trusted, or an empty text."""
+    status = path.lstat()
+    if hasattr(os, "getuid") and status.st_uid != os.getuid():
+        return f"{path} belongs to another user (uid {status.st_uid})"
+    if stat.S_ISLNK(status.st_mode):
         return f"{path} is a symbolic link"
-    if not (stat.S_ISREG(found.st_mode) or stat.S_ISDIR(found.st_mode)):
+    if not (stat.S_ISREG(status.st_mode) or stat.S_ISDIR(status.st_mode)):
         return f"{path} is no regular file"
     return ""
 
 
 @cache_once
-def _exposed(room: Path) -> str:
-    """Return why another user could put a directory in the place of ours, or an empty text.
+def _exposed(directory: Path) -> str:
+    """Return why another user could replace the cache directory, or an empty text.
 
-    Whoever may write a directory may rename what is in it, whomever that belongs to; where the directory is sticky, as
-    ``/tmp`` is, only who owns the entry, the directory or the machine may. So every directory on the way, links
-    followed or not, has to be of the user or of root, and to be sticky if others may write it.
+    A user who may write to a directory may rename its entries, even those of other users. In a sticky directory such as
+    ``/tmp``, only the owner of the entry, the owner of the directory and root may. Therefore every parent directory,
+    with symbolic links followed and not followed, must belong to the user or to root, and must be sticky if others may
+    write to it.
     """
     if not hasattr(os, "getuid"):
         return ""
-    for path in dict.fromkeys((*room.absolute().parents, *room.resolve().parents)):
-        for found in (path.lstat(), path.stat()):  # a link, and where it leads
-            if found.st_uid not in (0, os.getuid()):
-                return f"{path} belongs to another user (uid {found.st_uid}), who could replace {room}"
-        mode = found.st_mode
-        others = mode & stat.S_IWOTH or (mode & stat.S_IWGRP and _shared_group(found.st_gid))
+    for path in dict.fromkeys((*directory.absolute().parents, *directory.resolve().parents)):
+        for status in (path.lstat(), path.stat()):  # a symbolic link, and its target
+            if status.st_uid not in (0, os.getuid()):
+                return f"{path} belongs to another user (uid {status.st_uid}), who could replace {directory}"
+        mode = status.st_mode
+        others = mode & stat.S_IWOTH or (mode & stat.S_IWGRP and _shared_group(status.st_gid))
         if others and not mode & stat.S_ISVTX:
-            return f"{path} can be written by other users, who could replace {room}"
+            return f"{path} can be written by other users, who could replace {directory}"
     return ""
 
 
 def _shared_group(group: int) -> bool:
-    """Return whether a group may have members beside the user; a user's own group has the user's name."""
+    """Return whether a group may have members other than the user; a user's own group has the user's name."""
     import grp
     import pwd
 
     try:
-        user, found = pwd.getpwuid(os.getuid()), grp.getgrgid(group)
+        user, members = pwd.getpwuid(os.getuid()), grp.getgrgid(group)
     except KeyError:
         return True
-    return found.gr_name != user.pw_name or not {user.pw_name}.issuperset(found.gr_mem)
+    return members.gr_name != user.pw_name or not {user.pw_name}.issuperset(members.gr_mem)
 
 
-def _own_room() -> tuple[Path, str]:
+def _user_directory() -> tuple[Path, str]:
     """Return the user's cache directory and why it cannot be used, or an empty text."""
-    room = _cache_directory() / ROOM
+    directory = _cache_directory() / CACHE_SUBDIR
     try:
-        if not room.is_dir():
-            for place in (*reversed(room.parents), room):
+        if not directory.is_dir():
+            for place in (*reversed(directory.parents), directory):
                 place.mkdir(mode=0o700, exist_ok=True)
-        reason = _foreign(room) or _exposed(room)
-        if not reason and room.stat().st_mode & 0o077:
-            room.chmod(0o700)
-        if not reason and not os.access(room, os.W_OK):
-            reason = f"{room} cannot be written"
+        reason = _foreign(directory) or _exposed(directory)
+        if not reason and directory.stat().st_mode & 0o077:
+            directory.chmod(0o700)
+        if not reason and not os.access(directory, os.W_OK):
+            reason = f"{directory} cannot be written"
     except OSError as error:
-        reason = f"{room} cannot be used: {error.strerror or error}"
-    return room, reason
+        reason = f"{directory} cannot be used: {error.strerror or error}"
+    return directory, reason
 
 
-def _rooms() -> list[Path]:
-    """Return the directories that may hold entries: the user's cache if it can be used, and the temporary one."""
-    directory, reason = _own_room()
+def _directories() -> list[Path]:
+    """Return the directories that may contain entries: the user's cache if usable, and the temporary one if any."""
+    directory, reason = _user_directory()
     return [*([] if reason else [directory]), *([] if _temporary.path is None else [_temporary.path])]
 
 
@@ -383,7 +384,7 @@ def _rooms() -> list[Path]:
 
 
 def _read(path: Path) -> bytes | None:
-    """Return a file's bytes, or None where it is missing, unreadable or not ours."""
+    """Return a file's bytes, or None if it is missing, unreadable or not the user's own."""
     try:
         return None if _foreign(path) else path.read_bytes()
     except OSError:
@@ -391,7 +392,7 @@ def _read(path: Path) -> bytes | None:
 
 
 def _replace(path: Path, content: bytes) -> None:
-    """Write a file so that others see the old one or the new one, never a part."""
+    """Write a file atomically: other processes see the old content or the new one, never a part."""
     passing = path.with_name(f".symrot-{os.getpid()}_{os.urandom(4).hex()}")
     try:
         passing.write_bytes(content)
@@ -401,9 +402,9 @@ def _replace(path: Path, content: bytes) -> None:
 
 
 def _keep(name: str, content: bytes) -> Path:
-    """Write a file into the cache, or into the temporary directory where the cache is full or read-only."""
+    """Write a file into the cache, or into the temporary directory if the cache is full or read-only."""
     if _temporary.path is None:
-        directory, reason = _own_room()
+        directory, reason = _user_directory()
         if not reason:
             try:
                 _replace(directory / name, content)
@@ -415,7 +416,7 @@ def _keep(name: str, content: bytes) -> Path:
     try:
         _replace(path, content)
     except OSError as error:
-        raise CompilerError(f"compiled kernels need room on a disk: {path.parent}: {error.strerror}") from error
+        raise CompilerError(f"compiled kernels need space on a disk: {path.parent}: {error.strerror}") from error
     return path
 
 
@@ -464,4 +465,4 @@ def _compile(tool: Compiler, source: str, name: str, entry: str, flags: tuple[st
     library = _keep(_library_name(name, content), content)
     if _keep(entry, library.name.encode()).parent == library.parent:
         return library
-    return _keep(library.name, content)  # the disk filled up in between
+    return _keep(library.name, content)  # the disk filled up between the two files

@@ -1,6 +1,6 @@
-"""Run a C compiler: for a bounded time, and so that it ends with everything it started when this process is stopped.
+"""Run a C compiler for a bounded time, and kill it with all its children when this process is stopped.
 
-Imported when something has to be compiled, which most runs do not need.
+This module is imported only when something has to be compiled; most runs find their libraries in the cache.
 """
 
 import os
@@ -19,18 +19,18 @@ __all__ = ["WAITING", "run_compiler", "stop_all"]
 SIGKILL = getattr(signal, "SIGKILL", signal.SIGTERM)
 
 WAITING, STOPPED = "symrot compiles", "symrot compiles no more"
-"""Names of threads that wait for a compiler."""
+"""Names of threads that wait for a compiler: before and after :func:`stop_all`."""
 
 _running: set[Popen[bytes]] = set()
 
 
 def run_compiler(command: Sequence[str], flags: Sequence[str], source: str, output: Path, seconds: float) -> str:
-    """Compile a text; return the first complaint, or an empty text when the library is there.
+    """Compile a text into ``output``; return the compiler's first error message, or an empty text on success.
 
     Raises
     ------
     CompilerError
-        If the compiler takes longer than ``seconds``, or is killed: other flags would not help.
+        If the compiler takes longer than ``seconds`` or is killed; other flags would not help then.
     """
     words = [*command, *flags, "-x", "c", "-", "-o", str(output), "-lm"]
     environment = {**os.environ, "LC_ALL": "C"}
@@ -40,7 +40,7 @@ def run_compiler(command: Sequence[str], flags: Sequence[str], source: str, outp
         return f"it cannot be run: {error.strerror or error}"
     with process:
         _running.add(process)
-        if current_thread().name == STOPPED:  # in between: whoever stopped the others did not see this one
+        if current_thread().name == STOPPED:  # stop_all ran after the thread started and before this process was listed
             _kill(process)
         try:
             complaint = process.communicate(source.encode(), seconds)[1].decode("utf-8", "replace")
@@ -62,7 +62,7 @@ def run_compiler(command: Sequence[str], flags: Sequence[str], source: str, outp
 
 
 def stop_all() -> None:
-    """Kill the compilers that threads wait for, and those that these threads would start next."""
+    """Kill all running compilers, and make waiting threads kill those that they start next."""
     for thread in enumerate_threads():
         if thread.name == WAITING:
             thread.name = STOPPED
@@ -71,7 +71,7 @@ def stop_all() -> None:
 
 
 def _kill(process: Popen[bytes]) -> None:
-    """End a compiler and the programs that it started; it is a group of processes of its own."""
+    """Kill a compiler and the programs that it started, which form one process group."""
     if process.poll() is None:
         with suppress(ProcessLookupError):
             os.killpg(process.pid, SIGKILL) if hasattr(os, "killpg") else process.kill()

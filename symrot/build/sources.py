@@ -1,4 +1,4 @@
-"""The C files of the package, by their paths in it."""
+"""Read the C files of the package by their paths inside it."""
 
 from pathlib import Path
 

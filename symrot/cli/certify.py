@@ -1,10 +1,10 @@
-"""Commands of certification, as in :mod:`symrot.cli.main`: prove, certify, audit, bound, selftest."""
+"""Define the commands of certification: prove, certify, audit, bound, selftest."""
 
 import sys
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
-from symrot.cli.output import FAILED, GOOD, Command, json_option, progress, say, say_json
+from symrot.cli.output import FAILED, OK, Command, json_option, progress, say, say_json
 from symrot.errors import CertificateError, InputError
 from symrot.report.layout import one_line
 
@@ -20,18 +20,18 @@ def _prove(options: Namespace) -> int:
         say_json(proofs.facts(options.coq, written, result))
     else:
         say(proofs.lines(options.coq, result))
-    return FAILED if result is not None and not result else GOOD
+    return FAILED if result is not None and not result else OK
 
 
 def _selftest(options: Namespace) -> int:
     from symrot.certificates.selftest import run_selftest
 
-    found = run_selftest(bits=not options.bounds)
+    report = run_selftest(bits=not options.bounds)
     if options.json:
-        say_json(found.facts())
+        say_json(report.facts())
     else:
-        say(found.lines())
-    return GOOD if found.passed else FAILED
+        say(report.lines())
+    return OK if report.passed else FAILED
 
 
 def _bound(options: Namespace) -> int:
@@ -40,16 +40,16 @@ def _bound(options: Namespace) -> int:
     progress("bounding ..")
     if options.target is None:
         if options.variable:
-            raise InputError("--variable: expected --target X beside it, whose box is looked for")
-        found = bounds.facts(options.kernel, options.box, options.precision)
+            raise InputError("--variable: expected --target X as well, since only that search resizes ranges")
+        report = bounds.facts(options.kernel, options.box, options.precision)
     else:
-        found = bounds.target_facts(options.kernel, options.box, options.precision, options.target, options.variable)
+        report = bounds.target_facts(options.kernel, options.box, options.precision, options.target, options.variable)
     progress("")
     if options.json:
-        say_json(found)
+        say_json(report)
     else:
-        say((bounds.lines if options.target is None else bounds.target_lines)(found))
-    return GOOD
+        say((bounds.lines if options.target is None else bounds.target_lines)(report))
+    return OK
 
 
 def _certify(options: Namespace) -> int:
@@ -62,15 +62,17 @@ def _certify(options: Namespace) -> int:
         every, written = certificates.certify_all(options.directory, options.objects, progress)
         progress("")
         say_json(every) if options.json else say([*certificates.all_lines(every), *map(str, written)])
-        return FAILED if options.objects and certificates.refuted(every.values()) else GOOD
+        return FAILED if options.objects and certificates.refuted(every.values()) else OK
     if not options.kernel:
         raise InputError("certify: expected a KERNEL or --all (see `symrot certify --help`)")
-    found, written = certificates.certify(
+    certificate, written = certificates.certify(
         options.kernel, options.box, options.directory, options.objects, not options.no_bounds, progress
     )
     progress("")
-    say_json(found) if options.json else say([*certificates.lines(found, options.objects), *map(str, written)])
-    return FAILED if options.objects and certificates.refuted([found]) else GOOD
+    say_json(certificate) if options.json else say(
+        [*certificates.lines(certificate, options.objects), *map(str, written)]
+    )
+    return FAILED if options.objects and certificates.refuted([certificate]) else OK
 
 
 def _audit(options: Namespace) -> int:
@@ -78,7 +80,7 @@ def _audit(options: Namespace) -> int:
 
     try:
         under = [] if options.flags is None else certificates.flag_lines(options.flags)
-        found = certificates.audit_files(
+        reports = certificates.audit_files(
             options.certificates, options.object, options.rerun_bounds, options.coq, progress
         )
     except CertificateError as reason:
@@ -89,31 +91,37 @@ def _audit(options: Namespace) -> int:
         return FAILED
     progress("")
     if options.json:
-        say_json({"holds": True, "certificates": found} | ({"flags": under} if under else {}))
+        say_json({"holds": True, "certificates": reports} | ({"flags": under} if under else {}))
     else:
-        say([*(line for each in found.values() for line in each), *under])
-    return GOOD
+        say([*(line for each in reports.values() for line in each), *under])
+    return OK
 
 
 def _prove_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--coq", type=Path, metavar="DIR", required=True, help="write the theorems as files of Coq")
-    parser.add_argument("--check", action="store_true", help="demand that Coq checks them; it does where it is there")
+    parser.add_argument(
+        "--check", action="store_true", help="require that Coq checks them (default: only if it is installed)"
+    )
     json_option(parser)
 
 
 def _selftest_arguments(parser: ArgumentParser) -> None:
-    parser.add_argument("--bounds", action="store_true", help="for the error bounds only: contraction is no failure")
+    parser.add_argument(
+        "--bounds", action="store_true", help="test only what error bounds need: contraction is accepted"
+    )
     json_option(parser)
 
 
 def _bound_arguments(parser: ArgumentParser) -> None:
-    parser.add_argument("kernel", metavar="KERNEL", help="a kernel of the library (see `symrot emit --list`), a scene")
+    parser.add_argument(
+        "kernel", metavar="KERNEL", help="a kernel of the library (see `symrot emit --list`) or a scene"
+    )
     parser.add_argument("--box", metavar="NAME=LOW:HIGH", action="append", default=[],
                         help="range of an input, theta=-1.4:1.4 (default: the kernel's), or of a physical constant of "
                         "a scene, A=1:2; may be repeated")  # fmt: skip
     parser.add_argument("--target", type=float, metavar="X", help="find the largest box on which no error is above X")
     parser.add_argument("--variable", metavar="NAME", action="append", default=[],
-                        help="with --target: resize the range of this input alone; may be repeated")  # fmt: skip
+                        help="with --target: resize the range of this input only; may be repeated")  # fmt: skip
     parser.add_argument("--precision", choices=("double", "float"), default="double", help="(default: double)")
     json_option(parser)
 
@@ -125,17 +133,20 @@ def _certify_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--box", metavar="NAME=LOW:HIGH", action="append", default=[],
                         help="range of an input for the bounds of rounding errors, or of a physical constant of a "
                         "scene; may be repeated")  # fmt: skip
-    parser.add_argument("--objects", action="store_true", help="compile it, and compare the object code with it")
-    parser.add_argument("--no-bounds", action="store_true", help="leave the bounds of rounding errors out")
+    parser.add_argument(
+        "--objects", action="store_true", help="compile it, and compare the object code with the C text"
+    )
+    parser.add_argument("--no-bounds", action="store_true", help="omit the bounds of rounding errors")
     parser.add_argument("-o", type=Path, metavar="DIR", dest="directory", help="write kernel and certificate there")
     json_option(parser)
 
 
 def _audit_arguments(parser: ArgumentParser) -> None:
-    parser.add_argument("certificates", type=Path, nargs="+", metavar="FILE.cert.json", help="the files beside it")
-    parser.add_argument("--object", type=Path, metavar="FILE.o", help="what your compiler made of the C file")
-    parser.add_argument("--flags", metavar="'CC FLAGS'", help="what holds under your compiler's flags: 'gcc -O3 -mfma'")
-    parser.add_argument("--rerun-bounds", action="store_true", help="find the bounds of rounding errors again")
+    parser.add_argument("certificates", type=Path, nargs="+", metavar="FILE.cert.json",
+                        help="in one folder with the files of the kernel")  # fmt: skip
+    parser.add_argument("--object", type=Path, metavar="FILE.o", help="the C file as compiled by your compiler")
+    parser.add_argument("--flags", metavar="'CC FLAGS'", help="say what holds under your flags, e.g. 'gcc -O3 -mfma'")
+    parser.add_argument("--rerun-bounds", action="store_true", help="compute the bounds of rounding errors again")
     parser.add_argument("--coq", action="store_true", help="have Coq check the theorem about the kernel")
     json_option(parser)
 

@@ -1,6 +1,6 @@
-"""The command line: parse, call, print. Texts come from :mod:`symrot.report`; stdout is data, stderr is progress.
+"""Run the command line: parse, call, print. Texts come from :mod:`symrot.report`; stdout is data, stderr is progress.
 
-Exit codes: 0 good, 1 a check failed, 2 bad usage or input, 130 interrupted, 141 nobody reads the output any more.
+Exit codes: 0 success, 1 a check failed, 2 bad usage or input, 130 interrupted, 141 the reader of the output is gone.
 """
 
 import os
@@ -13,7 +13,18 @@ from typing import Any, NoReturn, TextIO
 
 import symrot
 from symrot.cli import certify as cli_certify
-from symrot.cli.output import BAD, FAILED, GOOD, INTERRUPTED, UNREAD, Command, json_option, progress, say, say_json
+from symrot.cli.output import (
+    USAGE_ERROR,
+    FAILED,
+    OK,
+    INTERRUPTED,
+    SIGPIPE,
+    Command,
+    json_option,
+    progress,
+    say,
+    say_json,
+)
 from symrot.errors import InputError, PropagationError, SymrotError
 from symrot.report.layout import emphasis, one_line
 
@@ -21,14 +32,14 @@ __all__ = ["main"]
 
 TARGETS = ("c", "numpy")
 PAGES: dict[str, Callable[[Any], str]] = {
-    "markdown": lambda found: found.markdown(),
-    "latex": lambda found: found.latex(),
-    "html": lambda found: found.html(),
+    "markdown": lambda page: page.markdown(),
+    "latex": lambda page: page.latex(),
+    "html": lambda page: page.html(),
 }
 
 
 class _Formatter(HelpFormatter):
-    """Help as wide as the terminal; argparse makes one for every argument, and asks shutil, which is slow to import."""
+    """Format help to the width of the terminal without shutil, which argparse uses and which is slow to import."""
 
     def __init__(self, prog: str) -> None:
         super().__init__(prog, width=_columns() - 2)
@@ -47,10 +58,10 @@ def _columns() -> int:
 
 
 class _Parser(ArgumentParser):
-    """A parser whose complaints are errors of ours, one sentence each."""
+    """A parser that raises InputError, with one sentence, instead of printing its usage and exiting."""
 
-    def __init__(self, **given: Any) -> None:
-        super().__init__(**given, formatter_class=_Formatter)
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**options, formatter_class=_Formatter)
 
     def error(self, message: str) -> NoReturn:
         raise InputError(f"{message} (see `{self.prog} --help`)")
@@ -81,36 +92,36 @@ def _run(options: Namespace) -> int:
     trajectory = _followed(propagator, options)
     if trajectory is None:
         return INTERRUPTED
-    found = facts(propagator, trajectory, preparation)
+    report = facts(propagator, trajectory, preparation)
     if options.out:
         progress("writing ..")
         names = output.save(trajectory, options.out, propagator.tolerance)
-        found["written"]["out"] = {"file": str(options.out), "samples": len(trajectory), "arrays": names}
+        report["written"]["out"] = {"file": str(options.out), "samples": len(trajectory), "arrays": names}
     if options.plot:
         progress("drawing ..")
         plot.save(propagator, trajectory, options.plot)
-        found["written"]["plot"] = {"file": str(options.plot)}
+        report["written"]["plot"] = {"file": str(options.plot)}
     progress("")
     if options.json:
-        say_json(found)
-        return GOOD
-    title, *rest = summary(found)
+        say_json(report)
+        return OK
+    title, *rest = summary(report)
     say([emphasis(title, sys.stdout), *rest])
-    return GOOD
+    return OK
 
 
 def _followed(propagator: Any, options: Namespace) -> Any:
-    """Return the trajectory; of one that ends early, the samples before go into ``--out``. None: interrupted."""
+    """Return the trajectory, or None after Ctrl-C; if it ends early, write the samples so far to ``--out``."""
     from symrot.propagation.progress import reporting
 
-    started = shown = perf_counter()
+    start_time = last_update = perf_counter()
 
     def show(t: float, start: float, stop: float) -> None:
-        nonlocal shown
+        nonlocal last_update
         now = perf_counter()
-        if now - shown > 0.2:
-            shown = now
-            progress(f"propagating: {abs(t - start) / abs(stop - start):.1%} of the span, {now - started:.0f} s ..")
+        if now - last_update > 0.2:
+            last_update = now
+            progress(f"propagating: {abs(t - start) / abs(stop - start):.1%} of the span, {now - start_time:.0f} s ..")
 
     progress("propagating ..")
     try:
@@ -127,7 +138,7 @@ def _followed(propagator: Any, options: Namespace) -> Any:
 
 
 def _saved(error: BaseException, propagator: Any, options: Namespace) -> str:
-    """Save the samples before an error where ``--out`` says, and return what to say of it."""
+    """Write the samples before an error to ``--out``, and return the end of the error message about it."""
     part = getattr(error, "trajectory", None)
     if not options.out or part is None or not len(part):
         return ""
@@ -142,14 +153,14 @@ def _explain(options: Namespace) -> int:
 
     scene = symrot.load_scene(options.scene, table_folders=options.table_folder)
     progress("counting operations ..")
-    found = explain.facts(symrot.plan(scene))
+    report = explain.facts(symrot.plan(scene))
     progress("")
     if options.json:
-        say_json(found)
-        return GOOD
-    title, *rest = explain.lines(found)
+        say_json(report)
+        return OK
+    title, *rest = explain.lines(report)
     say([emphasis(title, sys.stdout), *rest])
-    return GOOD
+    return OK
 
 
 def _emit(options: Namespace) -> int:
@@ -160,27 +171,27 @@ def _emit(options: Namespace) -> int:
                          "(see `symrot emit --help`)")  # fmt: skip
     if options.list:
         say(kernels.kernel_lines())
-        return GOOD
+        return OK
     targets = (options.target,) if options.target else TARGETS
     if options.check:
         different = kernels.stale(options.directory or Path("generated"), targets, progress)
         progress("")
         say(different)
-        return FAILED if different else GOOD
+        return FAILED if different else OK
     if options.all:
         written = kernels.write_all(options.directory or Path("generated"), targets, progress)
     else:
         bounds = kernels.stored_bounds(options.kernel, options.directory) if options.target != "numpy" else None
-        found = kernels.kernel_files(options.kernel, options.target or "c", bounds)
+        texts = kernels.kernel_files(options.kernel, options.target or "c", bounds)
         if options.directory is None:
-            sys.stdout.write("\n".join(found.values()))
-            return GOOD
+            sys.stdout.write("\n".join(texts.values()))
+            return OK
         if options.target != "numpy":
-            found |= kernels.certificate_files(options.kernel, options.directory, bounds)
-        written = kernels.write_files(options.directory, found)
+            texts |= kernels.certificate_files(options.kernel, options.directory, bounds)
+        written = kernels.write_files(options.directory, texts)
     progress("")
     say(str(path) for path in written)
-    return GOOD
+    return OK
 
 
 def _derive(options: Namespace) -> int:
@@ -198,7 +209,7 @@ def _derive(options: Namespace) -> int:
         if options.directory is None:
             raise InputError(f"derive: expected a folder, -o DIR, for all pages as {options.format}")
         say(str(path) for path in catalogue.write_pages(options.directory, options.format))
-        return GOOD
+        return OK
     directory = options.directory or Path("derivations")
     if options.check:
         if not directory.is_dir():
@@ -206,7 +217,7 @@ def _derive(options: Namespace) -> int:
         different = catalogue.check(directory, progress)
         progress("")
         sys.stdout.write("".join(diff for _, diff in different))
-        return FAILED if different else GOOD
+        return FAILED if different else OK
     if options.all:
         written = catalogue.derive_all(directory, progress)
         progress("")
@@ -217,7 +228,7 @@ def _derive(options: Namespace) -> int:
         sys.stdout.write(PAGES[options.format](page))
     else:
         say(catalogue.names())
-    return GOOD
+    return OK
 
 
 def _check(options: Namespace) -> int:
@@ -226,18 +237,18 @@ def _check(options: Namespace) -> int:
     if (options.claim is None) == (options.textbook is None):
         raise InputError("check: expected a CLAIM, a FILE or --textbook NAME (see `symrot check --help`)")
     if options.all and options.textbook != "all":
-        raise InputError("--all: expected --textbook all beside it, since the page holds every document")
+        raise InputError("--all: expected --textbook all as well, since the page contains every document")
     if options.textbook:
         return _check_textbook(options)
-    found = verdicts.check(options.claim, options.given, options.unit, not options.no_repair, progress)
+    results = verdicts.check(options.claim, options.given, options.unit, not options.no_repair, progress)
     progress("")
     if options.json:
-        say_json([verdict.to_json() for verdict in found])
+        say_json([verdict.to_json() for verdict in results])
     else:
-        say(verdicts.lines(found, options.claim))
-    refused = [verdict for verdict in found if verdict.verdict == "refused"]
+        say(verdicts.lines(results, options.claim))
+    refused = [verdict for verdict in results if verdict.verdict == "refused"]
     sys.stderr.write("".join(f"symrot: {one_line(verdict.reason)}\n" for verdict in refused))
-    return BAD if refused else GOOD if all(found) else FAILED
+    return USAGE_ERROR if refused else OK if all(results) else FAILED
 
 
 def _check_textbook(options: Namespace) -> int:
@@ -249,27 +260,27 @@ def _check_textbook(options: Namespace) -> int:
     target = Path(options.output) / "errata.md"
     if options.all:
         files.check_target(target, (".md",), "--output")
-    found = errata.survey(names, not options.no_repair, progress)
+    documents = errata.survey(names, not options.no_repair, progress)
     progress("")
     if options.all:
-        files.write(target, lambda stream: stream.write(errata.page(found).encode("utf-8")))
+        files.write(target, lambda stream: stream.write(errata.page(documents).encode("utf-8")))
         say([f"{target}: written"])
     elif options.json:
-        say_json(errata.facts(found))
+        say_json(errata.facts(documents))
     else:
-        say(errata.lines(found))
-    return GOOD if options.all or all(item.outcome == "holds" for _, items in found for item in items) else FAILED
+        say(errata.lines(documents))
+    return OK if options.all or all(item.outcome == "holds" for _, items in documents for item in items) else FAILED
 
 
 def _identify(options: Namespace) -> int:
-    found = symrot.identify(options.formula)
+    identifications = symrot.identify(options.formula)
     if options.json:
-        say_json([identification.to_json() for identification in found])
+        say_json([identification.to_json() for identification in identifications])
     else:
-        say(f"{identification}\n  {identification.source}" for identification in found)
-        if not found:
-            say(["nothing that symrot derives is equal to it"])
-    return GOOD if found else FAILED
+        say(f"{identification}\n  {identification.source}" for identification in identifications)
+        if not identifications:
+            say(["no formula that symrot derives is equal to it"])
+    return OK if identifications else FAILED
 
 
 def _bench(options: Namespace) -> int:
@@ -282,18 +293,18 @@ def _bench(options: Namespace) -> int:
     else:
         title, *rest = outcome.lines
         say([emphasis(title, sys.stdout), *rest])
-    return GOOD if outcome.good else FAILED
+    return OK if outcome.good else FAILED
 
 
 def _scenes(options: Namespace) -> int:
     from symrot.report.layout import columns
 
-    found = symrot.shipped_scenes()
+    scenes = symrot.shipped_scenes()
     if options.json:
-        say_json([{"name": name, "title": title, "source": source} for name, title, source in found])
+        say_json([{"name": name, "title": title, "source": source} for name, title, source in scenes])
     else:
-        say(columns([(name, one_line(title)) for name, title, _ in found]))
-    return GOOD
+        say(columns([(name, one_line(title)) for name, title, _ in scenes]))
+    return OK
 
 
 def _doctor(options: Namespace) -> int:
@@ -302,16 +313,16 @@ def _doctor(options: Namespace) -> int:
     if options.clear_cache:
         removed = health.clear_cache()
         say_json({"removed": removed}) if options.json else say([f"removed {removed} files from the cache"])
-        return GOOD
-    found = health.facts()
+        return OK
+    report = health.facts()
     if options.json:
-        say_json(found)
+        say_json(report)
     else:
-        say(health.lines(found))
-    return FAILED if found["problems"] else GOOD
+        say(health.lines(report))
+    return FAILED if report["problems"] else OK
 
 
-# --- what each takes --------------------------------------------------------------------------------------------------
+# --- the arguments of each command ------------------------------------------------------------------------------------
 
 
 def _scene_argument(parser: ArgumentParser, **more: Any) -> None:
@@ -320,8 +331,8 @@ def _scene_argument(parser: ArgumentParser, **more: Any) -> None:
 
 def _table_folder_option(parser: ArgumentParser) -> None:
     parser.add_argument("--table-folder", metavar="DIR", action="append", default=[],
-                        help="let the scene name files of samples in this folder too; may be repeated "
-                        "(default: its own folder alone)")  # fmt: skip
+                        help="allow files of samples in this folder too; may be repeated "
+                        "(default: only the scene's own folder)")  # fmt: skip
 
 
 def _run_arguments(parser: ArgumentParser) -> None:
@@ -330,7 +341,7 @@ def _run_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--method", default="auto", metavar="NAME", help="auto, exact, taylor, dop853 or scipy:NAME")
     parser.add_argument("--tolerance", metavar="X", help="error to aim for, 1e-15 to 1e-2 (default: the scene's own)")
     parser.add_argument("--state", default="quaternion", metavar="SEQUENCE", help="step Euler angles, such as ZXZ")
-    parser.add_argument("--out", type=Path, metavar="FILE", help="write the quantities asked for: FILE.npz or FILE.csv")
+    parser.add_argument("--out", type=Path, metavar="FILE", help="write the output quantities: FILE.npz or FILE.csv")
     parser.add_argument("--plot", type=Path, metavar="FILE", help="draw the motion on one page: FILE.png, .pdf or .svg")
     json_option(parser)
 
@@ -346,16 +357,20 @@ def _emit_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--list", action="store_true", help="list the kernels of the library")
     parser.add_argument("--all", action="store_true", help="write the library and the kernels of all shipped scenes")
     parser.add_argument("--check", action="store_true", help="compare the written kernels; exit 1 with a diff if stale")
-    parser.add_argument("--target", choices=TARGETS, help="language (default: c for a kernel, both for --all, --check)")
+    parser.add_argument(
+        "--target", choices=TARGETS, help="language (default: c for a kernel, both for --all and --check)"
+    )
     parser.add_argument("-o", type=Path, metavar="DIR", dest="directory",
                         help="folder (default: standard output for a kernel, ./generated otherwise)")  # fmt: skip
 
 
 def _derive_arguments(parser: ArgumentParser) -> None:
-    parser.add_argument("name", metavar="NAME", nargs="?", help="a derivation; without one they are listed")
+    parser.add_argument("name", metavar="NAME", nargs="?", help="a derivation (default: list all)")
     parser.add_argument("--all", action="store_true", help="write the pages of all derivations")
     parser.add_argument("--check", action="store_true", help="compare the written pages; exit 1 with a diff if stale")
-    parser.add_argument("--format", choices=PAGES, default="markdown", help="of a derivation (default: markdown)")
+    parser.add_argument(
+        "--format", choices=PAGES, default="markdown", help="format of a derivation (default: markdown)"
+    )
     parser.add_argument("--step", type=int, metavar="N", help="print one step of a derivation")
     parser.add_argument(
         "--detail", action="store_true", help="with --step: show every expression between its two sides"
@@ -366,9 +381,10 @@ def _derive_arguments(parser: ArgumentParser) -> None:
 
 def _check_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("claim", metavar="CLAIM", nargs="?", help="'left == right', LaTeX, or a FILE.toml of claims")
-    parser.epilog = ("Budget: 20 000 characters and 1 000 000 products of terms a claim; beyond it a claim is refused, "
-                     "or undecided with this reason. Counted, never timed: all machines give one verdict.")  # fmt: skip
-    parser.add_argument("--textbook", metavar="NAME", help="check what a document says: chen, sahakian, brown, "
+    parser.epilog = ("Budget per claim: 20 000 characters and 1 000 000 products of terms; a claim beyond it is refused, "
+                     "or undecided for this reason. The budget is counted, not timed, so that all machines give the "
+                     "same verdict.")  # fmt: skip
+    parser.add_argument("--textbook", metavar="NAME", help="check the claims of a document: chen, sahakian, brown, "
                         "beer-johnston, or all")  # fmt: skip
     parser.add_argument("--all", action="store_true", help="with --textbook all: write the page of errata")
     parser.add_argument("-o", "--output", metavar="DIR", default="generated", help="folder of --all (./generated)")
@@ -400,24 +416,24 @@ COMMANDS: dict[str, Command] = {
     "run": ("propagate a scene and summarise its motion", _run, _run_arguments),
     "explain": ("show what is computed for a scene, what is skipped and why", _explain, _explain_arguments),
     "derive": ("print derivations, proven step by step", _derive, _derive_arguments),
-    "check": ("decide whether formulas hold, and what would", _check, _check_arguments),
-    "identify": ("say what a formula is, whatever its symbols are called", _identify, _identify_arguments),
-    "emit": ("print a kernel of the library, or that of a scene, as C or NumPy", _emit, _emit_arguments),
+    "check": ("decide whether formulas hold, and suggest corrections", _check, _check_arguments),
+    "identify": ("recognise a formula, whatever the names of its symbols", _identify, _identify_arguments),
+    "emit": ("print a kernel of the library or of a scene as C or NumPy", _emit, _emit_arguments),
     **cli_certify.COMMANDS,
-    "bench": ("measure time against error, on a scene of yours", _bench, _bench_arguments),
+    "bench": ("measure time against error on a scene of your choice", _bench, _bench_arguments),
     "scenes": ("list the scenes that come with symrot", _scenes, json_option),
     "doctor": ("check compiler, cache and installed versions", _doctor, _doctor_arguments),
 }
-"""Command -> what it does, the function that does it, the function that declares its arguments."""
+"""Command -> its help text, the function that runs it, the function that declares its arguments."""
 
 
 def _nowhere() -> TextIO:
-    """Return a stream for a process that was started with that one closed."""
+    """Return a null stream, for a process that was started with stdout or stderr closed."""
     return Path(os.devnull).open("w", encoding="utf-8")
 
 
 def _parser(only: str = "") -> _Parser:
-    """Return the parser of the command line; of one command alone where its name is known, which saves the others."""
+    """Return the parser of all commands, or only of the named one, which saves the time of the others."""
     parser = _Parser(
         prog="symrot",
         description="Rigid-body rotation: derived, specialised, compiled, propagated.",
@@ -429,33 +445,33 @@ def _parser(only: str = "") -> _Parser:
     for name, (about, function, declare) in COMMANDS.items():
         if only not in ("", name):
             continue
-        spoken = f"{about[0].upper()}{about[1:]}."
-        command = commands.add_parser(name, help=about, description=spoken, allow_abbrev=False)
+        description = f"{about[0].upper()}{about[1:]}."
+        command = commands.add_parser(name, help=about, description=description, allow_abbrev=False)
         declare(command)
         command.set_defaults(function=function)
     return parser
 
 
 def _known(arguments: Sequence[str]) -> None:
-    """Refuse a command that is none, with the nearest that is one."""
+    """Raise InputError for an unknown command, with the nearest known one."""
     if arguments and not arguments[0].startswith("-") and arguments[0] not in COMMANDS:
         from symrot.scene.reader import nearest
 
         hint = nearest(arguments[0], COMMANDS)
-        said = f"expected a command, one of {', '.join(COMMANDS)}, got {arguments[0][:60]!r}"
-        raise InputError(f"{said} ({hint})" if hint else said)
+        message = f"expected a command, one of {', '.join(COMMANDS)}, got {arguments[0][:60]!r}"
+        raise InputError(f"{message} ({hint})" if hint else message)
 
 
 def _silence(stream: Any) -> None:
-    """Point a stream whose reader is gone to nowhere, so that Python can close it without a word."""
+    """Redirect a stream whose reader is gone to the null device, so that Python can close it without an error."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
 def _stop_compilers() -> None:
-    """Kill the compilers that were started, if any: Python waits at its end for threads that wait for them."""
-    library = sys.modules.get("symrot.build.cache")
-    if library is not None:
-        library.stop_compilers()
+    """Kill running compilers, if any: at exit, Python waits for the threads that wait for them."""
+    cache = sys.modules.get("symrot.build.cache")
+    if cache is not None:
+        cache.stop_compilers()
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -464,17 +480,17 @@ def main(argv: Sequence[str] | None = None) -> int:
     Parameters
     ----------
     argv : sequence of str, optional
-        The words after ``symrot``; default: those of this process.
+        The words after ``symrot``; default: the arguments of this process.
     """
     arguments = sys.argv[1:] if argv is None else list(argv)
     sys.stdout, sys.stderr = sys.stdout or _nowhere(), sys.stderr or _nowhere()
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
-            stream.reconfigure(errors="replace")  # a title in letters that the terminal has not is no reason to fail
+            stream.reconfigure(errors="replace")  # characters that the terminal cannot show must not cause a failure
     try:
         if not arguments:
             _parser().print_help(sys.stderr)
-            return BAD
+            return USAGE_ERROR
         _known(arguments)
         options = _parser(arguments[0] if arguments[0] in COMMANDS else "").parse_args(arguments)
         code: int = options.function(options)
@@ -483,15 +499,15 @@ def main(argv: Sequence[str] | None = None) -> int:
     except SymrotError as error:
         progress("")
         sys.stderr.write(f"symrot: {one_line(str(error))}\n")
-        return BAD
+        return USAGE_ERROR
     except BrokenPipeError:
         _silence(sys.stdout)
-        return UNREAD
+        return SIGPIPE
     except OSError as error:
         progress("")
         place = f"{error.filename}: " if error.filename else ""
         sys.stderr.write(f"symrot: {one_line(place)}{error.strerror or error}\n")
-        return BAD
+        return USAGE_ERROR
     except KeyboardInterrupt:
         _stop_compilers()
         progress("")

@@ -1,4 +1,4 @@
-"""What commands print with, and their exit codes; stdout is data, stderr is progress."""
+"""Print the output of commands (stdout is data, stderr is progress), and define their exit codes."""
 
 import os
 import sys
@@ -6,11 +6,22 @@ from argparse import ArgumentParser, Namespace
 from collections.abc import Callable, Iterable
 from typing import Any
 
-__all__ = ["BAD", "FAILED", "GOOD", "INTERRUPTED", "UNREAD", "Command", "json_option", "progress", "say", "say_json"]
+__all__ = [
+    "FAILED",
+    "INTERRUPTED",
+    "OK",
+    "SIGPIPE",
+    "USAGE_ERROR",
+    "Command",
+    "json_option",
+    "progress",
+    "say",
+    "say_json",
+]
 
-GOOD, FAILED, BAD, INTERRUPTED, UNREAD = 0, 1, 2, 130, 141
+OK, FAILED, USAGE_ERROR, INTERRUPTED, SIGPIPE = 0, 1, 2, 130, 141
 Command = tuple[str, Callable[[Namespace], int], Callable[[ArgumentParser], None]]
-"""What a command does, the function that does it, the function that declares its arguments."""
+"""The help text of a command, the function that runs it, the function that declares its arguments."""
 
 
 def say(lines: Iterable[str]) -> None:
@@ -18,21 +29,21 @@ def say(lines: Iterable[str]) -> None:
     sys.stdout.write("".join(f"{line}\n" for line in lines))
 
 
-def say_json(found: Any) -> None:
+def say_json(data: Any) -> None:
     """Print JSON."""
     import json
 
-    sys.stdout.write(json.dumps(found, indent=2, ensure_ascii=False) + "\n")
+    sys.stdout.write(json.dumps(data, indent=2, ensure_ascii=False) + "\n")
 
 
 def progress(text: str) -> None:
-    """Show what takes its time, on one line of a terminal; an empty text clears it."""
+    """Show a progress message on one line of the terminal; an empty text clears it."""
     if sys.stderr.isatty():
         try:
-            room = os.get_terminal_size(sys.stderr.fileno()).columns - 1 or len(text)
+            width = os.get_terminal_size(sys.stderr.fileno()).columns - 1 or len(text)
         except (OSError, ValueError, AttributeError):
-            room = len(text)
-        sys.stderr.write(f"\r\x1b[K{text[:room]}")  # a longer line would go on below, where nothing clears it
+            width = len(text)
+        sys.stderr.write(f"\r\x1b[K{text[:width]}")  # a wrapped line could not be cleared
         sys.stderr.flush()
 
 

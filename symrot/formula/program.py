@@ -90,13 +90,13 @@ class Program:
         """
         outputs = [(name, node) for name, node in self.outputs if only is None or name in only]
         needed = set().union(*(names(node) for _, node in outputs))
-        kept = []
+        temporaries = []
         for name, node in reversed(self.temporaries):
             if name in needed:
                 needed |= names(node)
-                kept.append((name, node))
+                temporaries.append((name, node))
         known = dict(values)
-        for name, node in reversed(kept):
+        for name, node in reversed(temporaries):
             known[name] = evaluate(node, known, functions, number)
         return {name: evaluate(node, known, functions, number) for name, node in outputs}
 

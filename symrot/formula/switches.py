@@ -186,9 +186,9 @@ def _degree(node: Node) -> int:
 def smooth(sources: tuple[str, ...]) -> Smooth:
     """Return formulas, given as text, as smooth formulas with modes."""
     nodes = [parse(source, switching=True) for source in sources]
-    taken = set().union(*map(names, nodes))
+    used_names = set().union(*map(names, nodes))
     prefix = MODES
-    while any(name.startswith(prefix) for name in taken):
+    while any(name.startswith(prefix) for name in used_names):
         prefix = f"_{prefix}" if len(prefix) > 40 else f"{prefix}_"
     writer = _Writer(prefix)
     return Smooth(tuple(map(writer.smooth, nodes)), tuple(writer.switches))

@@ -62,11 +62,11 @@ class _Reader:
     def fail(self, expected: str, position: int, function: str = "") -> InputError:
         from symrot.formula.advice import function_advice, mark_advice  # only on the way to an error
 
-        shown = self.source if len(self.source) <= 60 else self.source[:57] + "..."
+        excerpt = self.source if len(self.source) <= 60 else self.source[:57] + "..."
         known = self.functions
         advice = function_advice(function, known) if function else mark_advice(self.source, position, known)
         reason = f" ({advice})" if advice else ""
-        return InputError(f"{self.where}expected {expected} at position {position + 1} of {shown!r}{reason}")
+        return InputError(f"{self.where}expected {expected} at position {position + 1} of {excerpt!r}{reason}")
 
     def _split(self) -> Iterator[tuple[str, str, int]]:
         position = 0
@@ -89,8 +89,8 @@ class _Reader:
         return self.tokens[self.index][1]
 
     def expect(self, mark: str) -> None:
-        _, found, position = self.next()
-        if found != mark:
+        _, token, position = self.next()
+        if token != mark:
             raise self.fail(f"'{mark}'", position)
 
     def expression(self, binding: int = 0) -> Node:
@@ -116,45 +116,45 @@ class _Reader:
         return ("call", "not", (less,)) if opposite else less
 
     def operand(self) -> Node:
-        kind, found, position = self.next()
-        if self.switching and found == "not":
+        kind, token, position = self.next()
+        if self.switching and token == "not":
             return ("call", "not", (self.expression(_NOT),))
         if kind == "number":
-            return ("number", self.number(found, position))
-        if found == "(":
+            return ("number", self.number(token, position))
+        if token == "(":
             inner = self.expression()
             self.expect(")")
             return inner
-        if found == "-":
+        if token == "-":
             return ("neg", self.expression(_UNARY))
-        if found == "+":
+        if token == "+":
             return self.expression(_UNARY)
         if kind != "name":
             raise self.fail("a number, a name or '('", position)
         if self.peek() != "(":
-            return ("symbol", found)
-        if found not in self.functions:
-            raise self.fail(f"one of the functions {', '.join(self.functions)} instead of '{found}'", position, found)
+            return ("symbol", token)
+        if token not in self.functions:
+            raise self.fail(f"one of the functions {', '.join(self.functions)} instead of '{token}'", position, token)
         self.next()
         arguments = [self.expression()]
         while self.peek() == ",":
             self.next()
             arguments.append(self.expression())
         self.expect(")")
-        if found in ("min", "max") and len(arguments) > 2:
-            return reduce(lambda left, right: ("call", found, (left, right)), arguments)
-        if len(arguments) != self.functions[found]:
-            count = self.functions[found]
-            raise self.fail(f"{count} argument(s) for '{found}' instead of {len(arguments)}", position, found)
-        return ("call", found, tuple(arguments))
+        if token in ("min", "max") and len(arguments) > 2:
+            return reduce(lambda left, right: ("call", token, (left, right)), arguments)
+        if len(arguments) != self.functions[token]:
+            count = self.functions[token]
+            raise self.fail(f"{count} argument(s) for '{token}' instead of {len(arguments)}", position, token)
+        return ("call", token, tuple(arguments))
 
-    def number(self, found: str, position: int) -> Fraction:
-        exponent = re.split("[eE]", found)[1:]
-        if len(found) > LONGEST_NUMBER:
+    def number(self, token: str, position: int) -> Fraction:
+        exponent = re.split("[eE]", token)[1:]
+        if len(token) > LONGEST_NUMBER:
             raise self.fail(f"a number of at most {LONGEST_NUMBER} characters", position)
         if exponent and (len(exponent[0]) > 5 or abs(int(exponent[0])) > LARGEST_EXPONENT):
-            raise self.fail(f"a power of ten within {LARGEST_EXPONENT} instead of '{found[:20]}'", position)
-        return Fraction(found)
+            raise self.fail(f"a power of ten within {LARGEST_EXPONENT} instead of '{token[:20]}'", position)
+        return Fraction(token)
 
     def power(self, position: int) -> int:
         """Read the exponent: a whole number, with a sign or brackets if need be."""
@@ -164,8 +164,8 @@ class _Reader:
         sign = -1 if self.peek() == "-" else 1
         if self.peek() in "+-" and self.peek():
             self.next()
-        kind, found, at = self.next()
-        if kind != "number" or not found.isdigit() or len(found) > 3 or int(found) > LARGEST_POWER:
+        kind, token, at = self.next()
+        if kind != "number" or not token.isdigit() or len(token) > 3 or int(token) > LARGEST_POWER:
             raise self.fail(f"a whole exponent up to {LARGEST_POWER} (write sqrt(x) for a root)", at)
         if self.peek() == "**":
             raise self.fail("brackets around a repeated power", self.tokens[self.index][2])
@@ -173,7 +173,7 @@ class _Reader:
             raise self.fail(f"a whole exponent up to {LARGEST_POWER} (write sqrt(x) for a root)", at)
         if brackets:
             self.expect(")")
-        return sign * int(found)
+        return sign * int(token)
 
 
 def parse(source: str, where: str = "", switching: bool = False) -> Node:
@@ -311,9 +311,9 @@ def text(node: Node, binding: int = 0, literal: Callable[[Fraction], str] = str)
     """
     kind = node[0]
     if kind == "number":
-        shown = literal(node[1])
-        loose = binding > 10 and ("/" in shown or shown.startswith("-"))
-        return f"({shown})" if loose else shown
+        number_text = literal(node[1])
+        loose = binding > 10 and ("/" in number_text or number_text.startswith("-"))
+        return f"({number_text})" if loose else number_text
     if kind == "symbol":
         return str(node[1])
     if kind == "call" and node[1] in ("less", *LOGIC):
