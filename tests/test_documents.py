@@ -194,6 +194,19 @@ def test_counts_in_the_documents_are_those_of_the_package():
     assert "library of 232 kernels" in PAGES["docs/engineers.md"] and len(kernel_names()) == 232
 
 
+def test_cited_sections_on_exact_decisions_are_there():
+    sections = re.findall(r"^## (\d+)\. ", PAGES["docs/exact_decisions.md"], re.MULTILINE)
+    assert sections == [str(number) for number in range(1, len(sections) + 1)]
+    cited = [
+        int(number)
+        for path in (ROOT / "symrot").rglob("*.py")
+        for numbers in re.findall(r"exact_decisions\.md``,\s+sections? (\d)(?: to (\d))?", path.read_text("utf-8"))
+        for number in numbers
+        if number
+    ]
+    assert cited and max(cited) <= len(sections)
+
+
 def test_conventions_are_written_once():
     sys.path.insert(0, str(ROOT / "docs"))
     try:
