@@ -1,6 +1,7 @@
 """The documents are true: every code block runs and prints what the page shows, every link leads somewhere."""
 
 import inspect
+import json
 import re
 import sys
 from importlib.util import find_spec
@@ -192,6 +193,13 @@ def test_the_rooms_are_in_the_order_of_their_imports():
 def test_counts_in_the_documents_are_those_of_the_package():
     assert "45 derivations" in PAGES["README.md"] and len(derivation_names()) == 45
     assert "library of 232 kernels" in PAGES["docs/engineers.md"] and len(kernel_names()) == 232
+
+
+def test_the_table_of_proofs_is_that_of_the_certificates():
+    certificates = [json.loads(path.read_text("utf-8")) for path in sorted((ROOT / "generated/c").glob("*.cert.json"))]
+    assert len(certificates) == 232
+    assert all(each["laws"] and each["readback"] and each["rounding"] for each in certificates)
+    assert f"| {sum(bool(each['coq']) for each in certificates)} kernels: Euler" in PAGES["docs/certificates.md"]
 
 
 def test_cited_sections_on_exact_decisions_are_there():
