@@ -5,7 +5,7 @@ A comment on the line above a block says how the test treats it:
 ``<!-- file: NAME -->``
     The block is a file that later blocks of the page use.
 ``<!-- exit: N -->``
-    Each command of the block ends with exit code N (0 without the comment).
+    Each command of the block ends with exit code N (0 without the comment); its messages count as output.
 ``<!-- diagram -->``
     The block is a drawing.
 ``<!-- not run: REASON -->``
@@ -74,12 +74,12 @@ def blocks(page: str) -> Iterator[Block]:
 
 
 def run_block(block: Block, names: dict[str, Any], directory: Path) -> str:
-    """Run a block in a directory that is the current one; return its standard output."""
+    """Run a block in a directory that is the current one; return what it prints."""
     if block.directive == "file":
         (directory / block.argument).write_text(block.text, encoding="utf-8")
         return ""
     printed = io.StringIO()
-    with contextlib.redirect_stdout(printed):
+    with contextlib.redirect_stdout(printed), contextlib.redirect_stderr(printed if block.argument else sys.stderr):
         if block.language == "python":
             exec(compile(block.text, f"<line {block.line}>", "exec"), names)
         elif block.language == "sh":
