@@ -204,9 +204,8 @@ class Recording(ABC):
 class SteppedRecording(Recording):
     """A recording made of the steps of a stepper in C."""
 
-    def __init__(self, task: "Task", backward: Floats, forward: Floats) -> None:
-        ends = [float(rows[-1, 0] + rows[-1, 1]) if len(rows) else task.t0 for rows in (backward, forward)]
-        super().__init__(task.t0, task.y0, (ends[0], ends[1]), task.stats())
+    def __init__(self, task: "Task", span: tuple[float, float], backward: Floats, forward: Floats) -> None:
+        super().__init__(task.t0, task.y0, span, task.stats())
         self._dense, self._backward, self._forward = task.stepper.dense, backward, forward
 
     def _fill(self, times: Floats, states: Floats) -> None:
@@ -428,8 +427,9 @@ class Task:
         low, high = min(span), max(span)
         if not (math.isfinite(low) and math.isfinite(high)):
             raise InputError(f"a span runs between two finite times, got {span}")
-        backward, forward = (np.concatenate(self.keep(end)) for end in (min(low, self.t0), max(high, self.t0)))
-        return SteppedRecording(self, backward, forward)
+        span = min(low, self.t0), max(high, self.t0)
+        backward, forward = (np.concatenate(self.keep(end)) for end in span)
+        return SteppedRecording(self, span, backward, forward)
 
     def follow(self, times: Floats, states: Floats) -> None:
         """Write the states at times sorted away from t0, all on one side of it."""
