@@ -26,6 +26,7 @@ from symrot.closed_form import motion as forms
 from symrot.closed_form import spin_up_compiled
 from symrot.codegen.address import address
 from symrot.ensemble.ensemble import propagate_ensemble
+from symrot.ensemble.variation import PLACES
 from symrot.errors import InputError
 from symrot.planner import structure_key
 from symrot.propagation.propagator import Propagator, propagator, read_start
@@ -221,6 +222,10 @@ def _ensemble(scene: Scene, n: int, random: np.random.Generator) -> Iterator[tup
     }
     yield "starts", given
     if not scene.body.principal.given_axes:
+        tensor = {
+            name: float(scene.body.inertia[i][j]) * (1 + SPREAD * random.random(n)) for name, (i, j) in PLACES.items()
+        }
+        yield "and tensor", {**given, "parameters": tensor}
         return
     moments = np.array([float(scene.body.inertia[k][k]) for k in range(3)])
     varied = {"principal": moments * (1 + SPREAD * random.random((n, 1)))}
