@@ -110,12 +110,27 @@ def _start(scene: Scene) -> tuple[Floats, Floats]:
     return omega * (1 + SPREAD) + SPREAD * abs(omega).max(), quaternion + SPREAD
 
 
+def _medians(one: Callable[[], object], other: Callable[[], object], rounds: int) -> tuple[float, float, float]:
+    """Return microseconds of two runs in turn, and of what the first takes longer: what drifts does so for both."""
+    times = np.empty((rounds, 3))
+    for k in range(rounds):
+        began = process_time_ns()
+        one()
+        between = process_time_ns()
+        other()
+        times[k, :2] = between - began, process_time_ns() - between
+    times[:, 2] = times[:, 0] - times[:, 1]
+    first, second, more = np.median(times, axis=0).tolist()
+    return first / 1e3, second / 1e3, more / 1e3
+
+
 class _Row(NamedTuple):
-    """Microseconds of a scene and method; calls and motions with another omega, with another attitude, with both."""
+    """Microseconds of a scene and method; calls with another omega, with another attitude, with both."""
 
     parts: tuple[float, ...]  # read, plan, bind, set up
-    motions: tuple[float, ...]
+    motion: float  # with both
     calls: tuple[float, ...]
+    python: tuple[float, ...]  # what of the calls is not the motion
 
 
 def _row(found: Propagator, rounds: int) -> _Row:
@@ -137,22 +152,25 @@ def _row(found: Propagator, rounds: int) -> _Row:
         one = next(each)
         return one.exact if motion.choice.method == "exact" else one.stepping
 
-    def itself(start: Initial) -> float:
-        own = found.motion_from(start)
+    def whole(start: dict[str, Floats]) -> tuple[float, float, float]:
+        """Return what a call takes, the motion itself, and the rest."""
+        initial = read_start(scene, start.get("omega"), start.get("quaternion"))
+        own = found.motion_from(initial)
         own.follow(times, True)
-        return _in_c(own, start, times, rounds) + _median(lambda: own.follow(times, True), rounds)
+        call, following, more = _medians(partial(found, times, **start), lambda: own.follow(times, True), rounds)
+        constants = _in_c(own, initial, times, rounds)
+        return call, following + constants, more - constants
 
     assert parts is not None
     starts = ({"omega": omega}, {"quaternion": quaternion}, {"omega": omega, "quaternion": quaternion})
-    read = [read_start(scene, start.get("omega"), start.get("quaternion")) for start in starts]
     costs = (
         _median(lambda: read_start(scene, omega, quaternion), rounds),
         _median(lambda: structure_key(scene, initial), rounds) + _median(lambda: motion.from_start(initial), rounds),
         _median(bind, rounds),
         _median(prepare, rounds),
     )
-    calls = tuple([_median(partial(found, times, **start), rounds) for start in starts])
-    return _Row(costs, tuple([itself(start) for start in read]), calls)
+    calls, motions, python = zip(*map(whole, starts), strict=True)
+    return _Row(costs, motions[2], calls, python)
 
 
 def _in_c(motion: Any, initial: Any, times: Floats, rounds: int) -> float:
@@ -206,8 +224,7 @@ def changed_starts(scenes: list[str], rounds: int) -> None:
                 continue
             if found.method == method:
                 row = _row(found, rounds)
-                python = [call - motion for call, motion in zip(row.calls, row.motions, strict=True)]
-                cells = (*row.parts, row.motions[2], *row.calls, max(python[:2]), python[2])
+                cells = (*row.parts, row.motion, *row.calls, max(row.python[:2]), row.python[2])
                 print(f"{name:28}{method:>8}" + "".join(f"{cell:9.1f}" for cell in cells))
 
 
