@@ -6,15 +6,18 @@
 The first table has a row for each scene and method, in microseconds: to read the start, to plan it (its structure is
 known), to bind parameters, to set up the motion (constants of a closed form; the task of a stepper), the motion itself
 (all that is done in C, and the call of it); then whole calls at 101 times with another angular velocity, attitude, or
-both; last what of the dearer of the first two, and of the third, is not the motion itself (each start has its own:
-printed is that of both). The second has microseconds per trajectory of 101 samples, in closed form and by steps, with
-other starts alone and with other constants too, and the method that ``auto`` takes. Time of the processor, medians.
+both; then what of the dearer of the first two, and of the third, is not the motion itself (each start has its own:
+printed is that of both). Beside other work on the machine Python is dearer after a long motion, however little it did:
+the last column has the dearest whole call of a stepper with nothing done in C. The second has microseconds per
+trajectory of 101 samples, in closed form and by steps, with other starts alone and with other constants too, and the
+method that ``auto`` takes. Time of the processor, medians.
 """
 
 import argparse
 import ctypes
 from collections.abc import Callable, Iterator
 from functools import partial
+from math import nan
 from statistics import median
 from time import process_time_ns
 from typing import Any, NamedTuple
@@ -30,7 +33,8 @@ from symrot.ensemble.variation import PLACES
 from symrot.errors import InputError
 from symrot.planner import structure_key
 from symrot.propagation.propagator import Propagator, propagator, read_start
-from symrot.scene import Initial, Scene, load_scene
+from symrot.propagation.stepping import DONE
+from symrot.scene import Scene, load_scene
 
 __all__ = ["main"]
 
@@ -131,6 +135,7 @@ class _Row(NamedTuple):
     motion: float  # with both
     calls: tuple[float, ...]
     python: tuple[float, ...]  # what of the calls is not the motion
+    idle: float  # the dearest call of a stepper with nothing done in C
 
 
 def _row(found: Propagator, rounds: int) -> _Row:
@@ -170,7 +175,15 @@ def _row(found: Propagator, rounds: int) -> _Row:
         _median(prepare, rounds),
     )
     calls, motions, python = zip(*map(whole, starts), strict=True)
-    return _Row(costs, motions[2], calls, python)
+    idle = nan
+    if motion.choice.method != "exact":
+        stepper = motion.stepping.stepper
+        run, stepper.run = stepper.run, lambda *given: DONE
+        try:
+            idle = max([_median(partial(found, times, **start), rounds) for start in starts])
+        finally:
+            stepper.run = run
+    return _Row(costs, motions[2], calls, python, idle)
 
 
 def _in_c(motion: Any, initial: Any, times: Floats, rounds: int) -> float:
@@ -214,7 +227,7 @@ def _spin_up_in_c(source: Any, times: Floats, rounds: int) -> float:
 
 def changed_starts(scenes: list[str], rounds: int) -> None:
     """Print the first table."""
-    heads = ("read", "plan", "bind", "set up", "motion", "omega", "attitude", "both", "Python", "of both")
+    heads = ("read", "plan", "bind", "set up", "motion", "omega", "attitude", "both", "Python", "of both", "no C")
     print(f"{'us of a changed start':28}{'method':>8}" + "".join(f"{head:>9}" for head in heads))
     for name in scenes:
         for method in METHODS:
@@ -224,7 +237,7 @@ def changed_starts(scenes: list[str], rounds: int) -> None:
                 continue
             if found.method == method:
                 row = _row(found, rounds)
-                cells = (*row.parts, row.motion, *row.calls, max(row.python[:2]), row.python[2])
+                cells = (*row.parts, row.motion, *row.calls, max(row.python[:2]), row.python[2], row.idle)
                 print(f"{name:28}{method:>8}" + "".join(f"{cell:9.1f}" for cell in cells))
 
 
