@@ -105,7 +105,8 @@ def principal_bodies(entries: Sequence[Column], omega: Floats) -> PrincipalBodie
     omega, doubtful = np.ascontiguousarray(omega), np.empty(n, np.uint8)
     places = [address(values) for values in room]
     _functions()[2](n, addressof(tensors), address(omega), *places, doubtful.ctypes.data)
-    return PrincipalBodies(*room, np.flatnonzero(doubtful))
+    moments, rates, exact, axes = room
+    return PrincipalBodies(moments, rates, exact, axes, np.flatnonzero(doubtful))
 
 
 def _sum_of_doubles(value: Fraction) -> tuple[Floats, bool]:

@@ -108,9 +108,8 @@ def choose(variation: Variation, times: Floats, start: float, faster: bool) -> l
     - The exception is the angular velocity alone of a symmetric body that is damped, from starts alone: 12 as an
       array, 6 to 9 by steps, which are few since the motion ends.
     - Motions made one by one take 1100 with products of inertia that vary and are as good as zero, or with moments as
-      good as equal, for their principal axes in fractions, and 40 to 80 about
-      one axis or spun up, with constants so large or small that arrays are not made. Steps take as much at the angles
-      of :data:`ALONE_LOSES_BELOW`.
+      good as equal, for their principal axes in fractions, and 40 to 80 about one axis or spun up, with constants so
+      large or small that arrays are not made. Steps take as much at the angles of :data:`ALONE_LOSES_BELOW`.
 
     The angle is that of the trajectory itself, so that its method does not depend on the others.
     """
@@ -264,12 +263,13 @@ def _batches(variation: Variation, kind: Kind, rows: Rows) -> Iterator[tuple[Row
 
     for part in _parts(variation, kind, rows):
         batch, fine = make(part)
-        if batch is not None and kind.form and kind.form.library == "free_body" and not np.all(fine):
+        if batch is not None and make is _free and not np.all(fine):
             # principal axes that take fractions are dear: such motions count as made one by one
-            yield part.rows[~fine], None, None
-            if not fine.any():
+            clear = np.asarray(fine)
+            yield part.rows[~clear], None, None
+            if not clear.any():
                 continue
-            part, batch, fine = part.of(fine), batch.of(fine), True
+            part, batch, fine = part.of(clear), batch.of(clear), True
         if batch is not None:
             for name in variation.columns:
                 size = abs(variation.columns[name][part.rows])

@@ -112,8 +112,6 @@ def check_longest_step(max_step: float) -> None:
 
 
 def _numbers(what: str, values: ArrayLike, length: int) -> list[float]:
-    if type(values) is tuple and len(values) == length and math.isfinite(sum(values)):
-        return list(values)
     array = np.asarray(values, dtype=np.float64)
     if array.shape != (length,):
         raise InputError(f"this kernel takes {length} {what}, got an array of shape {array.shape}")
@@ -362,11 +360,12 @@ class Task:
 
     def from_start(self, p: list[float], y0: Sequence[float]) -> "Task":
         """Return the same motion with other parameters and another state; what they share is not checked again."""
-        if not math.isfinite(sum(p)):
-            p = _numbers("parameters", p, len(p))
+        if not math.isfinite(sum(p) + sum(y0)):  # a sum may overflow where no number does
+            _numbers("parameters", p, len(p))
+            _numbers("states", y0, len(y0))
         other = self.again()
         run = other._ready = self.stepper.new_run.from_buffer_copy(self._ready)
-        run.y[:] = other.y0 = _numbers("states", y0, len(y0))
+        run.y[:] = other.y0 = list(y0)
         other.p = self.stepper.new_parameters(*p)
         return other
 
