@@ -357,6 +357,17 @@ class Task:
         other.mark = (0, self.t0)
         return other
 
+    def from_start(self, p: list[float], y0: Sequence[float]) -> "Task":
+        """Return the same motion with other parameters and another state; what they share is not checked again."""
+        if not math.isfinite(sum(p) + sum(y0)):  # a sum may overflow where no number does
+            _numbers("parameters", p, len(p))
+            _numbers("states", y0, len(y0))
+        other = self.again()
+        run = other._ready = self.stepper.new_run.from_buffer_copy(self._ready)
+        run.y[:] = other.y0 = list(y0)
+        other.p = self.stepper.new_parameters(*p)
+        return other
+
     def stats(self) -> Stats:
         """Return what all was spent since the task was set."""
         return Stats(self.accepted, self.rejected, self.evaluations, perf_counter() - self.began)
