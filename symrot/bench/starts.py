@@ -6,15 +6,18 @@
 The first table has a row for each scene and method, in microseconds: to read the start, to plan it (its structure is
 known), to bind parameters, to set up the motion (constants of a closed form; the task of a stepper), the motion itself
 (all that is done in C, and the call of it); then whole calls at 101 times with another angular velocity, attitude, or
-both; last what of the dearer of the first two, and of the third, is not the motion itself (each start has its own:
-printed is that of both). The second has microseconds per trajectory of 101 samples, in closed form and by steps, with
-other starts alone and with other constants too, and the method that ``auto`` takes. Time of the processor, medians.
+both; then what of the dearer of the first two, and of the third, is not the motion itself (each start has its own:
+printed is that of both). Beside other work on the machine Python is dearer after a long motion, however little it did:
+the last column has the dearest whole call of a stepper with nothing done in C. The second has microseconds per
+trajectory of 101 samples, in closed form and by steps, with other starts alone and with other constants too, and the
+method that ``auto`` takes. Time of the processor, medians.
 """
 
 import argparse
 import ctypes
 from collections.abc import Callable, Iterator
 from functools import partial
+from math import nan
 from statistics import median
 from time import process_time_ns
 from typing import Any, NamedTuple
@@ -26,11 +29,13 @@ from symrot.build.address import address
 from symrot.closed_form import motion as forms
 from symrot.closed_form.spin_up import compiled as spin_up_compiled
 from symrot.ensemble.ensemble import propagate_ensemble
+from symrot.ensemble.variation import PLACES
 from symrot.errors import InputError
 from symrot.planning.plan import structure_key
 from symrot.propagation.propagate import propagator
 from symrot.propagation.propagator import Propagator, read_start
-from symrot.scene.scene import Initial, Scene, load_scene
+from symrot.propagation.steppers.stepping import DONE
+from symrot.scene.scene import Scene, load_scene
 
 __all__ = ["main"]
 
@@ -110,12 +115,28 @@ def _start(scene: Scene) -> tuple[Floats, Floats]:
     return omega * (1 + SPREAD) + SPREAD * abs(omega).max(), quaternion + SPREAD
 
 
+def _medians(one: Callable[[], object], other: Callable[[], object], rounds: int) -> tuple[float, float, float]:
+    """Return microseconds of two runs in turn, and of what the first takes longer: what drifts does so for both."""
+    times = np.empty((rounds, 3))
+    for k in range(rounds):
+        began = process_time_ns()
+        one()
+        between = process_time_ns()
+        other()
+        times[k, :2] = between - began, process_time_ns() - between
+    times[:, 2] = times[:, 0] - times[:, 1]
+    first, second, more = np.median(times, axis=0).tolist()
+    return first / 1e3, second / 1e3, more / 1e3
+
+
 class _Row(NamedTuple):
-    """Microseconds of a scene and method; calls and motions with another omega, with another attitude, with both."""
+    """Microseconds of a scene and method; calls with another omega, with another attitude, with both."""
 
     parts: tuple[float, ...]  # read, plan, bind, set up
-    motions: tuple[float, ...]
+    motion: float  # with both
     calls: tuple[float, ...]
+    python: tuple[float, ...]  # what of the calls is not the motion
+    idle: float  # the dearest call of a stepper with nothing done in C
 
 
 def _row(found: Propagator, rounds: int) -> _Row:
@@ -137,22 +158,33 @@ def _row(found: Propagator, rounds: int) -> _Row:
         one = next(each)
         return one.exact if motion.choice.method == "exact" else one.stepping
 
-    def itself(start: Initial) -> float:
-        own = found.motion_from(start)
+    def whole(start: dict[str, Floats]) -> tuple[float, float, float]:
+        """Return what a call takes, the motion itself, and the rest."""
+        initial = read_start(scene, start.get("omega"), start.get("quaternion"))
+        own = found.motion_from(initial)
         own.follow(times, True)
-        return _in_c(own, start, times, rounds) + _median(lambda: own.follow(times, True), rounds)
+        call, following, more = _medians(partial(found, times, **start), lambda: own.follow(times, True), rounds)
+        constants = _in_c(own, initial, times, rounds)
+        return call, following + constants, more - constants
 
     assert parts is not None
     starts = ({"omega": omega}, {"quaternion": quaternion}, {"omega": omega, "quaternion": quaternion})
-    read = [read_start(scene, start.get("omega"), start.get("quaternion")) for start in starts]
     costs = (
         _median(lambda: read_start(scene, omega, quaternion), rounds),
         _median(lambda: structure_key(scene, initial), rounds) + _median(lambda: motion.from_start(initial), rounds),
         _median(bind, rounds),
         _median(prepare, rounds),
     )
-    calls = tuple([_median(partial(found, times, **start), rounds) for start in starts])
-    return _Row(costs, tuple([itself(start) for start in read]), calls)
+    calls, motions, python = zip(*map(whole, starts), strict=True)
+    idle = nan
+    if motion.choice.method != "exact":
+        stepper = motion.stepping.stepper
+        run, stepper.run = stepper.run, lambda *given: DONE
+        try:
+            idle = max([_median(partial(found, times, **start), rounds) for start in starts])
+        finally:
+            stepper.run = run
+    return _Row(costs, motions[2], calls, python, idle)
 
 
 def _in_c(motion: Any, initial: Any, times: Floats, rounds: int) -> float:
@@ -196,7 +228,7 @@ def _spin_up_in_c(source: Any, times: Floats, rounds: int) -> float:
 
 def changed_starts(scenes: list[str], rounds: int) -> None:
     """Print the first table."""
-    heads = ("read", "plan", "bind", "set up", "motion", "omega", "attitude", "both", "Python", "of both")
+    heads = ("read", "plan", "bind", "set up", "motion", "omega", "attitude", "both", "Python", "of both", "no C")
     print(f"{'us of a changed start':28}{'method':>8}" + "".join(f"{head:>9}" for head in heads))
     for name in scenes:
         for method in METHODS:
@@ -206,8 +238,7 @@ def changed_starts(scenes: list[str], rounds: int) -> None:
                 continue
             if found.method == method:
                 row = _row(found, rounds)
-                python = [call - motion for call, motion in zip(row.calls, row.motions, strict=True)]
-                cells = (*row.parts, row.motions[2], *row.calls, max(python[:2]), python[2])
+                cells = (*row.parts, row.motion, *row.calls, max(row.python[:2]), row.python[2], row.idle)
                 print(f"{name:28}{method:>8}" + "".join(f"{cell:9.1f}" for cell in cells))
 
 
@@ -222,6 +253,10 @@ def _ensemble(scene: Scene, n: int, random: np.random.Generator) -> Iterator[tup
     }
     yield "starts", given
     if not scene.body.principal.given_axes:
+        tensor = {
+            name: float(scene.body.inertia[i][j]) * (1 + SPREAD * random.random(n)) for name, (i, j) in PLACES.items()
+        }
+        yield "and tensor", {**given, "parameters": tensor}
         return
     moments = np.array([float(scene.body.inertia[k][k]) for k in range(3)])
     varied = {"principal": moments * (1 + SPREAD * random.random((n, 1)))}

@@ -19,7 +19,7 @@ from symrot.propagation.real_array import real_array
 from symrot.propagation.steppers.stepping import Floats
 from symrot.scene.scene import Initial, Scene
 
-__all__ = ["Variation", "read_times", "read_variation"]
+__all__ = ["PLACES", "Variation", "read_times", "read_variation"]
 
 PLACES = {"I_xx": (0, 0), "I_yy": (1, 1), "I_zz": (2, 2), "I_xy": (0, 1), "I_xz": (0, 2), "I_yz": (1, 2)}
 PRINCIPAL = ("I_xx", "I_yy", "I_zz")

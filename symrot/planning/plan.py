@@ -66,12 +66,25 @@ class Plan:
     @cached_property
     def constants(self) -> dict[str, Fraction]:
         """The physical constants of the structure by name, exact; modes of switches are 1."""
-        return self.scene_constants | _start_constants(self.scene.initial, self.structure)
+        return self.scene_constants | self.start_constants
 
     @cached_property
     def scene_constants(self) -> dict[str, Fraction]:
         """Those of :attr:`constants` that do not depend on the initial state."""
         return _scene_constants(self.scene, self.structure)
+
+    @property
+    def start_constants(self) -> dict[str, Fraction]:
+        """Those of :attr:`constants` that are numbers of the initial state."""
+        initial = self.scene.initial
+        return {name: initial[part][place] for name, part, place in self._start_places}
+
+    @cached_property
+    def _start_places(self) -> tuple[tuple[str, int, int], ...]:
+        """The names of those constants, and where in an initial state each stands."""
+        kept, start = self.structure["constant"].items(), enumerate(self.structure["initial_quaternion"] or ())
+        found = [(f"omega_{i + 1}", 0, i) for i, mark in kept if mark == "*"]
+        return (*found, *((f"initial_q{i}", 1, i) for i, mark in start if mark == "*"))
 
     @property
     def switches(self) -> list[str]:
@@ -115,7 +128,7 @@ class Plan:
     @cached_property
     def _shared(self) -> dict[str, Any]:
         """What plans from other starts take over, by name."""
-        names = ("structure", "rows", "scene_constants", "states", "_places")
+        names = ("structure", "rows", "scene_constants", "states", "_places", "_start_places")
         found: dict[str, Any] = {name: getattr(self, name) for name in names}
         found["_shared"] = found
         return found
@@ -170,7 +183,7 @@ def structure_key(scene: Scene, initial: Initial) -> Hashable:
     That is which components of omega are zero. A body that may rotate about one axis only is looked at more closely: by
     the components of its attitude that are zero or one, and by the axes along which torques fixed in space lie.
     """
-    turning = tuple([x != 0 for x in initial.omega_b])
+    turning = tuple([x.numerator != 0 for x in initial.omega_b])
     if turning.count(True) > 1:
         return turning
     pattern = tuple([_pattern(q, unit=True) for q in initial.quaternion])
@@ -288,12 +301,6 @@ def _scene_constants(scene: Scene, structure: Structure) -> dict[str, Fraction]:
             for component, entry, mark in zip(_component_names(name, pattern), value, pattern, strict=True):
                 found |= {f"{prefix}{component}": entry} if mark == "*" else {}
     return found
-
-
-def _start_constants(initial: Initial, structure: Structure) -> dict[str, Fraction]:
-    kept, start = structure["constant"].items(), enumerate(structure["initial_quaternion"] or ())
-    found = {f"omega_{i + 1}": initial.omega_b[i] for i, mark in kept if mark == "*"}
-    return found | {f"initial_q{i}": initial.quaternion[i] for i, mark in start if mark == "*"}
 
 
 # --- the rules --------------------------------------------------------------------------------------------------------

@@ -142,11 +142,13 @@ class Motion:
     def stepping(self) -> Task:
         """The motion as its stepper in C follows it: checked once, followed as often as asked."""
         assert self.library is not None
+        parameters = self.taylor_parameters if self.choice.method == "taylor" else self.rate_parameters
+        if self.first and not self._on_clocks:  # whose clock would be that of another start
+            return self.first.stepping.from_start(parameters, self.plan.initial_state)
+        start = (parameters, self.plan.initial_state, self.start)
         if self.choice.method == "taylor":
-            start = (self.taylor_parameters, self.plan.initial_state, self.start)
             return taylor.task(self.library, *start, self.tolerance)
         clock = (lambda since: self._clock(since)) if self._on_clocks else None
-        start = (self.rate_parameters, self.plan.initial_state, self.start)
         return dop853.task(self.library, *start, self.tolerance, clock=clock)
 
     @cached_property

@@ -207,15 +207,14 @@ def _unit(q: list[float]) -> tuple[Fraction, ...]:
         return number.unit(q)
     shift = max(0, _UNIT_BITS - square.bit_length() // 2)
     norm, found = isqrt(square << 2 * shift), []
+    length = _UNIT_BITS + norm.bit_length()
     for x in tops:
-        if not x:
-            found.append(Fraction(0))
-            continue
-        bits = _UNIT_BITS + norm.bit_length() - x.bit_length()
-        top = (x << bits) // norm
-        twos = (top & -top).bit_length() - 1
-        over = bits - shift - twos
-        found.append(_lowest(top >> twos, 1 << over) if over > 0 else Fraction(top >> bits - shift))
+        bits = length - x.bit_length()
+        if bits > shift and x:
+            # odd, so that nothing cancels: the last of some 322 bits may be either
+            found.append(_lowest((x << bits) // norm | 1, 1 << bits - shift))
+        else:
+            found.append(Fraction((x << bits) // norm >> bits - shift if x else 0))
     return tuple(found)
 
 

@@ -98,6 +98,17 @@ def in_angles(made, method, stop):
     return symrot.propagator(made, method, 1e-12, state="zyx")([stop]).omega[0, 2]
 
 
+@pytest.mark.parametrize("method", STEPPED)
+def test_dense_output_reaches_the_last_sample(method):
+    """Though the end of the last step, as a sum of two doubles, is not where that sample is."""
+    made = symrot.Scene.from_dict({
+        "schema": 1, "body": {"principal": [1, 1, 1]}, "initial": {"omega": [0, 0, 0]}, "span": {"t": ["-41.01", -40]},
+        "torque": [{"kind": "expression", "torque": ["0", "0", "1000/cosh((t + 43.091)*1000)**2"]}],
+    })  # fmt: skip
+    trajectory = symrot.propagator(made, method, 1e-7)([-43.0943, 2.14])
+    assert trajectory.sol(trajectory.t)[2] == pytest.approx(trajectory.omega[:, 2], abs=1e-9)
+
+
 SCIPY = ("scipy:DOP853", "scipy:RK45", "scipy:Radau", "scipy:BDF", "scipy:LSODA")
 
 

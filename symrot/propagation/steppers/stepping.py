@@ -205,9 +205,8 @@ class Recording(ABC):
 class SteppedRecording(Recording):
     """A recording made of the steps of a stepper in C."""
 
-    def __init__(self, task: "Task", backward: Floats, forward: Floats) -> None:
-        ends = [float(rows[-1, 0] + rows[-1, 1]) if len(rows) else task.t0 for rows in (backward, forward)]
-        super().__init__(task.t0, task.y0, (ends[0], ends[1]), task.stats())
+    def __init__(self, task: "Task", span: tuple[float, float], backward: Floats, forward: Floats) -> None:
+        super().__init__(task.t0, task.y0, span, task.stats())
         self._dense, self._backward, self._forward = task.stepper.dense, backward, forward
 
     def _fill(self, times: Floats, states: Floats) -> None:
@@ -360,6 +359,17 @@ class Task:
         other.mark = (0, self.t0)
         return other
 
+    def from_start(self, p: list[float], y0: Sequence[float]) -> "Task":
+        """Return the same motion with other parameters and another state; what they share is not checked again."""
+        if not math.isfinite(sum(p) + sum(y0)):  # a sum may overflow where no number does
+            _numbers("parameters", p, len(p))
+            _numbers("states", y0, len(y0))
+        other = self.again()
+        run = other._ready = self.stepper.new_run.from_buffer_copy(self._ready)
+        run.y[:] = other.y0 = list(y0)
+        other.p = self.stepper.new_parameters(*p)
+        return other
+
     def stats(self) -> Stats:
         """Return what all was spent since the task was set."""
         return Stats(self.accepted, self.rejected, self.evaluations, perf_counter() - self.began)
@@ -430,8 +440,9 @@ class Task:
         low, high = min(span), max(span)
         if not (math.isfinite(low) and math.isfinite(high)):
             raise InputError(f"a span runs between two finite times, got {span}")
-        backward, forward = (np.concatenate(self.keep(end)) for end in (min(low, self.t0), max(high, self.t0)))
-        return SteppedRecording(self, backward, forward)
+        span = min(low, self.t0), max(high, self.t0)
+        backward, forward = (np.concatenate(self.keep(end)) for end in span)
+        return SteppedRecording(self, span, backward, forward)
 
     def follow(self, times: Floats, states: Floats) -> None:
         """Write the states at times sorted away from t0, all on one side of it."""
