@@ -66,7 +66,7 @@ def _version() -> str:
 
 def kernel_key(plan: Plan) -> str:
     """Return the key of a plan's kernel in the cache."""
-    return f"scene kernel\n{json.dumps(plan.structure, sort_keys=True)}\n{_version()}"
+    return f"scene kernel\n{json.dumps(plan.structure.to_json())}\n{_version()}"
 
 
 def scene_kernel(plan: Plan, on_rates: Callable[[Program, str], object] = lambda rates, source: None) -> SceneKernel:
@@ -164,7 +164,7 @@ def _unit(plan: Plan, source: str, parameters: int, rates: Callable[[], Program]
 
 def has_formulas(plan: Plan) -> bool:
     """Return whether a torque is given by formulas, which may have features that no step sees."""
-    return any(torque["kind"] == "expression" for torque in plan.structure["torques"])
+    return any(plan.structure.formula_torques)
 
 
 def grows_late(plan: Plan) -> bool:
@@ -172,7 +172,7 @@ def grows_late(plan: Plan) -> bool:
 
     Such a motion has no coefficient within the order of a series; steps of single motions are checked for it.
     """
-    formulas = [text for torque in plan.structure["torques"] for text in torque.get("formulas", ())]
+    formulas = [text for torque in plan.structure.formula_torques for text in torque.formulas]
     return any(_degree(parse(text)) >= 3 for text in formulas)
 
 

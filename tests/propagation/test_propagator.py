@@ -105,7 +105,7 @@ def test_the_reference_file_is_what_its_program_prints():
 def test_every_simplification_leaves_the_motion_alone(name):
     """The structures after each rule of the plan, from general to special, give one motion."""
     plan = make_plan(load_scene(name))
-    structures = [row.structure for row in plan.rows if row.structure["attitude"]]
+    structures = [row.structure for row in plan.rows if row.structure.attitude]
     t = np.linspace(float(plan.scene.span.start), float(plan.scene.span.stop), 7)
     if name == "t_handle":
         t = t[:3]  # later, rounding alone separates the kernels
