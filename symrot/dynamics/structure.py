@@ -2,12 +2,14 @@
 
 A plan (:mod:`symrot.planning.plan`) finds the structure of a scene, and :func:`symrot.dynamics.equations` derives the
 equations of motion from it. Scenes of the same structure share one kernel; only the numbers that it is bound to differ.
+
+The parts of a structure are NamedTuples: to define a dataclass takes six times as long, at every start of symrot.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, fields, is_dataclass, replace
+from dataclasses import dataclass, fields, replace
 from enum import Enum
-from typing import Any, ClassVar
+from typing import Any, NamedTuple
 
 __all__ = [
     "MOVING", "FieldPattern", "FieldTorque", "FormulaTorque", "InertiaTensor", "Pattern", "PrincipalInertia",
@@ -37,22 +39,19 @@ def component_names(name: str, pattern: FieldPattern) -> list[str]:
     return [f"{name}_{index}" for index, _ in enumerate(pattern, start=0 if len(pattern) == 4 else 1)]
 
 
-@dataclass(frozen=True, slots=True)
-class PrincipalInertia:
+class PrincipalInertia(NamedTuple):
     """Principal moments about the body axes 1, 2, 3: one of A, B, C each, the same letter for equal moments."""
 
     moments: str = "ABC"
 
 
-@dataclass(frozen=True, slots=True)
-class InertiaTensor:
+class InertiaTensor(NamedTuple):
     """A tensor with products of inertia: the sorted names of the entries that are not zero, such as ``I_xy``."""
 
     entries: tuple[str, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class TorqueSwitch:
+class TorqueSwitch(NamedTuple):
     """A switch in the formulas of a torque: :class:`symrot.formula.switches.Switch` with its formulas as text."""
 
     mode: str
@@ -64,8 +63,7 @@ class TorqueSwitch:
     choices: str = ""  # the guard with its parts of ``where`` still to be chosen; empty if it has none
 
 
-@dataclass(frozen=True, slots=True)
-class FieldTorque:
+class FieldTorque(NamedTuple):
     """A torque of a kind whose fields are numbers: all kinds but ``expression``.
 
     Attributes
@@ -95,8 +93,7 @@ class FieldTorque:
         return pattern
 
 
-@dataclass(frozen=True, slots=True)
-class FormulaTorque:
+class FormulaTorque(NamedTuple):
     """A torque given by formulas, the kind ``expression``.
 
     Attributes
@@ -117,7 +114,6 @@ class FormulaTorque:
         Modes whose guards stay at zero: the motion slides along them.
     """
 
-    kind: ClassVar[str] = "expression"
     prefix: str
     formulas: tuple[str, ...]
     parameters: tuple[str, ...]
@@ -125,6 +121,11 @@ class FormulaTorque:
     switches: tuple[TorqueSwitch, ...] = ()
     choices: tuple[str, ...] = ()
     held: tuple[str, ...] = ()
+
+    @property
+    def kind(self) -> str:
+        """The kind of every torque of this class, as :class:`FieldTorque` has it."""
+        return "expression"
 
     @property
     def has_choices(self) -> bool:
@@ -198,8 +199,6 @@ class Structure:
 def _plain(value: Any) -> Any:
     if isinstance(value, Pattern):
         return value.value
-    if isinstance(value, tuple):
-        return [_plain(item) for item in value]
-    if is_dataclass(value):
-        return {field.name: _plain(getattr(value, field.name)) for field in fields(value)}
-    return value
+    if hasattr(value, "_asdict"):  # a NamedTuple
+        return {name: _plain(item) for name, item in value._asdict().items()}
+    return [_plain(item) for item in value] if isinstance(value, tuple) else value

@@ -245,7 +245,7 @@ def _general_torque(number: int, torque: Torque, known: set[str], switched: bool
     if torque.kind == "expression":
         found = _formula_torque(torque, switched)
         prefix = _prefix(number, list(found.parameters), known)
-        return replace(found, prefix=prefix)
+        return found._replace(prefix=prefix)
     fields: list[tuple[str, FieldPattern]] = [
         (name, (FREE,) * len(value) if isinstance(value, tuple) else FREE)
         for name, value in torque.values.items()
@@ -375,7 +375,7 @@ def _special_constants(scene: Scene, structure: Structure) -> RuleOutcome:
             fields.append((name, marks if many else marks[0]))
             for component, mark in zip(component_names(name, general), marks, strict=True):
                 special[mark].append(component)
-        torques.append(replace(torque, fields=tuple(fields)))
+        torques.append(torque._replace(fields=tuple(fields)))
     if not structure.torques:
         return RuleOutcome(structure, True, "no torque acts: Euler's equations are free", "euler_equations")
     del special[FREE]
@@ -516,19 +516,17 @@ def _constant_spin(scene: Scene, structure: Structure) -> RuleOutcome:
     if not isinstance(structure.inertia, PrincipalInertia):
         return RuleOutcome(structure, False, "the axes of the body are not principal axes")
     letters = structure.inertia.moments
-    all_constant = replace(structure, constant=_constant(scene, 0, 1, 2))
     if letters == "AAA" and not structure.torques:
         why = "a spherical body without torque keeps its angular velocity"
-        return RuleOutcome(all_constant, True, why, "spherical_body")
+        return RuleOutcome(replace(structure, constant=_constant(scene, 0, 1, 2)), True, why, "spherical_body")
     for axis in range(3):
         others = [letters[i] for i in range(3) if i != axis]
         if others[0] == others[1] and all(_no_moment_about(torque, axis) for torque in structure.torques):
             why = f"equal moments about the other axes and no torque about axis {axis + 1}"
             if scene.initial.omega_b[axis] == 0 and not structure.torques:
                 why += ", and no spin: the body turns steadily about an axis across"
-                return RuleOutcome(all_constant, True, why, "symmetric_spin")
-            steady = replace(structure, constant=_constant(scene, axis))
-            return RuleOutcome(steady, True, why, "symmetric_spin")
+                return RuleOutcome(replace(structure, constant=_constant(scene, 0, 1, 2)), True, why, "symmetric_spin")
+            return RuleOutcome(replace(structure, constant=_constant(scene, axis)), True, why, "symmetric_spin")
     return RuleOutcome(structure, False, "no axis of symmetry without torque about it")
 
 

@@ -7,12 +7,13 @@ compiler works on the rates, the invariants are proven.
 import json
 import os
 from collections.abc import Callable, Mapping, Sequence
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from symrot.build import cache as library
 from symrot.build.sources import PACKAGE
+from symrot.dynamics.structure import Structure
 from symrot.errors import InputError
 from symrot.formula.program import Program
 from symrot.formula.switches import CHANGING
@@ -66,7 +67,12 @@ def _version() -> str:
 
 def kernel_key(plan: Plan) -> str:
     """Return the key of a plan's kernel in the cache."""
-    return f"scene kernel\n{json.dumps(plan.structure.to_json())}\n{_version()}"
+    return f"scene kernel\n{_structure_text(plan.structure)}\n{_version()}"
+
+
+@lru_cache(maxsize=64)
+def _structure_text(structure: Structure) -> str:
+    return json.dumps(structure.to_json())
 
 
 def scene_kernel(plan: Plan, on_rates: Callable[[Program, str], object] = lambda rates, source: None) -> SceneKernel:

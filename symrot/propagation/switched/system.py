@@ -176,7 +176,7 @@ def _chosen(torque: TorqueStructure, modes: Modes, held: frozenset[str], tied: M
         return torque
     prefix, names = torque.prefix, torque.parameters
     own = tuple(sorted(name for name in names if prefix + name in held))
-    torque = replace(torque, held=own)
+    torque = torque._replace(held=own)
     jumping = [switch.mode for switch in torque.switches if not _bends(switch)]
     same = {name: tied[prefix + name].removeprefix(prefix) for name in jumping if prefix + name in tied}
     if not same and not torque.has_choices:
@@ -186,13 +186,12 @@ def _chosen(torque: TorqueStructure, modes: Modes, held: frozenset[str], tied: M
     def read(formula: str) -> str:
         return text(chosen(rename(parse(formula, switching=True), same), values, own))
 
-    return replace(
-        torque,
+    return torque._replace(
         formulas=tuple(map(read, torque.choices or torque.formulas)),
         choices=(),
         switches=tuple(
             [
-                replace(switch, guard=read(switch.choices or switch.guard), choices="")
+                switch._replace(guard=read(switch.choices or switch.guard), choices="")
                 for switch in torque.switches
                 if hold([(parse(share), value) for share, value in switch.where], values, own)
             ]
