@@ -13,6 +13,7 @@ import sympy
 from sympy import Expr, ImmutableMatrix, Integer, Matrix, Rational, Symbol, cos, sin, sqrt, zeros
 
 from symrot import symbols
+from symrot.dynamics.structure import FieldPattern, FormulaTorque, Pattern, TorqueStructure, component_names
 from symrot.dynamics.torque_kinds import EXPRESSION_NAMES, TORQUE_KINDS
 from symrot.errors import InputError
 from symrot.formula.tree import FUNCTIONS, Node, evaluate, parse
@@ -140,32 +141,21 @@ def formula(node: Node, values: Mapping[str, Expr]) -> Expr:
     return evaluate(node, known, _FUNCTIONS, lambda value: Rational(value.numerator, value.denominator))
 
 
-def torque_law(structure: Mapping[str, Any], motion: Motion) -> TorqueLaw:
-    """Return the law of one torque of a plan.
-
-    Parameters
-    ----------
-    structure : mapping
-        ``kind``, ``prefix`` (of its constants' names) and ``fields``: for each field the pattern of its value or
-        values, ``"0"``, ``"1"``, ``"-1"`` where the plan may rely on that number, ``"*"`` where it stays a symbol.
-        An expression has ``formulas`` (three texts), ``parameters`` (names) and ``frame`` instead.
-    motion : Motion
-        What it may depend on.
-    """
-    prefix = structure["prefix"]
-    if structure["kind"] == "expression":
+def torque_law(structure: TorqueStructure, motion: Motion) -> TorqueLaw:
+    """Return the law of one torque of a plan, for the quantities of a motion."""
+    if isinstance(structure, FormulaTorque):
         values = formula_values(structure, motion)
-        torque = Matrix([_finite_formula(source, values) for source in structure["formulas"]])
-        return _expression(motion, torque, structure["frame"])
-    arguments = {name: field_value(f"{prefix}{name}", pattern) for name, pattern in structure["fields"].items()}
-    return LAWS[structure["kind"]](motion, **arguments)
+        torque = Matrix([_finite_formula(source, values) for source in structure.formulas])
+        return _expression(motion, torque, structure.frame)
+    arguments = {name: field_value(f"{structure.prefix}{name}", pattern) for name, pattern in structure.fields}
+    return LAWS[structure.kind](motion, **arguments)
 
 
-def formula_values(structure: Mapping[str, Any], motion: Motion) -> dict[str, Expr]:
+def formula_values(structure: FormulaTorque, motion: Motion) -> dict[str, Expr]:
     """Return what the names in the formulas of an expression stand for."""
     values = dict(zip(EXPRESSION_NAMES[:4], (symbols.t, *motion.omega_b), strict=True))
     values.update(zip(EXPRESSION_NAMES[4:], motion.quaternion or (), strict=False))
-    values.update({name: constant(f"{structure['prefix']}{name}") for name in structure["parameters"]})
+    values.update({name: constant(f"{structure.prefix}{name}") for name in structure.parameters})
     return values
 
 
@@ -176,12 +166,11 @@ def _finite_formula(source: str, values: Mapping[str, Expr]) -> Expr:
     return result
 
 
-def field_value(name: str, pattern: str | list[str]) -> Any:
+def field_value(name: str, pattern: FieldPattern) -> Any:
     """Return the symbol, exact number, vector (numbered from 1) or quaternion (from 0) of a pattern."""
-    if isinstance(pattern, str):
-        return constant(name) if pattern == "*" else Integer(pattern)
-    first = 0 if len(pattern) == 4 else 1
-    return Matrix([field_value(f"{name}_{i}", entry) for i, entry in enumerate(pattern, start=first)])
+    if isinstance(pattern, Pattern):
+        return constant(name) if pattern is Pattern.FREE else Integer(pattern.value)
+    return Matrix(list(map(field_value, component_names(name, pattern), pattern)))
 
 
 def torque_of_potential(law: TorqueLaw) -> Matrix:

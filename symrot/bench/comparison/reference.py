@@ -379,7 +379,7 @@ def _closed_form(problem: Problem, say: Say, seconds: float) -> list[State]:
     if exact_form(problem.scene) is None:
         raise _Unavailable("the motion has none")
     found = propagator(problem.scene, method="exact")(problem.ends)
-    attitude = found.quaternion if problem.plan.structure["attitude"] else [None] * len(problem.ends)
+    attitude = found.quaternion if problem.plan.structure.attitude else [None] * len(problem.ends)
     return list(map(State, found.omega, attitude))
 
 
