@@ -3,6 +3,7 @@
 from fractions import Fraction
 from functools import cached_property
 from math import isfinite, isqrt
+from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -126,7 +127,7 @@ class Propagator:
         motion = self._motion
         if omega is not None or quaternion is not None:
             motion = self.motion_from(read_start(self.scene, omega, quaternion))
-        message = f"{motion.choice.method}: {motion.choice.reason}"
+        message, began = f"{motion.choice.method}: {motion.choice.reason}", perf_counter()
         try:
             if events is not None:
                 from symrot.propagation.events.eventful import follow
@@ -136,10 +137,10 @@ class Propagator:
                 return Trajectory(motion, found.t, found.states, motion.choice.method, found.stats, message, found)
             states, stats = motion.follow(times, rise)
         except (PropagationError, KeyboardInterrupt) as error:
-            raise self._cut_off(error, motion, times) from None
+            raise self._cut_off(error, motion, times, began) from None
         return Trajectory(motion, times, states, motion.choice.method, stats, message)
 
-    def _cut_off(self, error: BaseException, motion: Motion, times: Floats) -> BaseException:
+    def _cut_off(self, error: BaseException, motion: Motion, times: Floats, began: float) -> BaseException:
         """Return what ends a motion early, with the trajectory of the samples before."""
         samples: Samples | None = getattr(error, "samples", None)
         ended: BaseException = error
@@ -147,7 +148,7 @@ class Propagator:
             ended = PropagationError(f"{self.scene.name}: {error}")
         if samples is not None:
             numbers = np.argsort(samples.numbers)  # as they were asked for
-            states, stats = samples.states[numbers], Stats(0, 0, 0, 0.0)
+            states, stats = samples.states[numbers], Stats(*samples.cost, perf_counter() - began)
             message = str(ended) or "interrupted"
             part = Trajectory(motion, times[samples.numbers[numbers]], states, motion.choice.method, stats, message)
             part.status = -1

@@ -136,7 +136,7 @@ def integrate(
             states[part] = task.follow(times[part])
         except (CutOff, KeyboardInterrupt) as error:
             inside, own = task.partial(times[part])
-            add_samples(error, part[inside], own)
+            add_samples(error, part[inside], own, task.stats()[:3])
             add_samples(error, done, states[done])
             raise
         done = np.concatenate([done, part])

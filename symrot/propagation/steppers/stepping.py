@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 from symrot.build.address import address
 from symrot.errors import CompilerError, InputError
 from symrot.propagation import progress
-from symrot.propagation.steppers.cut_off import CutOff, Samples, add_samples, why_hopeless, why_stuck
+from symrot.propagation.steppers.cut_off import CutOff, add_samples, why_hopeless, why_stuck
 
 __all__ = [
     "DONE",
@@ -399,7 +399,7 @@ class Task:
             except (CutOff, KeyboardInterrupt) as error:
                 own = getattr(error, "samples", None)
                 if own is not None:
-                    error.samples = Samples(part[own.numbers], own.states)  # type: ignore[union-attr]
+                    error.samples = own._replace(numbers=part[own.numbers])  # type: ignore[union-attr]
                 add_samples(error, done, states[done])
                 raise
             states[part] = found
@@ -424,7 +424,7 @@ class Task:
             while self.advance(run, first, count, out, None, 0) != DONE:
                 pass
         except (CutOff, KeyboardInterrupt) as error:
-            add_samples(error, np.arange(run.next), states[: run.next])
+            add_samples(error, np.arange(run.next), states[: run.next], stepper.cost(run))
             raise
         return states, Stats(*stepper.cost(run), perf_counter() - began)
 
@@ -454,9 +454,14 @@ class Task:
                     pass
             except (CutOff, KeyboardInterrupt) as error:
                 done += run.next
-                add_samples(error, np.arange(done), states[:done])
+                add_samples(error, np.arange(done), states[:done], self._cost(run))
                 raise
             done += run.next
+
+    def _cost(self, run: Any) -> tuple[int, int, int]:
+        """Return what a run and all runs before it cost."""
+        accepted, rejected, evaluations = self.stepper.cost(run)
+        return self.accepted + accepted, self.rejected + rejected, self.evaluations + evaluations
 
     def keep(self, end: float) -> list[Floats]:
         """Return the recorded steps from t0 to an end, in pieces."""
