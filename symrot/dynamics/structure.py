@@ -1,7 +1,7 @@
 """The structure of a motion: what its equations look like, whatever the numbers in them. Standard library only.
 
-A plan (:mod:`symrot.planning.plan`) finds the structure of a scene, and :func:`symrot.dynamics.equations` derives the
-equations of motion from it. Scenes of the same structure share one kernel; only the numbers that it is bound to differ.
+A plan (:mod:`symrot.planning.plan`) finds the structure of a scene, and :mod:`symrot.dynamics.equations` derives its
+equations of motion. Scenes of the same structure share one kernel; only the numbers that it is bound to differ.
 
 The parts of a structure are NamedTuples: to define a dataclass takes six times as long, at every start of symrot.
 """
@@ -25,7 +25,7 @@ class Pattern(Enum):
     MINUS_ONE = "-1"
     FREE = "*"  # the constant stays a symbol
 
-    __hash__ = object.__hash__  # members are compared by identity; the hash of Enum costs ten times as much
+    __hash__ = object.__hash__  # members are equal if identical; the hash of Enum is a slower call in Python
 
 
 FieldPattern = Pattern | tuple[Pattern, ...]
