@@ -109,6 +109,16 @@ def test_dense_output_reaches_the_last_sample(method):
     assert trajectory.sol(trajectory.t)[2] == pytest.approx(trajectory.omega[:, 2], abs=1e-9)
 
 
+@pytest.mark.parametrize("method", STEPPED)
+@pytest.mark.parametrize("large", ["1 + tanh((t-2)*1000)", "tanh((t-2)*1000) - tanh((t-3)*1000)"])
+def test_a_large_torque_that_is_zero_leaves_no_rounding(method, large):
+    """Written out, ``m + m*tanh(u) + ...`` would leave the rounding of m, 1e-5 N m, from the start on."""
+    small = "(1 + tanh((t-1/2)*10))/3"
+    made = scene(f"m*({large}) - {small}", {"m": 10**11}, (0, 0, 0), 1.0, (1, 1, 1))
+    truth = -IMPULSES["(1+tanh((t-c)/w))/2"](np.array([1.0]), 0.5, 0.1)[0] * 2 / 3
+    assert abs(symrot.propagator(made, method, 1e-12)([1.0]).omega[0, 2] - truth) < ALLOWED * 1e-12
+
+
 SCIPY = ("scipy:DOP853", "scipy:RK45", "scipy:Radau", "scipy:BDF", "scipy:LSODA")
 
 

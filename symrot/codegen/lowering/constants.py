@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from typing import Any
 
-from sympy import Expr, Integer, Mul, S, Symbol, default_sort_key
+from sympy import Expr, Integer, Mul, S, Symbol, atan, default_sort_key, exp, log, tanh
 
 from symrot.codegen.lowering.formulas import function_name
 from symrot.errors import InputError
@@ -17,6 +17,7 @@ Tree = tuple[Any, ...]
 HOISTED = "$"
 """First letter of a constant that has no number yet."""
 
+LEVELLING = (tanh, atan, exp, log)  # functions that come so near to a value that doubles cannot tell them from it
 LARGEST_POWER = 64  # of what is written as one product
 ONE: Tree = ("num", Fraction(1))
 
@@ -87,9 +88,12 @@ class Gather:
         return tree if sign > 0 else ("add", ((-1, tree),))
 
     def _distributed(self, ordered: Sequence[Expr]) -> list[Expr]:
-        """Return the terms of a constant times one sum, which are cheaper: c*(a + b*x) is c*a + (c*b)*x; else none."""
+        """Return the terms of a constant times one sum, which are cheaper: c*(a + b*x) is c*a + (c*b)*x; else none.
+
+        A sum that may stay at zero, such as 1 + tanh(u), is left alone: its terms would leave the rounding of c there.
+        """
         sums = [argument for argument in ordered if self.is_variable(argument)]
-        if len(sums) != 1 or not sums[0].is_Add:
+        if len(sums) != 1 or not sums[0].is_Add or sums[0].atoms(*LEVELLING):
             return []
         outer = Mul(*(argument for argument in ordered if argument is not sums[0]))
         return [outer * term for term in sums[0].args]
