@@ -6,22 +6,40 @@ Each law gives the torque in body components and, where it has one, the potentia
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from fractions import Fraction
 from itertools import combinations_with_replacement
 from typing import Any
 
 import sympy
-from sympy import Expr, ImmutableMatrix, Integer, Matrix, Rational, Symbol, cos, sin, sqrt, zeros
+from sympy import (
+    Expr,
+    ImmutableMatrix,
+    Integer,
+    Matrix,
+    Mul,
+    Rational,
+    Symbol,
+    atan,
+    cos,
+    exp,
+    log,
+    sin,
+    sqrt,
+    tanh,
+    zeros,
+)
 
 from symrot import symbols
 from symrot.dynamics.structure import FieldPattern, FormulaTorque, Pattern, TorqueStructure, component_names
 from symrot.dynamics.torque_kinds import EXPRESSION_NAMES, TORQUE_KINDS
 from symrot.errors import InputError
-from symrot.formula.tree import FUNCTIONS, Node, evaluate, parse
+from symrot.formula.tree import FUNCTIONS, Node, children, evaluate, parse
 from symrot.kinematics.quaternion import conjugate, dcm_of, qmul, quaternion_rates
 from symrot.symbols import constant
 
 __all__ = [
     "LAWS",
+    "LEVELLING",
     "Motion",
     "TorqueLaw",
     "collected_cross",
@@ -30,6 +48,9 @@ __all__ = [
     "torque_law",
     "torque_of_potential",
 ]
+
+
+LEVELLING = (tanh, atan, exp, log)  # functions that come so near to a value that doubles cannot tell them from it
 
 
 @dataclass(frozen=True)
@@ -138,7 +159,35 @@ _FUNCTIONS: dict[str, Callable[..., Expr]] = {
 def formula(node: Node, values: Mapping[str, Expr]) -> Expr:
     """Return a formula tree as an exact SymPy expression in the given values; ``pi`` is known."""
     known = {"pi": sympy.pi, **values}
-    return evaluate(node, known, _FUNCTIONS, lambda value: Rational(value.numerator, value.denominator))
+    node = _with_brackets(node, known)
+    return evaluate(node, known, _FUNCTIONS, _rational)
+
+
+def _rational(value: Fraction) -> Rational:
+    return Rational(value.numerator, value.denominator)
+
+
+def _with_brackets(node: Node, known: dict[str, Expr]) -> Node:
+    """Return a formula with a name for each number times a sum such as 1 + tanh(u), whose value joins the known ones.
+
+    SymPy would write it out, and add its constant to others: where the sum is zero, their rounding would remain.
+    """
+    if node[0] in ("number", "symbol"):
+        return node
+    if node[0] == "call":
+        return ("call", node[1], tuple(_with_brackets(child, known) for child in node[2]))
+    if node[0] == "**":
+        return ("**", _with_brackets(node[1], known), node[2])
+    parts = [_with_brackets(child, known) for child in children(node)]
+    factors = [part for part in parts if part[0] == "number"]
+    if len(factors) == 1 and (node[0] == "*" or (node[0] == "/" and parts[1] is factors[0])):
+        bracket = evaluate(next(part for part in parts if part[0] != "number"), known, _FUNCTIONS, _rational)
+        if bracket.is_Add and bracket.atoms(*LEVELLING):
+            number = _rational(factors[0][1])
+            name = f"bracket {len(known)}"
+            known[name] = Mul(1 / number if node[0] == "/" else number, bracket, evaluate=False)
+            return ("symbol", name)
+    return (node[0], *parts)
 
 
 def torque_law(structure: TorqueStructure, motion: Motion) -> TorqueLaw:

@@ -4,9 +4,10 @@ from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from typing import Any
 
-from sympy import Expr, Integer, Mul, S, Symbol, atan, default_sort_key, exp, log, tanh
+from sympy import Expr, Integer, Mul, S, Symbol, default_sort_key
 
 from symrot.codegen.lowering.formulas import function_name
+from symrot.dynamics.torques import LEVELLING
 from symrot.errors import InputError
 
 __all__ = ["HOISTED", "Gather", "Tree"]
@@ -17,7 +18,6 @@ Tree = tuple[Any, ...]
 HOISTED = "$"
 """First letter of a constant that has no number yet."""
 
-LEVELLING = (tanh, atan, exp, log)  # functions that come so near to a value that doubles cannot tell them from it
 LARGEST_POWER = 64  # of what is written as one product
 ONE: Tree = ("num", Fraction(1))
 
