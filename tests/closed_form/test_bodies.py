@@ -2,6 +2,7 @@
 
 import subprocess
 from fractions import Fraction
+from pathlib import Path
 
 import mpmath
 import numpy as np
@@ -192,9 +193,9 @@ int main(void)
 @pytest.mark.parametrize("options", [[], ["-U__SIZEOF_INT128__"]])
 def test_fixed_point_is_that_of_integers_with_and_without_integers_of_128_bits(options, tmp_path):
     (tmp_path / "products.c").write_text(PRODUCTS, encoding="utf-8")
-    here = library.__file__.rpartition("/")[0]
+    headers = Path(library.__file__).parent / "arithmetic"
     flags = [flag for flag in library.FLAGS if flag not in ("-shared", "-fPIC")]
-    command = [*compiler().command, *flags, "-O2", "-I", here, *options, "products.c", "-o", "products", "-lm"]
+    command = [*compiler().command, *flags, "-O2", "-I", str(headers), *options, "products.c", "-o", "products", "-lm"]
     subprocess.run(command, cwd=tmp_path, check=True)
     lines = subprocess.run([tmp_path / "products"], check=True, capture_output=True, text=True).stdout.splitlines()
     values = [0.75, -0.1, 1.0, -1.0, 0.0, 3e-20, 7.5, -float.fromhex("0x1.fffffffffffffp-1"), 2.0**-60, 1.1]
