@@ -1,7 +1,7 @@
 """The conventions of symrot, stated once. Every docstring cites this page.
 
 Frames
-    Right-handed. ``s`` is the space frame (fixed axes), ``b`` the body frame (axes that turn with the body).
+    Right-handed. ``s`` is the space frame (fixed axes), ``b`` the body frame (axes that rotate with the body).
     A suffix names the frame whose components are meant: ``omega_b``, ``omega_s``.
 Direction cosine matrix
     ``dcm_sb`` maps body components to space components: ``v_s = dcm_sb * v_b`` (SciPy ``Rotation.as_matrix()``).
@@ -14,9 +14,11 @@ Euler sequences
     ``"ZXZ"`` upper case: intrinsic, ``dcm_sb = Rz(q1) Rx(q2) Rz(q3)``. ``"zxz"`` lower case: extrinsic,
     ``dcm_sb = Rz(q3) Rx(q2) Rz(q1)``. Angles in order of application, rad.
 Inertia tensor
-    ``I_xy = -integral of x y dm``: products carry the minus sign. About the centre of mass unless said otherwise.
+    ``I_xy = -integral of x y dm``: products carry the minus sign. About the centre of mass, or about the
+    fixed point of a body that has one.
 State
-    ``omega_b`` (3), quaternion (4), then extra states; a plan may keep fewer (see :mod:`symrot.planning.plan`).
+    ``omega_b`` (3), quaternion (4), then further states. A plan leaves out the states that a scene does not need
+    (:mod:`symrot.planning.plan`).
 Units
     SI; angles in rad unless a label says deg.
 """

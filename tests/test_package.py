@@ -39,7 +39,7 @@ ORDER = {room: place for place, rooms in enumerate(ROOMS) for room in rooms}
 WITHOUT_SYMPY = (
     "errors", "conventions", "formula.tree", "formula.exact_numbers", "formula.program", "kinematics.conversions", "kinematics.continuity", "kinematics.rates",
     "inertia.composite",
-    "inertia.principal", "dynamics.torque_kinds", "scene.scene", "planning.plan", "planning.scene_kernel", "build.cache",
+    "inertia.principal", "dynamics.structure", "dynamics.torque_kinds", "scene.scene", "planning.plan", "planning.scene_kernel", "build.cache",
     "propagation.propagator", "propagation.trajectory", "report.summary", "cli.main",
 )  # fmt: skip
 

@@ -5,9 +5,10 @@
 
 The first table has a row for each scene and method, in microseconds. Its columns: reading the start; planning it (the
 structure is known); binding parameters; setting up the motion (constants of a closed form, or the task of a stepper);
-the motion itself (the work in C and the call of it); then whole calls at 101 times with another angular velocity, with
-another attitude, and with both; last, the overhead (the time of a call minus that of its own motion) of the more
-expensive of the first two calls, and of the third. The column of the motion itself is for a start with both changed.
+the motion itself (the work in C and the call of it, for a start with both changed); then whole calls at 101 times with
+another angular velocity, with another attitude, and with both; the overhead (the time of a call minus that of its own
+motion) of the more expensive of the first two calls, and of the third; last, the most expensive call of a stepper while
+nothing is done in C. On a loaded machine Python is slower after a long motion; the last column is free of that.
 
 The second table has microseconds per trajectory of 101 samples, in closed form and by steps, for ensembles that vary
 only starts or starts and constants, and the method that ``auto`` chooses. Medians of processor time.
@@ -17,6 +18,7 @@ import argparse
 import ctypes
 from collections.abc import Callable, Iterator
 from functools import partial
+from math import nan
 from statistics import median
 from time import process_time_ns
 from typing import Any, NamedTuple
@@ -28,11 +30,13 @@ from symrot.build.address import address
 from symrot.closed_form import motion as forms
 from symrot.closed_form.spin_up import compiled as spin_up_compiled
 from symrot.ensemble.ensemble import propagate_ensemble
+from symrot.ensemble.variation import PLACES
 from symrot.errors import InputError
 from symrot.planning.plan import structure_key
 from symrot.propagation.propagate import propagator
 from symrot.propagation.propagator import Propagator, read_start
-from symrot.scene.scene import Initial, Scene, load_scene
+from symrot.propagation.steppers.stepping import DONE
+from symrot.scene.scene import Scene, load_scene
 
 __all__ = ["main"]
 
@@ -112,12 +116,28 @@ def _start(scene: Scene) -> tuple[Floats, Floats]:
     return omega * (1 + SPREAD) + SPREAD * abs(omega).max(), quaternion + SPREAD
 
 
+def _medians(one: Callable[[], object], other: Callable[[], object], rounds: int) -> tuple[float, float, float]:
+    """Return microseconds of two runs in turn, and of what the first takes longer: what drifts does so for both."""
+    times = np.empty((rounds, 3))
+    for k in range(rounds):
+        began = process_time_ns()
+        one()
+        between = process_time_ns()
+        other()
+        times[k, :2] = between - began, process_time_ns() - between
+    times[:, 2] = times[:, 0] - times[:, 1]
+    first, second, more = np.median(times, axis=0).tolist()
+    return first / 1e3, second / 1e3, more / 1e3
+
+
 class _Row(NamedTuple):
-    """Microseconds of a scene and method; calls and motions with another omega, with another attitude, with both."""
+    """Microseconds of a scene and method; calls with another omega, with another attitude, with both."""
 
     parts: tuple[float, ...]  # read, plan, bind, set up
-    motions: tuple[float, ...]
+    motion: float  # with both
     calls: tuple[float, ...]
+    python: tuple[float, ...]  # what of the calls is not the motion
+    idle: float  # the dearest call of a stepper with nothing done in C
 
 
 def _row(propagate: Propagator, rounds: int) -> _Row:
@@ -139,22 +159,33 @@ def _row(propagate: Propagator, rounds: int) -> _Row:
         one = next(each)
         return one.exact if motion.choice.method == "exact" else one.stepping
 
-    def itself(start: Initial) -> float:
-        own = propagate.motion_from(start)
+    def whole(start: dict[str, Floats]) -> tuple[float, float, float]:
+        """Return what a call takes, the motion itself, and the rest."""
+        initial = read_start(scene, start.get("omega"), start.get("quaternion"))
+        own = propagate.motion_from(initial)
         own.follow(times, True)
-        return _in_c(own, start, times, rounds) + _median(lambda: own.follow(times, True), rounds)
+        call, following, more = _medians(partial(propagate, times, **start), lambda: own.follow(times, True), rounds)
+        constants = _in_c(own, initial, times, rounds)
+        return call, following + constants, more - constants
 
     assert parts is not None
     starts = ({"omega": omega}, {"quaternion": quaternion}, {"omega": omega, "quaternion": quaternion})
-    read = [read_start(scene, start.get("omega"), start.get("quaternion")) for start in starts]
     costs = (
         _median(lambda: read_start(scene, omega, quaternion), rounds),
         _median(lambda: structure_key(scene, initial), rounds) + _median(lambda: motion.from_start(initial), rounds),
         _median(bind, rounds),
         _median(prepare, rounds),
     )
-    calls = tuple([_median(partial(propagate, times, **start), rounds) for start in starts])
-    return _Row(costs, tuple([itself(start) for start in read]), calls)
+    calls, motions, python = zip(*map(whole, starts), strict=True)
+    idle = nan
+    if motion.choice.method != "exact":
+        stepper = motion.stepping.stepper
+        run, stepper.run = stepper.run, lambda *arguments: DONE
+        try:
+            idle = max([_median(partial(propagate, times, **start), rounds) for start in starts])
+        finally:
+            stepper.run = run
+    return _Row(costs, motions[2], calls, python, idle)
 
 
 def _in_c(motion: Any, initial: Any, times: Floats, rounds: int) -> float:
@@ -198,7 +229,7 @@ def _spin_up_in_c(source: Any, times: Floats, rounds: int) -> float:
 
 def changed_starts(scenes: list[str], rounds: int) -> None:
     """Print the first table."""
-    heads = ("read", "plan", "bind", "set up", "motion", "omega", "attitude", "both", "Python", "of both")
+    heads = ("read", "plan", "bind", "set up", "motion", "omega", "attitude", "both", "Python", "of both", "no C")
     print(f"{'us of a changed start':28}{'method':>8}" + "".join(f"{head:>9}" for head in heads))
     for name in scenes:
         for method in METHODS:
@@ -208,8 +239,7 @@ def changed_starts(scenes: list[str], rounds: int) -> None:
                 continue
             if propagate.method == method:
                 row = _row(propagate, rounds)
-                python = [call - motion for call, motion in zip(row.calls, row.motions, strict=True)]
-                cells = (*row.parts, row.motions[2], *row.calls, max(python[:2]), python[2])
+                cells = (*row.parts, row.motion, *row.calls, max(row.python[:2]), row.python[2], row.idle)
                 print(f"{name:28}{method:>8}" + "".join(f"{cell:9.1f}" for cell in cells))
 
 
@@ -224,6 +254,10 @@ def _ensemble(scene: Scene, n: int, random: np.random.Generator) -> Iterator[tup
     }
     yield "starts", variations
     if not scene.body.principal.given_axes:
+        tensor = {
+            name: float(scene.body.inertia[i][j]) * (1 + SPREAD * random.random(n)) for name, (i, j) in PLACES.items()
+        }
+        yield "and tensor", {**variations, "parameters": tensor}
         return
     moments = np.array([float(scene.body.inertia[k][k]) for k in range(3)])
     varied = {"principal": moments * (1 + SPREAD * random.random((n, 1)))}

@@ -105,7 +105,7 @@ def missing() -> str:
 
 
 def cache(probe: bool = False) -> Cache:
-    """Return the directory in use and, if it is temporary, the reason; ``probe`` writes a file to detect a full disk."""
+    """Return the directory in use and why it is temporary, if it is; ``probe`` writes a file to detect a full disk."""
     if probe:
         _keep(_text_name("probe"), b"")
     if _temporary.path is not None:

@@ -14,11 +14,11 @@ from typing import Any, NoReturn, TextIO
 import symrot
 from symrot.cli import certify as cli_certify
 from symrot.cli.output import (
-    USAGE_ERROR,
     FAILED,
-    OK,
     INTERRUPTED,
+    OK,
     SIGPIPE,
+    USAGE_ERROR,
     Command,
     json_option,
     progress,
@@ -381,9 +381,9 @@ def _derive_arguments(parser: ArgumentParser) -> None:
 
 def _check_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("claim", metavar="CLAIM", nargs="?", help="'left == right', LaTeX, or a FILE.toml of claims")
-    parser.epilog = ("Budget per claim: 20 000 characters and 1 000 000 products of terms; a claim beyond it is refused, "
-                     "or undecided for this reason. The budget is counted, not timed, so that all machines give the "
-                     "same verdict.")  # fmt: skip
+    parser.epilog = ("Budget per claim: 20 000 characters and 1 000 000 products of terms; a claim beyond it is "
+                     "refused, or undecided for this reason. The budget is counted, not timed, so "
+                     "that all machines give the same verdict.")  # fmt: skip
     parser.add_argument("--textbook", metavar="NAME", help="check the claims of a document: chen, sahakian, brown, "
                         "beer-johnston, or all")  # fmt: skip
     parser.add_argument("--all", action="store_true", help="with --textbook all: write the page of errata")

@@ -14,6 +14,7 @@ from symrot.closed_form.arithmetic.pairs import GRID, LARGEST, SMALLEST, attitud
 from symrot.closed_form.axial.compiled import Constants
 from symrot.closed_form.axial.motion import turned_about
 from symrot.closed_form.build import Floats
+from symrot.closed_form.free_body import bodies
 from symrot.closed_form.free_body.motion import NEGLIGIBLE, Body, Defect, gaps
 from symrot.closed_form.heavy_top.motion import Frame
 from symrot.closed_form.many import Batch
@@ -21,8 +22,8 @@ from symrot.closed_form.spin_up.compiled import limits
 from symrot.formula import exact_numbers as number
 
 __all__ = [
-    "Column", "attitudes", "driven", "free_bodies", "free_bodies_of_moments", "gyrostats", "spin_ups", "tops",
-    "turned", "usual",
+    "Column", "attitudes", "driven", "free_bodies", "free_bodies_of_moments", "free_bodies_of_tensors", "gyrostats",
+    "spin_ups", "tops", "turned", "usual",
 ]  # fmt: skip
 
 Column = Floats | Fraction
@@ -146,13 +147,14 @@ def _noticed(omega: Floats) -> Floats:
 
 def free_bodies(body: Body, omega: Floats, start: Floats) -> Batch:
     """Return the motions of one free body from :func:`usual` angular velocities and attitudes (8,) or (n, 8)."""
-    rates, exact = _pairs(_noticed(omega)), np.empty((len(omega), 8))
+    exact = np.empty((len(omega), 8))
     exact[:, :6] = body.gaps
-    for i, given in enumerate(rates[:, ::2].tolist() if body.axes is None else omega.tolist()):
-        integers = _integers(given)
-        if body.axes is not None:
-            integers, shared = body.along(given)
-            rates[i] = [part for x in integers for part in quotient(x, shared)]
+    if body.axes is None:
+        omega = _noticed(omega)
+    rates, exact[:, 6:], doubtful = bodies.rates_of_body(body.fixed, omega)
+    for i in doubtful.tolist():
+        integers, shared = body.along(omega[i].tolist())
+        rates[i] = [part for x in integers for part in quotient(x, shared)]
         exact[i, 6:] = body.defect(integers)
     axes = None if body.axes is None else np.array(body.axes)
     return Batch("free_body", (np.array(body.moments), rates, start, exact, axes))
@@ -162,22 +164,35 @@ def free_bodies_of_moments(moments: Sequence[Column], omega: Floats, start: Floa
     """Return the motions of free bodies in their principal axes: three moments, the rest as :func:`free_bodies`."""
     omega, n = _noticed(omega), len(omega)
     exact, pairs = np.empty((n, 8)), _columns(moments, n)
-    plain = not pairs[:, 1::2].any()  # moments are doubles
-    if plain:
+    if not pairs[:, 1::2].any():  # moments are doubles
         table = np.ascontiguousarray(pairs[:, ::2])
-        own = table.tolist()
         for k in range(3):
             exact[:, 2 * k], exact[:, 2 * k + 1] = dd.two_sum(table[:, (k + 1) % 3], -table[:, (k + 2) % 3])
+        exact[:, 6:], doubtful = bodies.defects(table, omega)
+        for i in doubtful.tolist():
+            exact[i, 6:] = Defect(_integers(table[i].tolist()))(_integers(omega[i].tolist()))
     else:
-        own = list(zip(*([x] * n if isinstance(x, Fraction) else x.tolist() for x in moments), strict=True))
-    for i, (row, given) in enumerate(zip(own, omega.tolist(), strict=True)):
-        if plain:
-            integers = _integers(row)
-        else:
+        own = zip(*([x] * n if isinstance(x, Fraction) else x.tolist() for x in moments), strict=True)
+        for i, (row, given) in enumerate(zip(own, omega.tolist(), strict=True)):
             integers, shared = common(row)
             exact[i, :6] = gaps(integers, shared)
-        exact[i, 6:] = Defect(integers)(_integers(given))
+            exact[i, 6:] = Defect(integers)(_integers(given))
     return Batch("free_body", (pairs, _pairs(omega), start, exact, None))
+
+
+def free_bodies_of_tensors(
+    entries: Sequence[Column], omega: Floats, start: Floats
+) -> tuple[Batch | None, NDArray[np.bool_]]:
+    """Return the motions of free bodies in axes that are not principal, and which of them these arrays settle.
+
+    ``entries`` are the tensor's xx, yy, zz, xy, xz and yz, the rest as :func:`free_bodies`.
+    """
+    settled = np.ones(len(omega), np.bool_)
+    found = bodies.principal_bodies(entries, omega)
+    if found is None:
+        return None, ~settled
+    settled[found.doubtful] = False
+    return Batch("free_body", (found.moments, found.rates, start, found.exact, found.axes)), settled
 
 
 def _integers(values: list[float]) -> list[int]:

@@ -2,9 +2,8 @@
 
 A closed form is two C files, compiled side by side: ``name.c`` finds the constants of a motion, once, and is compiled
 at -Og, in a third of the time that -O2 takes for 1 us less; ``name_at.c`` holds the loops over samples. Elementary
-constants need no ``name.c``. Error-free
-arithmetic needs every rounding as written: contraction is off, and each prepared motion first asks the compiled code
-whether that is so.
+constants need no ``name.c``; ``bodies_at.c`` loops over bodies. Error-free arithmetic needs every rounding as written:
+contraction is off, and each prepared motion first asks the compiled code whether that is so.
 """
 
 import ctypes

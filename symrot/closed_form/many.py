@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from symrot.build.address import address
 from symrot.closed_form.build import Floats, load
@@ -29,6 +30,11 @@ class Batch(NamedTuple):
 
     name: str
     arguments: tuple[Floats | None, ...]
+
+    def of(self, chosen: NDArray[np.bool_]) -> "Batch":
+        """Return some of the motions."""
+        own = (values[chosen] if values is not None and values.ndim == 2 else values for values in self.arguments)
+        return Batch(self.name, tuple(own))
 
 
 class _Motions(ctypes.Structure):

@@ -3,7 +3,6 @@
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from fractions import Fraction
-from typing import Any
 
 from sympy import Expr, Symbol
 
@@ -13,6 +12,7 @@ from symrot.codegen.printing.banner import CONTRACT, Description
 from symrot.codegen.printing.c_source import c_function
 from symrot.dynamics.equations import PLANAR_ANGLE, Equations, equations_of_motion
 from symrot.dynamics.invariants import find_invariants
+from symrot.dynamics.structure import Structure
 from symrot.formula.program import Argument, Program, Signature
 from symrot.formula.tree import text
 from symrot.kinematics.quaternion import dcm_of
@@ -71,7 +71,7 @@ def _quantities(equations: Equations, found: Mapping[str, Expr]) -> Lowered:
 
 
 def derive_scene_kernel(
-    structure: Mapping[str, Any], on_rates: Callable[[Program, str], object] = lambda rates, source: None
+    structure: Structure, on_rates: Callable[[Program, str], object] = lambda rates, source: None
 ) -> SceneKernel:
     """Return the kernels of a plan's structure, with its conserved quantities proven.
 

@@ -5,7 +5,6 @@ about the centre of mass or a fixed point, and ``dq/dt = 1/2 q (0, omega_b)``.
 Proof: ``derivations/euler_equations.md``, ``derivations/quaternion_rates.md``.
 """
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import reduce
 from operator import add
@@ -14,6 +13,7 @@ from typing import Any
 from sympy import Expr, Integer, Matrix, S, Symbol, cos, diag, eye, sin, zeros
 
 from symrot import symbols
+from symrot.dynamics.structure import FormulaTorque, InertiaTensor, Pattern, PrincipalInertia, Structure
 from symrot.dynamics.torques import Motion, TorqueLaw, collected_cross, formula, formula_values, torque_law
 from symrot.errors import InputError
 from symrot.formula.tree import parse
@@ -71,14 +71,13 @@ class Equations:
         return reduce(add, (law.potential for law in self.laws if law.potential is not None), S.Zero)
 
 
-def inertia_matrix(structure: Mapping[str, Any]) -> Matrix:
-    """Return the tensor of a plan: ``principal`` names with repeats for equal moments, or the ``tensor`` pattern."""
-    if structure["form"] == "principal":
+def inertia_matrix(inertia: PrincipalInertia | InertiaTensor) -> Matrix:
+    """Return the tensor of a plan in symbols: one symbol for equal moments, zero for entries that are zero."""
+    if isinstance(inertia, PrincipalInertia):
         moments = dict(zip("ABC", symbols.principal, strict=True))
-        return diag(*(moments[name] for name in structure["moments"]))
+        return diag(*(moments[name] for name in inertia.moments))
     entries = {str(s): s for s in symbols.moments + symbols.products}
-    kept = {name: entries[name] if name in structure["entries"] else S.Zero for name in entries}
-    return Matrix(3, 3, [kept[name] for row in TENSOR_NAMES for name in row])
+    return Matrix(3, 3, [entries[name] if name in inertia.entries else S.Zero for row in TENSOR_NAMES for name in row])
 
 
 def angular_acceleration(inertia: Matrix, omega_b: Matrix, torque: Matrix, momentum: Matrix | None = None) -> Matrix:
@@ -156,24 +155,25 @@ def inverse(tensor: Matrix) -> Matrix:
     return Matrix.hstack(*rows).T / first.dot(rows[0]).expand()
 
 
-def _motion(structure: Mapping[str, Any]) -> tuple[Motion, tuple[Symbol, ...], list[Expr]]:
+def _motion(structure: Structure) -> tuple[Motion, tuple[Symbol, ...], list[Expr]]:
     """Return the motion, the attitude states and the relations of a plan."""
-    inertia = inertia_matrix(structure["inertia"])
-    axis = structure["planar"]
-    turning = [w if structure["constant"].get(i) != "0" else S.Zero for i, w in enumerate(symbols.omega_b)]
+    inertia, axis = inertia_matrix(structure.inertia), structure.planar
+    turning = [
+        S.Zero if pattern is Pattern.ZERO else w for w, pattern in zip(symbols.omega_b, structure.constant, strict=True)
+    ]
     if axis is None:
         omega_b = Matrix(turning)
-        if not structure["attitude"]:
+        if not structure.attitude:
             return Motion(omega_b, None, inertia), (), []
-        if sequence := structure.get("sequence"):
+        if sequence := structure.sequence:
             return AngleMotion(omega_b, tuple(quaternion_of_euler(sequence)), inertia, sequence), symbols.angles, []
         return Motion(omega_b, symbols.quaternion, inertia), symbols.quaternion, [unit_relation(symbols.quaternion)]
     omega_b = Matrix([w if i == axis else 0 for i, w in enumerate(turning)])
-    if not structure["attitude"]:
+    if not structure.attitude:
         return Motion(omega_b, None, inertia), (), []
     start = [
-        constant(f"initial_q{i}") if pattern == "*" else Integer(pattern)
-        for i, pattern in enumerate(structure["initial_quaternion"])
+        constant(f"initial_q{i}") if pattern is Pattern.FREE else Integer(pattern.value)
+        for i, pattern in enumerate(structure.initial_quaternion or ())
     ]
     relations = [unit_relation(start)] if any(q.is_Symbol for q in start) else []
     if omega_b[axis] == 0:
@@ -182,21 +182,10 @@ def _motion(structure: Mapping[str, Any]) -> tuple[Motion, tuple[Symbol, ...], l
     return Motion(omega_b, tuple(qmul(start, turn)), inertia), (PLANAR_ANGLE,), relations
 
 
-def equations_of_motion(structure: Mapping[str, Any]) -> Equations:
-    """Return the equations of motion of a plan's structure.
-
-    Parameters
-    ----------
-    structure : mapping
-        ``inertia`` (``form`` and the pattern of equal moments or zero entries), ``torques`` (see
-        :func:`symrot.dynamics.torques.torque_law`), ``attitude`` (whether it is computed), ``planar`` (the axis
-        number of a motion about one body axis, else None, with ``initial_quaternion``), ``constant`` (for the numbers
-        of the components of omega_b that keep their value, ``"*"`` or, where that is zero, ``"0"``); ``sequence``, if
-        the attitude is to be Euler angles of that sequence in place of a quaternion. A torque with ``switches`` may
-        have ``held``, the modes whose guards stay at zero.
-    """
+def equations_of_motion(structure: Structure) -> Equations:
+    """Return the equations of motion of a plan's structure."""
     motion, attitude, relations = _motion(structure)
-    laws = tuple(torque_law(torque, motion) for torque in structure["torques"])
+    laws = tuple(torque_law(torque, motion) for torque in structure.torques)
     torque = reduce(add, (law.torque for law in laws), zeros(3, 1))
     rotor = reduce(add, (law.momentum for law in laws), zeros(3, 1))
     momentum_b = motion.inertia * motion.omega_b + rotor
@@ -208,21 +197,20 @@ def equations_of_motion(structure: Mapping[str, Any]) -> Equations:
         moment = torque - motion.omega_b.cross(named_l)
         definitions += (*zip(named_l, momentum_b, strict=True), *zip(named_m, moment, strict=True))
         acceleration = inverse(motion.inertia) * named_m
-    moving = [i for i in range(3) if i not in structure["constant"] and structure["planar"] in (None, i)]
-    states = [symbols.omega_b[i] for i in moving]
-    rates = [acceleration[i] for i in moving]
+    states = [symbols.omega_b[i] for i in structure.moving]
+    rates = [acceleration[i] for i in structure.moving]
     if isinstance(motion, AngleMotion):
         rates += list(rate_jacobian(motion.sequence).inverse * motion.omega_b)
-    elif structure["planar"] is None:
+    elif structure.planar is None:
         rates += list(quaternion_rates("body") * motion.omega_b) if attitude else []
     elif attitude:
-        rates.append(motion.omega_b[structure["planar"]])
+        rates.append(motion.omega_b[structure.planar])
     found = Equations((*states, *attitude), tuple(rates), definitions, motion, laws, momentum_b, tuple(relations))
-    held = [(torque, mode) for torque in structure["torques"] for mode in torque.get("held", ())]
+    held = [(torque, mode) for torque in structure.formula_torques for mode in torque.held]
     return sliding(found, held) if held else found
 
 
-def sliding(equations: Equations, held: list[tuple[Mapping[str, Any], str]]) -> Equations:
+def sliding(equations: Equations, held: list[tuple[FormulaTorque, str]]) -> Equations:
     """Return the equations of a motion that slides along the guards of some modes: each guard stays at zero.
 
     The modes take the values that keep them there: with rates linear in the modes s, ``dg/dt = a + B s = 0`` gives
@@ -238,7 +226,7 @@ def sliding(equations: Equations, held: list[tuple[Mapping[str, Any], str]]) -> 
     names, pace, guards = [], [], []
     for torque, mode in held:
         values = formula_values(torque, equations.motion)
-        guard = formula(parse(next(each["guard"] for each in torque["switches"] if each["mode"] == mode)), values)
+        guard = formula(parse(next(switch.guard for switch in torque.switches if switch.mode == mode)), values)
         names.append(values[mode])
         guards.append(guard)
         pace.append(guard.diff(symbols.t) + reduce(add, (guard.diff(y) * rate for y, rate in rates.items()), S.Zero))

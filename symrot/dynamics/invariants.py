@@ -4,14 +4,14 @@ A candidate F(t, states) is kept if and only if ``dF/dt = dF/dt|_t + grad F . ra
 is taken from a list of known integrals. The others are reported as lost, with what takes them.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from sympy import Expr, Matrix, sqrt
 
 from symrot import symbols
 from symrot.dynamics.equations import Equations
+from symrot.dynamics.structure import FieldTorque, Pattern, PrincipalInertia, Structure, TorqueStructure
 from symrot.dynamics.torques import field_value
 from symrot.exact import is_zero
 from symrot.exact.ring.ratio import TooLarge
@@ -46,7 +46,7 @@ def rate_along(expression: Expr, equations: Equations) -> Expr:
     return expression.diff(symbols.t) + sum(expression.diff(state) * rate for state, rate in rates)
 
 
-def _candidates(equations: Equations, structure: Mapping[str, Any]) -> Iterable[tuple[str, str, Expr, Expr]]:
+def _candidates(equations: Equations, structure: Structure) -> Iterable[tuple[str, str, Expr, Expr]]:
     """Yield (name, unit, value, what is differentiated): the same, or its square where the value is a root."""
     momentum, energy = equations.momentum_b, equations.kinetic_energy + equations.potential
     yield "energy", "J", energy, energy
@@ -57,26 +57,26 @@ def _candidates(equations: Equations, structure: Mapping[str, Any]) -> Iterable[
         momentum_s = dcm_of(equations.motion.quaternion) * momentum
         for axis, component in zip("xyz", momentum_s, strict=True):
             yield f"angular momentum {axis}", "kg m^2/s", component, component
-        for torque in structure["torques"]:
+        for torque in structure.torques:
             yield from _of_torque(torque, momentum_s, energy)
     for number in range(3):
         others = [equations.motion.inertia[i, i] for i in range(3) if i != number]
-        symmetric = others[0] == others[1] and structure["inertia"]["form"] == "principal"
-        if symmetric and structure["planar"] in (None, number):
+        symmetric = others[0] == others[1] and isinstance(structure.inertia, PrincipalInertia)
+        if symmetric and structure.planar in (None, number):
             spin = equations.motion.omega_b[number]
             yield f"spin omega_{number + 1}", "rad/s", spin, spin
 
 
-def _of_torque(torque: Mapping[str, Any], momentum_s: Matrix, energy: Expr) -> Iterable[tuple[str, str, Expr, Expr]]:
+def _of_torque(torque: TorqueStructure, momentum_s: Matrix, energy: Expr) -> Iterable[tuple[str, str, Expr, Expr]]:
     """Yield what one torque of the table singles out: the vertical of gravity, the normal of an orbit."""
-    prefix = torque["prefix"]
-    if torque["kind"] == "gravity" and torque["fields"]["direction"].count("0") < 2:
-        pattern = torque["fields"]["direction"]
-        down = field_value(f"{prefix}direction", pattern)
+    if not isinstance(torque, FieldTorque):
+        return
+    if torque.kind == "gravity" and (direction := torque.vector("direction")).count(Pattern.ZERO) < 2:
+        down = field_value(f"{torque.prefix}direction", direction)
         vertical = -momentum_s.dot(down)
         yield "vertical angular momentum", "kg m^2/s", vertical, vertical
-    if torque["kind"] == "gravity_gradient":
-        jacobi = energy - symbols.constant(f"{prefix}mean_motion") * momentum_s[2]
+    if torque.kind == "gravity_gradient":
+        jacobi = energy - symbols.constant(f"{torque.prefix}mean_motion") * momentum_s[2]
         yield "Jacobi integral", "J", jacobi, jacobi
 
 
@@ -104,12 +104,12 @@ def _listed(kinds: Sequence[str]) -> str:
     return " and ".join(SPOKEN.get(kind, kind.replace("_", " ")) for kind in dict.fromkeys(kinds))
 
 
-def find_invariants(equations: Equations, structure: Mapping[str, Any]) -> tuple[Invariant, ...]:
+def find_invariants(equations: Equations, structure: Structure) -> tuple[Invariant, ...]:
     """Return the invariants of a motion, then the candidates it does not keep.
 
     What the plan took as constant is among them.
     """
-    kinds = [torque["kind"] for torque in structure["torques"]]
+    kinds = [torque.kind for torque in structure.torques]
     found = []
     for name, unit, value, tested in _candidates(equations, structure):
         try:

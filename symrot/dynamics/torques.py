@@ -6,21 +6,40 @@ Each law gives the torque in body components and, where it has one, the potentia
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from fractions import Fraction
 from itertools import combinations_with_replacement
 from typing import Any
 
 import sympy
-from sympy import Expr, ImmutableMatrix, Integer, Matrix, Rational, Symbol, cos, sin, sqrt, zeros
+from sympy import (
+    Expr,
+    ImmutableMatrix,
+    Integer,
+    Matrix,
+    Mul,
+    Rational,
+    Symbol,
+    atan,
+    cos,
+    exp,
+    log,
+    sin,
+    sqrt,
+    tanh,
+    zeros,
+)
 
 from symrot import symbols
+from symrot.dynamics.structure import FieldPattern, FormulaTorque, Pattern, TorqueStructure, component_names
 from symrot.dynamics.torque_kinds import EXPRESSION_NAMES, TORQUE_KINDS
 from symrot.errors import InputError
-from symrot.formula.tree import FUNCTIONS, Node, evaluate, parse
+from symrot.formula.tree import FUNCTIONS, Node, children, evaluate, parse
 from symrot.kinematics.quaternion import conjugate, dcm_of, qmul, quaternion_rates
 from symrot.symbols import constant
 
 __all__ = [
     "LAWS",
+    "LEVELLING",
     "Motion",
     "TorqueLaw",
     "collected_cross",
@@ -29,6 +48,9 @@ __all__ = [
     "torque_law",
     "torque_of_potential",
 ]
+
+
+LEVELLING = (tanh, atan, exp, log)  # functions that come so near to a value that doubles cannot tell them from it
 
 
 @dataclass(frozen=True)
@@ -137,35 +159,52 @@ _FUNCTIONS: dict[str, Callable[..., Expr]] = {
 def formula(node: Node, values: Mapping[str, Expr]) -> Expr:
     """Return a formula tree as an exact SymPy expression in the given values; ``pi`` is known."""
     known = {"pi": sympy.pi, **values}
-    return evaluate(node, known, _FUNCTIONS, lambda value: Rational(value.numerator, value.denominator))
+    node = _with_brackets(node, known)
+    return evaluate(node, known, _FUNCTIONS, _rational)
 
 
-def torque_law(structure: Mapping[str, Any], motion: Motion) -> TorqueLaw:
-    """Return the law of one torque of a plan.
+def _rational(value: Fraction) -> Rational:
+    return Rational(value.numerator, value.denominator)
 
-    Parameters
-    ----------
-    structure : mapping
-        ``kind``, ``prefix`` (of its constants' names) and ``fields``: for each field the pattern of its value or
-        values, ``"0"``, ``"1"``, ``"-1"`` where the plan may rely on that number, ``"*"`` where it stays a symbol.
-        An expression has ``formulas`` (three texts), ``parameters`` (names) and ``frame`` instead.
-    motion : Motion
-        What it may depend on.
+
+def _with_brackets(node: Node, known: dict[str, Expr]) -> Node:
+    """Return a formula with a name for each number times a sum such as 1 + tanh(u), whose value joins the known ones.
+
+    SymPy would write it out, and add its constant to others: where the sum is zero, their rounding would remain.
     """
-    prefix = structure["prefix"]
-    if structure["kind"] == "expression":
+    if node[0] in ("number", "symbol"):
+        return node
+    if node[0] == "call":
+        return ("call", node[1], tuple(_with_brackets(child, known) for child in node[2]))
+    if node[0] == "**":
+        return ("**", _with_brackets(node[1], known), node[2])
+    parts = [_with_brackets(child, known) for child in children(node)]
+    factors = [part for part in parts if part[0] == "number"]
+    if len(factors) == 1 and (node[0] == "*" or (node[0] == "/" and parts[1] is factors[0])):
+        bracket = evaluate(next(part for part in parts if part[0] != "number"), known, _FUNCTIONS, _rational)
+        if bracket.is_Add and bracket.atoms(*LEVELLING):
+            number = _rational(factors[0][1])
+            name = f"bracket {len(known)}"
+            known[name] = Mul(1 / number if node[0] == "/" else number, bracket, evaluate=False)
+            return ("symbol", name)
+    return (node[0], *parts)
+
+
+def torque_law(structure: TorqueStructure, motion: Motion) -> TorqueLaw:
+    """Return the law of one torque of a plan, for the quantities of a motion."""
+    if isinstance(structure, FormulaTorque):
         values = formula_values(structure, motion)
-        torque = Matrix([_finite_formula(source, values) for source in structure["formulas"]])
-        return _expression(motion, torque, structure["frame"])
-    arguments = {name: field_value(f"{prefix}{name}", pattern) for name, pattern in structure["fields"].items()}
-    return LAWS[structure["kind"]](motion, **arguments)
+        torque = Matrix([_finite_formula(source, values) for source in structure.formulas])
+        return _expression(motion, torque, structure.frame)
+    arguments = {name: field_value(f"{structure.prefix}{name}", pattern) for name, pattern in structure.fields}
+    return LAWS[structure.kind](motion, **arguments)
 
 
-def formula_values(structure: Mapping[str, Any], motion: Motion) -> dict[str, Expr]:
+def formula_values(structure: FormulaTorque, motion: Motion) -> dict[str, Expr]:
     """Return what the names in the formulas of an expression stand for."""
     values = dict(zip(EXPRESSION_NAMES[:4], (symbols.t, *motion.omega_b), strict=True))
     values.update(zip(EXPRESSION_NAMES[4:], motion.quaternion or (), strict=False))
-    values.update({name: constant(f"{structure['prefix']}{name}") for name in structure["parameters"]})
+    values.update({name: constant(f"{structure.prefix}{name}") for name in structure.parameters})
     return values
 
 
@@ -176,12 +215,11 @@ def _finite_formula(source: str, values: Mapping[str, Expr]) -> Expr:
     return result
 
 
-def field_value(name: str, pattern: str | list[str]) -> Any:
+def field_value(name: str, pattern: FieldPattern) -> Any:
     """Return the symbol, exact number, vector (numbered from 1) or quaternion (from 0) of a pattern."""
-    if isinstance(pattern, str):
-        return constant(name) if pattern == "*" else Integer(pattern)
-    first = 0 if len(pattern) == 4 else 1
-    return Matrix([field_value(f"{name}_{i}", entry) for i, entry in enumerate(pattern, start=first)])
+    if isinstance(pattern, Pattern):
+        return constant(name) if pattern is Pattern.FREE else Integer(pattern.value)
+    return Matrix(list(map(field_value, component_names(name, pattern), pattern)))
 
 
 def torque_of_potential(law: TorqueLaw) -> Matrix:

@@ -1,7 +1,7 @@
 """Ensembles in closed form: which trajectories have one, and all of a form in one call.
 
-Trajectories whose numbers are unusual (beyond 1e205, products of inertia that vary) are made one by one, each as a
-motion alone; where no constant varies, they share what the body and its torques give.
+Trajectories whose numbers are unusual (beyond 1e205, products of inertia that vary and hardly differ from zero) are
+made one by one, each as a motion alone; where no constant varies, they share what the body and its torques give.
 """
 
 from collections.abc import Callable, Hashable, Iterator, Sequence
@@ -84,9 +84,6 @@ def _patterns(variation: Variation) -> list[tuple[Hashable, Rows]]:
 ARRAYS_LOSE_BELOW = {"symmetric body driven about its axis, angular velocity alone": 1e4}
 """Up to which angle, rad, steps are faster than arrays of a form whose constants do not vary; see :func:`choose`."""
 
-TILTED_LOSES_BELOW = 50.0
-"""The same of free bodies in axes that are not principal."""
-
 ALONE_LOSES_BELOW = {"free_body": 1e4, "axial": 1e3, "spin_up": 1e3}
 """The same of closed forms that are made one by one, by library."""
 
@@ -107,14 +104,12 @@ def choose(variation: Variation, times: Floats, start: float, faster: bool) -> l
     symrot.bench.starts --ensembles`` prints the same for the scenes' own spans), in microseconds per trajectory:
 
     - Arrays of closed forms take 4 to 18 where starts alone vary and 4 to 29 where constants do; steps take 13 to 46
-      and 33 to 75 up to 10 rad, and more beyond.
-    - A free body in axes that are not principal takes 20 as an array, for integers, and 14 by steps at 40 rad (10^4
-      trajectories), 30 to 38 at 100 rad.
-    - The other exception is the angular velocity alone of a symmetric body that is damped, from starts alone: 12 as an
+      and 33 to 75 up to 10 rad, and more beyond; with products of inertia that vary 23 and 280.
+    - The exception is the angular velocity alone of a symmetric body that is damped, from starts alone: 12 as an
       array, 6 to 9 by steps, which are few since the motion ends.
-    - Motions made one by one take 1100 with products of inertia that vary, for their principal axes, and 40 to 80 about
-      one axis or spun up, with constants so large or small that arrays are not made. Steps take as much at the angles
-      of :data:`ALONE_LOSES_BELOW`.
+    - Motions made one by one take 1100 with products of inertia that vary and are as good as zero, or with moments as
+      good as equal, for their principal axes in fractions, and 40 to 80 about one axis or spun up, with constants so
+      large or small that arrays are not made. Steps take as much at the angles of :data:`ALONE_LOSES_BELOW`.
 
     The angle is that of the trajectory itself, so that its method does not depend on the others.
     """
@@ -125,7 +120,7 @@ def choose(variation: Variation, times: Floats, start: float, faster: bool) -> l
         without_compiler = not loaded(kind.form.library) and library.missing()
         if without_compiler and faster:  # steps are followed by SciPy then
             continue
-        least = _arrays_lose_below(variation, kind.form) if faster and not variation.columns else None
+        least = ARRAYS_LOSE_BELOW.get(kind.form.name) if faster and not variation.columns else None
         if least is not None:
             rows = rows[_angles(variation, times, start)[rows] > least]
         for each, batch, usual in [(rows, None, None)] if without_compiler else _batches(variation, kind, rows):
@@ -134,12 +129,6 @@ def choose(variation: Variation, times: Floats, start: float, faster: bool) -> l
             if len(each):
                 found.append(Solved(kind.form, each, batch, usual))
     return found
-
-
-def _arrays_lose_below(variation: Variation, form: Form) -> float | None:
-    if form.library == "free_body" and not variation.scene.body.principal.given_axes:
-        return TILTED_LOSES_BELOW
-    return ARRAYS_LOSE_BELOW.get(form.name)
 
 
 def _angles(variation: Variation, times: Floats, start: float) -> Floats:
@@ -240,6 +229,10 @@ class _Part(NamedTuple):
     rows: Rows
     omega: Floats  # (n, 3)
 
+    def of(self, chosen: NDArray[np.bool_]) -> "_Part":
+        """Return the same of some of the trajectories."""
+        return self._replace(rows=self.rows[chosen], omega=self.omega[chosen])
+
     @property
     def start(self) -> Floats:
         """Unit quaternions as pairs of doubles, (n, 8) or (8,)."""
@@ -270,6 +263,13 @@ def _batches(variation: Variation, kind: Kind, rows: Rows) -> Iterator[tuple[Row
 
     for part in _parts(variation, kind, rows):
         batch, fine = make(part)
+        if batch is not None and make is _free and not np.all(fine):
+            # principal axes that take fractions are dear: such motions count as made one by one
+            clear = np.asarray(fine)
+            yield part.rows[~clear], None, None
+            if not clear.any():
+                continue
+            part, batch, fine = part.of(clear), batch.of(clear), True
         if batch is not None:
             for name in variation.columns:
                 size = abs(variation.columns[name][part.rows])
@@ -299,7 +299,8 @@ def _free(part: _Part) -> tuple["Batch | None", Usual]:
         body = variation.kept("free body", lambda: Body(variation.scene.body.principal))
         return batches.free_bodies(body, part.omega, part.start), True
     if not variation.in_principal_axes:
-        return None, False
+        entries = [part.constant(name) for name in (*PRINCIPAL, *PRODUCTS)]
+        return batches.free_bodies_of_tensors(entries, part.omega, part.start)
     moments = [part.constant(name) for name in PRINCIPAL]
     fine = variation.moments[part.rows].min(axis=1) > 0
     return batches.free_bodies_of_moments(moments, part.omega, part.start), fine

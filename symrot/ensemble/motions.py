@@ -94,7 +94,7 @@ def follow(problem: Problem, method: str) -> Followed:
             f"scene {problem.variation.scene.name!r}"
         )
     samples = problem.times.shape[-1]
-    attitude = bool(problem.plan.structure["attitude"])
+    attitude = problem.plan.structure.attitude
     omega = np.empty((count, samples, 3))
     quaternion = np.empty((count, samples, 4)) if attitude else None
     methods, messages = ["exact"] * count, [""] * count

@@ -5,6 +5,7 @@ from fractions import Fraction
 
 import numpy as np
 
+from symrot.dynamics.structure import PrincipalInertia
 from symrot.ensemble.variation import PRINCIPAL, Variation
 from symrot.formula import exact_numbers as number
 from symrot.formula.tree import names
@@ -33,9 +34,11 @@ class Numbers:
     def __init__(self, variation: Variation, plan: Plan, chosen: Sequence[int]) -> None:
         self._variation, self._plan, self._chosen = variation, plan, list(chosen)
         varying = dict(variation.columns) | {name: variation.omega[:, k] for k, name in enumerate(OMEGA)}
-        for letter, name in zip(plan.structure["inertia"].get("moments", ""), PRINCIPAL, strict=False):
-            if name in varying:
-                varying.setdefault(letter, varying[name])
+        inertia = plan.structure.inertia
+        if isinstance(inertia, PrincipalInertia):
+            for letter, name in zip(inertia.moments, PRINCIPAL, strict=True):
+                if name in varying:
+                    varying.setdefault(letter, varying[name])
         self._columns = {name: varying[name][self._chosen] for name in plan.constants if name in varying}
 
     def constants(self, k: int) -> dict[str, Fraction]:

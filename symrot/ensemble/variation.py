@@ -10,6 +10,7 @@ from weakref import finalize
 import numpy as np
 from numpy.typing import ArrayLike
 
+from symrot.dynamics.structure import FormulaTorque, Pattern, Structure, component_names
 from symrot.dynamics.torque_kinds import TORQUE_KINDS
 from symrot.errors import InputError
 from symrot.formula import exact_numbers as number
@@ -19,7 +20,7 @@ from symrot.propagation.real_array import real_array
 from symrot.propagation.steppers.stepping import Floats
 from symrot.scene.scene import Initial, Scene
 
-__all__ = ["Variation", "read_times", "read_variation"]
+__all__ = ["PLACES", "Variation", "read_times", "read_variation"]
 
 PLACES = {"I_xx": (0, 0), "I_yy": (1, 1), "I_zz": (2, 2), "I_xy": (0, 1), "I_xz": (0, 2), "I_yz": (1, 2)}
 PRINCIPAL = ("I_xx", "I_yy", "I_zz")
@@ -123,8 +124,8 @@ class Variation:
 
     def prefix(self, torque: int) -> str:
         """Return what stands before the names of the constants of a torque."""
-        found: str = self.kept("structure", lambda: general_structure(self.scene))["torques"][torque]["prefix"]
-        return found
+        structure: Structure = self.kept("structure", lambda: general_structure(self.scene))
+        return structure.torques[torque].prefix
 
     def constants_beside(self, name: str) -> list[float]:
         """Return the doubles that a column may equal: constants of the scene of the same field that do not vary."""
@@ -328,16 +329,14 @@ def _array(values: ArrayLike, shape: tuple[int, ...], name: str, unit: str) -> F
 def _places(scene: Scene) -> dict[str, _Place]:
     """Return every constant of a scene that may vary, by the planner's name."""
     found = {name: _Place(-1, "inertia", None) for name in PLACES}
-    for index, torque in enumerate(general_structure(scene)["torques"]):
-        prefix = torque["prefix"]
-        for name in torque.get("parameters", ()):
-            found[f"{prefix}{name}"] = _Place(index, "parameters", name)
-        for field, pattern in torque.get("fields", {}).items():
-            if isinstance(pattern, str):
-                found[f"{prefix}{field}"] = _Place(index, field, None)
-                continue
-            first = 0 if len(pattern) == 4 else 1  # as the planner numbers them
-            found |= {f"{prefix}{field}_{first + k}": _Place(index, field, k) for k, _ in enumerate(pattern)}
+    for index, torque in enumerate(general_structure(scene).torques):
+        if isinstance(torque, FormulaTorque):
+            found |= {f"{torque.prefix}{name}": _Place(index, "parameters", name) for name in torque.parameters}
+            continue
+        for field, pattern in torque.fields:
+            entries = [None] if isinstance(pattern, Pattern) else range(len(pattern))
+            names = component_names(f"{torque.prefix}{field}", pattern)
+            found |= {name: _Place(index, field, entry) for name, entry in zip(names, entries, strict=True)}
     return found
 
 

@@ -1,6 +1,6 @@
 """Decide whether two formulas are equal: the normal form of their difference, and a verdict with its evidence.
 
-Scope, with its theorem (``SOUNDNESS.md`` beside this module, sections 1 to 3). For rational functions of sines and
+Scope, with its theorem (``docs/exact_decisions.md``, sections 1 to 3). For rational functions of sines and
 cosines of Q-linear combinations of angles (rational multiples of pi included), of exponentials, of parameters, of
 rates, and of unit-norm groups, the normal form is zero if and only if the identity holds at all real points where both
 sides are defined: circles and spheres are rational, irreducible over the complex numbers, and their real points are

@@ -6,6 +6,7 @@ from functools import partial
 from sympy import Matrix, eye, sqrt
 
 from symrot import symbols
+from symrot.dynamics.structure import Pattern
 from symrot.dynamics.torque_kinds import TORQUE_KINDS, Field
 from symrot.dynamics.torques import LAWS, Motion, TorqueLaw, field_value, torque_of_potential
 from symrot.formula.program import Argument
@@ -27,6 +28,7 @@ _KERNELS: dict[str, tuple[str, tuple[str, ...]]] = {
     "torque_spring": ("spring", ("stiffness", "attitude")),
     "torque_rotor": ("rotor", ("angular_momentum",)),
 }
+FREE, ZERO = Pattern.FREE, Pattern.ZERO
 _SIZE = {"scalar": 1, "vector": 3, "scalar or vector": 3, "attitude": 4}
 
 
@@ -66,9 +68,9 @@ def _law_of(kind: str, fields: tuple[str, ...]) -> TorqueLaw:
     for field in TORQUE_KINDS[kind].fields:
         if field.name in fields:
             size = _SIZE[field.shape]
-            arguments[field.name] = field_value(field.name, "*" if size == 1 else ["*"] * size)
+            arguments[field.name] = field_value(field.name, FREE if size == 1 else (FREE,) * size)
         elif kind == "damping":
-            arguments[field.name] = field_value(field.name, "0" if field.name == "quadratic" else ["0"] * 3)
+            arguments[field.name] = field_value(field.name, ZERO if field.name == "quadratic" else (ZERO,) * 3)
     return LAWS[kind](_MOTION, **arguments)
 
 
@@ -107,16 +109,16 @@ def _laws(kind: str, fields: tuple[str, ...], law: TorqueLaw) -> tuple[Law, ...]
     if kind == "damping":
         return _damping_laws(found, fields)
     matrix = dcm_of() if kind == "constant_space" else eye(3)
-    given = field_value("torque", ["*"] * 3)
+    given = field_value("torque", (FREE,) * 3)
     return (Law("carried to the axes of the given torque it is that torque", tuple(matrix * found - given), unit),)
 
 
 def _damping_laws(found: Matrix, fields: tuple[str, ...]) -> tuple[Law, ...]:
     omega = _MOTION.omega_b
     if fields == ("linear",):
-        drag = field_value("linear", ["*"] * 3).multiply_elementwise(omega)
+        drag = field_value("linear", (FREE,) * 3).multiply_elementwise(omega)
         return (Law("each component is minus its coefficient times omega", tuple(found + drag)),)
-    power = field_value("quadratic", "*") * sqrt(omega.dot(omega)) ** 3
+    power = field_value("quadratic", FREE) * sqrt(omega.dot(omega)) ** 3
     return (
         Law("it is along omega", tuple(found.cross(omega))),
         Law("its power is minus the coefficient times the cube of |omega|", (found.dot(omega) + power,)),

@@ -9,20 +9,34 @@ from collections.abc import Callable, Hashable
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
+from symrot.dynamics.structure import (
+    MOVING,
+    FieldPattern,
+    FieldTorque,
+    FormulaTorque,
+    InertiaTensor,
+    Pattern,
+    PrincipalInertia,
+    Structure,
+    TorqueStructure,
+    TorqueSwitch,
+    component_names,
+)
 from symrot.errors import InputError
 from symrot.formula import tree as expression
 from symrot.formula.exact_numbers import equal
 from symrot.formula.switches import Switch, blended, has_choices, has_switches, smooth
 from symrot.scene.scene import Initial, Scene
+from symrot.scene.torque import Torque
 
 __all__ = [
-    "ATTITUDE_QUANTITIES", "RULES", "START_CONSTANTS", "STATES", "Plan", "Row", "general_structure", "make_plan",
-    "structure_key", "switched",
+    "ATTITUDE_QUANTITIES", "RULES", "START_CONSTANTS", "STATES", "Plan", "RuleOutcome", "general_structure",
+    "make_plan", "structure_key", "switched",
 ]  # fmt: skip
 
-Structure = dict[str, Any]
+ZERO, ONE, MINUS_ONE, FREE = Pattern  # a name is found faster than a member of an Enum
 
 ATTITUDE_QUANTITIES = frozenset(
     {"quaternion", "euler", "dcm", "omega_space", "herpolhode", "angular_momentum_space", "axis"}
@@ -44,15 +58,28 @@ RESERVED = frozenset(
 STATES = ("omega_1", "omega_2", "omega_3", "q0", "q1", "q2", "q3", "theta")
 
 
-@dataclass(frozen=True)
-class Row:
-    """One line of an explained plan: what it is about, whether it is skipped, and why."""
+class RuleOutcome(NamedTuple):
+    """What one rule of a plan decided: a line of the explained plan.
 
-    item: str
+    Attributes
+    ----------
+    structure : Structure
+        After the rule.
+    skipped : bool
+        Whether something is left out.
+    why : str
+        The reason.
+    derivation : str
+        Name of the derivation that justifies it; empty where it follows from what was asked for.
+    item : str
+        What the rule is about, as the table of rules names it; a rule leaves it empty.
+    """
+
+    structure: Structure
     skipped: bool
     why: str
-    derivation: str  # name of the derivation that justifies it, "" where it is a matter of what was asked
-    structure: Structure  # after this rule
+    derivation: str = ""
+    item: str = ""
 
 
 @dataclass(frozen=True)
@@ -61,12 +88,12 @@ class Plan:
 
     scene: Scene
     structure: Structure
-    rows: tuple[Row, ...]
+    rows: tuple[RuleOutcome, ...]
 
     @cached_property
     def constants(self) -> dict[str, Fraction]:
         """The physical constants of the structure by name, exact; modes of switches are 1."""
-        return self.scene_constants | _start_constants(self.scene.initial, self.structure)
+        return self.scene_constants | self.start_constants
 
     @cached_property
     def scene_constants(self) -> dict[str, Fraction]:
@@ -74,19 +101,36 @@ class Plan:
         return _scene_constants(self.scene, self.structure)
 
     @property
+    def start_constants(self) -> dict[str, Fraction]:
+        """Those of :attr:`constants` that are numbers of the initial state."""
+        initial = self.scene.initial
+        return {name: initial[part][place] for name, part, place in self._start_places}
+
+    @cached_property
+    def _start_places(self) -> tuple[tuple[str, int, int], ...]:
+        """The names of those constants, and where in an initial state each stands."""
+        rates = enumerate(self.structure.constant)
+        quaternion = enumerate(self.structure.initial_quaternion or ())
+        return (
+            *((f"omega_{i + 1}", 0, i) for i, mark in rates if mark is FREE),
+            *((f"initial_q{i}", 1, i) for i, mark in quaternion if mark is FREE),
+        )
+
+    @property
     def switches(self) -> list[str]:
         """The functions that switch in the torques of a plan whose modes may change, as they are written."""
-        return [switch["label"] for torque in self.structure["torques"] for switch in torque.get("switches", ())]
+        return [switch.label for torque in self.structure.formula_torques for switch in torque.switches]
 
     @cached_property
     def states(self) -> tuple[str, ...]:
         """The names of the states, in the order of the kernel: angular velocity, then attitude."""
-        axis = self.structure["planar"]
-        moving = [i for i in range(3) if i not in self.structure["constant"] and axis in (None, i)]
-        names = [f"omega_{i + 1}" for i in moving]
-        if self.structure["attitude"]:
-            turning = [] if self.structure["constant"].get(axis) == "0" else ["theta"]
-            names += ["q0", "q1", "q2", "q3"] if axis is None else turning
+        structure, axis = self.structure, self.structure.planar
+        names = [f"omega_{i + 1}" for i in structure.moving]
+        if structure.attitude:
+            if axis is None:
+                names += ["q0", "q1", "q2", "q3"]
+            elif structure.constant[axis] is not ZERO:
+                names.append("theta")
         return tuple(names)
 
     @cached_property
@@ -115,7 +159,7 @@ class Plan:
     @cached_property
     def _shared(self) -> dict[str, Any]:
         """What plans from other starts take over, by name."""
-        names = ("structure", "rows", "scene_constants", "states", "_places")
+        names = ("structure", "rows", "scene_constants", "states", "_places", "_start_places")
         found: dict[str, Any] = {name: getattr(self, name) for name in names}
         found["_shared"] = found
         return found
@@ -156,8 +200,9 @@ def make_plan(scene: Scene, initial: Initial | None = None, driven: bool = False
     structure = general_structure(scene, switched)
     rows = []
     for item, rule in _RULES_WHEN_DRIVEN if driven else RULES:
-        structure, skipped, why, derivation = rule(scene, structure)
-        rows.append(Row(item, skipped, why, derivation, structure))
+        outcome = rule(scene, structure)
+        structure = outcome.structure
+        rows.append(outcome._replace(item=item))
     return Plan(scene, structure, tuple(rows))
 
 
@@ -170,7 +215,7 @@ def structure_key(scene: Scene, initial: Initial) -> Hashable:
     That is which components of omega are zero. A body that may rotate about one axis only is looked at more closely: by
     the components of its attitude that are zero or one, and by the axes along which torques fixed in space lie.
     """
-    turning = tuple([x != 0 for x in initial.omega_b])
+    turning = tuple([x.numerator != 0 for x in initial.omega_b])
     if turning.count(True) > 1:
         return turning
     pattern = tuple([_pattern(q, unit=True) for q in initial.quaternion])
@@ -206,158 +251,156 @@ def _switching_function(scene: Scene) -> str:
 
 def general_structure(scene: Scene, switched: bool = False) -> Structure:
     """Return the structure before any rule: full tensor, every constant of every torque free, full attitude."""
-    taken: set[str] = set(RESERVED)
-    return {
-        "inertia": {"form": "tensor", "entries": sorted([*MOMENTS, *PRODUCTS])},
-        "torques": [
-            _general_torque(number, torque, taken, switched) for number, torque in enumerate(scene.torques, start=1)
-        ],
-        "attitude": True,
-        "planar": None,
-        "initial_quaternion": None,
-        "constant": {},
-    }
+    names: set[str] = set(RESERVED)
+    torques = [_general_torque(number, torque, names, switched) for number, torque in enumerate(scene.torques, start=1)]
+    return Structure(InertiaTensor(tuple(sorted([*MOMENTS, *PRODUCTS]))), tuple(torques))
 
 
-def _general_torque(number: int, torque: Any, taken: set[str], switched: bool) -> Structure:
+def _general_torque(number: int, torque: Torque, known: set[str], switched: bool) -> TorqueStructure:
+    """Return the structure of one torque, its constants free; their names are added to those ``known``."""
     if torque.kind == "expression":
-        names, formulas = list(torque.values["parameters"]), list(torque.values["torque"])
-        found: Structure = {"formulas": formulas, "parameters": names, "frame": torque.values["frame"]}
-        if switched and any(has_switches(expression.parse(text, switching=True)) for text in formulas):
-            form = smooth(tuple(formulas))
-            names += [switch.mode for switch in form.switches]
-            choices = any(map(has_choices, (*form.formulas, *(switch.guard for switch in form.switches))))
-            found |= {
-                "formulas": [expression.text(blended(node)) for node in form.formulas],
-                "switches": [_switch(switch) for switch in form.switches],
-                **({"choices": [expression.text(node) for node in form.formulas]} if choices else {}),
-            }
-    else:
-        fields = {
-            name: ["*"] * len(value) if isinstance(value, tuple) else "*"
-            for name, value in torque.values.items()
-            if value is not None
-        }
-        names, found = [name for field in fields.items() for name in _component_names(*field)], {"fields": fields}
-    prefix = ""
-    while taken & {f"{prefix}{name}" for name in names}:
-        prefix = f"{prefix}_" if prefix else f"torque{number}_"
-    taken |= {f"{prefix}{name}" for name in names}
-    return {"kind": torque.kind, "prefix": prefix, **found}
+        found = _formula_torque(torque, switched)
+        prefix = _prefix(number, list(found.parameters), known)
+        return found._replace(prefix=prefix)
+    fields: list[tuple[str, FieldPattern]] = [
+        (name, (FREE,) * len(value) if isinstance(value, tuple) else FREE)
+        for name, value in torque.values.items()
+        if value is not None
+    ]
+    prefix = _prefix(number, [name for field in fields for name in component_names(*field)], known)
+    return FieldTorque(torque.kind, prefix, tuple(fields))
 
 
-def _switch(switch: Switch) -> Structure:
-    where = [[expression.text(share), value] for share, value in switch.where]
+def _formula_torque(torque: Torque, switched: bool) -> FormulaTorque:
+    """Return the structure of a torque given by formulas, without a prefix."""
+    formulas, parameters = tuple(torque.values["torque"]), tuple(torque.values["parameters"])
+    frame: str = torque.values["frame"]
+    if not (switched and any(has_switches(expression.parse(text, switching=True)) for text in formulas)):
+        return FormulaTorque("", formulas, parameters, frame)
+    form = smooth(formulas)
+    choices = any(map(has_choices, (*form.formulas, *(switch.guard for switch in form.switches))))
+    return FormulaTorque(
+        "",
+        tuple([expression.text(blended(node)) for node in form.formulas]),
+        (*parameters, *(switch.mode for switch in form.switches)),
+        frame,
+        tuple(map(_switch, form.switches)),
+        tuple(map(expression.text, form.formulas)) if choices else (),
+    )
+
+
+def _switch(switch: Switch) -> TorqueSwitch:
+    where = tuple([(expression.text(share), value) for share, value in switch.where])
     guard = expression.text(blended(switch.guard))
-    choices = {"choices": expression.text(switch.guard)} if has_choices(switch.guard) else {}
-    return {**switch._asdict(), "guard": guard, "where": where, **choices}
+    choices = expression.text(switch.guard) if has_choices(switch.guard) else ""
+    return TorqueSwitch(switch.mode, switch.kind, guard, where, switch.label, switch.at_zero, choices)
 
 
-def _component_names(name: str, pattern: str | list[str]) -> list[str]:
-    """Return the names of the constants of one field: a vector is numbered from 1, a quaternion from 0."""
-    if isinstance(pattern, str):
-        return [name]
-    return [f"{name}_{index}" for index, _ in enumerate(pattern, start=0 if len(pattern) == 4 else 1)]
+def _prefix(number: int, names: list[str], known: set[str]) -> str:
+    """Return what precedes the names of a torque's constants, so that none of them is known; now all of them are."""
+    prefix = ""
+    while known & {f"{prefix}{name}" for name in names}:
+        prefix = f"{prefix}_" if prefix else f"torque{number}_"
+    known |= {f"{prefix}{name}" for name in names}
+    return prefix
 
 
-def _pattern(value: Fraction, unit: bool) -> str:
+def _pattern(value: Fraction, unit: bool) -> Pattern:
     top, bottom = value.as_integer_ratio()
-    return "0" if not top else str(value) if unit and bottom == 1 == abs(top) else "*"
+    if not top:
+        return ZERO
+    if unit and bottom == 1 == abs(top):
+        return ONE if top > 0 else MINUS_ONE
+    return FREE
 
 
 def _scene_constants(scene: Scene, structure: Structure) -> dict[str, Fraction]:
-    inertia = scene.body.inertia
-    found: dict[str, Fraction] = {}
-    if structure["inertia"]["form"] == "principal":
-        for letter, number in zip(structure["inertia"]["moments"], range(3), strict=True):
-            found.setdefault(letter, inertia[number][number])
+    inertia, pattern = scene.body.inertia, structure.inertia
+    constants: dict[str, Fraction] = {}
+    if isinstance(pattern, PrincipalInertia):
+        for i, letter in enumerate(pattern.moments):
+            constants.setdefault(letter, inertia[i][i])
     else:
         places = MOMENTS | PRODUCTS
-        found = {name: inertia[places[name][0]][places[name][1]] for name in structure["inertia"]["entries"]}
-    for torque, given in zip(structure["torques"], scene.torques, strict=True):
-        prefix = torque["prefix"]
-        if given.kind == "expression":
-            found |= {f"{prefix}{name}": value for name, value in given.values["parameters"].items()}
-            found |= {f"{prefix}{switch['mode']}": Fraction(1) for switch in torque.get("switches", ())}
+        constants = {name: inertia[places[name][0]][places[name][1]] for name in pattern.entries}
+    for torque, given in zip(structure.torques, scene.torques, strict=True):
+        prefix = torque.prefix
+        if isinstance(torque, FormulaTorque):
+            constants |= {f"{prefix}{name}": value for name, value in given.values["parameters"].items()}
+            constants |= {f"{prefix}{switch.mode}": Fraction(1) for switch in torque.switches}
             continue
-        for name, pattern in torque["fields"].items():
+        for name, field in torque.fields:
             value = given.values[name]
-            if isinstance(pattern, str):
-                found |= {f"{prefix}{name}": value} if pattern == "*" else {}
+            if isinstance(field, Pattern):
+                constants |= {f"{prefix}{name}": value} if field is FREE else {}
                 continue
-            for component, entry, mark in zip(_component_names(name, pattern), value, pattern, strict=True):
-                found |= {f"{prefix}{component}": entry} if mark == "*" else {}
-    return found
-
-
-def _start_constants(initial: Initial, structure: Structure) -> dict[str, Fraction]:
-    kept, start = structure["constant"].items(), enumerate(structure["initial_quaternion"] or ())
-    found = {f"omega_{i + 1}": initial.omega_b[i] for i, mark in kept if mark == "*"}
-    return found | {f"initial_q{i}": initial.quaternion[i] for i, mark in start if mark == "*"}
+            for component, entry, mark in zip(component_names(name, field), value, field, strict=True):
+                constants |= {f"{prefix}{component}": entry} if mark is FREE else {}
+    return constants
 
 
 # --- the rules --------------------------------------------------------------------------------------------------------
 
-Outcome = tuple[Structure, bool, str, str]
 
-
-def _products_of_inertia(scene: Scene, structure: Structure) -> Outcome:
+def _products_of_inertia(scene: Scene, structure: Structure) -> RuleOutcome:
     inertia = scene.body.inertia
-    kept = [name for name, (i, j) in PRODUCTS.items() if inertia[i][j] != 0]
-    if kept:
-        entries = sorted([*MOMENTS, *kept])
-        zero = [name for name in PRODUCTS if name not in kept]
+    nonzero = [name for name, (i, j) in PRODUCTS.items() if inertia[i][j] != 0]
+    if nonzero:
+        tensor = InertiaTensor(tuple(sorted([*MOMENTS, *nonzero])))
+        zero = [name for name in PRODUCTS if name not in nonzero]
         why = f"only {', '.join(zero)} {'is' if len(zero) == 1 else 'are'} zero" if zero else "none of them is zero"
-        return structure | {"inertia": {"form": "tensor", "entries": entries}}, len(kept) < 3, why, "euler_equations"
+        return RuleOutcome(replace(structure, inertia=tensor), len(nonzero) < 3, why, "euler_equations")
     why = "the axes of the body are principal axes"
-    return structure | {"inertia": {"form": "principal", "moments": "ABC"}}, True, why, "euler_equations"
+    return RuleOutcome(replace(structure, inertia=PrincipalInertia()), True, why, "euler_equations")
 
 
-def _equal_moments(scene: Scene, structure: Structure) -> Outcome:
-    if structure["inertia"]["form"] != "principal":
-        return structure, False, "products of inertia are not zero", ""
+def _equal_moments(scene: Scene, structure: Structure) -> RuleOutcome:
+    if not isinstance(structure.inertia, PrincipalInertia):
+        return RuleOutcome(structure, False, "products of inertia are not zero")
     moments = [scene.body.inertia[i][i] for i in range(3)]
     letters = ""
     for number, moment in enumerate(moments):
         same = next((j for j in range(number) if equal(moments[j], moment)), number)
         letters += letters[same] if same < number else "ABC"[number]
     if letters == "ABC":
-        return structure, False, "three different principal moments", ""
+        return RuleOutcome(structure, False, "three different principal moments")
     why = "three equal moments" if letters == "AAA" else f"two equal moments: {scene.body.principal.kind} body"
-    return structure | {"inertia": {"form": "principal", "moments": letters}}, True, why, "symmetric_top"
+    return RuleOutcome(replace(structure, inertia=PrincipalInertia(letters)), True, why, "symmetric_top")
 
 
-def _special_constants(scene: Scene, structure: Structure) -> Outcome:
-    torques: list[Structure] = []
-    found: dict[str, list[str]] = {"0": [], "1": [], "-1": []}
+def _special_constants(scene: Scene, structure: Structure) -> RuleOutcome:
+    torques: list[TorqueStructure] = []
+    special: dict[Pattern, list[str]] = {ZERO: [], ONE: [], MINUS_ONE: [], FREE: []}
     silent: list[str] = []
-    for torque, given in zip(structure["torques"], scene.torques, strict=True):
-        if given.kind == "expression":
+    for torque, given in zip(structure.torques, scene.torques, strict=True):
+        if isinstance(torque, FormulaTorque):
             torques.append(torque)
             silent += _silent(torque, given)
             continue
-        fields: dict[str, Any] = {}
-        for name, pattern in torque["fields"].items():
+        fields: list[tuple[str, FieldPattern]] = []
+        for name, general in torque.fields:
             value, unit = given.values[name], name in UNIT_FIELDS
-            many = isinstance(pattern, list)
-            fields[name] = [_pattern(entry, unit) for entry in value] if many else _pattern(value, unit)
-            for component, mark in zip(_component_names(name, pattern), fields[name], strict=True):
-                found.get(mark, []).append(component)
-        torques.append(torque | {"fields": fields})
-    if not structure["torques"]:
-        return structure, True, "no torque acts: Euler's equations are free", "euler_equations"
-    said = [f"{', '.join(names)} = {mark}" for mark, names in found.items() if names] + silent
-    why = "; ".join(said) or "no component of a torque is exactly zero"
-    return structure | {"torques": torques}, bool(said), why, ""
+            many = isinstance(general, tuple)
+            marks = tuple([_pattern(entry, unit) for entry in (value if many else (value,))])
+            fields.append((name, marks if many else marks[0]))
+            for component, mark in zip(component_names(name, general), marks, strict=True):
+                special[mark].append(component)
+        torques.append(torque._replace(fields=tuple(fields)))
+    if not structure.torques:
+        return RuleOutcome(structure, True, "no torque acts: Euler's equations are free", "euler_equations")
+    del special[FREE]
+    reasons = [f"{', '.join(names)} = {mark.value}" for mark, names in special.items() if names] + silent
+    why = "; ".join(reasons) or "no component of a torque is exactly zero"
+    return RuleOutcome(replace(structure, torques=tuple(torques)), bool(reasons), why)
 
 
-def _silent(torque: Structure, given: Any) -> list[str]:
+def _silent(torque: FormulaTorque, given: Torque) -> list[str]:
     """Return in words the axes about which formulas give no torque."""
     axes = [str(i + 1) for i, formula in enumerate(given.values["torque"]) if _is_zero(formula)]
     if not axes:
         return []
     listed = f"axis {axes[0]}" if len(axes) == 1 else f"axes {', '.join(axes[:-1])} and {axes[-1]}"
-    return [f"the formulas give no torque about {torque['frame']} {listed}"]
+    return [f"the formulas give no torque about {torque.frame} {listed}"]
 
 
 def _is_zero(formula: str) -> bool:
@@ -371,39 +414,44 @@ def _is_zero(formula: str) -> bool:
         return False
 
 
-def _depends_on_attitude(torque: Structure) -> bool:
-    if torque["kind"] == "expression":
-        sources = [*torque["formulas"], *(switch["guard"] for switch in torque.get("switches", ()))]
+def _depends_on_attitude(torque: TorqueStructure) -> bool:
+    if isinstance(torque, FormulaTorque):
+        sources = [*torque.formulas, *(switch.guard for switch in torque.switches)]
         used = set().union(*(expression.names(expression.parse(source)) for source in sources))
-        return torque["frame"] == "space" or bool(used & {"q0", "q1", "q2", "q3"})
-    return torque["kind"] not in NEVER_NEEDS_ATTITUDE
+        return torque.frame == "space" or bool(used & {"q0", "q1", "q2", "q3"})
+    return torque.kind not in NEVER_NEEDS_ATTITUDE
 
 
-def _attitude(scene: Scene, structure: Structure) -> Outcome:
+def _attitude(scene: Scene, structure: Structure) -> RuleOutcome:
     asked = [name for name in scene.output.quantities if name in ATTITUDE_QUANTITIES]
     if asked:
-        return structure, False, f"the output asks for {', '.join(asked)}", "quaternion_rates"
-    needed = [torque["kind"] for torque in structure["torques"] if _depends_on_attitude(torque)]
-    if needed:
-        return structure, False, f"the torque {', '.join(needed)} depends on it", "quaternion_rates"
+        return RuleOutcome(structure, False, f"the output asks for {', '.join(asked)}", "quaternion_rates")
+    kinds = [torque.kind for torque in structure.torques if _depends_on_attitude(torque)]
+    if kinds:
+        return RuleOutcome(structure, False, f"the torque {', '.join(kinds)} depends on it", "quaternion_rates")
     why = "neither a torque nor the output needs it"
-    return structure | {"attitude": False}, True, why, "attitude_not_needed"
+    return RuleOutcome(replace(structure, attitude=False), True, why, "attitude_not_needed")
 
 
-def _torque_along(torque: Structure, axis: int, scene: Scene, given: Any) -> bool:
+def _only_along(vector: tuple[Pattern, ...], axis: int) -> bool:
+    """Return whether the components of a vector about the other axes are zero."""
+    return all(vector[i] is ZERO for i in range(3) if i != axis)
+
+
+def _torque_along(torque: TorqueStructure, axis: int, scene: Scene, given: Torque) -> bool:
     """Whether the torque keeps to a body axis while the body turns about that axis only."""
-    others = [i for i in range(3) if i != axis]
-    fields = torque.get("fields", {})
-    if torque["kind"] == "constant_body":
-        return all(fields["torque"][i] == "0" for i in others)
-    if torque["kind"] == "rotor":
-        return all(fields["angular_momentum"][i] == "0" for i in others)
-    if torque["kind"] == "constant_space":
+    if isinstance(torque, FormulaTorque):
+        return False
+    if torque.kind == "constant_body":
+        return _only_along(torque.vector("torque"), axis)
+    if torque.kind == "rotor":
+        return _only_along(torque.vector("angular_momentum"), axis)
+    if torque.kind == "constant_space":
         return _lies_along(given.values["torque"], axis, scene)
-    if torque["kind"] == "gravity":  # a pendulum: level axis, centre of mass beside it
+    if torque.kind == "gravity":  # a pendulum: level axis, centre of mass beside it
         level = _small_components(given.values["direction"], scene.initial)[axis]
-        return level and fields["center_of_mass"][axis] == "0"
-    return bool(torque["kind"] == "damping")
+        return level and torque.vector("center_of_mass")[axis] is ZERO
+    return torque.kind == "damping"
 
 
 def _in_body(vector_s: tuple[Fraction, ...], initial: Initial) -> tuple[Fraction, ...]:
@@ -451,72 +499,71 @@ def _lies_along(vector_s: tuple[Fraction, ...], axis: int, scene: Scene) -> bool
     return all(small[i] for i in range(3) if i != axis)
 
 
-def _one_axis(scene: Scene, structure: Structure) -> Outcome:
+def _one_axis(scene: Scene, structure: Structure) -> RuleOutcome:
     omega_b = scene.initial.omega_b
-    if structure["inertia"]["form"] != "principal":
-        return structure, False, "the axes of the body are not principal axes", ""
+    if not isinstance(structure.inertia, PrincipalInertia):
+        return RuleOutcome(structure, False, "the axes of the body are not principal axes")
     turning = [i for i in range(3) if omega_b[i] != 0]
     axes = turning if len(turning) == 1 else [] if turning else [0, 1, 2]
-    pairs = list(zip(structure["torques"], scene.torques, strict=True))
+    pairs = list(zip(structure.torques, scene.torques, strict=True))
     along = [axis for axis in axes if all(_torque_along(torque, axis, scene, given) for torque, given in pairs)]
     if not along:
-        formulas = any(torque["kind"] == "expression" for torque in structure["torques"])
         why = "the body does not turn about one principal axis only"
-        if axes and formulas:
+        if axes and any(structure.formula_torques):
             why = "a torque given by formulas is not taken to keep the rotation about one axis"
-        return structure, False, why, ""
+        return RuleOutcome(structure, False, why)
     axis = along[0]
-    start = [_pattern(q, unit=True) for q in scene.initial.quaternion] if structure["attitude"] else None
-    planar = structure | {"planar": axis, "initial_quaternion": start}
-    if not structure["torques"] or (all(torque["kind"] == "rotor" for torque in structure["torques"])):
-        planar = planar | {"constant": _kept(scene, axis)}
+    start = tuple([_pattern(q, unit=True) for q in scene.initial.quaternion]) if structure.attitude else None
+    constant = _constant(scene, axis) if all(torque.kind == "rotor" for torque in structure.torques) else MOVING
+    planar = replace(structure, planar=axis, initial_quaternion=start, constant=constant)
     why = f"omega and torque stay along principal axis {axis + 1}: the attitude is one angle"
-    return planar, True, why, "planar_motion"
+    return RuleOutcome(planar, True, why, "planar_motion")
 
 
-def _constant_spin(scene: Scene, structure: Structure) -> Outcome:
-    if structure["planar"] is not None:
-        return structure, False, "already one axis", ""
-    if structure["inertia"]["form"] != "principal":
-        return structure, False, "the axes of the body are not principal axes", ""
-    letters = structure["inertia"]["moments"]
-    if letters == "AAA" and not structure["torques"]:
+def _constant_spin(scene: Scene, structure: Structure) -> RuleOutcome:
+    if structure.planar is not None:
+        return RuleOutcome(structure, False, "already one axis")
+    if not isinstance(structure.inertia, PrincipalInertia):
+        return RuleOutcome(structure, False, "the axes of the body are not principal axes")
+    letters = structure.inertia.moments
+    if letters == "AAA" and not structure.torques:
         why = "a spherical body without torque keeps its angular velocity"
-        return structure | {"constant": _kept(scene, 0, 1, 2)}, True, why, "spherical_body"
+        return RuleOutcome(replace(structure, constant=_constant(scene, 0, 1, 2)), True, why, "spherical_body")
     for axis in range(3):
         others = [letters[i] for i in range(3) if i != axis]
-        if others[0] == others[1] and all(_no_moment_about(torque, axis) for torque in structure["torques"]):
+        if others[0] == others[1] and all(_no_moment_about(torque, axis) for torque in structure.torques):
             why = f"equal moments about the other axes and no torque about axis {axis + 1}"
-            if scene.initial.omega_b[axis] == 0 and not structure["torques"]:
+            if scene.initial.omega_b[axis] == 0 and not structure.torques:
                 why += ", and no spin: the body turns steadily about an axis across"
-                return structure | {"constant": _kept(scene, 0, 1, 2)}, True, why, "symmetric_spin"
-            return structure | {"constant": _kept(scene, axis)}, True, why, "symmetric_spin"
-    return structure, False, "no axis of symmetry without torque about it", ""
+                return RuleOutcome(replace(structure, constant=_constant(scene, 0, 1, 2)), True, why, "symmetric_spin")
+            return RuleOutcome(replace(structure, constant=_constant(scene, axis)), True, why, "symmetric_spin")
+    return RuleOutcome(structure, False, "no axis of symmetry without torque about it")
 
 
-def _kept(scene: Scene, *axes: int) -> dict[int, str]:
-    """Return the components of omega_b that keep their value, with the pattern of each: zero, or a constant."""
-    return {axis: _pattern(scene.initial.omega_b[axis], unit=False) for axis in axes}
+def _constant(scene: Scene, *axes: int) -> tuple[Pattern | None, Pattern | None, Pattern | None]:
+    """Return the pattern of each constant component of omega_b, zero or free; None for those of the other axes."""
+    first, second, third = (
+        _pattern(w, unit=False) if axis in axes else None for axis, w in enumerate(scene.initial.omega_b)
+    )
+    return first, second, third
 
 
-def _no_moment_about(torque: Structure, axis: int) -> bool:
+def _no_moment_about(torque: TorqueStructure, axis: int) -> bool:
     """Whether a torque on a body with symmetry about the axis has no component along it, for every motion."""
-    others = [i for i in range(3) if i != axis]
-    fields = torque.get("fields", {})
-    if torque["kind"] == "constant_body":
-        return bool(fields["torque"][axis] == "0")
-    if torque["kind"] == "damping":
-        return bool(fields["linear"][axis] == "0" and fields["quadratic"] == "0")
-    if torque["kind"] == "gravity":
-        return all(fields["center_of_mass"][i] == "0" for i in others)
-    if torque["kind"] == "rotor":
-        return all(fields["angular_momentum"][i] == "0" for i in others)
-    if torque["kind"] == "expression":
-        return torque["frame"] == "body" and torque["formulas"][axis].strip() in ("0", "0.0")
-    return bool(torque["kind"] == "gravity_gradient")
+    if isinstance(torque, FormulaTorque):
+        return torque.frame == "body" and torque.formulas[axis].strip() in ("0", "0.0")
+    if torque.kind == "constant_body":
+        return torque.vector("torque")[axis] is ZERO
+    if torque.kind == "damping":
+        return torque.vector("linear")[axis] is ZERO and torque.number("quadratic") is ZERO
+    if torque.kind == "gravity":
+        return _only_along(torque.vector("center_of_mass"), axis)
+    if torque.kind == "rotor":
+        return _only_along(torque.vector("angular_momentum"), axis)
+    return torque.kind == "gravity_gradient"
 
 
-RULES: tuple[tuple[str, Callable[[Scene, Structure], Outcome]], ...] = (
+RULES: tuple[tuple[str, Callable[[Scene, Structure], RuleOutcome]], ...] = (
     ("products of inertia", _products_of_inertia),
     ("unequal moments", _equal_moments),
     ("torque terms", _special_constants),
@@ -524,20 +571,21 @@ RULES: tuple[tuple[str, Callable[[Scene, Structure], Outcome]], ...] = (
     ("rotation out of one axis", _one_axis),
     ("rate of spin", _constant_spin),
 )
-"""The rules in their order: (what it is about, rule). A rule returns structure, whether it skips, why, derivation."""
+"""The rules in their order: (what it is about, rule)."""
 
 
-def _whole_motion(scene: Scene, structure: Structure) -> Outcome:
-    return structure, False, "a torque that is no formula may depend on it, and on all components of omega", ""
+def _whole_motion(scene: Scene, structure: Structure) -> RuleOutcome:
+    why = "a torque that is no formula may depend on it, and on all components of omega"
+    return RuleOutcome(structure, False, why)
 
 
-def _terms_when_driven(scene: Scene, structure: Structure) -> Outcome:
+def _terms_when_driven(scene: Scene, structure: Structure) -> RuleOutcome:
     if not scene.torques:
-        return structure, False, "the torque that is no formula acts alone", ""
+        return RuleOutcome(structure, False, "the torque that is no formula acts alone")
     return _special_constants(scene, structure)
 
 
-_RULES_WHEN_DRIVEN: tuple[tuple[str, Callable[[Scene, Structure], Outcome]], ...] = (
+_RULES_WHEN_DRIVEN: tuple[tuple[str, Callable[[Scene, Structure], RuleOutcome]], ...] = (
     *RULES[:2],
     ("torque terms", _terms_when_driven),
     ("attitude", _whole_motion),

@@ -56,19 +56,22 @@ class Binding:
         constants = {"pi": number.PI, **(known or {}), **plan.constants}
         fixed = {name: value for name, value in constants.items() if name not in START_CONSTANTS}
         values = [value_of(node, constants).as_integer_ratio() for _, node in parameters]
-        self._rounded, self._numbers = rounded, [rounded(*value) for value in values]
+        self._rounded, self._numbers = rounded, [x for value in values for x in rounded(*value)]
+        length = len(rounded(1, 1))
         self._moving = [
-            (k, _Moving(folded(node, fixed))) for k, (_, node) in enumerate(parameters) if names(node) & START_CONSTANTS
+            (slice(length * k, length * (k + 1)), _Moving(folded(node, fixed)))
+            for k, (_, node) in enumerate(parameters)
+            if names(node) & START_CONSTANTS
         ]
 
     def __call__(self, plan: Plan) -> list[float]:
         """Return the numbers for a plan of the structure: exact arithmetic, one rounding each."""
-        found = self._numbers
+        found = self._numbers.copy()
         if self._moving:
-            found, constants = list(found), plan.constants
-            for k, moving in self._moving:
-                found[k] = self._rounded(*moving.ratio(constants))
-        return [value for values in found for value in values]
+            constants = plan.start_constants
+            for place, moving in self._moving:
+                found[place] = self._rounded(*moving.ratio(constants))
+        return found
 
 
 class _Moving:

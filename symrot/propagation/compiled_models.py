@@ -7,12 +7,13 @@ compiler works on the rates, the invariants are proven.
 import json
 import os
 from collections.abc import Callable, Mapping, Sequence
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from symrot.build import cache as library
 from symrot.build.sources import PACKAGE
+from symrot.dynamics.structure import Structure
 from symrot.errors import InputError
 from symrot.formula.program import Program
 from symrot.formula.switches import CHANGING
@@ -66,7 +67,12 @@ def _version() -> str:
 
 def kernel_key(plan: Plan) -> str:
     """Return the key of a plan's kernel in the cache."""
-    return f"scene kernel\n{json.dumps(plan.structure, sort_keys=True)}\n{_version()}"
+    return f"scene kernel\n{_structure_text(plan.structure)}\n{_version()}"
+
+
+@lru_cache(maxsize=64)
+def _structure_text(structure: Structure) -> str:
+    return json.dumps(structure.to_json())
 
 
 def scene_kernel(plan: Plan, on_rates: Callable[[Program, str], object] = lambda rates, source: None) -> SceneKernel:
@@ -164,7 +170,7 @@ def _unit(plan: Plan, source: str, parameters: int, rates: Callable[[], Program]
 
 def has_formulas(plan: Plan) -> bool:
     """Return whether a torque is given by formulas, which may have features that no step sees."""
-    return any(torque["kind"] == "expression" for torque in plan.structure["torques"])
+    return any(plan.structure.formula_torques)
 
 
 def grows_late(plan: Plan) -> bool:
@@ -172,7 +178,7 @@ def grows_late(plan: Plan) -> bool:
 
     Such a motion has no coefficient within the order of a series; steps of single motions are checked for it.
     """
-    formulas = [text for torque in plan.structure["torques"] for text in torque.get("formulas", ())]
+    formulas = [text for torque in plan.structure.formula_torques for text in torque.formulas]
     return any(_degree(parse(text)) >= 3 for text in formulas)
 
 

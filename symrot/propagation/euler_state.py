@@ -22,6 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from symrot.build import cache as library
 from symrot.conventions import parse_sequence
+from symrot.dynamics.structure import Structure
 from symrot.errors import InputError, PropagationError
 from symrot.kinematics import conversions
 from symrot.planning.plan import Plan
@@ -45,7 +46,6 @@ SWITCH = 0.3  # |det B| below which the sequence is changed; the partner then ha
 METHODS = ("auto", "taylor", "dop853")
 ROWS = 8  # steps between looks at the regularity
 NAMES = ("phi", "theta", "psi")
-SPACE: dict[str, Any] = {"attitude": True, "initial_quaternion": None, "planar": None}
 
 
 def partner(sequence: str) -> str:
@@ -102,9 +102,8 @@ class EulerMotion(Motion):
     movable = False  # angles start anew on the way, each time at a time of the scene
 
     def __init__(self, plan: Plan, method: str, tolerance: float, sequence: str, switching: bool) -> None:
-        if plan.structure["planar"] is not None:
-            plan = replace(plan, structure=plan.structure | {"constant": {}})
-        plan = replace(plan, structure=plan.structure | SPACE)
+        structure = plan.structure if plan.structure.planar is None else plan.structure.unreduced()
+        plan = replace(plan, structure=replace(structure, attitude=True))
         for name in NAMES:
             if name in plan.constants:
                 raise InputError(f"state: expected a scene without a constant {name!r}, which is the name of an angle")
@@ -126,7 +125,7 @@ class EulerMotion(Motion):
 
     def _kernel_of(self, sequence: str) -> _Kernel:
         if sequence not in self._kernels:
-            structure = self.plan.structure | {"sequence": sequence}
+            structure = replace(self.plan.structure, sequence=sequence)
             key = f"angles {kernel_key(replace(self.plan, structure=structure))}"
             saved = library.fetch(key)
             if saved is None:
@@ -262,7 +261,7 @@ class EulerMotion(Motion):
         return at
 
 
-def _derived(structure: dict[str, Any]) -> Mapping[str, Any]:
+def _derived(structure: Structure) -> Mapping[str, Any]:
     """Return the saved form of the equations of motion in Euler angles."""
     from symrot.codegen.scene_kernels import RATES, rates_program, rates_source
     from symrot.dynamics.equations import equations_of_motion

@@ -37,7 +37,6 @@ CALLBACK = ctypes.CFUNCTYPE(
     ctypes.c_int, ctypes.c_double, ctypes.POINTER(ctypes.c_double), ctypes.POINTER(ctypes.c_double),
     ctypes.POINTER(ctypes.c_double), ctypes.c_void_p,
 )  # fmt: skip
-WHOLE: dict[str, Any] = {"planar": None, "initial_quaternion": None, "constant": {}, "attitude": True}
 SAMPLES_PER_STEP = 8.0  # of a table: a longer step could pass over what they say
 DEFECT = 1e4  # times the error allowed in a step: more, and the dense output missed something inside
 BEND = 2.0**-50  # of the torque: what the last bits of samples bend their spline by, from one to the next
@@ -215,7 +214,7 @@ class DrivenMotion(Motion):
     def __init__(
         self, plan: Plan, tolerance: float, drive: Any, in_space: bool, switching: Sequence[float], max_step: float
     ) -> None:
-        plan = replace(plan, structure=plan.structure | WHOLE)
+        plan = replace(plan, structure=replace(plan.structure.unreduced(), attitude=True))
         self.plan, self.tolerance = plan, tolerance
         self.choice = DRIVEN
         self.start = float(plan.scene.span.start)

@@ -1,10 +1,9 @@
 """Choose the method by which a motion is followed, and say why."""
 
-from collections.abc import Callable
 from typing import NamedTuple
 
 from symrot.build import cache as library
-from symrot.closed_form.registry import FORMS, exact_form
+from symrot.closed_form.registry import FORMS, Form, exact_form
 from symrot.errors import CompilerError, InputError
 from symrot.planning.plan import Plan
 from symrot.propagation.steppers.smoothness import roughness
@@ -23,31 +22,25 @@ METHODS = {
 
 
 class Choice(NamedTuple):
-    """A method and why it was taken."""
+    """A method, the reason for it and, if it is ``exact``, the closed form of the motion."""
 
     method: str
     reason: str
+    form: Form | None = None
 
 
-def _closed_form(plan: Plan) -> str:
-    form = exact_form(plan.scene)
-    return form.name if form else ""
-
-
-def _series(plan: Plan) -> str:
-    if library.missing() or roughness(plan):
-        return ""
-    return f"the torque is smooth{' between its switches' if plan.switches else ''}, and a C compiler is there"
-
-
-AUTO: tuple[tuple[str, Callable[[Plan], str]], ...] = (
-    ("constant", lambda plan: "" if plan.states else "the plan leaves no state to integrate"),
-    ("exact", _closed_form),
-    ("taylor", _series),
-    ("dop853", lambda plan: "" if library.missing() else f"{roughness(plan)}, and a C compiler is there"),
-    ("scipy", lambda plan: library.missing()),
-)
-"""What ``auto`` tries, in order: (method, condition); a condition returns the reason to take it, or nothing."""
+def _automatic(plan: Plan) -> Choice:
+    """Return the first that fits of no method at all, a closed form, Taylor series, Dormand-Prince and SciPy."""
+    if not plan.states:
+        return Choice("constant", "the plan leaves no state to integrate")
+    if form := exact_form(plan.scene):
+        return Choice("exact", form.name, form)
+    if no_compiler := library.missing():
+        return Choice("scipy", no_compiler)
+    if rough := roughness(plan):
+        return Choice("dop853", f"{rough}, and a C compiler is there")
+    between = " between its switches" if plan.switches else ""
+    return Choice("taylor", f"the torque is smooth{between}, and a C compiler is there")
 
 
 DRIVEN = Choice("dop853", "a torque that is no formula has no Taylor series")
@@ -69,7 +62,7 @@ def choose_method(plan: Plan, method: str = "auto") -> Choice:
             raise InputError(f"method: expected 'auto' or 'dop853' for a torque that is no formula, got {method!r}")
         return DRIVEN
     if method == "auto":
-        return next(Choice(name, reason) for name, condition in AUTO if (reason := condition(plan)))
+        return _automatic(plan)
     if method == "exact":
         form = exact_form(plan.scene)
         if form is None:
@@ -77,7 +70,7 @@ def choose_method(plan: Plan, method: str = "auto") -> Choice:
                 f"method: expected a motion with a closed form ({', '.join(form.name for form in FORMS)}) for 'exact', "
                 f"got the scene {plan.scene.name!r}"
             )
-        return Choice(method, form.name)
+        return Choice(method, form.name, form)
     name, colon, solver = method.partition(":")
     if name == "scipy" and solver:
         from symrot.propagation.steppers.fallback import method_name

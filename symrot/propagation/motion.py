@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from symrot.closed_form.registry import Exact, Form, exact_form
+from symrot.closed_form.registry import Exact, Form
 from symrot.errors import PropagationError
-from symrot.planning.plan import Plan, Row, general_structure
+from symrot.planning.plan import Plan, RuleOutcome
 from symrot.planning.scene_kernel import EPOCH, SceneKernel
 from symrot.propagation import time_shift as epoch
 from symrot.propagation.array_functions import ARRAY_FUNCTIONS
@@ -34,12 +34,6 @@ __all__ = ["Motion", "MotionInParts", "on_own_clock", "python_rates", "unreduced
 
 Floats = NDArray[np.float64]
 
-UNREDUCED: dict[str, Any] = {
-    "planar": None,
-    "initial_quaternion": None,
-    "constant": {},
-}  # what an exact motion returns: all of it
-
 
 def python_rates(plan: Plan, kernel: SceneKernel) -> Callable[..., Any]:
     """Return the emitted NumPy kernel of the rates of a plan as ``f(t, y, p)``."""
@@ -51,14 +45,15 @@ def python_rates(plan: Plan, kernel: SceneKernel) -> Callable[..., Any]:
 
 def unreduced(plan: Plan, form: Form) -> Plan:
     """Return the plan of a motion in closed form, which has all its components and skips the stepping."""
-    rows, before = [], general_structure(plan.scene)
+    structure = plan.structure.unreduced()
+    rows, before = [], structure.reductions
     for row in plan.rows:
-        if all(row.structure[key] == before[key] for key in UNREDUCED):
+        if row.structure.reductions == before:
             rows.append(row)
-        before = row.structure
-    structure = plan.structure | UNREDUCED
+        before = row.structure.reductions
     why = f"the motion has a closed form: {form.name}"
-    return replace(plan, structure=structure, rows=(*rows, Row("stepping", True, why, form.derivation, structure)))
+    rows.append(RuleOutcome(structure, True, why, form.derivation, "stepping"))
+    return replace(plan, structure=structure, rows=tuple(rows))
 
 
 OF_START = (
@@ -85,10 +80,9 @@ class Motion:
         self.plan, self.choice, self.tolerance = plan, choice, tolerance
         self.library: Path | None = None
         if choice.method == "exact":
-            form = exact_form(plan.scene)
-            assert form is not None
-            form.begin()
-            self.form, self.plan = form, unreduced(plan, form)
+            assert choice.form is not None
+            choice.form.begin()
+            self.form, self.plan = choice.form, unreduced(plan, choice.form)
         elif choice.method == "dop853":
             self.kernel, self.library = compiled(plan)
         elif choice.method == "taylor":
@@ -142,11 +136,13 @@ class Motion:
     def stepping(self) -> Task:
         """The motion as its stepper in C follows it: checked once, followed as often as asked."""
         assert self.library is not None
+        parameters = self.taylor_parameters if self.choice.method == "taylor" else self.rate_parameters
+        if self.first and not self._on_clocks:  # whose clock would be that of another start
+            return self.first.stepping.from_start(parameters, self.plan.initial_state)
+        start = (parameters, self.plan.initial_state, self.start)
         if self.choice.method == "taylor":
-            start = (self.taylor_parameters, self.plan.initial_state, self.start)
             return taylor.task(self.library, *start, self.tolerance)
         clock = (lambda since: self._clock(since)) if self._on_clocks else None
-        start = (self.rate_parameters, self.plan.initial_state, self.start)
         return dop853.task(self.library, *start, self.tolerance, clock=clock)
 
     @cached_property
@@ -360,7 +356,7 @@ def _stepped(motion: Motion, times: Floats, rise: bool) -> tuple[Floats, Stats]:
 
 
 def _exact_parts(motion: Motion, times: Floats, rise: bool) -> tuple[tuple[Floats, ...], Stats]:
-    attitude, exact = motion.plan.structure["attitude"], motion.exact
+    attitude, exact = motion.plan.structure.attitude, motion.exact
     began, start = perf_counter(), motion.start
     omega, quaternion = exact.evaluate(times - start if start else times, quaternion=attitude)
     assert omega is not None

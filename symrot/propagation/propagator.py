@@ -3,6 +3,7 @@
 from fractions import Fraction
 from functools import cached_property
 from math import isfinite, isqrt
+from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -126,7 +127,7 @@ class Propagator:
         motion = self._motion
         if omega is not None or quaternion is not None:
             motion = self.motion_from(read_start(self.scene, omega, quaternion))
-        message = f"{motion.choice.method}: {motion.choice.reason}"
+        message, began = f"{motion.choice.method}: {motion.choice.reason}", perf_counter()
         try:
             if events is not None:
                 from symrot.propagation.events.eventful import follow
@@ -136,10 +137,10 @@ class Propagator:
                 return Trajectory(motion, found.t, found.states, motion.choice.method, found.stats, message, found)
             states, stats = motion.follow(times, rise)
         except (PropagationError, KeyboardInterrupt) as error:
-            raise self._cut_off(error, motion, times) from None
+            raise self._cut_off(error, motion, times, began) from None
         return Trajectory(motion, times, states, motion.choice.method, stats, message)
 
-    def _cut_off(self, error: BaseException, motion: Motion, times: Floats) -> BaseException:
+    def _cut_off(self, error: BaseException, motion: Motion, times: Floats, began: float) -> BaseException:
         """Return what ends a motion early, with the trajectory of the samples before."""
         samples: Samples | None = getattr(error, "samples", None)
         ended: BaseException = error
@@ -147,7 +148,7 @@ class Propagator:
             ended = PropagationError(f"{self.scene.name}: {error}")
         if samples is not None:
             numbers = np.argsort(samples.numbers)  # as they were asked for
-            states, stats = samples.states[numbers], Stats(0, 0, 0, 0.0)
+            states, stats = samples.states[numbers], Stats(*samples.cost, perf_counter() - began)
             message = str(ended) or "interrupted"
             part = Trajectory(motion, times[samples.numbers[numbers]], states, motion.choice.method, stats, message)
             part.status = -1
@@ -207,15 +208,14 @@ def _unit(q: list[float]) -> tuple[Fraction, ...]:
         return number.unit(q)
     shift = max(0, _UNIT_BITS - square.bit_length() // 2)
     norm, found = isqrt(square << 2 * shift), []
+    length = _UNIT_BITS + norm.bit_length()
     for x in tops:
-        if not x:
-            found.append(Fraction(0))
-            continue
-        bits = _UNIT_BITS + norm.bit_length() - x.bit_length()
-        top = (x << bits) // norm
-        twos = (top & -top).bit_length() - 1
-        over = bits - shift - twos
-        found.append(_lowest(top >> twos, 1 << over) if over > 0 else Fraction(top >> bits - shift))
+        bits = length - x.bit_length()
+        if bits > shift and x:
+            # odd, so that nothing cancels: the last of some 322 bits may be either
+            found.append(_lowest((x << bits) // norm | 1, 1 << bits - shift))
+        else:
+            found.append(Fraction((x << bits) // norm >> bits - shift if x else 0))
     return tuple(found)
 
 

@@ -42,7 +42,7 @@ def moved(plan: Plan, kernel: SceneKernel) -> tuple[Plan, SceneKernel]:
     """Return a plan and its kernel for a clock that shows 0 at an epoch; the same where no time stands in the rates."""
     if not kernel.rates.uses("t"):
         return plan, kernel
-    plan = replace(plan, structure=plan.structure | {"clock": EPOCH})
+    plan = replace(plan, structure=replace(plan.structure, clock=EPOCH))
     saved = library.fetch(kernel_key(plan))
     if saved is not None:
         return plan, SceneKernel(json.loads(saved))

@@ -117,7 +117,7 @@ class Trajectory:
     @property
     def has_attitude(self) -> bool:
         """Whether the attitude was computed; the plan skips it when nothing asks for it."""
-        return bool(self._motion.plan.structure["attitude"])
+        return self._motion.plan.structure.attitude
 
     def _need_attitude(self) -> None:
         if not self.has_attitude:

@@ -3,6 +3,7 @@
 from collections import Counter
 from typing import Any
 
+from symrot.dynamics.structure import Structure
 from symrot.planning.plan import Plan
 from symrot.report.layout import apart, columns, one_line, room
 from symrot.scene.scene import QUANTITIES
@@ -13,7 +14,7 @@ HEAD = ("item", "", "rule", "derivation", "operations", "saved")
 FREE = frozenset({"neg"})  # a sign is part of the addition or multiplication it stands in
 
 
-def _operations(structure: Any) -> Counter[str]:
+def _operations(structure: Structure) -> Counter[str]:
     """Count the operations of one evaluation of the rates of a structure."""
     from symrot.codegen.scene_kernels import rates_program
     from symrot.dynamics.equations import equations_of_motion
@@ -47,13 +48,12 @@ def _ladder(plan: Plan) -> list[dict[str, Any]]:
 def _others(plan: Plan) -> list[dict[str, Any]]:
     """Return the rows that no rule of the plan decides: states, motion, outputs, derivation."""
     from symrot.build import cache as library
-    from symrot.closed_form.registry import exact_form
     from symrot.propagation.compiled_models import kernel_key
     from symrot.propagation.method import choose_method
 
     choice, asked = choose_method(plan), plan.scene.output.quantities
     missing = [name for name in QUANTITIES if name not in asked]
-    form = exact_form(plan.scene) if choice.method == "exact" else None
+    form = choice.form
     stepped = f"the motion has a closed form: {form.name}" if form else f"{choice.method}: {choice.reason}"
     known = library.fetch(kernel_key(plan)) is not None
     kernel = "this structure is in the cache" if known else "the first run derives and compiles, later ones load"

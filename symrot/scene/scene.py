@@ -99,7 +99,8 @@ class Scene:
         Parameters
         ----------
         content : mapping
-            As DESIGN.md section 5; numbers may be int, Fraction, Decimal, text, or float (its exact binary value).
+            As ``docs/scene_format.md`` says; numbers may be int, Fraction, Decimal, text, or float (its exact
+            binary value).
         where : str
             Name of the scene, put in front of every complaint.
         table_folders : str, Path or sequence of them

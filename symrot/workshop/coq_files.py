@@ -59,7 +59,7 @@ def lines(directory: Path, result: CoqResult | None) -> list[str]:
         return [f"{count} theorems written to {directory}, not checked: {MISSING}"]
     table = columns([(theorem.outcome, theorem.name, theorem.file) for theorem in result.theorems])
     if result:
-        count = f"{len(result.theorems)} theorems hold, checked by Coq {result.version} in {result.seconds:.0f} s; "
-        return [*table, "", f"{count}nothing admitted; only the axioms of Coq's real numbers are used:",
+        outcome = f"{len(result.theorems)} theorems hold, checked by Coq {result.version} in {result.seconds:.0f} s; "
+        return [*table, "", f"{outcome}nothing admitted; only the axioms of Coq's real numbers are used:",
                 *(f"  {axiom}" for axiom in result.axioms)]  # fmt: skip
     return [*table, "", *result.problems]

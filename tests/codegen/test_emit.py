@@ -27,6 +27,7 @@ from symrot.codegen.printing.banner import Description
 from symrot.codegen.printing.c_source import c_header, c_source
 from symrot.codegen.scene_kernels import derive_scene_kernel, rates_program
 from symrot.dynamics.equations import equations_of_motion
+from symrot.dynamics.structure import PrincipalInertia, Structure
 from symrot.errors import InputError
 from symrot.formula.program import Argument, Program, Signature
 from symrot.formula.tree import children, evaluate, names, text
@@ -105,13 +106,10 @@ def counts(name):
 
 
 def test_a_free_body_costs_at_most_6_multiplications_and_with_attitude_24():
-    structure = {
-        "inertia": {"form": "principal", "moments": "ABC"}, "torques": [], "attitude": False, "planar": None,
-        "initial_quaternion": None, "constant": {},
-    }  # fmt: skip
+    structure = Structure(PrincipalInertia(), (), attitude=False)
     rates = rates_program(equations_of_motion(structure), "rates").program.operations()
     assert rates["mul"] <= 6 and rates["div"] == 0
-    full = rates_program(equations_of_motion(structure | {"attitude": True}), "rates").program.operations()
+    full = rates_program(equations_of_motion(replace(structure, attitude=True)), "rates").program.operations()
     assert full["mul"] <= 24 and full["div"] == 0
 
 

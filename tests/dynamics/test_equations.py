@@ -7,6 +7,14 @@ from sympy import symbols as make
 from symrot import symbols
 from symrot.dynamics.equations import angular_acceleration, equations_of_motion, euler_equations, inverse
 from symrot.dynamics.invariants import find_invariants, rate_along
+from symrot.dynamics.structure import (
+    FieldTorque,
+    FormulaTorque,
+    InertiaTensor,
+    Pattern,
+    PrincipalInertia,
+    Structure,
+)
 from symrot.dynamics.torque_kinds import TORQUE_KINDS
 from symrot.dynamics.torques import LAWS, Motion, field_value, formula, torque_law, torque_of_potential
 from symrot.errors import InputError
@@ -17,6 +25,8 @@ from symrot.kinematics.quaternion import dcm_of, quaternion_rates, unit_relation
 OMEGA = Matrix(symbols.omega_b)
 Q = symbols.quaternion
 UNIT = [unit_relation(Q)]
+FREE, ZERO = Pattern.FREE, Pattern.ZERO
+VECTOR = (FREE,) * 3
 TENSOR = Matrix(3, 3, lambda i, j: symbols.moments[i] if i == j else symbols.products[i + j - 1])
 
 
@@ -50,12 +60,17 @@ def test_the_inverse_of_a_tensor():
 
 def general(kind):
     """Every constant of a kind left free."""
-    shapes = {"scalar": "*", "vector": ["*"] * 3, "scalar or vector": ["*"] * 3, "attitude": ["*"] * 4}
-    fields = {f.name: shapes[f.shape] for f in TORQUE_KINDS[kind].fields if f.shape in shapes and f.name != "gravity"}
-    return {"kind": kind, "prefix": "", "fields": fields}
+    shapes = {"scalar": FREE, "vector": VECTOR, "scalar or vector": VECTOR, "attitude": (FREE,) * 4}
+    fields = [(f.name, shapes[f.shape]) for f in TORQUE_KINDS[kind].fields if f.shape in shapes and f.name != "gravity"]
+    return FieldTorque(kind, "", tuple(fields))
+
+
+def torque(kind, **fields):
+    return FieldTorque(kind, "", tuple(fields.items()))
 
 
 MOTION = Motion(OMEGA, Q, TENSOR)
+DAMPING = torque("damping", linear=VECTOR, quadratic=ZERO)
 WITH_POTENTIAL = ["gravity", "gravity_gradient", "spring"]
 
 
@@ -73,8 +88,8 @@ def test_a_wrong_torque_is_not_the_gradient():
 
 def test_damping_only_takes_energy():
     """tau . omega is minus a sum of squares with the coefficients."""
-    law = torque_law(general("damping") | {"fields": {"linear": ["*", "*", "*"], "quadratic": "0"}}, MOTION)
-    linear = field_value("linear", ["*", "*", "*"])
+    law = torque_law(DAMPING, MOTION)
+    linear = field_value("linear", VECTOR)
     assert is_zero(law.torque.dot(OMEGA) + sum(c * w**2 for c, w in zip(linear, OMEGA, strict=True)))
 
 
@@ -86,13 +101,7 @@ def test_gravity_gradient_vanishes_for_a_sphere_and_about_a_symmetry_axis():
 
 
 def test_an_expression_in_space_is_turned_into_the_body():
-    structure = {
-        "kind": "expression",
-        "prefix": "",
-        "formulas": ["k*t", "0", "0"],
-        "parameters": ["k"],
-        "frame": "space",
-    }
+    structure = FormulaTorque("", ("k*t", "0", "0"), ("k",), "space")
     k = symbols.constant("k")
     expected = Matrix(dcm_of(Q)).T * Matrix([k * symbols.t, 0, 0])
     assert torque_law(structure, MOTION).torque == expected
@@ -105,31 +114,19 @@ def test_every_kind_has_a_law():
 
 # --- invariants -------------------------------------------------------------------------------------------------------
 
-PRINCIPAL = {"form": "principal", "moments": "ABC"}
-SYMMETRIC = {"form": "principal", "moments": "AAC"}
-GRAVITY = {
-    "kind": "gravity",
-    "prefix": "",
-    "fields": {"weight": "*", "center_of_mass": ["0", "0", "*"], "direction": ["0", "0", "-1"]},
-}
-TILTED = {
-    "kind": "gravity",
-    "prefix": "",
-    "fields": {"weight": "*", "center_of_mass": ["*", "*", "*"], "direction": ["*", "*", "*"]},
-}
-ORBIT = {"kind": "gravity_gradient", "prefix": "", "fields": {"mean_motion": "*"}}
-DAMPING = {"kind": "damping", "prefix": "", "fields": {"linear": ["*", "*", "*"], "quadratic": "0"}}
-AXIAL_DAMPING = {"kind": "damping", "prefix": "", "fields": {"linear": ["*", "*", "0"], "quadratic": "0"}}
-PUSH = {"kind": "constant_space", "prefix": "", "fields": {"torque": ["0", "0", "*"]}}
-ROTOR = {"kind": "rotor", "prefix": "", "fields": {"angular_momentum": ["*", "*", "*"]}}
+PRINCIPAL = PrincipalInertia()
+SYMMETRIC = PrincipalInertia("AAC")
+GRAVITY = torque("gravity", weight=FREE, center_of_mass=(ZERO, ZERO, FREE), direction=(ZERO, ZERO, Pattern.MINUS_ONE))
+TILTED = torque("gravity", weight=FREE, center_of_mass=VECTOR, direction=VECTOR)
+ORBIT = torque("gravity_gradient", mean_motion=FREE)
+AXIAL_DAMPING = torque("damping", linear=(FREE, FREE, ZERO), quadratic=ZERO)
+PUSH = torque("constant_space", torque=(ZERO, ZERO, FREE))
+ROTOR = torque("rotor", angular_momentum=VECTOR)
 ALL_L = {f"angular momentum {axis}" for axis in "xyz"}
 
 
 def structure_of(inertia, *torques, **others):
-    return {
-        "inertia": inertia, "torques": list(torques), "attitude": True, "planar": None, "initial_quaternion": None,
-        "constant": {},
-    } | others  # fmt: skip
+    return Structure(inertia, torques, **others)
 
 
 @pytest.mark.parametrize(
@@ -138,7 +135,7 @@ def structure_of(inertia, *torques, **others):
         (structure_of(PRINCIPAL), {"energy", *ALL_L}),
         (structure_of(PRINCIPAL, attitude=False), {"energy", "angular momentum"}),
         (structure_of(SYMMETRIC), {"energy", *ALL_L, "spin omega_3"}),
-        (structure_of({"form": "tensor", "entries": ["I_xx", "I_xy", "I_yy", "I_zz"]}), {"energy", *ALL_L}),
+        (structure_of(InertiaTensor(("I_xx", "I_xy", "I_yy", "I_zz"))), {"energy", *ALL_L}),
         (structure_of(SYMMETRIC, GRAVITY), {"energy", "angular momentum z", "spin omega_3"}),
         (structure_of(PRINCIPAL, GRAVITY), {"energy", "angular momentum z"}),
         (structure_of(PRINCIPAL, TILTED), {"energy", "vertical angular momentum"}),
@@ -164,7 +161,7 @@ def test_the_rate_of_a_quantity_that_is_not_kept_is_not_zero():
 
 def test_planar_motion_is_the_full_motion():
     """The reduced equations of a physical pendulum solve the full ones."""
-    level = structure_of(SYMMETRIC, GRAVITY, planar=0, initial_quaternion=["*", "*", "0", "0"])
+    level = structure_of(SYMMETRIC, GRAVITY, planar=0, initial_quaternion=(FREE, FREE, ZERO, ZERO))
     reduced, full = equations_of_motion(level), equations_of_motion(structure_of(SYMMETRIC, GRAVITY))
     put_in = dict(zip(Q, reduced.motion.quaternion, strict=True)) | dict(
         zip(OMEGA, reduced.motion.omega_b, strict=True)

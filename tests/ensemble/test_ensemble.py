@@ -20,6 +20,7 @@ from symrot.build import cache as library
 from symrot.codegen.taylor.coefficients import coefficients
 from symrot.codegen.taylor.ensemble_source import lane_definitions, multiplications
 from symrot.codegen.taylor.recurrences import recurrences
+from symrot.dynamics.structure import PrincipalInertia
 from symrot.ensemble import lanes
 from symrot.ensemble.variation import read_variation
 from symrot.errors import InputError
@@ -389,13 +390,13 @@ def test_the_attitude_is_left_out_where_nobody_asks_for_it():
 )  # fmt: skip
 def test_the_plan_covers_all_bodies_and_no_more(moments, letters):
     variation = read_variation(scene(), None, None, {"principal": moments})
-    assert variation.plan().structure["inertia"]["moments"] == letters
+    assert variation.plan().structure.inertia == PrincipalInertia(letters)
 
 
 def test_the_plan_does_not_trust_the_start_of_the_scene():
     """The scene turns about one axis; the trajectories need not."""
     flat = scene(initial={"omega": [0, 0, 1]})
-    assert read_variation(flat, [[1, 2, 3]], None, None).plan().structure["planar"] is None
+    assert read_variation(flat, [[1, 2, 3]], None, None).plan().structure.planar is None
     found = symrot.propagate_ensemble(flat, omega=[[1, 2, 3.0], [0, 0, 1]], method="taylor", t=[1.0])
     exact = symrot.propagate_ensemble(flat, omega=[[1, 2, 3.0], [0, 0, 1]], t=[1.0])
     assert abs(found.omega - exact.omega).max() < 1e-12

@@ -88,7 +88,7 @@ def test_other_limits_of_a_clip_are_not(formula):
 
 @needs_compiler
 def test_a_clip_of_formulas_that_cross_takes_the_lower_limit():
-    """As scenes/README.md says: max(low, min(u, high))."""
+    """As docs/scene_format.md says: max(low, min(u, high))."""
     scene = read("clip(t/10, 1 - t, t - 1)")
     omega = symrot.propagate(scene).omega[-1, 2]  # before t = 1 the limits have crossed: the torque is 1 - t
     assert omega == pytest.approx(1 + (1 / 2) / 3, rel=1e-11)

@@ -2,6 +2,7 @@
 
 import pytest
 
+from symrot.dynamics.structure import PrincipalInertia
 from symrot.errors import InputError
 from symrot.planning.plan import RULES, make_plan
 from symrot.scene.file import names_with_kernels
@@ -98,8 +99,8 @@ def test_a_body_that_is_symmetric_by_irrational_numbers_is_symmetric():
         for angle in (0, 60, 120)
     ]
     plan = plan_of({"part": parts}, [1, 0, 1])
-    assert plan.structure["inertia"]["form"] == "principal"
-    assert len(set(plan.structure["inertia"]["moments"])) == 2
+    assert isinstance(plan.structure.inertia, PrincipalInertia)
+    assert len(set(plan.structure.inertia.moments)) == 2
 
 
 @pytest.mark.parametrize("name", names_with_kernels())

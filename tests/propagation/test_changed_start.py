@@ -114,7 +114,7 @@ def test_starts_of_one_key_have_one_plan(name):
 
 LOOKED_UP = [
     (free_body, "principal_axes"), (heavy_top, "quaternion_of"), (library, "build"), (library, "built"),
-    (library, "compiler"), (library, "missing"), (library, "fetch"), (taylor, "order_for"), (motion, "exact_form"),
+    (library, "compiler"), (library, "missing"), (library, "fetch"), (taylor, "order_for"),
     (motion, "scene_kernel"), (choose, "exact_form"), (propagator, "make_plan"), (propagator, "choose_method"),
     (kernels, "scene_kernel"),
 ]  # fmt: skip

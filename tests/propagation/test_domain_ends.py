@@ -31,3 +31,15 @@ def test_a_motion_ends_where_its_torque_has_no_value(method, stop):
     assert set(reached.t) <= {0.25, 0.5}
     assert reached.omega[:, 2] == pytest.approx(2 / 3 * (1 - (1 - reached.t) ** 1.5), abs=2e-8)
     assert np.isfinite(reached.quaternion).all()
+
+
+@needs_compiler
+@pytest.mark.parametrize("method", ["taylor", "dop853", "scipy:RK45"])
+@pytest.mark.parametrize("torque", ["sqrt(1 - t)", "sqrt(1 - t) + step(t - 1/2)"])
+@pytest.mark.parametrize("times", [[0.25, 0.75, 1.2], [0.25, -0.5, 1.2]])
+def test_a_motion_that_is_cut_off_says_what_it_cost(torque, method, times):
+    with pytest.raises(PropagationError) as caught:
+        symrot.propagator(scene(torque), method, 1e-9)(times)
+    stats = caught.value.trajectory.stats
+    assert stats.accepted > 3 and stats.evaluations > 3 and stats.seconds > 0
+    assert f"{stats.accepted} steps" in repr(caught.value.trajectory)

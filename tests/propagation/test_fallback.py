@@ -97,7 +97,7 @@ def test_a_pole_ends_in_a_sentence_and_keeps_the_samples_before_it(method):
         PropagationError, match=r"beyond t = 1\.570\d* s on the way to 4\.0 s: the step shrank"
     ) as caught:
         fallback.integrate(pole, [], [0.3], 0.0, times, 1e-7, method=method, blocks=(0, 1), scales=(0.0,))
-    numbers, states = caught.value.samples
+    numbers, states, _ = caught.value.samples
     assert numbers.tolist() == list(range(16))
     assert abs(states[:, 0] - 0.3 + 0.1 * np.log(np.cos(times[:16]))).max() < 20 * 1e-7
 
@@ -106,7 +106,7 @@ def test_a_state_that_grows_without_bound_does_not_loosen_the_samples_before():
     times = np.linspace(0.0, 4.0, 41)  # 1/(1 - t/2): the largest size on the way is that of the pole
     with pytest.raises(PropagationError, match=r"on the way to 4\.0 s") as caught:
         fallback.integrate(lambda t, y, p: 0.5 * y * y, [], [1.0], 0.0, times, 1e-7, blocks=(0, 1), scales=(0.0,))
-    numbers, states = caught.value.samples
+    numbers, states, _ = caught.value.samples
     assert numbers.tolist()[:20] == list(range(20))
     exact = 1.0 / (1.0 - 0.5 * times[:15])
     assert abs(states[:15, 0] / exact - 1.0).max() < 20 * 1e-7

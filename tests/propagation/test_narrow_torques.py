@@ -98,6 +98,29 @@ def in_angles(made, method, stop):
     return symrot.propagator(made, method, 1e-12, state="zyx")([stop]).omega[0, 2]
 
 
+@pytest.mark.parametrize("method", STEPPED)
+def test_dense_output_reaches_the_last_sample(method):
+    """Though the end of the last step, as a sum of two doubles, is not where that sample is."""
+    made = symrot.Scene.from_dict({
+        "schema": 1, "body": {"principal": [1, 1, 1]}, "initial": {"omega": [0, 0, 0]}, "span": {"t": ["-41.01", -40]},
+        "torque": [{"kind": "expression", "torque": ["0", "0", "1000/cosh((t + 43.091)*1000)**2"]}],
+    })  # fmt: skip
+    trajectory = symrot.propagator(made, method, 1e-7)([-43.0943, 2.14])
+    assert trajectory.sol(trajectory.t)[2] == pytest.approx(trajectory.omega[:, 2], abs=1e-9)
+
+
+@pytest.mark.parametrize("method", STEPPED)
+@pytest.mark.parametrize("number", ["m", "1e11"])
+@pytest.mark.parametrize("large", ["1 + tanh((t-2)*1000)", "tanh((t-2)*1000) - tanh((t-3)*1000)"])
+def test_a_large_torque_that_is_zero_leaves_no_rounding(method, large, number):
+    """Written out, ``m + m*tanh(u) + ...`` would leave the rounding of m, 1e-5 N m, from the start on."""
+    small = "(1 + tanh((t-1/2)*10))/3"
+    known = {"m": 10**11} if number == "m" else {}
+    made = scene(f"{number}*({large}) - {small}", known, (0, 0, 0), 1.0, (1, 1, 1))
+    truth = -IMPULSES["(1+tanh((t-c)/w))/2"](np.array([1.0]), 0.5, 0.1)[0] * 2 / 3
+    assert abs(symrot.propagator(made, method, 1e-12)([1.0]).omega[0, 2] - truth) < ALLOWED * 1e-12
+
+
 SCIPY = ("scipy:DOP853", "scipy:RK45", "scipy:Radau", "scipy:BDF", "scipy:LSODA")
 
 

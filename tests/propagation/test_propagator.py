@@ -10,10 +10,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from symrot.closed_form import registry
 from symrot.closed_form.registry import exact_form
 from symrot.errors import InputError
 from symrot.kinematics import conversions
 from symrot.planning.plan import Plan, make_plan
+from symrot.propagation import method as choosing
 from symrot.propagation.method import Choice
 from symrot.propagation.motion import Motion
 from symrot.propagation.propagate import propagate, propagator
@@ -105,7 +107,7 @@ def test_the_reference_file_is_what_its_program_prints():
 def test_every_simplification_leaves_the_motion_alone(name):
     """The structures after each rule of the plan, from general to special, give one motion."""
     plan = make_plan(load_scene(name))
-    structures = [row.structure for row in plan.rows if row.structure["attitude"]]
+    structures = [row.structure for row in plan.rows if row.structure.attitude]
     t = np.linspace(float(plan.scene.span.start), float(plan.scene.span.stop), 7)
     if name == "t_handle":
         t = t[:3]  # later, rounding alone separates the kernels
@@ -441,3 +443,22 @@ def test_what_has_no_taylor_series_is_refused():
     })  # fmt: skip
     with pytest.raises(InputError, match="abs"):
         propagate(scene, method="taylor")
+
+
+def test_the_closed_form_of_a_motion_is_looked_up_once(monkeypatch):
+    asked = []
+    first = registry.FORMS[0]
+    counted = first._replace(fits=lambda scene: asked.append(scene.name) or first.fits(scene))
+    monkeypatch.setattr(registry, "FORMS", (counted, *registry.FORMS[1:]))
+    exact = propagator("tumbling_prism")
+    exact()
+    assert (exact.method, asked) == ("exact", ["tumbling_prism"])
+
+
+def test_the_smoothness_of_a_torque_is_looked_up_once(monkeypatch):
+    asked, roughness = [], choosing.roughness
+    monkeypatch.setattr(choosing, "roughness", lambda plan: asked.append(plan.scene.name) or roughness(plan))
+    body, torque = {"principal": [1, 2, 3]}, {"kind": "damping", "quadratic": "1/10"}
+    content = {"schema": 1, "title": "drag", "body": body, "torque": [torque], "initial": {"omega": [1, 1, 1]}}
+    rough = propagator(Scene.from_dict({**content, "span": {"t": [0, 1]}}, "drag"))
+    assert (rough.method, asked) == ("dop853", ["drag"])

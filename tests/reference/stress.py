@@ -62,7 +62,7 @@ STRESSES = (
     Stress("S41", "instruction sets", "those of this processor", speed.s41),
     Stress("S42", "non-smooth torque", "restarted at the switches", stepping.s42),
 )
-FOUND = (  # beyond NUMERICS.md
+FOUND = (  # places where a stepper was wrong once
     Stress("F1", "dependent invariants", "I = (1,1.5,1.5000001), near steady", found.f1),
     Stress("F2", "units", "to the limits of scenes", found.f2),
     Stress("F3", "from rest", "w = 0, 1e-300 .. 1e-20, heavy", found.f3),

@@ -1,4 +1,4 @@
-"""Stress tests beyond those of NUMERICS.md: places where a stepper was wrong or could be, by every method that applies."""
+"""Stress tests F1 to F8: places where a stepper was wrong or could be, by every method that applies."""
 
 import math
 

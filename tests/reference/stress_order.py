@@ -23,7 +23,7 @@ from tests.reference.figures import Figure
 from tests.reference.stress_stepping import Stepped, asymmetric_top
 
 ORDERS, HIGHEST = (8, 12, 16, 20), 32
-ROUNDED = 1e-13  # NUMERICS.md: the slope is to be seen down to here
+ROUNDED = 1e-13  # below this error rounding hides the slope
 WIDE_ROUNDED = 1e-29  # quadruple precision is good to a few 1e-33
 
 QUADRUPLE = """

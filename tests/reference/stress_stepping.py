@@ -56,7 +56,7 @@ class Stepped:
         return self.task(tolerance, every, **more).sample(np.atleast_1d(np.asarray(t, dtype=float)))
 
     def with_tail(self, t, tail, every=0, **more):
-        """Return what :meth:`at` returns, every step allowed the same last terms, as NUMERICS.md has it."""
+        """Return what :meth:`at` returns, with the same last terms allowed in every step, as S25 and S29 demand."""
         task = self.task(1e-12, every, **more)
         task.allowed, task.pace = tail, 1e-300
         return task.sample(np.atleast_1d(np.asarray(t, dtype=float)))
@@ -90,7 +90,7 @@ def s17(long):
 
 
 MAP = {1e-6: 8e-5, 1e-8: 1e-6, 1e-10: 3e-9, 1e-12: 2e-10, 1e-14: 1e-12, 1e-16: 2e-14, 1e-17: 7e-15}
-"""The errors of a prototype for the tails of its steps, NUMERICS.md, section 2."""
+"""Errors that a prototype of the Taylor stepper reached, by the last terms that its steps allowed."""
 
 
 def s24(long):
@@ -207,7 +207,10 @@ def _end_and_span(drifts):
 
 
 def s30(long):
-    """Projected every 4 steps, as NUMERICS.md has it, and every 16, as users get it; its own figures were medians."""
+    """Compare projection every 4 steps, for which the bars were set, with every 16 steps, the setting of users.
+
+    The bars were set for medians.
+    """
     top, count, found = *((5, 8) if long else (3, 3)), []
     for every in (4, taylor.PROJECTED_EVERY):
         energies, attitudes = _long_runs(PLATE_STATES[:count], [10.0**top], every)

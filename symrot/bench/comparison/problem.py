@@ -67,7 +67,7 @@ class Problem:
     @property
     def names(self) -> list[str]:
         """The names of the quantities in a :class:`State`."""
-        attitude = [f"q{i} of t" for i in range(4)] if self.plan.structure["attitude"] else []
+        attitude = [f"q{i} of t" for i in range(4)] if self.plan.structure.attitude else []
         return [*(f"omega_{i} of t" for i in (1, 2, 3)), *attitude]
 
     @cached_property

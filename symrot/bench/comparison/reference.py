@@ -380,7 +380,7 @@ def _closed_form(problem: Problem, say: Progress, seconds: float) -> list[State]
     if exact_form(problem.scene) is None:
         raise _Unavailable("the motion has no closed form")
     trajectory = propagator(problem.scene, method="exact")(problem.ends)
-    attitude = trajectory.quaternion if problem.plan.structure["attitude"] else [None] * len(problem.ends)
+    attitude = trajectory.quaternion if problem.plan.structure.attitude else [None] * len(problem.ends)
     return list(map(State, trajectory.omega, attitude))
 
 

@@ -54,9 +54,8 @@ def _torque(d: Derivation, torque: Matrix, line: Matrix, momentum: Matrix, motio
         total * line,
         because="angular momentum lies in the plane of the vertical and the axle, and turns with it",
         named=r"\dot L_s",
-        display=r"\left( C\,\omega_3 - A\,\dot\phi \cos\theta \right) \dot\phi \sin\theta\;e, \quad \omega_3 = \dot\psi "
-        r"+ \dot\phi "
-        r"\cos\theta",
+        display=r"\left( C\,\omega_3 - A\,\dot\phi \cos\theta \right) \dot\phi \sin\theta\;e, \quad \omega_3 = "
+        r"\dot\psi + \dot\phi \cos\theta",
     )
     vertical = Matrix([0, 0, 1])
     d.step(

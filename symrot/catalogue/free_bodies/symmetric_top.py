@@ -50,7 +50,8 @@ def derive() -> Derivation:
         turning * Matrix([-symbols.omega_2, symbols.omega_1]),
         because="Euler's equations on axes 1 and 2",
         named=r"\begin{bmatrix} \dot\omega_1 \\ \dot\omega_2 \end{bmatrix}",
-        display=r"\lambda \begin{bmatrix} -\omega_2 \\ \omega_1 \end{bmatrix}, \quad \lambda = \frac{C - A}{A}\,\omega_3",
+        display=r"\lambda \begin{bmatrix} -\omega_2 \\ \omega_1 \end{bmatrix}, "
+        r"\quad \lambda = \frac{C - A}{A}\,\omega_3",
     )
     d.step(
         "Its length is constant, so the polhode is a circle.",

@@ -17,6 +17,7 @@ from symrot.checker.decide.decision import shown
 from symrot.checker.recognition.fingerprint import Outside, fingerprint
 from symrot.conventions import SEQUENCES
 from symrot.dynamics.equations import euler_equations
+from symrot.dynamics.structure import FieldPattern, FieldTorque, Pattern
 from symrot.dynamics.torques import Motion, torque_law
 from symrot.exact.decide import flatten
 from symrot.inertia import tensor
@@ -168,24 +169,23 @@ def _mechanics() -> Iterator[Named]:
     yield "parallel-axis theorem for the full tensor", page_of, full + point
 
 
-ACTING = (
-    ("gravity", "gravity on a body about a fixed point", {"weight": "*", "center_of_mass": "***", "direction": "00-"}),
-    ("gravity", "gravity in any direction", {"weight": "*", "center_of_mass": "***", "direction": "***"}),
-    ("gravity_gradient", "gravity gradient on a circular orbit", {"mean_motion": "*"}),
-    ("damping", "linear damping", {"linear": "***", "quadratic": "0"}),
-    ("spring", "torsional spring", {"stiffness": "*", "attitude": "****"}),
-)
+FREE, ZERO = Pattern.FREE, Pattern.ZERO
+VECTOR, DOWN = (FREE,) * 3, (ZERO, ZERO, Pattern.MINUS_ONE)
+ACTING: tuple[tuple[str, str, dict[str, FieldPattern]], ...] = (
+    ("gravity", "gravity on a body about a fixed point",
+     {"weight": FREE, "center_of_mass": VECTOR, "direction": DOWN}),
+    ("gravity", "gravity in any direction", {"weight": FREE, "center_of_mass": VECTOR, "direction": VECTOR}),
+    ("gravity_gradient", "gravity gradient on a circular orbit", {"mean_motion": FREE}),
+    ("damping", "linear damping", {"linear": VECTOR, "quadratic": ZERO}),
+    ("spring", "torsional spring", {"stiffness": FREE, "attitude": (FREE,) * 4}),
+)  # fmt: skip
 """Kind of torque, what it is, and which of its values are symbols."""
 
 
 def _torques() -> Iterator[Named]:
     motion = Motion(Matrix(symbols.omega_b), symbols.quaternion, diag(*symbols.principal))
-    for kind, spoken, patterns in ACTING:
-        fields = {
-            name: pattern if len(pattern) == 1 else ["-1" if mark == "-" else mark for mark in pattern]
-            for name, pattern in patterns.items()
-        }
-        law = torque_law({"kind": kind, "prefix": "", "fields": fields}, motion)
+    for kind, spoken, fields in ACTING:
+        law = torque_law(FieldTorque(kind, "", tuple(fields.items())), motion)
         source = f'symrot.dynamics.torques, kind "{kind}"'
         yield f"torque of {spoken}, body components", source, law.torque
         if law.potential is not None:

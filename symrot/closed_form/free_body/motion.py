@@ -10,6 +10,8 @@ Proof: ``derivations/free_body_attitude.md``, ``derivations/free_body_separatrix
 """
 
 from collections.abc import Callable, Sequence
+from functools import cached_property
+from typing import Any
 
 from symrot.closed_form.arithmetic.frames import quaternion_of
 from symrot.closed_form.arithmetic.pairs import SMALLEST, Number, attitude, common, numbers, quotient, spread
@@ -87,6 +89,14 @@ class Body:
         )  # the last, which the next may share
         self._attitude: tuple[Sequence[Number], list[float]] = (), []
         self.axes = None if body.given_axes else spread([*entries, *quaternion_of(body.axes)])
+        self._principal = body
+
+    @cached_property
+    def fixed(self) -> Any:
+        """Moments and axes as C reads them to find many motions' angular velocity along the axes."""
+        from symrot.closed_form.free_body.bodies import fixed_body
+
+        return fixed_body(self._principal.moments, [x for row in self._principal.axes for x in row])
 
     def along(self, omega0: Sequence[Number]) -> tuple[list[int], int]:
         """Return angular velocity along the principal axes, as integers over one denominator."""

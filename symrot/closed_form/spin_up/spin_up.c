@@ -111,7 +111,7 @@ static void swept_attitude(const spin_up *f, dd omega, dd q[4])
     far_attitude(f, omega, f->phase.way == SPIN_UP_WEAK ? dd_of(0.0) : turns, q);
 }
 
-enum { LANES = 4 }; /* motions at once, in SIMD code: each step waits for the one before */
+enum { LANES = 8 }; /* motions at once, in SIMD code: each step waits for the one before */
 
 /* Quaternions in pairs of doubles of `lanes` motions: component by component, each of all motions. */
 typedef struct {
@@ -266,14 +266,17 @@ static void near_table(int pieces, near_motion *motion)
 /* f->attitude of one place: q -> given conj(here) q conj(axes). */
 static void store_attitude(const body *own, const dd given[4], const dd here[4], double to[4][4])
 {
-    dd inverse[4], back[4], left[4], unit[4], once[4], column[4];
+    /* unit j times q: component k is the one of q at [j][k], with a sign */
+    static const double signs[4][4] = {
+        {1.0, 1.0, 1.0, 1.0}, {-1.0, 1.0, -1.0, 1.0}, {-1.0, 1.0, 1.0, -1.0}, {-1.0, -1.0, 1.0, 1.0}
+    };
+    dd inverse[4], back[4], left[4], once[4], column[4];
     conjugated(here, inverse);
     conjugated(own->axes, back);
     quaternion_product(given, inverse, left);
     for (int j = 0; j < 4; ++j) {
         for (int k = 0; k < 4; ++k)
-            unit[k] = dd_of(k == j);
-        quaternion_product(unit, back, once);
+            once[k] = dd_scale(back[j^k], signs[j][k]);
         quaternion_product(left, once, column);
         for (int k = 0; k < 4; ++k)
             to[k][j] = column[k].hi;

@@ -1,7 +1,7 @@
 /*
  * Many spin-ups, one after the other: constants and samples of each, bit by bit as alone.
  *
- * The polynomials near resonance take most of the time, each of their steps waiting for the one before: those of four
+ * The polynomials near resonance take most of the time, each of their steps waiting for the one before: those of eight
  * motions are found at once, in SIMD code.
  */
 #include "spin_up.c"
@@ -45,7 +45,7 @@ static int passes(const spin_up *f, double first, double last)
     return f->start == SPIN_UP_NEAR || (f->start == SPIN_UP_BEYOND ? one < f->edge : other > -f->edge);
 }
 
-/* Find the polynomials of up to four motions, the rest of their constants, and their samples. */
+/* Find the polynomials of up to eight motions, the rest of their constants, and their samples. */
 static void follow_together(const symrot_many_motions *m, int count, const ptrdiff_t which[LANES], const half_way h[LANES],
     spin_up records[LANES])
 {
@@ -53,10 +53,11 @@ static void follow_together(const symrot_many_motions *m, int count, const ptrdi
     near_motion near[LANES];
     for (int lane = 0; lane < LANES; ++lane)
         near[lane] = near_motion_of(h + (lane < count ? lane : 0), m->table + lane*pieces*TABLE);
-    if (count > 1)
+    if (count > 2)
         near_tables_of_lanes(pieces, near);
     else
-        near_table(pieces, near);
+        for (int lane = 0; lane < count; ++lane)
+            near_table(pieces, near + lane);
     for (int lane = 0; lane < count; ++lane) {
         prepare_rest(h + lane, near + lane, records + lane);
         sampled(m, which[lane], records + lane, near[lane].table);

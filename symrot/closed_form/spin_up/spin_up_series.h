@@ -14,6 +14,14 @@ enum {
     FROM_INFINITY = 32 /* terms, powers of kappa^2 v <= 0.2 */
 };
 
+/* The nodes: 1/2 - cos(pi (i + 1/2)/NODES)/2. */
+static const double PLACES[NODES] = {
+    0x1.ddd4cb4cc4b80p-9, 0x1.0a2c6886ff5c8p-5, 0x1.6a876f56cf0b8p-4, 0x1.58f65fb67a0f6p-3,
+    0x1.120fcdecc1dc2p-2, 0x1.85786ad0edc8ep-2, 0x1.0000000000001p-1, 0x1.3d43ca97891b7p-1,
+    0x1.76f819099f11fp-1, 0x1.a9c26812617c1p-1, 0x1.d2af1215261e9p-1, 0x1.ef5d3977900a3p-1,
+    0x1.fe222b34b33b4p-1,
+};
+
 /* The polynomial through values at the nodes: divided differences, then powers (Bjorck & Pereyra 1970). */
 static void through(const double y[NODES], double values[NODES])
 {
@@ -25,12 +33,14 @@ static void through(const double y[NODES], double values[NODES])
             values[i] -= values[i + 1]*y[k];
 }
 
-static double polynomial_of(const double *c, int count, double y)
+/* A polynomial at all nodes at once, which do not wait for one another. */
+static void polynomial_at(const double *c, int count, const double y[NODES], double values[NODES])
 {
-    double sum = 0.0;
+    for (int i = 0; i < NODES; ++i)
+        values[i] = 0.0;
     for (int n = count - 1; n >= 0; --n)
-        sum = sum*y + c[n];
-    return sum;
+        for (int i = 0; i < NODES; ++i)
+            values[i] = values[i]*y[i] + c[n];
 }
 
 /* The coefficients of a by the power of y; share is kappa^2 over the squared radius at y = 1, v one over that. */
@@ -66,23 +76,21 @@ static void angles(double share, double v, const double h[NODES], const double y
     } else
         for (int j = 0; j < FROM_INFINITY - 1; ++j)
             e[j + 1] = share*((1 + 2*j)*e[j] - (j > 0 && j <= NODES ? v*h[j - 1] : 0.0))/(2*j + 2);
-    for (int i = 0; i < NODES; ++i)
-        values[i] = polynomial_of(e, count, y[i]);
+    polynomial_at(e, count, y, values);
 }
 
 static void asymptotic(double share, double v, spin_up *f)
 {
-    static const dd pi = DD_PI;
-    double a[POWERS], g[POWERS], c[POWERS], y[NODES], h[NODES];
+    double a[POWERS], g[POWERS], c[POWERS], h[NODES];
+    const double *y = PLACES;
     first_series(share, v, a);
     for (int j = 0; j < POWERS; ++j) {
         c[j] = -(2*j + 1)*a[j];
         g[j] = (2*j + 3)*c[j];
     }
+    polynomial_at(g, POWERS, y, f->g);
+    polynomial_at(c, POWERS, y, f->c);
     for (int i = 0; i < NODES; ++i) {
-        y[i] = 0.5 - 0.5*cos(pi.hi*(i + 0.5)/NODES);
-        f->g[i] = polynomial_of(g, POWERS, y[i]);
-        f->c[i] = polynomial_of(c, POWERS, y[i]);
         const double square = v*y[i]*v*y[i], part = share*y[i];
         const double first2 = part*(1.0 - part)*square*square*f->g[i]*f->g[i], second2 = part*square*f->c[i]*f->c[i];
         h[i] = -f->c[i]/(1.0 + sqrt(1.0 - first2 - second2));

@@ -7,6 +7,7 @@ from typing import Any
 from sympy import Expr, Integer, Mul, S, Symbol, default_sort_key
 
 from symrot.codegen.lowering.formulas import function_name
+from symrot.dynamics.torques import LEVELLING
 from symrot.errors import InputError
 
 __all__ = ["HOISTED", "Gather", "Tree"]
@@ -87,9 +88,12 @@ class Gather:
         return tree if sign > 0 else ("add", ((-1, tree),))
 
     def _distributed(self, ordered: Sequence[Expr]) -> list[Expr]:
-        """Return the terms of a constant times one sum, which are cheaper: c*(a + b*x) is c*a + (c*b)*x; else none."""
+        """Return the terms of a constant times one sum, which are cheaper: c*(a + b*x) is c*a + (c*b)*x; else none.
+
+        A sum that may stay at zero, such as 1 + tanh(u), is left alone: its terms would leave the rounding of c there.
+        """
         sums = [argument for argument in ordered if self.is_variable(argument)]
-        if len(sums) != 1 or not sums[0].is_Add:
+        if len(sums) != 1 or not sums[0].is_Add or sums[0].atoms(*LEVELLING):
             return []
         outer = Mul(*(argument for argument in ordered if argument is not sums[0]))
         return [outer * term for term in sums[0].args]

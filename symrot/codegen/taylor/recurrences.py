@@ -69,6 +69,9 @@ class Recurrences(NamedTuple):
     seeds: tuple[Node, ...] = ()
 
 
+POLYNOMIAL = {"state", "time", "sum", "product"}  # rules of series that never stay at one value, as tanh does
+
+
 class _Linear(NamedTuple):
     """A constant plus series with constant weights."""
 
@@ -164,6 +167,29 @@ class _Builder:
         constant = None if form.constant is None else reduced(form.constant)
         whole = self.series_of(_Linear(constant, {series: reduced(w) for series, w in form.terms.items()}))
         return _folded(("*", ("number", lead), rest)), whole
+
+    def sum(self, left: _Linear, right: _Linear, sign: int) -> _Linear:
+        """Return a sum; brackets that may vanish are not written out: see :meth:`bracket`."""
+        if left.terms and right.terms:
+            left, right = self.bracket(left), self.bracket(right)
+        return _sum(left, right, sign)
+
+    def bracket(self, form: _Linear) -> _Linear:
+        """Return a multiple of a sum with functions, such as ``m*(1 + tanh(u))``, as a multiple of one series.
+
+        Written out, ``m + m*tanh(u)`` beside other terms would leave the rounding of m where the bracket is zero.
+        """
+        parts = [*form.terms.values(), *([] if form.constant is None else [form.constant])]
+        factors = [_number_and_rest(part) for part in parts]
+        if (
+            len(parts) < 2
+            or len({rest for _, rest in factors}) > 1
+            or all(rest == ONE and abs(number) == 1 for number, rest in factors)
+            or all(self.series[series].rule in POLYNOMIAL for series in form.terms)
+        ):
+            return form
+        weight, series = self.factored(form)
+        return _Linear(None, {series: weight})
 
     def product(self, left: _Linear, right: _Linear) -> _Linear:
         if not left.terms or not right.terms:
@@ -412,8 +438,8 @@ def _sum(left: _Linear, right: _Linear, sign: int) -> _Linear:
 
 
 _READERS: dict[str, Callable[[_Builder, Node, list[_Linear]], _Linear]] = {
-    "+": lambda builder, node, parts: _sum(parts[0], parts[1], 1),
-    "-": lambda builder, node, parts: _sum(parts[0], parts[1], -1),
+    "+": lambda builder, node, parts: builder.sum(parts[0], parts[1], 1),
+    "-": lambda builder, node, parts: builder.sum(parts[0], parts[1], -1),
     "neg": lambda builder, node, parts: _scaled(parts[0], -1),
     "*": lambda builder, node, parts: builder.product(*parts),
     "/": lambda builder, node, parts: builder.quotient(*parts),

@@ -2,8 +2,8 @@
 
 ``sin(2*phi - psi/2 + pi/3)`` is the form ``{phi: 2, psi: -1/2}`` with ``1/3`` half-turns. When all forms of a problem
 are known, each atom gets one base angle, the greatest common divisor of its coefficients, so that every angle is an
-integer combination of base angles and every sine and cosine a polynomial in theirs (``SOUNDNESS.md`` beside this
-module, section 4).
+integer combination of base angles and every sine and cosine a polynomial in theirs (``docs/exact_decisions.md``,
+section 4).
 """
 
 from collections.abc import Iterable

@@ -8,7 +8,7 @@ lexicographic, so each relation
     number:  M(2 cos(pi/N)) = 0, its minimal polynomial
 
 leads with a power of its own generator, and replacing leading powers gives the unique normal form
-(:mod:`symrot.exact.ring.relations`; ``SOUNDNESS.md`` beside this module, sections 2 to 4).
+(:mod:`symrot.exact.ring.relations`; ``docs/exact_decisions.md``, sections 2 to 4).
 """
 
 from collections.abc import Iterable, Iterator, Sequence

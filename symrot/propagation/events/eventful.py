@@ -72,7 +72,7 @@ def follow(motion: Motion, times: Floats, events: Sequence[Event]) -> Eventful:
         If the motion cannot be followed to the last time and no terminal event comes before.
     """
     began, plan = perf_counter(), motion.plan
-    if uses_attitude(events) and not plan.structure["attitude"]:
+    if uses_attitude(events) and not plan.structure.attitude:
         raise InputError(
             "events: the attitude is not computed, since neither a torque nor the output of the scene asks for it: "
             'expected "quaternion" among output.quantities'

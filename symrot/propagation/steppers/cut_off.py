@@ -1,6 +1,7 @@
 """Motions that end before they should: the error, the reasons, and the samples that were computed before."""
 
 import math
+from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -34,18 +35,32 @@ class CutOff(PropagationError):
 
 
 class Samples(NamedTuple):
-    """The samples that were computed before a motion was cut off: their numbers, shape (k,), and states, (k, N)."""
+    """The samples that were computed before a motion was cut off.
+
+    Attributes
+    ----------
+    numbers : array, shape (k,)
+        Places of the samples among all that were asked for.
+    states : array, shape (k, N)
+    cost : (int, int, int)
+        Steps accepted and rejected, and evaluations, that were spent until then.
+    """
 
     numbers: NDArray[np.intp]
     states: Floats
+    cost: tuple[int, int, int] = (0, 0, 0)
 
 
-def add_samples(error: BaseException, numbers: NDArray[np.intp], states: Floats) -> None:
-    """Have an error, or an interrupt, carry the samples computed before it in ``samples``."""
+def add_samples(
+    error: BaseException, numbers: NDArray[np.intp], states: Floats, cost: Iterable[int] | None = None
+) -> None:
+    """Have an error, or an interrupt, carry the samples computed before it in ``samples``, and what they cost."""
     before: Samples | None = getattr(error, "samples", None)
     if before is not None:  # of one side: the other side was finished first
         numbers, states = np.concatenate([numbers, before.numbers]), np.concatenate([states, before.states])
-    error.samples = Samples(numbers, states)  # type: ignore[attr-defined]
+        cost = before.cost if cost is None else cost
+    accepted, rejected, evaluations = map(int, (0, 0, 0) if cost is None else cost)
+    error.samples = Samples(numbers, states, (accepted, rejected, evaluations))  # type: ignore[attr-defined]
 
 
 def why_stuck(reason: str, t: float, t0: float, stop: float) -> str:

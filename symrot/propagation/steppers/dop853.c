@@ -105,7 +105,7 @@ enum { SYMROT_COUNT = (int)(sizeof(symrot_scales)/sizeof(symrot_scales[0])) };
 static const double SYMROT_SAFETY = 0.9, SYMROT_GROWTH = 6.0;           /* factors on the step when it is accepted, */
 static const double SYMROT_SHRINK = 1.0/3.0, SYMROT_COLLAPSE = 0.1;      /* rejected, not finite; after dop853.f */
 #if SYMROT_ENCLOSED
-static const double SYMROT_SLACK = 1e4;   /* what enclosures exceed errors by, and less: see ENCLOSURES.md */
+static const double SYMROT_SLACK = 1e4;   /* what enclosures exceed errors by, and less: see docs/step_control.md */
 static const double SYMROT_REGAIN = 1.5;  /* most that a step grows after one that was held back */
 #endif
 static const double SYMROT_LARGE = 1e80;  /* of a square: products of two such squares of errors stay finite up to it */

@@ -62,6 +62,7 @@ FAR = 1e4  # steps from the epoch: farther on, the time would be rounded to more
 STUCK = "the step shrank to nothing, as it does before a singularity"
 PILOT_TURN = 1e-3  # rad over the whole span
 PILOT_TOLERANCE = 1e-3  # of the coarse pass
+EFFORT_CUT_OFF = 4  # a motion that cannot be followed to its end may take a quarter of the evaluations
 BEFORE_POLE = 0.5  # of the way to where the coarse pass is cut off: further on, states may grow without bound
 PILOT_STEPS = 10  # a motion of so many coarse steps may spend the whole share in every step
 MAX_EVALUATIONS = 1_000_000  # unless another limit is given: half a minute
@@ -135,7 +136,7 @@ def integrate(
             states[part] = task.follow(times[part])
         except (CutOff, KeyboardInterrupt) as error:
             inside, own = task.partial(times[part])
-            add_samples(error, part[inside], own)
+            add_samples(error, part[inside], own, task.stats()[:3])
             add_samples(error, done, states[done])
             raise
         done = np.concatenate([done, part])
@@ -312,6 +313,7 @@ class _Task:
             if not self.pieces or self._spent >= self.max_evaluations:
                 raise
             early, end = error, float(self.pieces[-1][2].ts[-1])
+            self.max_evaluations = min(self.max_evaluations, self.evaluations + self.max_evaluations // EFFORT_CUT_OFF)
         way = abs(end - self.t0) * (1.0 if early is None else BEFORE_POLE)
         pilot = [(solution, solution.ts[np.abs(solution.ts - self.t0) <= way]) for _, _, solution in self.pieces]
         coarse = sum(len(solution.ts) - 1 for solution, _ in pilot)

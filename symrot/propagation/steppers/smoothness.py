@@ -5,22 +5,18 @@ have them wherever they are defined; the absolute value and the square root do n
 a motion may well reach: at rest, where it turns back. Dormand and Prince's method steps such torques instead.
 """
 
-from collections.abc import Callable, Mapping
-from typing import Any
-
+from symrot.dynamics.structure import FormulaTorque, Pattern, TorqueStructure
 from symrot.formula import tree as expression
 from symrot.planning.plan import Plan
 
 __all__ = ["roughness"]
 
-Structure = Mapping[str, Any]
-
 CHANGING = frozenset({"t", *(f"omega_{i}" for i in (1, 2, 3)), *(f"q{i}" for i in range(4))})
 BRANCHING = frozenset({"abs", "sqrt", "asin", "acos", "atan2"})  # not smooth somewhere on their domain
 
 
-def _of_formulas(torque: Structure) -> str:
-    for formula in torque["formulas"]:
+def _of_formulas(torque: FormulaTorque) -> str:
+    for formula in torque.formulas:
         waiting = [expression.parse(formula)]
         while waiting:
             node = waiting.pop()
@@ -31,15 +27,14 @@ def _of_formulas(torque: Structure) -> str:
     return ""
 
 
-def _of_damping(torque: Structure) -> str:
-    return "" if torque["fields"].get("quadratic", "0") == "0" else "quadratic damping is not smooth at rest"
-
-
-ROUGH: dict[str, Callable[[Structure], str]] = {"damping": _of_damping, "expression": _of_formulas}
-"""The kinds of torque that may not be smooth, each with what says why it is not, or nothing."""
+def _of_torque(torque: TorqueStructure) -> str:
+    if isinstance(torque, FormulaTorque):
+        return _of_formulas(torque)
+    if torque.kind == "damping" and torque.number("quadratic") is not Pattern.ZERO:
+        return "quadratic damping is not smooth at rest"
+    return ""
 
 
 def roughness(plan: Plan) -> str:
     """Return an empty text, or the sentence that says which torque of a plan is not smooth."""
-    found = (ROUGH[torque["kind"]](torque) for torque in plan.structure["torques"] if torque["kind"] in ROUGH)
-    return next((why for why in found if why), "")
+    return next(filter(None, map(_of_torque, plan.structure.torques)), "")

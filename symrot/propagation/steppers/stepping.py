@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 from symrot.build.address import address
 from symrot.errors import CompilerError, InputError
 from symrot.propagation import progress
-from symrot.propagation.steppers.cut_off import CutOff, Samples, add_samples, why_hopeless, why_stuck
+from symrot.propagation.steppers.cut_off import CutOff, add_samples, why_hopeless, why_stuck
 
 __all__ = [
     "DONE",
@@ -205,9 +205,8 @@ class Recording(ABC):
 class SteppedRecording(Recording):
     """A recording made of the steps of a stepper in C."""
 
-    def __init__(self, task: "Task", backward: Floats, forward: Floats) -> None:
-        ends = [float(rows[-1, 0] + rows[-1, 1]) if len(rows) else task.t0 for rows in (backward, forward)]
-        super().__init__(task.t0, task.y0, (ends[0], ends[1]), task.stats())
+    def __init__(self, task: "Task", span: tuple[float, float], backward: Floats, forward: Floats) -> None:
+        super().__init__(task.t0, task.y0, span, task.stats())
         self._dense, self._backward, self._forward = task.stepper.dense, backward, forward
 
     def _fill(self, times: Floats, states: Floats) -> None:
@@ -360,6 +359,17 @@ class Task:
         other.mark = (0, self.t0)
         return other
 
+    def from_start(self, p: list[float], y0: Sequence[float]) -> "Task":
+        """Return the same motion with other parameters and another state; what they share is not checked again."""
+        if not math.isfinite(sum(p) + sum(y0)):  # a sum may overflow where no number does
+            _numbers("parameters", p, len(p))
+            _numbers("states", y0, len(y0))
+        other = self.again()
+        run = other._ready = self.stepper.new_run.from_buffer_copy(self._ready)
+        run.y[:] = other.y0 = list(y0)
+        other.p = self.stepper.new_parameters(*p)
+        return other
+
     def stats(self) -> Stats:
         """Return what all was spent since the task was set."""
         return Stats(self.accepted, self.rejected, self.evaluations, perf_counter() - self.began)
@@ -389,7 +399,7 @@ class Task:
             except (CutOff, KeyboardInterrupt) as error:
                 own = getattr(error, "samples", None)
                 if own is not None:
-                    error.samples = Samples(part[own.numbers], own.states)  # type: ignore[union-attr]
+                    error.samples = own._replace(numbers=part[own.numbers])  # type: ignore[union-attr]
                 add_samples(error, done, states[done])
                 raise
             states[part] = found
@@ -414,7 +424,7 @@ class Task:
             while self.advance(run, first, count, out, None, 0) != DONE:
                 pass
         except (CutOff, KeyboardInterrupt) as error:
-            add_samples(error, np.arange(run.next), states[: run.next])
+            add_samples(error, np.arange(run.next), states[: run.next], stepper.cost(run))
             raise
         return states, Stats(*stepper.cost(run), perf_counter() - began)
 
@@ -430,8 +440,9 @@ class Task:
         low, high = min(span), max(span)
         if not (math.isfinite(low) and math.isfinite(high)):
             raise InputError(f"a span runs between two finite times, got {span}")
-        backward, forward = (np.concatenate(self.keep(end)) for end in (min(low, self.t0), max(high, self.t0)))
-        return SteppedRecording(self, backward, forward)
+        span = min(low, self.t0), max(high, self.t0)
+        backward, forward = (np.concatenate(self.keep(end)) for end in span)
+        return SteppedRecording(self, span, backward, forward)
 
     def follow(self, times: Floats, states: Floats) -> None:
         """Write the states at times sorted away from t0, all on one side of it."""
@@ -443,9 +454,14 @@ class Task:
                     pass
             except (CutOff, KeyboardInterrupt) as error:
                 done += run.next
-                add_samples(error, np.arange(done), states[:done])
+                add_samples(error, np.arange(done), states[:done], self._cost(run))
                 raise
             done += run.next
+
+    def _cost(self, run: Any) -> tuple[int, int, int]:
+        """Return what a run and all runs before it cost."""
+        accepted, rejected, evaluations = self.stepper.cost(run)
+        return self.accepted + accepted, self.rejected + rejected, self.evaluations + evaluations
 
     def keep(self, end: float) -> list[Floats]:
         """Return the recorded steps from t0 to an end, in pieces."""

@@ -70,7 +70,7 @@ static const double SYMROT_LEAP = 3.0;           /* log2 of a step over the last
 static const double SYMROT_DEFECT = 1e4;         /* times the tail: how far a first step may fail the equations */
 static const double SYMROT_LEAST_TAIL = 1e-18;   /* below round-off nothing is gained */
 #if SYMROT_ENCLOSED
-static const double SYMROT_SLACK = 30.0;        /* what enclosures exceed errors by, and less: see ENCLOSURES.md */
+static const double SYMROT_SLACK = 30.0;        /* what enclosures exceed errors by, and less: see docs/step_control.md */
 static const double SYMROT_GROWTH = 1.5;         /* most that a step grows after one that was held back */
 #endif
 static const double SYMROT_RATE_FLOOR = 1e-3;    /* a rate turns the body by less than this in a step: no need to see it */

@@ -76,7 +76,7 @@ class SwitchedMotion(MotionInParts):
                 run.follow(sample)
             except (CutOff, KeyboardInterrupt) as error:
                 numbers = np.concatenate([done, part[:count]])
-                add_samples(error, numbers, states[numbers])
+                add_samples(error, numbers, states[numbers], cost + run.cost)
                 raise
             done = np.concatenate([done, part])
             cost += run.cost

@@ -4,12 +4,12 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from symrot.build import cache as library
 from symrot.codegen.taylor.time_shift import moved, moved_formulas
 from symrot.formula.program import Argument, Program
-from symrot.formula.switches import Conditions, hold
+from symrot.formula.switches import Conditions, Switch, hold
 from symrot.formula.tree import Node, names, parse, rename, text
 from symrot.planning.scene_kernel import Parameters
 from symrot.propagation.binding import folded, two_doubles, value_of
@@ -42,14 +42,14 @@ class Regime:
     def __init__(
         self,
         constants: Mapping[str, Fraction],
-        all_switches: Sequence[Mapping[str, Any]],
+        all_switches: Sequence[Switch],
         motion: Motion,
         held: frozenset[str],
-        switches: Sequence[Mapping[str, Any]],
+        switches: Sequence[Switch],
     ) -> None:
         self.motion, self.plan, self.held = motion, motion.plan, held
         self.constants, self.switches = constants, all_switches
-        modes = [switch["mode"] for switch in switches]
+        modes = [switch.mode for switch in switches]
         distances = [_distance(switch) for switch in switches]
         formulas, parameters = moved_formulas(distances, {*self.constants, *modes})
         names_of_clock = {name: f"since_{name}" for name, _ in parameters if name not in {*self.constants, *modes}}
@@ -76,13 +76,13 @@ class Regime:
         self._active: dict[tuple[int, ...], list[bool]] = {}
         self._bound: dict[tuple[tuple[int, ...], Instant | None], tuple[list[float], list[float]]] = {}
 
-    def _guards(self, switch: Mapping[str, Any]) -> Iterator[Guard]:
-        mode, where = switch["mode"], switch["where"]
+    def _guards(self, switch: Switch) -> Iterator[Guard]:
+        mode, where = switch.mode, switch.where
         guard = text(self.formulas[mode])
         if mode in self.held:
             yield Guard(mode, f"1 - {mode}_of_t", 1, where)
             yield Guard(mode, f"1 + {mode}_of_t", -1, where)
-        elif switch["kind"] == "sign":
+        elif switch.kind == "sign":
             yield Guard(mode, f"{mode}*({guard})", 0, where)
         else:
             yield Guard(mode, guard, -1, where)
@@ -134,7 +134,7 @@ class Regime:
     @cached_property
     def _with_constants(self) -> tuple[Parameters, Parameters, Parameters]:
         """The parameters of rates, guards and quantities as formulas of the modes and the epoch alone."""
-        modes = {switch["mode"] for switch in self.switches}
+        modes = {switch.mode for switch in self.switches}
         known = {name: value for name, value in self.constants.items() if name not in modes}
         kernel = self.motion.kernel
         rates, guards, quantities = (
@@ -151,13 +151,12 @@ class Regime:
         return self._active[key]
 
 
-def _distance(switch: Mapping[str, Any]) -> Node:
+def _distance(switch: Switch) -> Node:
     """Return what is zero where a switch switches: its guard, less the whole number below it for a floor.
 
     The number is subtracted before anything is rounded: far from t = 0 it takes most digits of the guard away.
     """
-    guard: Node = switch["guard"]
-    return guard if switch["kind"] == "sign" else ("-", guard, ("symbol", switch["mode"]))
+    return switch.guard if switch.kind == "sign" else ("-", switch.guard, ("symbol", switch.mode))
 
 
 def _with_parameters(program: Program, more: list[str]) -> Program:

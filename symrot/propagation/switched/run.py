@@ -68,7 +68,7 @@ class SwitchedRun(RunState):
     def __init__(self, motion: Motion, system: SwitchedSystem, end: float) -> None:
         super().__init__(motion, end, system.initial_modes())
         self.system, self._end = system, Instant(end)
-        self.by_name = {switch["mode"]: switch for switch in system.switches}
+        self.by_name = {switch.mode: switch for switch in system.switches}
         self.held = frozenset[str]()
         self.cost = np.zeros(3, dtype=np.int64)  # steps accepted and rejected, evaluations
         self.switches = 0
@@ -114,8 +114,8 @@ class SwitchedRun(RunState):
     def _check_start(self) -> None:
         """Refuse a start on a switch from which both sides lead away: the motion has more than one way on."""
         for switch in self.system.switches:
-            mode = switch["mode"]
-            if mode not in self.system.undecided or not hold(switch["where"], self.modes) or self.t == self.end:
+            mode = switch.mode
+            if mode not in self.system.undecided or not hold(switch.where, self.modes) or self.t == self.end:
                 continue
             leaving = 0
             for sign in (1, -1):
@@ -280,7 +280,7 @@ class SwitchedRun(RunState):
         if guard.mode in self.held or guard.mode not in regime.of_time:
             return instant
         switch, aside = self.by_name[guard.mode], NEARBY * abs(t)
-        goal = 0.0 if switch["kind"] == "sign" else max(guard.change, 0)
+        goal = 0.0 if switch.kind == "sign" else max(guard.change, 0)
         values = regime.values(self.modes, instant)
 
         def value(t: float) -> float:
@@ -318,14 +318,14 @@ class SwitchedRun(RunState):
         end = float(piece.edges[-1])
         later = end, states(np.array([end]))[0]  # a guard may leave zero more slowly than rounding shows
         for switch in self.system.switches:
-            mode = switch["mode"]
+            mode = switch.mode
             numbers = [n for n, guard in enumerate(regime.guards) if guard.mode == mode and active[n]]
             if mode in self.held or not numbers:
                 continue
-            resting = switch["kind"] == "sign" and self.modes[mode] == 0  # so that its mode times its guard is zero
+            resting = switch.kind == "sign" and self.modes[mode] == 0  # so that its mode times its guard is zero
             signs = signs_under({**self.modes, mode: 1}) if resting else signs_now
             sign = signs[numbers[0]]
-            if switch["kind"] == "floor":  # closed on the left: at n + 1 it is n + 1
+            if switch.kind == "floor":  # closed on the left: at n + 1 it is n + 1
                 upper = signs[numbers[1]]
                 if not upper and self._guard_value(mode) == 1.0:
                     settled[mode] = self.modes[mode] + 1
@@ -333,7 +333,7 @@ class SwitchedRun(RunState):
             if sign and self.modes[mode] == 0:
                 settled[mode] = sign
             elif not sign and self._guard_value(mode) == 0.0 == self._guard_value(mode, later):
-                settled[mode] = switch["at_zero"]
+                settled[mode] = switch.at_zero
         changed = settled != self.modes
         if changed:
             self.settled += 1
@@ -356,14 +356,14 @@ class SwitchedRun(RunState):
         """Return what the names in guards stand for at a time and a state."""
         t, y = place
         names = [f"omega_{i} of t" for i in (1, 2, 3)]
-        names += [f"q{i} of t" for i in range(4)] if self.motion.plan.structure["attitude"] else []
+        names += [f"q{i} of t" for i in range(4)] if self.motion.plan.structure.attitude else []
         quantities = self.motion.evaluate(np.array([t]), y[None], names)[0].tolist()
         values = {name.removesuffix(" of t"): value for name, value in zip(names, quantities, strict=True)}
         return {**values, **regime.values(self.modes, self.zero), "t": t}
 
     def _switch(self, regime: Regime, guard: Guard) -> None:
         """Change the mode of a guard; hold the guard at zero where both sides send the motion back."""
-        mode, kind = guard.mode, self.by_name[guard.mode]["kind"]
+        mode, kind = guard.mode, self.by_name[guard.mode].kind
         self.left.add((mode, self.modes[mode]))
         again = self.flipped.get(mode, 0)
         if again and self._jumped(mode):  # with a mode inside its guard: that it changes again says nothing
@@ -397,13 +397,13 @@ class SwitchedRun(RunState):
 
     def _jumped(self, mode: str) -> bool:
         """Return whether a mode inside a mode's guard has changed at this very time since that mode did."""
-        inside = names(self.by_name[mode]["guard"])
+        inside = names(self.by_name[mode].guard)
         last = len(self.order) - self.order[::-1].index(mode)
         return any(other in inside for other in self.order[last:])
 
     def _asleep(self) -> set[str]:
         """Return the modes whose guards do not matter."""
-        return {s["mode"] for s in self.system.switches if s["where"] and not hold(s["where"], self.modes, self.held)}
+        return {s.mode for s in self.system.switches if s.where and not hold(s.where, self.modes, self.held)}
 
     def _wake(self, mode: str) -> None:
         """Give a mode whose guard begins to matter the value that the guard tells, if it tells one."""
@@ -411,7 +411,7 @@ class SwitchedRun(RunState):
             guard = self._guard_value(mode)
         except (ArithmeticError, ValueError):
             return
-        if self.by_name[mode]["kind"] == "floor":
+        if self.by_name[mode].kind == "floor":
             self.modes[mode] += math.floor(guard)
         elif guard:
             self.modes[mode] = 1 if guard > 0.0 else -1
@@ -422,7 +422,7 @@ class SwitchedRun(RunState):
         mode = self.system.twins[mode][0]
         self.held |= {mode}
         self.changes[self.now, self._name(mode)] = "held"
-        guard = self.by_name[mode]["guard"]
+        guard = self.by_name[mode].guard
         if guard[0] == "symbol" and guard[1] in regime.plan.states:
             self.y[regime.plan.states.index(guard[1])] = 0.0  # exactly, where the guard is a state
         try:
@@ -442,4 +442,4 @@ class SwitchedRun(RunState):
             raise CutOff(self.t, f"its switches follow one another endlessly ({within})", self.end)
 
     def _name(self, mode: str) -> str:
-        return str(self.by_name[mode]["label"])
+        return str(self.by_name[mode].label)

@@ -1,6 +1,5 @@
 """What motions under torques with switches have in common: their switches, and the smooth motions between these."""
 
-import json
 import math
 from collections.abc import Mapping
 from dataclasses import replace
@@ -8,9 +7,10 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
+from symrot.dynamics.structure import FormulaTorque, TorqueStructure, TorqueSwitch
 from symrot.formula.exact_numbers import PI
 from symrot.formula.float_functions import FLOAT_FUNCTIONS
-from symrot.formula.switches import chosen, hold
+from symrot.formula.switches import Switch, chosen, hold
 from symrot.formula.tree import evaluate, names, parse, rename, text
 from symrot.planning.plan import Plan
 from symrot.propagation.method import Choice
@@ -31,17 +31,13 @@ class SwitchedSystem:
         self.start = float(plan.scene.span.start)
 
     @cached_property
-    def switches(self) -> list[dict[str, Any]]:
+    def switches(self) -> list[Switch]:
         """The switches of all torques, their modes named as the constants of the plan."""
-        listed = []
-        for torque in self.plan.structure["torques"]:
-            prefix = torque["prefix"]
-            own = {name: f"{prefix}{name}" for name in torque.get("parameters", ())}
-            for switch in torque.get("switches", ()):
-                where = tuple((rename(parse(share), own), value) for share, value in switch["where"])
-                guard = rename(parse(switch.get("choices", switch["guard"]), switching=True), own)
-                listed.append({**switch, "mode": own[switch["mode"]], "guard": guard, "where": where, "prefix": prefix})
-        return listed
+        return [switch for switches in self._switches_by_torque for switch in switches]
+
+    @cached_property
+    def _switches_by_torque(self) -> list[list[Switch]]:
+        return [_switches(torque) for torque in self.plan.structure.formula_torques]
 
     @cached_property
     def twins(self) -> dict[str, list[str]]:
@@ -49,19 +45,22 @@ class SwitchedSystem:
 
         As of sign(omega_3) and abs(omega_3) in the friction of a bearing that is greater at rest.
         """
-        alike: dict[Any, list[str]] = {}
-        for switch in sorted(self.switches, key=_bends):
-            if switch["kind"] == "sign":
-                alike.setdefault((switch["prefix"], switch["guard"], switch["where"]), []).append(switch["mode"])
-        return {mode: modes for modes in alike.values() for mode in modes}
+        twins: dict[str, list[str]] = {}
+        for switches in self._switches_by_torque:
+            alike: dict[Any, list[str]] = {}
+            for switch in sorted(switches, key=_bends):
+                if switch.kind == "sign":
+                    alike.setdefault((switch.guard, switch.where), []).append(switch.mode)
+            twins |= {mode: modes for modes in alike.values() for mode in modes}
+        return twins
 
     @cached_property
     def settled(self) -> set[str]:
         """The modes whose guards never change: they hold neither the time, nor a state, nor a mode that does."""
         settled = set[str]()
         for switch in self.switches:
-            if names(switch["guard"]) <= self.constants.keys() - ({each["mode"] for each in self.switches} - settled):
-                settled.add(switch["mode"])
+            if names(switch.guard) <= self.constants.keys() - ({each.mode for each in self.switches} - settled):
+                settled.add(switch.mode)
         return settled
 
     @cached_property
@@ -91,21 +90,21 @@ class SwitchedSystem:
         values |= {"t": self.start, **{f"omega_{i + 1}": float(value) for i, value in enumerate(start.omega_b)}}
         values |= {f"q{i}": float(value) for i, value in enumerate(start.quaternion)}
         for switch in self.switches:
-            if not hold(switch["where"], modes):
-                modes[switch["mode"]] = 0 if switch["kind"] == "floor" else 1
-                values[switch["mode"]] = float(modes[switch["mode"]])
+            if not hold(switch.where, modes):
+                modes[switch.mode] = 0 if switch.kind == "floor" else 1
+                values[switch.mode] = float(modes[switch.mode])
                 continue
             try:
-                guard = float(evaluate(chosen(switch["guard"], modes), values, FLOAT_FUNCTIONS, float))
+                guard = float(evaluate(chosen(switch.guard, modes), values, FLOAT_FUNCTIONS, float))
             except (ArithmeticError, ValueError):
-                raise CutOff(self.start, f"{switch['label']} has no value there") from None
-            modes[switch["mode"]] = math.floor(guard) if switch["kind"] == "floor" else -1 if guard < 0.0 else 1
-            if guard == 0.0 and switch["mode"] in self.settled:
-                modes[switch["mode"]] = 0 if switch["kind"] == "floor" else switch["at_zero"]
-            modes[switch["mode"]] = given.get(switch["mode"], modes[switch["mode"]])
-            values[switch["mode"]] = float(modes[switch["mode"]])
-            if guard == 0.0 and switch["kind"] == "sign" and names(switch["guard"]) & STATES:
-                undecided.add(switch["mode"])
+                raise CutOff(self.start, f"{switch.label} has no value there") from None
+            modes[switch.mode] = math.floor(guard) if switch.kind == "floor" else -1 if guard < 0.0 else 1
+            if guard == 0.0 and switch.mode in self.settled:
+                modes[switch.mode] = 0 if switch.kind == "floor" else switch.at_zero
+            modes[switch.mode] = given.get(switch.mode, modes[switch.mode])
+            values[switch.mode] = float(modes[switch.mode])
+            if guard == 0.0 and switch.kind == "sign" and names(switch.guard) & STATES:
+                undecided.add(switch.mode)
         return modes, undecided
 
     def regime(self, held: frozenset[str], modes: Modes) -> Regime:
@@ -116,16 +115,16 @@ class SwitchedSystem:
         key = held, tuple(modes.values()) if self._chooses else ()
         if key not in self._regimes:
             tied = {twin: mode for mode in held for twin in self.twins[mode][1:]}
-            torques = [_chosen(torque, modes, held, tied) for torque in self.plan.structure["torques"]]
-            content = held, json.dumps(torques, sort_keys=True)
+            torques = tuple([_chosen(torque, modes, held, tied) for torque in self.plan.structure.torques])
+            content = held, torques
             if content not in self._regime_of:
-                plan = replace(self.plan, structure=self.plan.structure | {"torques": torques})
+                plan = replace(self.plan, structure=replace(self.plan.structure, torques=torques))
                 switches = [
-                    {**switch, "guard": chosen(switch["guard"], modes, held)}
+                    switch._replace(guard=chosen(switch.guard, modes, held))
                     for switch in self.switches
-                    if switch["mode"] not in self.settled
-                    and switch["mode"] not in tied
-                    and (not self._chooses or hold(switch["where"], modes, held))
+                    if switch.mode not in self.settled
+                    and switch.mode not in tied
+                    and (not self._chooses or hold(switch.where, modes, held))
                 ]
                 own = on_own_clock(plan, self.choice, self.tolerance)
                 self._regime_of[content] = Regime(self.constants, self.switches, own, held, switches)
@@ -135,51 +134,66 @@ class SwitchedSystem:
     @cached_property
     def _chooses(self) -> bool:
         """Whether a ``where`` has a part that must not be evaluated where it does not hold."""
-        torques = self.plan.structure["torques"]
-        return any("choices" in part for torque in torques for part in (torque, *torque.get("switches", ())))
+        return any(torque.has_choices for torque in self.plan.structure.formula_torques)
 
     @cached_property
     def _regimes(self) -> dict[tuple[frozenset[str], tuple[int, ...]], Regime]:
         return {}
 
     @cached_property
-    def _regime_of(self) -> dict[tuple[frozenset[str], str], Regime]:
+    def _regime_of(self) -> dict[tuple[frozenset[str], tuple[TorqueStructure, ...]], Regime]:
         return {}
 
 
-def _bends(switch: Mapping[str, Any]) -> bool:
+def _switches(torque: FormulaTorque) -> list[Switch]:
+    """Return the switches of a torque, their modes named as the constants of the plan."""
+    own = {name: f"{torque.prefix}{name}" for name in torque.parameters}
+    return [
+        Switch(
+            own[switch.mode],
+            switch.kind,
+            rename(parse(switch.choices or switch.guard, switching=True), own),
+            tuple([(rename(parse(share), own), value) for share, value in switch.where]),
+            switch.label,
+            switch.at_zero,
+        )
+        for switch in torque.switches
+    ]
+
+
+def _bends(switch: Switch | TorqueSwitch) -> bool:
     """Return whether a formula bends at a switch, and does not jump: where its guard is zero its mode is at will."""
-    return bool(switch["at_zero"] == 1)
+    return switch.at_zero == 1
 
 
-def _chosen(torque: dict[str, Any], modes: Modes, held: frozenset[str], tied: Mapping[str, str]) -> dict[str, Any]:
+def _chosen(torque: TorqueStructure, modes: Modes, held: frozenset[str], tied: Mapping[str, str]) -> TorqueStructure:
     """Return a torque with the parts of its formulas that hold under some modes, and those of its modes that are held.
 
     Its guards that do not matter are left out. Modes with the guard of a held one are ``tied`` to that: where the
     formula jumps there they take its value.
     """
-    prefix, names = torque["prefix"], torque.get("parameters", ())
-    if own := sorted(name for name in names if prefix + name in held):
-        torque = {**torque, "held": own}
-    switches = torque.get("switches", ())
-    jumping = [switch["mode"] for switch in switches if not _bends(switch)]
+    if not isinstance(torque, FormulaTorque):
+        return torque
+    prefix, names = torque.prefix, torque.parameters
+    own = tuple(sorted(name for name in names if prefix + name in held))
+    torque = torque._replace(held=own)
+    jumping = [switch.mode for switch in torque.switches if not _bends(switch)]
     same = {name: tied[prefix + name].removeprefix(prefix) for name in jumping if prefix + name in tied}
-    if not same and not any("choices" in part for part in (torque, *switches)):
+    if not same and not torque.has_choices:
         return torque
     values = {name: modes[prefix + name] for name in names if prefix + name in modes}
 
     def read(formula: str) -> str:
         return text(chosen(rename(parse(formula, switching=True), same), values, own))
 
-    return {
-        **{key: value for key, value in torque.items() if key != "choices"},
-        "formulas": list(map(read, torque.get("choices", torque["formulas"]))),
-        "switches": [
-            {
-                **{key: value for key, value in switch.items() if key != "choices"},
-                "guard": read(switch.get("choices", switch["guard"])),
-            }
-            for switch in switches
-            if hold([(parse(share), value) for share, value in switch["where"]], values, own)
-        ],
-    }
+    return torque._replace(
+        formulas=tuple(map(read, torque.choices or torque.formulas)),
+        choices=(),
+        switches=tuple(
+            [
+                switch._replace(guard=read(switch.choices or switch.guard), choices="")
+                for switch in torque.switches
+                if hold([(parse(share), value) for share, value in switch.where], values, own)
+            ]
+        ),
+    )

@@ -1,0 +1,118 @@
+"""What many free bodies are made of, in one call of C: each pair of doubles is that of exact fractions, or in doubt.
+
+The functions of :file:`bodies_at.c`. Where their 248 bits leave a pair in doubt, fractions are to settle it.
+"""
+
+from collections.abc import Sequence
+from ctypes import Structure, addressof, c_int32, c_ssize_t, c_void_p
+from fractions import Fraction
+from functools import cache
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symrot.build.address import address
+from symrot.closed_form.arithmetic.pairs import LARGEST, SMALLEST
+from symrot.closed_form.build import Floats, load
+
+__all__ = ["PrincipalBodies", "defects", "fixed_body", "principal_bodies", "rates_of_body"]
+
+Doubtful = NDArray[np.intp]
+Column = Floats | Fraction
+
+FRACTION = 248  # bits after the point
+_TERMS = 5  # doubles that a fraction is the sum of, to 2^-265
+
+
+class _Tensors(Structure):
+    """``tensors`` of bodies_at.c."""
+
+    _fields_ = (
+        ("given", c_void_p * 6), ("strides", c_ssize_t * 6), ("terms", c_ssize_t), ("exact", c_int32 * 6)
+    )  # fmt: skip
+
+
+@cache
+def _functions() -> tuple[Any, Any, Any]:
+    (library,) = load("bodies")
+    names = ("symrot_rates_of_body", "symrot_defects", "symrot_principal_bodies")
+    arguments = (
+        (c_ssize_t, *[c_void_p] * 5), (c_ssize_t, *[c_void_p] * 4), (c_ssize_t, *[c_void_p] * 7)
+    )  # fmt: skip
+    found = [getattr(library, name) for name in names]
+    for function, types in zip(found, arguments, strict=True):
+        function.argtypes, function.restype = types, None
+    rates, defect, principal = found
+    return rates, defect, principal
+
+
+def fixed_body(moments: Sequence[Fraction], axes: Sequence[Fraction]) -> NDArray[np.uint64]:
+    """Return moments, the largest 1/2 to 1 in their unit, and axes in units of 2^-248, as C reads them."""
+    largest = max(moments)
+    length = largest.numerator.bit_length() - largest.denominator.bit_length()  # the power of two, or one more
+    if largest >= Fraction(2) ** length:
+        length += 1
+    scaled = [moment / Fraction(2) ** length for moment in moments]
+    units = [int(x * 2**FRACTION).to_bytes(32, "little", signed=True) for x in (*scaled, *axes)]
+    return np.frombuffer(b"".join(units), dtype="<u8").astype(np.uint64)
+
+
+def rates_of_body(body: NDArray[np.uint64], omega: Floats) -> tuple[Floats, Floats, Doubtful]:
+    """Return rates along principal axes (n, 6), defects (n, 2), and which are in doubt, of a :func:`fixed_body`."""
+    n = len(omega)
+    rates, exact, doubtful = np.empty((n, 6)), np.empty((n, 8)), np.empty(n, np.uint8)
+    omega = np.ascontiguousarray(omega)
+    _functions()[0](n, body.ctypes.data, address(omega), address(rates), address(exact), doubtful.ctypes.data)
+    return rates, exact[:, 6:], np.flatnonzero(doubtful)
+
+
+def defects(moments: Floats, omega: Floats) -> tuple[Floats, Doubtful]:
+    """Return defects (n, 2) for principal moments (n, 3), and which are in doubt."""
+    n = len(omega)
+    exact, doubtful = np.empty((n, 8)), np.empty(n, np.uint8)
+    moments, omega = np.ascontiguousarray(moments), np.ascontiguousarray(omega)
+    _functions()[1](n, address(moments), address(omega), address(exact), doubtful.ctypes.data)
+    return exact[:, 6:], np.flatnonzero(doubtful)
+
+
+class PrincipalBodies(NamedTuple):
+    """What symrot_free_body_prepare takes of each body; and which bodies are left to fractions."""
+
+    moments: Floats  # (n, 6)
+    rates: Floats  # (n, 6)
+    exact: Floats  # (n, 8)
+    axes: Floats  # (n, 26)
+    doubtful: Doubtful
+
+
+def principal_bodies(entries: Sequence[Column], omega: Floats) -> PrincipalBodies | None:
+    """Return the principal bodies of tensors: xx, yy, zz, xy, xz and yz, kg m^2, of each or the same of all.
+
+    None where a constant of all is so large or small that sums of doubles do not hold it.
+    """
+    n, tensors, arrays = len(omega), _Tensors(terms=_TERMS), []
+    for k, entry in enumerate(entries):
+        if isinstance(entry, Fraction):
+            if entry and not SMALLEST <= abs(entry) <= LARGEST:
+                return None
+            values, tensors.exact[k] = _sum_of_doubles(entry)
+        else:
+            values, tensors.exact[k], tensors.strides[k] = np.ascontiguousarray(entry), 1, 1
+        arrays.append(values)
+        tensors.given[k] = address(values)
+    room = [np.empty((n, length)) for length in (6, 6, 8, 26)]
+    omega, doubtful = np.ascontiguousarray(omega), np.empty(n, np.uint8)
+    places = [address(values) for values in room]
+    _functions()[2](n, addressof(tensors), address(omega), *places, doubtful.ctypes.data)
+    moments, rates, exact, axes = room
+    return PrincipalBodies(moments, rates, exact, axes, np.flatnonzero(doubtful))
+
+
+def _sum_of_doubles(value: Fraction) -> tuple[Floats, bool]:
+    """Return doubles whose sum a fraction is, and whether it is so exactly."""
+    terms = np.zeros(_TERMS)
+    for k in range(_TERMS):
+        terms[k] = float(value)
+        value -= Fraction(float(value))
+    return terms, value == 0

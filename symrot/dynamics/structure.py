@@ -1,0 +1,204 @@
+"""The structure of a motion: what its equations look like, whatever the numbers in them. Standard library only.
+
+A plan (:mod:`symrot.planning.plan`) finds the structure of a scene, and :mod:`symrot.dynamics.equations` derives its
+equations of motion. Scenes of the same structure share one kernel; only the numbers that it is bound to differ.
+
+The parts of a structure are NamedTuples: to define a dataclass takes six times as long, at every start of symrot.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, fields, replace
+from enum import Enum
+from typing import Any, NamedTuple
+
+__all__ = [
+    "MOVING", "FieldPattern", "FieldTorque", "FormulaTorque", "InertiaTensor", "Pattern", "PrincipalInertia",
+    "Structure", "TorqueStructure", "TorqueSwitch", "component_names",
+]  # fmt: skip
+
+
+class Pattern(Enum):
+    """What the equations may rely on in the value of a constant: an exact number, or nothing."""
+
+    ZERO = "0"
+    ONE = "1"
+    MINUS_ONE = "-1"
+    FREE = "*"  # the constant stays a symbol
+
+    __hash__ = object.__hash__  # members are equal if identical; the hash of Enum is a slower call in Python
+
+
+FieldPattern = Pattern | tuple[Pattern, ...]
+"""The pattern of a field of a torque: of a number, or of each component of a vector (3) or a quaternion (4)."""
+
+
+def component_names(name: str, pattern: FieldPattern) -> list[str]:
+    """Return the names of the constants of one field: a vector is numbered from 1, a quaternion from 0."""
+    if isinstance(pattern, Pattern):
+        return [name]
+    return [f"{name}_{index}" for index, _ in enumerate(pattern, start=0 if len(pattern) == 4 else 1)]
+
+
+class PrincipalInertia(NamedTuple):
+    """Principal moments about the body axes 1, 2, 3: one of A, B, C each, the same letter for equal moments."""
+
+    moments: str = "ABC"
+
+
+class InertiaTensor(NamedTuple):
+    """A tensor with products of inertia: the sorted names of the entries that are not zero, such as ``I_xy``."""
+
+    entries: tuple[str, ...]
+
+
+class TorqueSwitch(NamedTuple):
+    """A switch in the formulas of a torque: :class:`symrot.formula.switches.Switch` with its formulas as text."""
+
+    mode: str
+    kind: str
+    guard: str
+    where: tuple[tuple[str, int], ...]
+    label: str
+    at_zero: int
+    choices: str = ""  # the guard with its parts of ``where`` still to be chosen; empty if it has none
+
+
+class FieldTorque(NamedTuple):
+    """A torque of a kind whose fields are numbers: all kinds but ``expression``.
+
+    Attributes
+    ----------
+    kind : str
+        A key of :data:`symrot.dynamics.torque_kinds.TORQUE_KINDS`.
+    prefix : str
+        Precedes the names of its constants, so that they differ from those of the other torques.
+    fields : pairs of name and pattern
+        In the order of the table of torques.
+    """
+
+    kind: str
+    prefix: str
+    fields: tuple[tuple[str, FieldPattern], ...]
+
+    def number(self, name: str) -> Pattern:
+        """Return the pattern of a field that is a number."""
+        pattern = dict(self.fields)[name]
+        assert isinstance(pattern, Pattern)
+        return pattern
+
+    def vector(self, name: str) -> tuple[Pattern, ...]:
+        """Return the patterns of the components of a field that is a vector or a quaternion."""
+        pattern = dict(self.fields)[name]
+        assert isinstance(pattern, tuple)
+        return pattern
+
+
+class FormulaTorque(NamedTuple):
+    """A torque given by formulas, the kind ``expression``.
+
+    Attributes
+    ----------
+    prefix : str
+        Precedes the names of its parameters, so that they differ from those of the other torques.
+    formulas : tuple of 3 str
+        Its components; smooth, with modes, if it has switches.
+    parameters : tuple of str
+        Names in the formulas, those of the modes included.
+    frame : str
+        ``"body"`` or ``"space"``: the axes of the components.
+    switches : tuple of TorqueSwitch
+        Empty if the formulas are smooth, or if switches are not followed.
+    choices : tuple of str
+        The formulas with their parts of ``where`` still to be chosen; empty if they have none.
+    held : tuple of str
+        Modes whose guards stay at zero: the motion slides along them.
+    """
+
+    prefix: str
+    formulas: tuple[str, ...]
+    parameters: tuple[str, ...]
+    frame: str
+    switches: tuple[TorqueSwitch, ...] = ()
+    choices: tuple[str, ...] = ()
+    held: tuple[str, ...] = ()
+
+    @property
+    def kind(self) -> str:
+        """The kind of every torque of this class, as :class:`FieldTorque` has it."""
+        return "expression"
+
+    @property
+    def has_choices(self) -> bool:
+        """Whether a ``where`` has a part that must not be evaluated where it does not hold."""
+        return bool(self.choices) or any(switch.choices for switch in self.switches)
+
+
+TorqueStructure = FieldTorque | FormulaTorque
+
+MOVING = (None, None, None)
+"""``constant`` of a structure in which no component of omega is constant."""
+
+
+@dataclass(frozen=True, slots=True)
+class Structure:
+    """Which equations a motion obeys.
+
+    Attributes
+    ----------
+    inertia : PrincipalInertia or InertiaTensor
+        The pattern of equal moments, or of entries that are not zero.
+    torques : tuple of FieldTorque and FormulaTorque
+        In the order of the scene.
+    attitude : bool
+        Whether the attitude is computed.
+    planar : int, optional
+        The body axis, 0 to 2, of a motion about that axis alone.
+    initial_quaternion : tuple of 4 Pattern, optional
+        Of a planar motion with attitude, whose state is an angle since the start.
+    constant : tuple of 3
+        For each component of omega_b that is constant its pattern, zero or free; None for one that changes.
+    clock : str, optional
+        The name of the time at which the clock of the rates shows 0; None: t = 0 of the scene.
+    sequence : str, optional
+        The Euler sequence of the angles that are the state; None: a quaternion.
+    """
+
+    inertia: PrincipalInertia | InertiaTensor
+    torques: tuple[TorqueStructure, ...]
+    attitude: bool = True
+    planar: int | None = None
+    initial_quaternion: tuple[Pattern, ...] | None = None
+    constant: tuple[Pattern | None, Pattern | None, Pattern | None] = MOVING
+    clock: str | None = None
+    sequence: str | None = None
+
+    @property
+    def formula_torques(self) -> Iterator[FormulaTorque]:
+        """The torques that are given by formulas."""
+        return (torque for torque in self.torques if isinstance(torque, FormulaTorque))
+
+    @property
+    def moving(self) -> list[int]:
+        """The components of omega_b that are states, 0 to 2."""
+        return [i for i in range(3) if self.constant[i] is None and self.planar in (None, i)]
+
+    @property
+    def reductions(self) -> tuple[object, ...]:
+        """What leaves out states because of the initial state or a constant component of omega_b."""
+        return self.planar, self.initial_quaternion, self.constant
+
+    def unreduced(self) -> "Structure":
+        """Return the structure whose states are all of omega_b and, if the attitude is computed, the quaternion."""
+        return replace(self, planar=None, initial_quaternion=None, constant=MOVING)
+
+    def to_json(self) -> dict[str, object]:
+        """Return the structure as data for JSON: structures are equal if and only if these data are."""
+        return {field.name: _plain(getattr(self, field.name)) for field in fields(self)}
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Pattern):
+        return value.value
+    if hasattr(value, "_asdict"):  # a NamedTuple
+        return {name: _plain(item) for name, item in value._asdict().items()}
+    return [_plain(item) for item in value] if isinstance(value, tuple) else value
