@@ -125,7 +125,7 @@ def test_a_damaged_entry_is_built_anew(damage):
 def test_processes_that_build_at_once_do_not_disturb_each_other(own_cache):
     """Eight of them, twice; each loads what it got, and nothing half-written is left."""
     program = (
-        "import ctypes, sys; from symrot.codegen import library\n"
+        "import ctypes, sys; from symrot.build import cache as library\n"
         "for number in range(2):\n"
         "    path = library.build(f'double answer(void) {{ return {number}.5; }}', 'answer')\n"
         "    function = ctypes.CDLL(str(path)).answer; function.restype = ctypes.c_double\n"
@@ -410,7 +410,7 @@ def test_a_probe_finds_a_full_disk(own_cache, monkeypatch):
 
 def test_the_temporary_directory_goes_with_the_process(tmp_path):
     (tmp_path / "cache").write_text("")
-    program = f"from symrot.codegen import library; print(library.build({SOURCE!r}, 'answer'))"
+    program = f"from symrot.build import cache as library; print(library.build({SOURCE!r}, 'answer'))"
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert done.stderr == ""
     assert not Path(done.stdout.strip()).parent.exists()
@@ -421,7 +421,7 @@ def test_no_room_anywhere_is_one_sentence(monkeypatch):
         raise OSError(errno.ENOSPC, "No space left on device")
 
     monkeypatch.setattr(Path, "write_bytes", refuse)
-    with pytest.raises(CompilerError, match=r"need room on a disk: .*No space left"):
+    with pytest.raises(CompilerError, match=r"need space on a disk: .*No space left"):
         library.build(SOURCE, "answer")
     library.store("key", "{}")
     assert library.fetch("key") == "{}"
@@ -482,7 +482,7 @@ def test_the_place_of_the_cache(variables, place, monkeypatch, tmp_path):
 
 def test_no_array_or_algebra_package_is_imported():
     program = (
-        "import sys; from symrot.codegen import library; library.build('int x;', 'x'); library.fetch('y')\n"
+        "import sys; from symrot.build import cache as library; library.build('int x;', 'x'); library.fetch('y')\n"
         "print(sorted({'numpy', 'scipy', 'sympy'} & set(sys.modules)))"
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
