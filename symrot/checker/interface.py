@@ -7,11 +7,13 @@ from time import perf_counter
 from typing import Any
 
 from symrot.checker.claim.claims import Claim, Refusal, claim_of_text, read_entries, shown_relation
+from symrot.checker.claim.size import MOST_NESTED, nesting
 from symrot.checker.claim.values import decide_value
 from symrot.checker.decide.decision import Decision, Problem, decide_problem, shown
 from symrot.checker.units.check import check_dimensions, dimensions_of_formulas
 from symrot.checker.verdict import Diagnosis, Verdict
 from symrot.errors import InputError
+from symrot.exact.decide import flatten
 
 __all__ = ["RefusedClaims", "check", "check_claim", "check_file", "check_readings", "verdicts_of_file"]
 
@@ -83,6 +85,10 @@ def _checked(left: Any, right: Any, assume: Sequence[Any], units: Mapping[str, s
         return check_claim(claim_of_text(left, assume, units or {}), repair)
     if right is None:
         raise InputError("expected two sides, or one text 'left == right'")
+    for side in (left, right):
+        for entry in flatten(side)[0]:
+            if nesting(entry) > MOST_NESTED:
+                raise InputError(f"expected at most {MOST_NESTED} functions and roots inside each other")
     start = perf_counter()
     decision = decide_problem(Problem(left, right, tuple(assume)))
     verdict = _verdict(decision, f"{shown(left)} == {shown(right)}", start)

@@ -38,7 +38,7 @@ def _of_scalar(function: Callable[[Expr], Expr], below: Callable[[Expr], Expr] |
     """Return a function of one scalar, which divides by ``below`` of its argument."""
 
     def call(scope: Scope, node: Node) -> Expr:
-        value = scope.scalar(node.args[0], f"as the argument of {node.value}")
+        value = scope.argument(node.args[0], f"as the argument of {node.value}")
         if terms_of_angle(value) > MOST_ANGLE_TERMS:
             raise scope.fail(node.args[0], f"an angle whose sine has at most {MOST_ANGLE_TERMS} terms")
         if below is not None:
@@ -52,13 +52,13 @@ def _of_scalar(function: Callable[[Expr], Expr], below: Callable[[Expr], Expr] |
 
 
 def _sqrt(scope: Scope, node: Node) -> Expr:
-    value = scope.scalar(node.args[0], "under the root")
+    value = scope.argument(node.args[0], "under the root")
     scope.take_root(value, node.args[0])
     return sympy.sqrt(value)
 
 
 def _atan2(scope: Scope, node: Node) -> Expr:
-    y, x = (scope.scalar(argument, "as an argument of atan2") for argument in node.args)
+    y, x = (scope.argument(argument, "as an argument of atan2") for argument in node.args)
     scope.divide_by(x**2 + y**2, node)
     return sympy.atan2(y, x)
 
@@ -67,7 +67,7 @@ def _arc(function: Callable[[Expr], Expr]) -> Any:
     """Return asin or acos, of what lies between -1 and 1."""
 
     def call(scope: Scope, node: Node) -> Expr:
-        value = scope.scalar(node.args[0], f"as the argument of {node.value}")
+        value = scope.argument(node.args[0], f"as the argument of {node.value}")
         if (1 - value**2).is_negative:
             raise scope.fail(node.args[0], f"a number from -1 to 1 in {node.value}")
         scope.take_root(1 - value**2, node.args[0])
@@ -77,7 +77,7 @@ def _arc(function: Callable[[Expr], Expr]) -> Any:
 
 
 def _log(scope: Scope, node: Node) -> Expr:
-    value = scope.scalar(node.args[0], "as the argument of log")
+    value = scope.argument(node.args[0], "as the argument of log")
     if value.is_nonpositive:
         raise scope.fail(node.args[0], "a positive number in log")
     scope.divide_by(value, node.args[0])

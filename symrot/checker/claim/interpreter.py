@@ -155,6 +155,7 @@ def _power(meaning: Meaning, node: Node) -> Any:
     if base.is_Rational and abs(exponent.p) * max(int(base.p).bit_length(), int(base.q).bit_length()) > MOST_BITS:
         raise meaning.fail(node, f"a number of at most {MOST_BITS} bits")
     if exponent.q > 1:  # of odd index too: the principal value is real for what is not negative only
+        meaning.within_nesting(base, node.args[0])
         meaning.take_root(base, node.args[0])
     return base**exponent
 

@@ -8,7 +8,7 @@ import sympy
 from sympy import Expr, ImmutableMatrix, Mul
 
 from symrot.checker.claim.reader import complaint
-from symrot.checker.claim.size import MOST_PIECES
+from symrot.checker.claim.size import MOST_NESTED, MOST_PIECES, nesting
 from symrot.checker.claim.tree import Node
 from symrot.errors import InputError
 from symrot.exact.intervals import enclosure
@@ -77,6 +77,17 @@ class Scope(ABC):
             shown = "a list" if isinstance(value, tuple) else described(value)
             raise self.fail(node, f"a scalar {of} instead of {shown}")
         return value
+
+    def argument(self, node: Node, of: str) -> Expr:
+        """Return the value of a tree as the argument of a function; refuse functions that are nested too deeply."""
+        value = self.scalar(node, of)
+        self.within_nesting(value, node)
+        return value
+
+    def within_nesting(self, value: Expr, node: Node) -> None:
+        """Refuse a value that a function or a root would nest too deeply."""
+        if nesting(value) >= MOST_NESTED:
+            raise self.fail(node, f"at most {MOST_NESTED} functions and roots inside each other")
 
     def matrix(self, node: Node, of: str, shape: tuple[int | None, int | None] = (None, None)) -> ImmutableMatrix:
         value = self.evaluate(node)

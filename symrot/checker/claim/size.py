@@ -9,8 +9,10 @@ __all__ = [
     "LARGE_MATRIX",
     "MOST_ANGLE_TERMS",
     "MOST_DIFFERENTIATED",
+    "MOST_NESTED",
     "MOST_PIECES",
     "MOST_PRODUCTS",
+    "nesting",
     "products_of_determinant",
     "terms_of_angle",
 ]
@@ -32,6 +34,23 @@ LARGE_MATRIX = 1_000
 
 MOST_ANGLE_TERMS = 2_000
 """Terms of a sine, written in sines and cosines of the angles in its argument; a sum of eleven has 1024."""
+
+MOST_NESTED = 16
+"""Functions and fractional powers inside each other. To make a function, SymPy examines its argument; at this depth that
+takes seconds, at 25 minutes."""
+
+
+def nesting(formula: Expr) -> int:
+    """Return how many functions and fractional powers are inside each other, at most, in a formula."""
+    depths: dict[Any, int] = {}
+
+    def depth(node: Any) -> int:
+        if node not in depths:
+            own = node.is_Function or (node.is_Pow and node.exp.is_Rational and node.exp.q > 1)
+            depths[node] = own + max(map(depth, node.args), default=0)
+        return depths[node]
+
+    return depth(formula)
 
 
 def products_of_determinant(matrix: Any) -> int:
