@@ -26,6 +26,7 @@ from symrot.exact.domain.known_points import known_point
 from symrot.exact.domain.needs import Need, needs_of
 from symrot.exact.inverse_sums import proof, vanishes
 from symrot.exact.ring.ring import FormulaRing, as_zero
+from symrot.exact.ring.roots import written
 
 __all__ = ["Verdict", "decide", "is_zero", "normal_form"]
 
@@ -185,7 +186,7 @@ def _conditions(rings: Sequence[FormulaRing]) -> tuple[Any, ...]:
     """Return what both sides need to be defined, and proofs to hold, less what the assumptions on the symbols grant."""
     nonzero = [Ne(source, 0) for ring in rings for source, _ in divisors(ring)]
     unique = dict.fromkeys([*nonzero, *(Ge(base, 0) for base in radicands(rings[0]))])
-    return tuple(sorted(unique, key=str))
+    return tuple(sorted(unique, key=written))
 
 
 def _shaped(entries: list[Expr], shape: tuple[int, int] | None) -> Any:

@@ -30,6 +30,7 @@ from symrot.exact.intervals import enclosure, is_nonnegative_at
 from symrot.exact.inverse_sums import lifts, principal, proof
 from symrot.exact.ring.ratio import MOST_PRODUCTS, TooLarge
 from symrot.exact.ring.ring import FormulaRing, as_zero
+from symrot.exact.ring.roots import written
 
 __all__ = ["Decision", "Problem", "decide_problem", "shown"]
 
@@ -311,7 +312,7 @@ def _shorter(first: Expr, second: Expr) -> Expr:
     few, many = sorted((first, second), key=_pieces)
     if _pieces(many) > MUCH_LARGER * _pieces(few):
         return few
-    return min(first, second, key=lambda formula: len(str(formula)))
+    return min(first, second, key=lambda formula: len(written(formula)))
 
 
 def _pieces(formula: Expr) -> int:
