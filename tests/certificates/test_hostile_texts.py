@@ -23,7 +23,7 @@ SUM, TURN = (
     "dangles[1] = omega_2*cos_psi - sin_psi*omega_3;",
     "const double turning = (omega_2*sin_psi + omega_3*cos_psi)/cos_theta;",
 )
-EACH, GUARD = SUM.replace("[1]", "[1*n + k]"), "SYMROT_ROTATION_VECTOR_OF_QUATERNION_H"
+EACH, GUARD = SUM.replace("[1]", "[n + k]"), "SYMROT_ROTATION_VECTOR_OF_QUATERNION_H"
 PSI, FAR = "const double psi = angles[2];", "beyond += symrot_far(psi) + symrot_far(theta);"
 HOSTILE = {  # what it is: kernel, what is replaced in the text of it, by what
     "integer division": (R, SUM, SUM.replace("cos_psi -", "cos_psi + 1/2 -")),
@@ -75,7 +75,7 @@ HOSTILE = {  # what it is: kernel, what is replaced in the text of it, by what
     "input written": (R, SUM, SUM + " ((double *)omega)[0] = 0.0;"),
     "input not const": (R, "(const double angles[3]", "(double angles[3]"),
     "arguments swapped": (R, "const double angles[3], const double omega[3]", "const double omega[3], const double angles[3]"),
-    "function twice": (R, "\nvoid", "\nvoid euler_zyx_body_rates_batch(size_t n) { }\n\nvoid"),
+    "function twice": (R, "\nvoid", "\nvoid symrot_euler_zyx_body_rates_batch(size_t n) { }\n\nvoid"),
     "own sine": (R, "\nvoid", "\nstatic inline double symrot_sin(double x)\n{\n    return x;\n}\n\nvoid"),
     "global": (R, "\nvoid", "\nstatic const double pi = 3.0;\n\nvoid"),
     "local function": (R, SUM, "double cos(double); " + SUM),
@@ -222,7 +222,8 @@ FORGED = {  # what it is: kernel, part of its readback or law, what takes its pl
 def test_a_certificate_of_other_constants_or_series_is_refused(kernels, refused, what):
     name, part, changed = FORGED[what]
     readback = json.loads(json.dumps(kernels[name].data["readback"]))
-    readback[name][part][0] = changed(readback[name][part][0])
+    function = f"symrot_{name}"
+    readback[function][part][0] = changed(readback[function][part][0])
     assert refused(name, kernels[name].source, readback=readback)
 
 
