@@ -30,11 +30,11 @@ void symrot_euler_equations_spherical(
     const double tau_1 = torque[0];
     const double tau_2 = torque[1];
     const double tau_3 = torque[2];
-    const double x0 = 1.0/A;
+    const double inv_A = 1.0/A;
 
-    domega[0] = tau_1*x0;
-    domega[1] = tau_2*x0;
-    domega[2] = tau_3*x0;
+    domega[0] = tau_1*inv_A;
+    domega[1] = tau_2*inv_A;
+    domega[2] = tau_3*inv_A;
 }
 
 void symrot_euler_equations_spherical_batch(
@@ -48,11 +48,11 @@ void symrot_euler_equations_spherical_batch(
         const double tau_1 = torque[k];
         const double tau_2 = torque[n + k];
         const double tau_3 = torque[2*n + k];
-        const double x0 = 1.0/A;
+        const double inv_A = 1.0/A;
 
-        domega[k] = tau_1*x0;
-        domega[n + k] = tau_2*x0;
-        domega[2*n + k] = tau_3*x0;
+        domega[k] = tau_1*inv_A;
+        domega[n + k] = tau_2*inv_A;
+        domega[2*n + k] = tau_3*inv_A;
     }
 }
 
@@ -64,11 +64,11 @@ void symrot_euler_equations_sphericalf(
     const float tau_1 = torque[0];
     const float tau_2 = torque[1];
     const float tau_3 = torque[2];
-    const float x0 = 1.0f/A;
+    const float inv_A = 1.0f/A;
 
-    domega[0] = tau_1*x0;
-    domega[1] = tau_2*x0;
-    domega[2] = tau_3*x0;
+    domega[0] = tau_1*inv_A;
+    domega[1] = tau_2*inv_A;
+    domega[2] = tau_3*inv_A;
 }
 
 void symrot_euler_equations_sphericalf_batch(
@@ -82,10 +82,10 @@ void symrot_euler_equations_sphericalf_batch(
         const float tau_1 = torque[k];
         const float tau_2 = torque[n + k];
         const float tau_3 = torque[2*n + k];
-        const float x0 = 1.0f/A;
+        const float inv_A = 1.0f/A;
 
-        domega[k] = tau_1*x0;
-        domega[n + k] = tau_2*x0;
-        domega[2*n + k] = tau_3*x0;
+        domega[k] = tau_1*inv_A;
+        domega[n + k] = tau_2*inv_A;
+        domega[2*n + k] = tau_3*inv_A;
     }
 }

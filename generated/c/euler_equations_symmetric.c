@@ -34,11 +34,11 @@ void symrot_euler_equations_symmetric(
     const double tau_1 = torque[0];
     const double tau_2 = torque[1];
     const double tau_3 = torque[2];
-    const double x0 = (A - C)*omega_3;
-    const double x1 = 1.0/A;
+    const double domega_1_term_1 = (A - C)*omega_3;
+    const double inv_A = 1.0/A;
 
-    domega[0] = (tau_1 + omega_2*x0)*x1;
-    domega[1] = (tau_2 - omega_1*x0)*x1;
+    domega[0] = (tau_1 + omega_2*domega_1_term_1)*inv_A;
+    domega[1] = (tau_2 - omega_1*domega_1_term_1)*inv_A;
     domega[2] = tau_3/C;
 }
 
@@ -56,11 +56,11 @@ void symrot_euler_equations_symmetric_batch(
         const double tau_1 = torque[k];
         const double tau_2 = torque[n + k];
         const double tau_3 = torque[2*n + k];
-        const double x0 = (A - C)*omega_3;
-        const double x1 = 1.0/A;
+        const double domega_1_term_1 = (A - C)*omega_3;
+        const double inv_A = 1.0/A;
 
-        domega[k] = (tau_1 + omega_2*x0)*x1;
-        domega[n + k] = (tau_2 - omega_1*x0)*x1;
+        domega[k] = (tau_1 + omega_2*domega_1_term_1)*inv_A;
+        domega[n + k] = (tau_2 - omega_1*domega_1_term_1)*inv_A;
         domega[2*n + k] = tau_3/C;
     }
 }
@@ -76,11 +76,11 @@ void symrot_euler_equations_symmetricf(
     const float tau_1 = torque[0];
     const float tau_2 = torque[1];
     const float tau_3 = torque[2];
-    const float x0 = (A - C)*omega_3;
-    const float x1 = 1.0f/A;
+    const float domega_1_term_1 = (A - C)*omega_3;
+    const float inv_A = 1.0f/A;
 
-    domega[0] = (tau_1 + omega_2*x0)*x1;
-    domega[1] = (tau_2 - omega_1*x0)*x1;
+    domega[0] = (tau_1 + omega_2*domega_1_term_1)*inv_A;
+    domega[1] = (tau_2 - omega_1*domega_1_term_1)*inv_A;
     domega[2] = tau_3/C;
 }
 
@@ -98,11 +98,11 @@ void symrot_euler_equations_symmetricf_batch(
         const float tau_1 = torque[k];
         const float tau_2 = torque[n + k];
         const float tau_3 = torque[2*n + k];
-        const float x0 = (A - C)*omega_3;
-        const float x1 = 1.0f/A;
+        const float domega_1_term_1 = (A - C)*omega_3;
+        const float inv_A = 1.0f/A;
 
-        domega[k] = (tau_1 + omega_2*x0)*x1;
-        domega[n + k] = (tau_2 - omega_1*x0)*x1;
+        domega[k] = (tau_1 + omega_2*domega_1_term_1)*inv_A;
+        domega[n + k] = (tau_2 - omega_1*domega_1_term_1)*inv_A;
         domega[2*n + k] = tau_3/C;
     }
 }

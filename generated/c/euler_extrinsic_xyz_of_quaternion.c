@@ -40,27 +40,31 @@ void symrot_euler_extrinsic_xyz_of_quaternion(const double q[4], double angles[3
     const double q1 = q[1];
     const double q2 = q[2];
     const double q3 = q[3];
-    const double x0 = q1 - q3;
-    const double x1 = q0 + q2;
-    const double x2 = atan2(-x0, x1);
-    const double x3 = q1 + q3;
-    const double x4 = q0 - q2;
-    const double x5 = atan2(x3, x4);
-    const double x6 = x2 - x5;
-    const double x7 = -x6;
-    const double x8 = -3.141592653589793;
-    const double x9 = symrot_select_ge(x7, x8, x7, 6.283185307179586 - x6);
-    const double x10 = symrot_select_ge(3.141592653589793, x7, x9, -(x6 + 6.283185307179586));
-    const double x11 = sqrt(x4*x4 + x3*x3);
-    const double x12 = sqrt(x1*x1 + x0*x0);
-    const double x13 = atan2(4.0*(q0*q2 - q1*q3), 2.0*x11*x12);
-    const double x14 = x2 + x5;
-    const double x15 = symrot_select_ge(x14, x8, x14, 6.283185307179586 + x14);
-    const double x16 = symrot_select_ge(3.141592653589793, x14, x15, x14 - 6.283185307179586);
+    const double q1_minus_q3 = q1 - q3;
+    const double q0_plus_q2 = q0 + q2;
+    const double phi_angle_1 = atan2(-q1_minus_q3, q0_plus_q2);
+    const double q1_plus_q3 = q1 + q3;
+    const double q0_minus_q2 = q0 - q2;
+    const double phi_angle_2 = atan2(q1_plus_q3, q0_minus_q2);
+    const double phi_angle_1_minus_phi_angle_2 = phi_angle_1 - phi_angle_2;
+    const double phi_term_1 = -phi_angle_1_minus_phi_angle_2;
+    const double minus_pi = -3.141592653589793;
+    const double phi_choice_1 = symrot_select_ge(phi_term_1, minus_pi, phi_term_1, 6.283185307179586 -
+        phi_angle_1_minus_phi_angle_2);
+    const double phi_choice_2 = symrot_select_ge(3.141592653589793, phi_term_1, phi_choice_1,
+        -(phi_angle_1_minus_phi_angle_2 + 6.283185307179586));
+    const double theta_root_1 = sqrt(q0_minus_q2*q0_minus_q2 + q1_plus_q3*q1_plus_q3);
+    const double theta_root_2 = sqrt(q0_plus_q2*q0_plus_q2 + q1_minus_q3*q1_minus_q3);
+    const double theta_angle_1 = atan2(4.0*(q0*q2 - q1*q3), 2.0*theta_root_1*theta_root_2);
+    const double phi_angle_1_plus_phi_angle_2 = phi_angle_1 + phi_angle_2;
+    const double psi_choice_1 = symrot_select_ge(phi_angle_1_plus_phi_angle_2, minus_pi, phi_angle_1_plus_phi_angle_2,
+        6.283185307179586 + phi_angle_1_plus_phi_angle_2);
+    const double psi_choice_2 = symrot_select_ge(3.141592653589793, phi_angle_1_plus_phi_angle_2, psi_choice_1,
+        phi_angle_1_plus_phi_angle_2 - 6.283185307179586);
 
-    angles[0] = x10;
-    angles[1] = x13;
-    angles[2] = x16;
+    angles[0] = phi_choice_2;
+    angles[1] = theta_angle_1;
+    angles[2] = psi_choice_2;
 }
 
 void symrot_euler_extrinsic_xyz_of_quaternion_batch(
@@ -72,27 +76,31 @@ void symrot_euler_extrinsic_xyz_of_quaternion_batch(
         const double q1 = q[n + k];
         const double q2 = q[2*n + k];
         const double q3 = q[3*n + k];
-        const double x0 = q1 - q3;
-        const double x1 = q0 + q2;
-        const double x2 = symrot_atan2(-x0, x1);
-        const double x3 = q1 + q3;
-        const double x4 = q0 - q2;
-        const double x5 = symrot_atan2(x3, x4);
-        const double x6 = x2 - x5;
-        const double x7 = -x6;
-        const double x8 = -3.141592653589793;
-        const double x9 = symrot_choose_ge(x7, x8, x7, 6.283185307179586 - x6);
-        const double x10 = symrot_choose_ge(3.141592653589793, x7, x9, -(x6 + 6.283185307179586));
-        const double x11 = sqrt(x4*x4 + x3*x3);
-        const double x12 = sqrt(x1*x1 + x0*x0);
-        const double x13 = symrot_atan2(4.0*(q0*q2 - q1*q3), 2.0*x11*x12);
-        const double x14 = x2 + x5;
-        const double x15 = symrot_choose_ge(x14, x8, x14, 6.283185307179586 + x14);
-        const double x16 = symrot_choose_ge(3.141592653589793, x14, x15, x14 - 6.283185307179586);
+        const double q1_minus_q3 = q1 - q3;
+        const double q0_plus_q2 = q0 + q2;
+        const double phi_angle_1 = symrot_atan2(-q1_minus_q3, q0_plus_q2);
+        const double q1_plus_q3 = q1 + q3;
+        const double q0_minus_q2 = q0 - q2;
+        const double phi_angle_2 = symrot_atan2(q1_plus_q3, q0_minus_q2);
+        const double phi_angle_1_minus_phi_angle_2 = phi_angle_1 - phi_angle_2;
+        const double phi_term_1 = -phi_angle_1_minus_phi_angle_2;
+        const double minus_pi = -3.141592653589793;
+        const double phi_choice_1 = symrot_choose_ge(phi_term_1, minus_pi, phi_term_1, 6.283185307179586 -
+            phi_angle_1_minus_phi_angle_2);
+        const double phi_choice_2 = symrot_choose_ge(3.141592653589793, phi_term_1, phi_choice_1,
+            -(phi_angle_1_minus_phi_angle_2 + 6.283185307179586));
+        const double theta_root_1 = sqrt(q0_minus_q2*q0_minus_q2 + q1_plus_q3*q1_plus_q3);
+        const double theta_root_2 = sqrt(q0_plus_q2*q0_plus_q2 + q1_minus_q3*q1_minus_q3);
+        const double theta_angle_1 = symrot_atan2(4.0*(q0*q2 - q1*q3), 2.0*theta_root_1*theta_root_2);
+        const double phi_angle_1_plus_phi_angle_2 = phi_angle_1 + phi_angle_2;
+        const double psi_choice_1 = symrot_choose_ge(phi_angle_1_plus_phi_angle_2, minus_pi,
+            phi_angle_1_plus_phi_angle_2, 6.283185307179586 + phi_angle_1_plus_phi_angle_2);
+        const double psi_choice_2 = symrot_choose_ge(3.141592653589793, phi_angle_1_plus_phi_angle_2, psi_choice_1,
+            phi_angle_1_plus_phi_angle_2 - 6.283185307179586);
 
-        angles[k] = x10;
-        angles[n + k] = x13;
-        angles[2*n + k] = x16;
+        angles[k] = phi_choice_2;
+        angles[n + k] = theta_angle_1;
+        angles[2*n + k] = psi_choice_2;
     }
 }
 
@@ -102,27 +110,31 @@ void symrot_euler_extrinsic_xyz_of_quaternionf(const float q[4], float angles[3]
     const float q1 = q[1];
     const float q2 = q[2];
     const float q3 = q[3];
-    const float x0 = q1 - q3;
-    const float x1 = q0 + q2;
-    const float x2 = atan2f(-x0, x1);
-    const float x3 = q1 + q3;
-    const float x4 = q0 - q2;
-    const float x5 = atan2f(x3, x4);
-    const float x6 = x2 - x5;
-    const float x7 = -x6;
-    const float x8 = -3.1415927f;
-    const float x9 = symrot_select_gef(x7, x8, x7, 6.2831853f - x6);
-    const float x10 = symrot_select_gef(3.1415927f, x7, x9, -(x6 + 6.2831853f));
-    const float x11 = sqrtf(x4*x4 + x3*x3);
-    const float x12 = sqrtf(x1*x1 + x0*x0);
-    const float x13 = atan2f(4.0f*(q0*q2 - q1*q3), 2.0f*x11*x12);
-    const float x14 = x2 + x5;
-    const float x15 = symrot_select_gef(x14, x8, x14, 6.2831853f + x14);
-    const float x16 = symrot_select_gef(3.1415927f, x14, x15, x14 - 6.2831853f);
+    const float q1_minus_q3 = q1 - q3;
+    const float q0_plus_q2 = q0 + q2;
+    const float phi_angle_1 = atan2f(-q1_minus_q3, q0_plus_q2);
+    const float q1_plus_q3 = q1 + q3;
+    const float q0_minus_q2 = q0 - q2;
+    const float phi_angle_2 = atan2f(q1_plus_q3, q0_minus_q2);
+    const float phi_angle_1_minus_phi_angle_2 = phi_angle_1 - phi_angle_2;
+    const float phi_term_1 = -phi_angle_1_minus_phi_angle_2;
+    const float minus_pi = -3.1415927f;
+    const float phi_choice_1 = symrot_select_gef(phi_term_1, minus_pi, phi_term_1, 6.2831853f -
+        phi_angle_1_minus_phi_angle_2);
+    const float phi_choice_2 = symrot_select_gef(3.1415927f, phi_term_1, phi_choice_1, -(phi_angle_1_minus_phi_angle_2 +
+        6.2831853f));
+    const float theta_root_1 = sqrtf(q0_minus_q2*q0_minus_q2 + q1_plus_q3*q1_plus_q3);
+    const float theta_root_2 = sqrtf(q0_plus_q2*q0_plus_q2 + q1_minus_q3*q1_minus_q3);
+    const float theta_angle_1 = atan2f(4.0f*(q0*q2 - q1*q3), 2.0f*theta_root_1*theta_root_2);
+    const float phi_angle_1_plus_phi_angle_2 = phi_angle_1 + phi_angle_2;
+    const float psi_choice_1 = symrot_select_gef(phi_angle_1_plus_phi_angle_2, minus_pi, phi_angle_1_plus_phi_angle_2,
+        6.2831853f + phi_angle_1_plus_phi_angle_2);
+    const float psi_choice_2 = symrot_select_gef(3.1415927f, phi_angle_1_plus_phi_angle_2, psi_choice_1,
+        phi_angle_1_plus_phi_angle_2 - 6.2831853f);
 
-    angles[0] = x10;
-    angles[1] = x13;
-    angles[2] = x16;
+    angles[0] = phi_choice_2;
+    angles[1] = theta_angle_1;
+    angles[2] = psi_choice_2;
 }
 
 void symrot_euler_extrinsic_xyz_of_quaternionf_batch(
@@ -134,26 +146,30 @@ void symrot_euler_extrinsic_xyz_of_quaternionf_batch(
         const float q1 = q[n + k];
         const float q2 = q[2*n + k];
         const float q3 = q[3*n + k];
-        const float x0 = q1 - q3;
-        const float x1 = q0 + q2;
-        const float x2 = symrot_atan2f(-x0, x1);
-        const float x3 = q1 + q3;
-        const float x4 = q0 - q2;
-        const float x5 = symrot_atan2f(x3, x4);
-        const float x6 = x2 - x5;
-        const float x7 = -x6;
-        const float x8 = -3.1415927f;
-        const float x9 = symrot_choose_gef(x7, x8, x7, 6.2831853f - x6);
-        const float x10 = symrot_choose_gef(3.1415927f, x7, x9, -(x6 + 6.2831853f));
-        const float x11 = sqrtf(x4*x4 + x3*x3);
-        const float x12 = sqrtf(x1*x1 + x0*x0);
-        const float x13 = symrot_atan2f(4.0f*(q0*q2 - q1*q3), 2.0f*x11*x12);
-        const float x14 = x2 + x5;
-        const float x15 = symrot_choose_gef(x14, x8, x14, 6.2831853f + x14);
-        const float x16 = symrot_choose_gef(3.1415927f, x14, x15, x14 - 6.2831853f);
+        const float q1_minus_q3 = q1 - q3;
+        const float q0_plus_q2 = q0 + q2;
+        const float phi_angle_1 = symrot_atan2f(-q1_minus_q3, q0_plus_q2);
+        const float q1_plus_q3 = q1 + q3;
+        const float q0_minus_q2 = q0 - q2;
+        const float phi_angle_2 = symrot_atan2f(q1_plus_q3, q0_minus_q2);
+        const float phi_angle_1_minus_phi_angle_2 = phi_angle_1 - phi_angle_2;
+        const float phi_term_1 = -phi_angle_1_minus_phi_angle_2;
+        const float minus_pi = -3.1415927f;
+        const float phi_choice_1 = symrot_choose_gef(phi_term_1, minus_pi, phi_term_1, 6.2831853f -
+            phi_angle_1_minus_phi_angle_2);
+        const float phi_choice_2 = symrot_choose_gef(3.1415927f, phi_term_1, phi_choice_1,
+            -(phi_angle_1_minus_phi_angle_2 + 6.2831853f));
+        const float theta_root_1 = sqrtf(q0_minus_q2*q0_minus_q2 + q1_plus_q3*q1_plus_q3);
+        const float theta_root_2 = sqrtf(q0_plus_q2*q0_plus_q2 + q1_minus_q3*q1_minus_q3);
+        const float theta_angle_1 = symrot_atan2f(4.0f*(q0*q2 - q1*q3), 2.0f*theta_root_1*theta_root_2);
+        const float phi_angle_1_plus_phi_angle_2 = phi_angle_1 + phi_angle_2;
+        const float psi_choice_1 = symrot_choose_gef(phi_angle_1_plus_phi_angle_2, minus_pi,
+            phi_angle_1_plus_phi_angle_2, 6.2831853f + phi_angle_1_plus_phi_angle_2);
+        const float psi_choice_2 = symrot_choose_gef(3.1415927f, phi_angle_1_plus_phi_angle_2, psi_choice_1,
+            phi_angle_1_plus_phi_angle_2 - 6.2831853f);
 
-        angles[k] = x10;
-        angles[n + k] = x13;
-        angles[2*n + k] = x16;
+        angles[k] = phi_choice_2;
+        angles[n + k] = theta_angle_1;
+        angles[2*n + k] = psi_choice_2;
     }
 }

@@ -27,24 +27,24 @@ void symrot_euler_extrinsic_xzx_quaternion(const double angles[3], double q[4])
     const double phi = angles[0];
     const double theta = angles[1];
     const double psi = angles[2];
-    const double x0 = 0.5*phi;
-    const double x1 = cos(x0);
-    const double x2 = 0.5*psi;
-    const double x3 = cos(x2);
-    const double outer_1 = x1*x3;
-    const double x5 = sin(x0);
-    const double x6 = sin(x2);
-    const double outer_2 = x5*x6;
-    const double x8 = 0.5*theta;
-    const double x9 = cos(x8);
-    const double outer_3 = x1*x6;
-    const double outer_4 = x3*x5;
-    const double x12 = sin(x8);
+    const double half_phi = 0.5*phi;
+    const double cos_half_phi = cos(half_phi);
+    const double half_psi = 0.5*psi;
+    const double cos_half_psi = cos(half_psi);
+    const double outer_1 = cos_half_phi*cos_half_psi;
+    const double sin_half_phi = sin(half_phi);
+    const double sin_half_psi = sin(half_psi);
+    const double outer_2 = sin_half_phi*sin_half_psi;
+    const double half_theta = 0.5*theta;
+    const double cos_half_theta = cos(half_theta);
+    const double outer_3 = cos_half_phi*sin_half_psi;
+    const double outer_4 = cos_half_psi*sin_half_phi;
+    const double sin_half_theta = sin(half_theta);
 
-    q[0] = (outer_1 - outer_2)*x9;
-    q[1] = (outer_3 + outer_4)*x9;
-    q[2] = (outer_4 - outer_3)*x12;
-    q[3] = (outer_1 + outer_2)*x12;
+    q[0] = (outer_1 - outer_2)*cos_half_theta;
+    q[1] = (outer_3 + outer_4)*cos_half_theta;
+    q[2] = (outer_4 - outer_3)*sin_half_theta;
+    q[3] = (outer_1 + outer_2)*sin_half_theta;
 }
 
 void symrot_euler_extrinsic_xzx_quaternion_batch(
@@ -58,49 +58,49 @@ void symrot_euler_extrinsic_xzx_quaternion_batch(
             const double phi = angles[k];
             const double theta = angles[n + k];
             const double psi = angles[2*n + k];
-            const double x0 = 0.5*phi;
-            const double x1 = symrot_cos(x0);
-            const double x2 = 0.5*psi;
-            const double x3 = symrot_cos(x2);
-            const double outer_1 = x1*x3;
-            const double x5 = symrot_sin(x0);
-            const double x6 = symrot_sin(x2);
-            const double outer_2 = x5*x6;
-            const double x8 = 0.5*theta;
-            const double x9 = symrot_cos(x8);
-            const double outer_3 = x1*x6;
-            const double outer_4 = x3*x5;
-            const double x12 = symrot_sin(x8);
+            const double half_phi = 0.5*phi;
+            const double cos_half_phi = symrot_cos(half_phi);
+            const double half_psi = 0.5*psi;
+            const double cos_half_psi = symrot_cos(half_psi);
+            const double outer_1 = cos_half_phi*cos_half_psi;
+            const double sin_half_phi = symrot_sin(half_phi);
+            const double sin_half_psi = symrot_sin(half_psi);
+            const double outer_2 = sin_half_phi*sin_half_psi;
+            const double half_theta = 0.5*theta;
+            const double cos_half_theta = symrot_cos(half_theta);
+            const double outer_3 = cos_half_phi*sin_half_psi;
+            const double outer_4 = cos_half_psi*sin_half_phi;
+            const double sin_half_theta = symrot_sin(half_theta);
 
-            q[k] = (outer_1 - outer_2)*x9;
-            q[n + k] = (outer_3 + outer_4)*x9;
-            q[2*n + k] = (outer_4 - outer_3)*x12;
-            q[3*n + k] = (outer_1 + outer_2)*x12;
-            beyond += symrot_far(x0) + symrot_far(x2) + symrot_far(x8);
+            q[k] = (outer_1 - outer_2)*cos_half_theta;
+            q[n + k] = (outer_3 + outer_4)*cos_half_theta;
+            q[2*n + k] = (outer_4 - outer_3)*sin_half_theta;
+            q[3*n + k] = (outer_1 + outer_2)*sin_half_theta;
+            beyond += symrot_far(half_phi) + symrot_far(half_psi) + symrot_far(half_theta);
         }
         const size_t again = beyond == 0 ? start : end;
         for (size_t k = start; k < again; ++k) {
             const double phi = angles[k];
             const double theta = angles[n + k];
             const double psi = angles[2*n + k];
-            const double x0 = 0.5*phi;
-            const double x1 = cos(x0);
-            const double x2 = 0.5*psi;
-            const double x3 = cos(x2);
-            const double outer_1 = x1*x3;
-            const double x5 = sin(x0);
-            const double x6 = sin(x2);
-            const double outer_2 = x5*x6;
-            const double x8 = 0.5*theta;
-            const double x9 = cos(x8);
-            const double outer_3 = x1*x6;
-            const double outer_4 = x3*x5;
-            const double x12 = sin(x8);
+            const double half_phi = 0.5*phi;
+            const double cos_half_phi = cos(half_phi);
+            const double half_psi = 0.5*psi;
+            const double cos_half_psi = cos(half_psi);
+            const double outer_1 = cos_half_phi*cos_half_psi;
+            const double sin_half_phi = sin(half_phi);
+            const double sin_half_psi = sin(half_psi);
+            const double outer_2 = sin_half_phi*sin_half_psi;
+            const double half_theta = 0.5*theta;
+            const double cos_half_theta = cos(half_theta);
+            const double outer_3 = cos_half_phi*sin_half_psi;
+            const double outer_4 = cos_half_psi*sin_half_phi;
+            const double sin_half_theta = sin(half_theta);
 
-            q[k] = (outer_1 - outer_2)*x9;
-            q[n + k] = (outer_3 + outer_4)*x9;
-            q[2*n + k] = (outer_4 - outer_3)*x12;
-            q[3*n + k] = (outer_1 + outer_2)*x12;
+            q[k] = (outer_1 - outer_2)*cos_half_theta;
+            q[n + k] = (outer_3 + outer_4)*cos_half_theta;
+            q[2*n + k] = (outer_4 - outer_3)*sin_half_theta;
+            q[3*n + k] = (outer_1 + outer_2)*sin_half_theta;
         }
     }
 }
@@ -110,24 +110,24 @@ void symrot_euler_extrinsic_xzx_quaternionf(const float angles[3], float q[4])
     const float phi = angles[0];
     const float theta = angles[1];
     const float psi = angles[2];
-    const float x0 = 0.5f*phi;
-    const float x1 = cosf(x0);
-    const float x2 = 0.5f*psi;
-    const float x3 = cosf(x2);
-    const float outer_1 = x1*x3;
-    const float x5 = sinf(x0);
-    const float x6 = sinf(x2);
-    const float outer_2 = x5*x6;
-    const float x8 = 0.5f*theta;
-    const float x9 = cosf(x8);
-    const float outer_3 = x1*x6;
-    const float outer_4 = x3*x5;
-    const float x12 = sinf(x8);
+    const float half_phi = 0.5f*phi;
+    const float cos_half_phi = cosf(half_phi);
+    const float half_psi = 0.5f*psi;
+    const float cos_half_psi = cosf(half_psi);
+    const float outer_1 = cos_half_phi*cos_half_psi;
+    const float sin_half_phi = sinf(half_phi);
+    const float sin_half_psi = sinf(half_psi);
+    const float outer_2 = sin_half_phi*sin_half_psi;
+    const float half_theta = 0.5f*theta;
+    const float cos_half_theta = cosf(half_theta);
+    const float outer_3 = cos_half_phi*sin_half_psi;
+    const float outer_4 = cos_half_psi*sin_half_phi;
+    const float sin_half_theta = sinf(half_theta);
 
-    q[0] = (outer_1 - outer_2)*x9;
-    q[1] = (outer_3 + outer_4)*x9;
-    q[2] = (outer_4 - outer_3)*x12;
-    q[3] = (outer_1 + outer_2)*x12;
+    q[0] = (outer_1 - outer_2)*cos_half_theta;
+    q[1] = (outer_3 + outer_4)*cos_half_theta;
+    q[2] = (outer_4 - outer_3)*sin_half_theta;
+    q[3] = (outer_1 + outer_2)*sin_half_theta;
 }
 
 void symrot_euler_extrinsic_xzx_quaternionf_batch(
@@ -141,49 +141,49 @@ void symrot_euler_extrinsic_xzx_quaternionf_batch(
             const float phi = angles[k];
             const float theta = angles[n + k];
             const float psi = angles[2*n + k];
-            const float x0 = 0.5f*phi;
-            const float x1 = symrot_cosf(x0);
-            const float x2 = 0.5f*psi;
-            const float x3 = symrot_cosf(x2);
-            const float outer_1 = x1*x3;
-            const float x5 = symrot_sinf(x0);
-            const float x6 = symrot_sinf(x2);
-            const float outer_2 = x5*x6;
-            const float x8 = 0.5f*theta;
-            const float x9 = symrot_cosf(x8);
-            const float outer_3 = x1*x6;
-            const float outer_4 = x3*x5;
-            const float x12 = symrot_sinf(x8);
+            const float half_phi = 0.5f*phi;
+            const float cos_half_phi = symrot_cosf(half_phi);
+            const float half_psi = 0.5f*psi;
+            const float cos_half_psi = symrot_cosf(half_psi);
+            const float outer_1 = cos_half_phi*cos_half_psi;
+            const float sin_half_phi = symrot_sinf(half_phi);
+            const float sin_half_psi = symrot_sinf(half_psi);
+            const float outer_2 = sin_half_phi*sin_half_psi;
+            const float half_theta = 0.5f*theta;
+            const float cos_half_theta = symrot_cosf(half_theta);
+            const float outer_3 = cos_half_phi*sin_half_psi;
+            const float outer_4 = cos_half_psi*sin_half_phi;
+            const float sin_half_theta = symrot_sinf(half_theta);
 
-            q[k] = (outer_1 - outer_2)*x9;
-            q[n + k] = (outer_3 + outer_4)*x9;
-            q[2*n + k] = (outer_4 - outer_3)*x12;
-            q[3*n + k] = (outer_1 + outer_2)*x12;
-            beyond += symrot_farf(x0) + symrot_farf(x2) + symrot_farf(x8);
+            q[k] = (outer_1 - outer_2)*cos_half_theta;
+            q[n + k] = (outer_3 + outer_4)*cos_half_theta;
+            q[2*n + k] = (outer_4 - outer_3)*sin_half_theta;
+            q[3*n + k] = (outer_1 + outer_2)*sin_half_theta;
+            beyond += symrot_farf(half_phi) + symrot_farf(half_psi) + symrot_farf(half_theta);
         }
         const size_t again = beyond == 0 ? start : end;
         for (size_t k = start; k < again; ++k) {
             const float phi = angles[k];
             const float theta = angles[n + k];
             const float psi = angles[2*n + k];
-            const float x0 = 0.5f*phi;
-            const float x1 = cosf(x0);
-            const float x2 = 0.5f*psi;
-            const float x3 = cosf(x2);
-            const float outer_1 = x1*x3;
-            const float x5 = sinf(x0);
-            const float x6 = sinf(x2);
-            const float outer_2 = x5*x6;
-            const float x8 = 0.5f*theta;
-            const float x9 = cosf(x8);
-            const float outer_3 = x1*x6;
-            const float outer_4 = x3*x5;
-            const float x12 = sinf(x8);
+            const float half_phi = 0.5f*phi;
+            const float cos_half_phi = cosf(half_phi);
+            const float half_psi = 0.5f*psi;
+            const float cos_half_psi = cosf(half_psi);
+            const float outer_1 = cos_half_phi*cos_half_psi;
+            const float sin_half_phi = sinf(half_phi);
+            const float sin_half_psi = sinf(half_psi);
+            const float outer_2 = sin_half_phi*sin_half_psi;
+            const float half_theta = 0.5f*theta;
+            const float cos_half_theta = cosf(half_theta);
+            const float outer_3 = cos_half_phi*sin_half_psi;
+            const float outer_4 = cos_half_psi*sin_half_phi;
+            const float sin_half_theta = sinf(half_theta);
 
-            q[k] = (outer_1 - outer_2)*x9;
-            q[n + k] = (outer_3 + outer_4)*x9;
-            q[2*n + k] = (outer_4 - outer_3)*x12;
-            q[3*n + k] = (outer_1 + outer_2)*x12;
+            q[k] = (outer_1 - outer_2)*cos_half_theta;
+            q[n + k] = (outer_3 + outer_4)*cos_half_theta;
+            q[2*n + k] = (outer_4 - outer_3)*sin_half_theta;
+            q[3*n + k] = (outer_1 + outer_2)*sin_half_theta;
         }
     }
 }

@@ -40,23 +40,27 @@ void symrot_euler_extrinsic_zxz_of_quaternion(const double q[4], double angles[3
     const double q1 = q[1];
     const double q2 = q[2];
     const double q3 = q[3];
-    const double x0 = atan2(q2, q1);
-    const double x1 = atan2(q3, q0);
-    const double x2 = x0 - x1;
-    const double x3 = -x2;
-    const double x4 = -3.141592653589793;
-    const double x5 = symrot_select_ge(x3, x4, x3, 6.283185307179586 - x2);
-    const double x6 = symrot_select_ge(3.141592653589793, x3, x5, -(x2 + 6.283185307179586));
-    const double x7 = sqrt(q1*q1 + q2*q2);
-    const double x8 = sqrt(q0*q0 + q3*q3);
-    const double x9 = atan2(x7, x8);
-    const double x10 = x0 + x1;
-    const double x11 = symrot_select_ge(x10, x4, x10, 6.283185307179586 + x10);
-    const double x12 = symrot_select_ge(3.141592653589793, x10, x11, x10 - 6.283185307179586);
+    const double phi_angle_1 = atan2(q2, q1);
+    const double phi_angle_2 = atan2(q3, q0);
+    const double phi_angle_1_minus_phi_angle_2 = phi_angle_1 - phi_angle_2;
+    const double phi_term_1 = -phi_angle_1_minus_phi_angle_2;
+    const double minus_pi = -3.141592653589793;
+    const double phi_choice_1 = symrot_select_ge(phi_term_1, minus_pi, phi_term_1, 6.283185307179586 -
+        phi_angle_1_minus_phi_angle_2);
+    const double phi_choice_2 = symrot_select_ge(3.141592653589793, phi_term_1, phi_choice_1,
+        -(phi_angle_1_minus_phi_angle_2 + 6.283185307179586));
+    const double sqrt_q1_sq_plus_q2_sq = sqrt(q1*q1 + q2*q2);
+    const double sqrt_q0_sq_plus_q3_sq = sqrt(q0*q0 + q3*q3);
+    const double theta_angle_1 = atan2(sqrt_q1_sq_plus_q2_sq, sqrt_q0_sq_plus_q3_sq);
+    const double phi_angle_1_plus_phi_angle_2 = phi_angle_1 + phi_angle_2;
+    const double psi_choice_1 = symrot_select_ge(phi_angle_1_plus_phi_angle_2, minus_pi, phi_angle_1_plus_phi_angle_2,
+        6.283185307179586 + phi_angle_1_plus_phi_angle_2);
+    const double psi_choice_2 = symrot_select_ge(3.141592653589793, phi_angle_1_plus_phi_angle_2, psi_choice_1,
+        phi_angle_1_plus_phi_angle_2 - 6.283185307179586);
 
-    angles[0] = x6;
-    angles[1] = 2.0*x9;
-    angles[2] = x12;
+    angles[0] = phi_choice_2;
+    angles[1] = 2.0*theta_angle_1;
+    angles[2] = psi_choice_2;
 }
 
 void symrot_euler_extrinsic_zxz_of_quaternion_batch(
@@ -68,23 +72,27 @@ void symrot_euler_extrinsic_zxz_of_quaternion_batch(
         const double q1 = q[n + k];
         const double q2 = q[2*n + k];
         const double q3 = q[3*n + k];
-        const double x0 = symrot_atan2(q2, q1);
-        const double x1 = symrot_atan2(q3, q0);
-        const double x2 = x0 - x1;
-        const double x3 = -x2;
-        const double x4 = -3.141592653589793;
-        const double x5 = symrot_choose_ge(x3, x4, x3, 6.283185307179586 - x2);
-        const double x6 = symrot_choose_ge(3.141592653589793, x3, x5, -(x2 + 6.283185307179586));
-        const double x7 = sqrt(q1*q1 + q2*q2);
-        const double x8 = sqrt(q0*q0 + q3*q3);
-        const double x9 = symrot_atan2(x7, x8);
-        const double x10 = x0 + x1;
-        const double x11 = symrot_choose_ge(x10, x4, x10, 6.283185307179586 + x10);
-        const double x12 = symrot_choose_ge(3.141592653589793, x10, x11, x10 - 6.283185307179586);
+        const double phi_angle_1 = symrot_atan2(q2, q1);
+        const double phi_angle_2 = symrot_atan2(q3, q0);
+        const double phi_angle_1_minus_phi_angle_2 = phi_angle_1 - phi_angle_2;
+        const double phi_term_1 = -phi_angle_1_minus_phi_angle_2;
+        const double minus_pi = -3.141592653589793;
+        const double phi_choice_1 = symrot_choose_ge(phi_term_1, minus_pi, phi_term_1, 6.283185307179586 -
+            phi_angle_1_minus_phi_angle_2);
+        const double phi_choice_2 = symrot_choose_ge(3.141592653589793, phi_term_1, phi_choice_1,
+            -(phi_angle_1_minus_phi_angle_2 + 6.283185307179586));
+        const double sqrt_q1_sq_plus_q2_sq = sqrt(q1*q1 + q2*q2);
+        const double sqrt_q0_sq_plus_q3_sq = sqrt(q0*q0 + q3*q3);
+        const double theta_angle_1 = symrot_atan2(sqrt_q1_sq_plus_q2_sq, sqrt_q0_sq_plus_q3_sq);
+        const double phi_angle_1_plus_phi_angle_2 = phi_angle_1 + phi_angle_2;
+        const double psi_choice_1 = symrot_choose_ge(phi_angle_1_plus_phi_angle_2, minus_pi,
+            phi_angle_1_plus_phi_angle_2, 6.283185307179586 + phi_angle_1_plus_phi_angle_2);
+        const double psi_choice_2 = symrot_choose_ge(3.141592653589793, phi_angle_1_plus_phi_angle_2, psi_choice_1,
+            phi_angle_1_plus_phi_angle_2 - 6.283185307179586);
 
-        angles[k] = x6;
-        angles[n + k] = 2.0*x9;
-        angles[2*n + k] = x12;
+        angles[k] = phi_choice_2;
+        angles[n + k] = 2.0*theta_angle_1;
+        angles[2*n + k] = psi_choice_2;
     }
 }
 
@@ -94,23 +102,27 @@ void symrot_euler_extrinsic_zxz_of_quaternionf(const float q[4], float angles[3]
     const float q1 = q[1];
     const float q2 = q[2];
     const float q3 = q[3];
-    const float x0 = atan2f(q2, q1);
-    const float x1 = atan2f(q3, q0);
-    const float x2 = x0 - x1;
-    const float x3 = -x2;
-    const float x4 = -3.1415927f;
-    const float x5 = symrot_select_gef(x3, x4, x3, 6.2831853f - x2);
-    const float x6 = symrot_select_gef(3.1415927f, x3, x5, -(x2 + 6.2831853f));
-    const float x7 = sqrtf(q1*q1 + q2*q2);
-    const float x8 = sqrtf(q0*q0 + q3*q3);
-    const float x9 = atan2f(x7, x8);
-    const float x10 = x0 + x1;
-    const float x11 = symrot_select_gef(x10, x4, x10, 6.2831853f + x10);
-    const float x12 = symrot_select_gef(3.1415927f, x10, x11, x10 - 6.2831853f);
+    const float phi_angle_1 = atan2f(q2, q1);
+    const float phi_angle_2 = atan2f(q3, q0);
+    const float phi_angle_1_minus_phi_angle_2 = phi_angle_1 - phi_angle_2;
+    const float phi_term_1 = -phi_angle_1_minus_phi_angle_2;
+    const float minus_pi = -3.1415927f;
+    const float phi_choice_1 = symrot_select_gef(phi_term_1, minus_pi, phi_term_1, 6.2831853f -
+        phi_angle_1_minus_phi_angle_2);
+    const float phi_choice_2 = symrot_select_gef(3.1415927f, phi_term_1, phi_choice_1, -(phi_angle_1_minus_phi_angle_2 +
+        6.2831853f));
+    const float sqrt_q1_sq_plus_q2_sq = sqrtf(q1*q1 + q2*q2);
+    const float sqrt_q0_sq_plus_q3_sq = sqrtf(q0*q0 + q3*q3);
+    const float theta_angle_1 = atan2f(sqrt_q1_sq_plus_q2_sq, sqrt_q0_sq_plus_q3_sq);
+    const float phi_angle_1_plus_phi_angle_2 = phi_angle_1 + phi_angle_2;
+    const float psi_choice_1 = symrot_select_gef(phi_angle_1_plus_phi_angle_2, minus_pi, phi_angle_1_plus_phi_angle_2,
+        6.2831853f + phi_angle_1_plus_phi_angle_2);
+    const float psi_choice_2 = symrot_select_gef(3.1415927f, phi_angle_1_plus_phi_angle_2, psi_choice_1,
+        phi_angle_1_plus_phi_angle_2 - 6.2831853f);
 
-    angles[0] = x6;
-    angles[1] = 2.0f*x9;
-    angles[2] = x12;
+    angles[0] = phi_choice_2;
+    angles[1] = 2.0f*theta_angle_1;
+    angles[2] = psi_choice_2;
 }
 
 void symrot_euler_extrinsic_zxz_of_quaternionf_batch(
@@ -122,22 +134,26 @@ void symrot_euler_extrinsic_zxz_of_quaternionf_batch(
         const float q1 = q[n + k];
         const float q2 = q[2*n + k];
         const float q3 = q[3*n + k];
-        const float x0 = symrot_atan2f(q2, q1);
-        const float x1 = symrot_atan2f(q3, q0);
-        const float x2 = x0 - x1;
-        const float x3 = -x2;
-        const float x4 = -3.1415927f;
-        const float x5 = symrot_choose_gef(x3, x4, x3, 6.2831853f - x2);
-        const float x6 = symrot_choose_gef(3.1415927f, x3, x5, -(x2 + 6.2831853f));
-        const float x7 = sqrtf(q1*q1 + q2*q2);
-        const float x8 = sqrtf(q0*q0 + q3*q3);
-        const float x9 = symrot_atan2f(x7, x8);
-        const float x10 = x0 + x1;
-        const float x11 = symrot_choose_gef(x10, x4, x10, 6.2831853f + x10);
-        const float x12 = symrot_choose_gef(3.1415927f, x10, x11, x10 - 6.2831853f);
+        const float phi_angle_1 = symrot_atan2f(q2, q1);
+        const float phi_angle_2 = symrot_atan2f(q3, q0);
+        const float phi_angle_1_minus_phi_angle_2 = phi_angle_1 - phi_angle_2;
+        const float phi_term_1 = -phi_angle_1_minus_phi_angle_2;
+        const float minus_pi = -3.1415927f;
+        const float phi_choice_1 = symrot_choose_gef(phi_term_1, minus_pi, phi_term_1, 6.2831853f -
+            phi_angle_1_minus_phi_angle_2);
+        const float phi_choice_2 = symrot_choose_gef(3.1415927f, phi_term_1, phi_choice_1,
+            -(phi_angle_1_minus_phi_angle_2 + 6.2831853f));
+        const float sqrt_q1_sq_plus_q2_sq = sqrtf(q1*q1 + q2*q2);
+        const float sqrt_q0_sq_plus_q3_sq = sqrtf(q0*q0 + q3*q3);
+        const float theta_angle_1 = symrot_atan2f(sqrt_q1_sq_plus_q2_sq, sqrt_q0_sq_plus_q3_sq);
+        const float phi_angle_1_plus_phi_angle_2 = phi_angle_1 + phi_angle_2;
+        const float psi_choice_1 = symrot_choose_gef(phi_angle_1_plus_phi_angle_2, minus_pi,
+            phi_angle_1_plus_phi_angle_2, 6.2831853f + phi_angle_1_plus_phi_angle_2);
+        const float psi_choice_2 = symrot_choose_gef(3.1415927f, phi_angle_1_plus_phi_angle_2, psi_choice_1,
+            phi_angle_1_plus_phi_angle_2 - 6.2831853f);
 
-        angles[k] = x6;
-        angles[n + k] = 2.0f*x9;
-        angles[2*n + k] = x12;
+        angles[k] = phi_choice_2;
+        angles[n + k] = 2.0f*theta_angle_1;
+        angles[2*n + k] = psi_choice_2;
     }
 }

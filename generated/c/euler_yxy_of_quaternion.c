@@ -40,22 +40,26 @@ void symrot_euler_yxy_of_quaternion(const double q[4], double angles[3])
     const double q1 = q[1];
     const double q2 = q[2];
     const double q3 = q[3];
-    const double x0 = atan2(q2, q0);
-    const double x1 = atan2(-q3, q1);
-    const double x2 = x0 + x1;
-    const double x3 = -3.141592653589793;
-    const double x4 = symrot_select_ge(x2, x3, x2, x2 + 6.283185307179586);
-    const double x5 = symrot_select_ge(3.141592653589793, x2, x4, x2 - 6.283185307179586);
-    const double x6 = sqrt(q1*q1 + q3*q3);
-    const double x7 = sqrt(q0*q0 + q2*q2);
-    const double x8 = atan2(x6, x7);
-    const double x9 = x0 - x1;
-    const double x10 = symrot_select_ge(x9, x3, x9, 6.283185307179586 + x9);
-    const double x11 = symrot_select_ge(3.141592653589793, x9, x10, x9 - 6.283185307179586);
+    const double phi_angle_1 = atan2(q2, q0);
+    const double phi_angle_2 = atan2(-q3, q1);
+    const double phi_angle_1_plus_phi_angle_2 = phi_angle_1 + phi_angle_2;
+    const double minus_pi = -3.141592653589793;
+    const double phi_choice_1 = symrot_select_ge(phi_angle_1_plus_phi_angle_2, minus_pi, phi_angle_1_plus_phi_angle_2,
+        phi_angle_1_plus_phi_angle_2 + 6.283185307179586);
+    const double phi_choice_2 = symrot_select_ge(3.141592653589793, phi_angle_1_plus_phi_angle_2, phi_choice_1,
+        phi_angle_1_plus_phi_angle_2 - 6.283185307179586);
+    const double sqrt_q1_sq_plus_q3_sq = sqrt(q1*q1 + q3*q3);
+    const double sqrt_q0_sq_plus_q2_sq = sqrt(q0*q0 + q2*q2);
+    const double theta_angle_1 = atan2(sqrt_q1_sq_plus_q3_sq, sqrt_q0_sq_plus_q2_sq);
+    const double phi_angle_1_minus_phi_angle_2 = phi_angle_1 - phi_angle_2;
+    const double psi_choice_1 = symrot_select_ge(phi_angle_1_minus_phi_angle_2, minus_pi, phi_angle_1_minus_phi_angle_2,
+        6.283185307179586 + phi_angle_1_minus_phi_angle_2);
+    const double psi_choice_2 = symrot_select_ge(3.141592653589793, phi_angle_1_minus_phi_angle_2, psi_choice_1,
+        phi_angle_1_minus_phi_angle_2 - 6.283185307179586);
 
-    angles[0] = x5;
-    angles[1] = 2.0*x8;
-    angles[2] = x11;
+    angles[0] = phi_choice_2;
+    angles[1] = 2.0*theta_angle_1;
+    angles[2] = psi_choice_2;
 }
 
 void symrot_euler_yxy_of_quaternion_batch(
@@ -67,22 +71,26 @@ void symrot_euler_yxy_of_quaternion_batch(
         const double q1 = q[n + k];
         const double q2 = q[2*n + k];
         const double q3 = q[3*n + k];
-        const double x0 = symrot_atan2(q2, q0);
-        const double x1 = symrot_atan2(-q3, q1);
-        const double x2 = x0 + x1;
-        const double x3 = -3.141592653589793;
-        const double x4 = symrot_choose_ge(x2, x3, x2, x2 + 6.283185307179586);
-        const double x5 = symrot_choose_ge(3.141592653589793, x2, x4, x2 - 6.283185307179586);
-        const double x6 = sqrt(q1*q1 + q3*q3);
-        const double x7 = sqrt(q0*q0 + q2*q2);
-        const double x8 = symrot_atan2(x6, x7);
-        const double x9 = x0 - x1;
-        const double x10 = symrot_choose_ge(x9, x3, x9, 6.283185307179586 + x9);
-        const double x11 = symrot_choose_ge(3.141592653589793, x9, x10, x9 - 6.283185307179586);
+        const double phi_angle_1 = symrot_atan2(q2, q0);
+        const double phi_angle_2 = symrot_atan2(-q3, q1);
+        const double phi_angle_1_plus_phi_angle_2 = phi_angle_1 + phi_angle_2;
+        const double minus_pi = -3.141592653589793;
+        const double phi_choice_1 = symrot_choose_ge(phi_angle_1_plus_phi_angle_2, minus_pi,
+            phi_angle_1_plus_phi_angle_2, phi_angle_1_plus_phi_angle_2 + 6.283185307179586);
+        const double phi_choice_2 = symrot_choose_ge(3.141592653589793, phi_angle_1_plus_phi_angle_2, phi_choice_1,
+            phi_angle_1_plus_phi_angle_2 - 6.283185307179586);
+        const double sqrt_q1_sq_plus_q3_sq = sqrt(q1*q1 + q3*q3);
+        const double sqrt_q0_sq_plus_q2_sq = sqrt(q0*q0 + q2*q2);
+        const double theta_angle_1 = symrot_atan2(sqrt_q1_sq_plus_q3_sq, sqrt_q0_sq_plus_q2_sq);
+        const double phi_angle_1_minus_phi_angle_2 = phi_angle_1 - phi_angle_2;
+        const double psi_choice_1 = symrot_choose_ge(phi_angle_1_minus_phi_angle_2, minus_pi,
+            phi_angle_1_minus_phi_angle_2, 6.283185307179586 + phi_angle_1_minus_phi_angle_2);
+        const double psi_choice_2 = symrot_choose_ge(3.141592653589793, phi_angle_1_minus_phi_angle_2, psi_choice_1,
+            phi_angle_1_minus_phi_angle_2 - 6.283185307179586);
 
-        angles[k] = x5;
-        angles[n + k] = 2.0*x8;
-        angles[2*n + k] = x11;
+        angles[k] = phi_choice_2;
+        angles[n + k] = 2.0*theta_angle_1;
+        angles[2*n + k] = psi_choice_2;
     }
 }
 
@@ -92,22 +100,26 @@ void symrot_euler_yxy_of_quaternionf(const float q[4], float angles[3])
     const float q1 = q[1];
     const float q2 = q[2];
     const float q3 = q[3];
-    const float x0 = atan2f(q2, q0);
-    const float x1 = atan2f(-q3, q1);
-    const float x2 = x0 + x1;
-    const float x3 = -3.1415927f;
-    const float x4 = symrot_select_gef(x2, x3, x2, x2 + 6.2831853f);
-    const float x5 = symrot_select_gef(3.1415927f, x2, x4, x2 - 6.2831853f);
-    const float x6 = sqrtf(q1*q1 + q3*q3);
-    const float x7 = sqrtf(q0*q0 + q2*q2);
-    const float x8 = atan2f(x6, x7);
-    const float x9 = x0 - x1;
-    const float x10 = symrot_select_gef(x9, x3, x9, 6.2831853f + x9);
-    const float x11 = symrot_select_gef(3.1415927f, x9, x10, x9 - 6.2831853f);
+    const float phi_angle_1 = atan2f(q2, q0);
+    const float phi_angle_2 = atan2f(-q3, q1);
+    const float phi_angle_1_plus_phi_angle_2 = phi_angle_1 + phi_angle_2;
+    const float minus_pi = -3.1415927f;
+    const float phi_choice_1 = symrot_select_gef(phi_angle_1_plus_phi_angle_2, minus_pi, phi_angle_1_plus_phi_angle_2,
+        phi_angle_1_plus_phi_angle_2 + 6.2831853f);
+    const float phi_choice_2 = symrot_select_gef(3.1415927f, phi_angle_1_plus_phi_angle_2, phi_choice_1,
+        phi_angle_1_plus_phi_angle_2 - 6.2831853f);
+    const float sqrt_q1_sq_plus_q3_sq = sqrtf(q1*q1 + q3*q3);
+    const float sqrt_q0_sq_plus_q2_sq = sqrtf(q0*q0 + q2*q2);
+    const float theta_angle_1 = atan2f(sqrt_q1_sq_plus_q3_sq, sqrt_q0_sq_plus_q2_sq);
+    const float phi_angle_1_minus_phi_angle_2 = phi_angle_1 - phi_angle_2;
+    const float psi_choice_1 = symrot_select_gef(phi_angle_1_minus_phi_angle_2, minus_pi, phi_angle_1_minus_phi_angle_2,
+        6.2831853f + phi_angle_1_minus_phi_angle_2);
+    const float psi_choice_2 = symrot_select_gef(3.1415927f, phi_angle_1_minus_phi_angle_2, psi_choice_1,
+        phi_angle_1_minus_phi_angle_2 - 6.2831853f);
 
-    angles[0] = x5;
-    angles[1] = 2.0f*x8;
-    angles[2] = x11;
+    angles[0] = phi_choice_2;
+    angles[1] = 2.0f*theta_angle_1;
+    angles[2] = psi_choice_2;
 }
 
 void symrot_euler_yxy_of_quaternionf_batch(
@@ -119,21 +131,25 @@ void symrot_euler_yxy_of_quaternionf_batch(
         const float q1 = q[n + k];
         const float q2 = q[2*n + k];
         const float q3 = q[3*n + k];
-        const float x0 = symrot_atan2f(q2, q0);
-        const float x1 = symrot_atan2f(-q3, q1);
-        const float x2 = x0 + x1;
-        const float x3 = -3.1415927f;
-        const float x4 = symrot_choose_gef(x2, x3, x2, x2 + 6.2831853f);
-        const float x5 = symrot_choose_gef(3.1415927f, x2, x4, x2 - 6.2831853f);
-        const float x6 = sqrtf(q1*q1 + q3*q3);
-        const float x7 = sqrtf(q0*q0 + q2*q2);
-        const float x8 = symrot_atan2f(x6, x7);
-        const float x9 = x0 - x1;
-        const float x10 = symrot_choose_gef(x9, x3, x9, 6.2831853f + x9);
-        const float x11 = symrot_choose_gef(3.1415927f, x9, x10, x9 - 6.2831853f);
+        const float phi_angle_1 = symrot_atan2f(q2, q0);
+        const float phi_angle_2 = symrot_atan2f(-q3, q1);
+        const float phi_angle_1_plus_phi_angle_2 = phi_angle_1 + phi_angle_2;
+        const float minus_pi = -3.1415927f;
+        const float phi_choice_1 = symrot_choose_gef(phi_angle_1_plus_phi_angle_2, minus_pi,
+            phi_angle_1_plus_phi_angle_2, phi_angle_1_plus_phi_angle_2 + 6.2831853f);
+        const float phi_choice_2 = symrot_choose_gef(3.1415927f, phi_angle_1_plus_phi_angle_2, phi_choice_1,
+            phi_angle_1_plus_phi_angle_2 - 6.2831853f);
+        const float sqrt_q1_sq_plus_q3_sq = sqrtf(q1*q1 + q3*q3);
+        const float sqrt_q0_sq_plus_q2_sq = sqrtf(q0*q0 + q2*q2);
+        const float theta_angle_1 = symrot_atan2f(sqrt_q1_sq_plus_q3_sq, sqrt_q0_sq_plus_q2_sq);
+        const float phi_angle_1_minus_phi_angle_2 = phi_angle_1 - phi_angle_2;
+        const float psi_choice_1 = symrot_choose_gef(phi_angle_1_minus_phi_angle_2, minus_pi,
+            phi_angle_1_minus_phi_angle_2, 6.2831853f + phi_angle_1_minus_phi_angle_2);
+        const float psi_choice_2 = symrot_choose_gef(3.1415927f, phi_angle_1_minus_phi_angle_2, psi_choice_1,
+            phi_angle_1_minus_phi_angle_2 - 6.2831853f);
 
-        angles[k] = x5;
-        angles[n + k] = 2.0f*x8;
-        angles[2*n + k] = x11;
+        angles[k] = phi_choice_2;
+        angles[n + k] = 2.0f*theta_angle_1;
+        angles[2*n + k] = psi_choice_2;
     }
 }

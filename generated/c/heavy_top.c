@@ -43,13 +43,13 @@ void symrot_heavy_top(
     const double q1 = q[1];
     const double q2 = q[2];
     const double q3 = q[3];
-    const double x0 = 2.0*W;
-    const double moment_of_weight_3 = c_3*x0;
+    const double two_W = 2.0*W;
+    const double moment_of_weight_3 = c_3*two_W;
     const double half_vertical_2 = q0*q1 + q2*q3;
-    const double moment_of_weight_2 = c_2*x0;
+    const double moment_of_weight_2 = c_2*two_W;
     const double half_vertical_3 = 0.5 - q1*q1 - q2*q2;
     const double half_vertical_1 = q1*q3 - q0*q2;
-    const double moment_of_weight_1 = c_1*x0;
+    const double moment_of_weight_1 = c_1*two_W;
 
     domega[0] = (moment_of_weight_3*half_vertical_2 + (B - C)*omega_2*omega_3 - moment_of_weight_2*half_vertical_3)/A;
     domega[1] = (moment_of_weight_1*half_vertical_3 + (C - A)*omega_1*omega_3 - moment_of_weight_3*half_vertical_1)/B;
@@ -95,13 +95,13 @@ void symrot_heavy_top_batch(
         const double c_1 = center_of_mass[k];
         const double c_2 = center_of_mass[n + k];
         const double c_3 = center_of_mass[2*n + k];
-        const double x0 = 2.0*W_k;
-        const double moment_of_weight_3 = c_3*x0;
+        const double two_W = 2.0*W_k;
+        const double moment_of_weight_3 = c_3*two_W;
         const double half_vertical_2 = q0*q1 + q2*q3;
-        const double moment_of_weight_2 = c_2*x0;
+        const double moment_of_weight_2 = c_2*two_W;
         const double half_vertical_3 = 0.5 - q1*q1 - q2*q2;
         const double half_vertical_1 = q1*q3 - q0*q2;
-        const double moment_of_weight_1 = c_1*x0;
+        const double moment_of_weight_1 = c_1*two_W;
 
         const double domega_1 = (moment_of_weight_3*half_vertical_2 + (B - C)*omega_2*omega_3 -
             moment_of_weight_2*half_vertical_3)/A;
@@ -137,13 +137,13 @@ void symrot_heavy_topf(
     const float q1 = q[1];
     const float q2 = q[2];
     const float q3 = q[3];
-    const float x0 = 2.0f*W;
-    const float moment_of_weight_3 = c_3*x0;
+    const float two_W = 2.0f*W;
+    const float moment_of_weight_3 = c_3*two_W;
     const float half_vertical_2 = q0*q1 + q2*q3;
-    const float moment_of_weight_2 = c_2*x0;
+    const float moment_of_weight_2 = c_2*two_W;
     const float half_vertical_3 = 0.5f - q1*q1 - q2*q2;
     const float half_vertical_1 = q1*q3 - q0*q2;
-    const float moment_of_weight_1 = c_1*x0;
+    const float moment_of_weight_1 = c_1*two_W;
 
     domega[0] = (moment_of_weight_3*half_vertical_2 + (B - C)*omega_2*omega_3 - moment_of_weight_2*half_vertical_3)/A;
     domega[1] = (moment_of_weight_1*half_vertical_3 + (C - A)*omega_1*omega_3 - moment_of_weight_3*half_vertical_1)/B;
@@ -189,13 +189,13 @@ void symrot_heavy_topf_batch(
         const float c_1 = center_of_mass[k];
         const float c_2 = center_of_mass[n + k];
         const float c_3 = center_of_mass[2*n + k];
-        const float x0 = 2.0f*W_k;
-        const float moment_of_weight_3 = c_3*x0;
+        const float two_W = 2.0f*W_k;
+        const float moment_of_weight_3 = c_3*two_W;
         const float half_vertical_2 = q0*q1 + q2*q3;
-        const float moment_of_weight_2 = c_2*x0;
+        const float moment_of_weight_2 = c_2*two_W;
         const float half_vertical_3 = 0.5f - q1*q1 - q2*q2;
         const float half_vertical_1 = q1*q3 - q0*q2;
-        const float moment_of_weight_1 = c_1*x0;
+        const float moment_of_weight_1 = c_1*two_W;
 
         const float domega_1 = (moment_of_weight_3*half_vertical_2 + (B - C)*omega_2*omega_3 -
             moment_of_weight_2*half_vertical_3)/A;

@@ -45,12 +45,12 @@ void symrot_heavy_top_symmetric(
     const double q3 = q[3];
     const double moment_of_weight_3 = 2.0*W*h;
     const double half_vertical_2 = q0*q1 + q2*q3;
-    const double x2 = (A - C)*omega_3;
-    const double x3 = 1.0/A;
+    const double domega_1_term_1 = (A - C)*omega_3;
+    const double inv_A = 1.0/A;
     const double half_vertical_1 = q1*q3 - q0*q2;
 
-    domega[0] = (moment_of_weight_3*half_vertical_2 + omega_2*x2)*x3;
-    domega[1] = -((moment_of_weight_3*half_vertical_1 + omega_1*x2)*x3);
+    domega[0] = (moment_of_weight_3*half_vertical_2 + omega_2*domega_1_term_1)*inv_A;
+    domega[1] = -((moment_of_weight_3*half_vertical_1 + omega_1*domega_1_term_1)*inv_A);
     domega[2] = 0.0;
 
     const double half_1 = 0.5*omega_1;
@@ -92,12 +92,12 @@ void symrot_heavy_top_symmetric_batch(
         const double C = inertia[n + k];
         const double moment_of_weight_3 = 2.0*W_k*h_k;
         const double half_vertical_2 = q0*q1 + q2*q3;
-        const double x2 = (A - C)*omega_3;
-        const double x3 = 1.0/A;
+        const double domega_1_term_1 = (A - C)*omega_3;
+        const double inv_A = 1.0/A;
         const double half_vertical_1 = q1*q3 - q0*q2;
 
-        const double domega_1 = (moment_of_weight_3*half_vertical_2 + omega_2*x2)*x3;
-        const double domega_2 = -((moment_of_weight_3*half_vertical_1 + omega_1*x2)*x3);
+        const double domega_1 = (moment_of_weight_3*half_vertical_2 + omega_2*domega_1_term_1)*inv_A;
+        const double domega_2 = -((moment_of_weight_3*half_vertical_1 + omega_1*domega_1_term_1)*inv_A);
 
         domega[k] = domega_1;
         domega[n + k] = domega_2;
@@ -124,12 +124,12 @@ void symrot_heavy_top_symmetricf(
     const float q3 = q[3];
     const float moment_of_weight_3 = 2.0f*W*h;
     const float half_vertical_2 = q0*q1 + q2*q3;
-    const float x2 = (A - C)*omega_3;
-    const float x3 = 1.0f/A;
+    const float domega_1_term_1 = (A - C)*omega_3;
+    const float inv_A = 1.0f/A;
     const float half_vertical_1 = q1*q3 - q0*q2;
 
-    domega[0] = (moment_of_weight_3*half_vertical_2 + omega_2*x2)*x3;
-    domega[1] = -((moment_of_weight_3*half_vertical_1 + omega_1*x2)*x3);
+    domega[0] = (moment_of_weight_3*half_vertical_2 + omega_2*domega_1_term_1)*inv_A;
+    domega[1] = -((moment_of_weight_3*half_vertical_1 + omega_1*domega_1_term_1)*inv_A);
     domega[2] = 0.0f;
 
     const float half_1 = 0.5f*omega_1;
@@ -171,12 +171,12 @@ void symrot_heavy_top_symmetricf_batch(
         const float C = inertia[n + k];
         const float moment_of_weight_3 = 2.0f*W_k*h_k;
         const float half_vertical_2 = q0*q1 + q2*q3;
-        const float x2 = (A - C)*omega_3;
-        const float x3 = 1.0f/A;
+        const float domega_1_term_1 = (A - C)*omega_3;
+        const float inv_A = 1.0f/A;
         const float half_vertical_1 = q1*q3 - q0*q2;
 
-        const float domega_1 = (moment_of_weight_3*half_vertical_2 + omega_2*x2)*x3;
-        const float domega_2 = -((moment_of_weight_3*half_vertical_1 + omega_1*x2)*x3);
+        const float domega_1 = (moment_of_weight_3*half_vertical_2 + omega_2*domega_1_term_1)*inv_A;
+        const float domega_2 = -((moment_of_weight_3*half_vertical_1 + omega_1*domega_1_term_1)*inv_A);
 
         domega[k] = domega_1;
         domega[n + k] = domega_2;

@@ -31,12 +31,12 @@ void symrot_inertia_cone(double m, const double dimensions[2], double inertia[6]
 {
     const double R = dimensions[0];
     const double h = dimensions[1];
-    const double x0 = R*R;
-    const double x1 = 0.0375*(4.0*x0 + h*h)*m;
+    const double R_sq = R*R;
+    const double I_xx_term_1 = 0.0375*(4.0*R_sq + h*h)*m;
 
-    inertia[0] = x1;
-    inertia[1] = x1;
-    inertia[2] = 0.3*m*x0;
+    inertia[0] = I_xx_term_1;
+    inertia[1] = I_xx_term_1;
+    inertia[2] = 0.3*m*R_sq;
     inertia[3] = 0.0;
     inertia[4] = 0.0;
     inertia[5] = 0.0;
@@ -54,12 +54,12 @@ void symrot_inertia_cone_batch(
         const double m_k = m[k];
         const double R = dimensions[k];
         const double h = dimensions[n + k];
-        const double x0 = R*R;
-        const double x1 = 0.0375*(4.0*x0 + h*h)*m_k;
+        const double R_sq = R*R;
+        const double I_xx_term_1 = 0.0375*(4.0*R_sq + h*h)*m_k;
 
-        inertia[k] = x1;
-        inertia[n + k] = x1;
-        inertia[2*n + k] = 0.3*m_k*x0;
+        inertia[k] = I_xx_term_1;
+        inertia[n + k] = I_xx_term_1;
+        inertia[2*n + k] = 0.3*m_k*R_sq;
         inertia[3*n + k] = 0.0;
         inertia[4*n + k] = 0.0;
         inertia[5*n + k] = 0.0;
@@ -73,12 +73,12 @@ void symrot_inertia_conef(float m, const float dimensions[2], float inertia[6], 
 {
     const float R = dimensions[0];
     const float h = dimensions[1];
-    const float x0 = R*R;
-    const float x1 = 0.0375f*(4.0f*x0 + h*h)*m;
+    const float R_sq = R*R;
+    const float I_xx_term_1 = 0.0375f*(4.0f*R_sq + h*h)*m;
 
-    inertia[0] = x1;
-    inertia[1] = x1;
-    inertia[2] = 0.3f*m*x0;
+    inertia[0] = I_xx_term_1;
+    inertia[1] = I_xx_term_1;
+    inertia[2] = 0.3f*m*R_sq;
     inertia[3] = 0.0f;
     inertia[4] = 0.0f;
     inertia[5] = 0.0f;
@@ -96,12 +96,12 @@ void symrot_inertia_conef_batch(
         const float m_k = m[k];
         const float R = dimensions[k];
         const float h = dimensions[n + k];
-        const float x0 = R*R;
-        const float x1 = 0.0375f*(4.0f*x0 + h*h)*m_k;
+        const float R_sq = R*R;
+        const float I_xx_term_1 = 0.0375f*(4.0f*R_sq + h*h)*m_k;
 
-        inertia[k] = x1;
-        inertia[n + k] = x1;
-        inertia[2*n + k] = 0.3f*m_k*x0;
+        inertia[k] = I_xx_term_1;
+        inertia[n + k] = I_xx_term_1;
+        inertia[2*n + k] = 0.3f*m_k*R_sq;
         inertia[3*n + k] = 0.0f;
         inertia[4*n + k] = 0.0f;
         inertia[5*n + k] = 0.0f;

@@ -31,12 +31,12 @@ void symrot_inertia_cylinder(
 {
     const double R = dimensions[0];
     const double L = dimensions[1];
-    const double x0 = R*R;
-    const double x1 = 0.08333333333333333*(L*L + 3.0*x0)*m;
+    const double R_sq = R*R;
+    const double I_xx_term_1 = 0.08333333333333333*(L*L + 3.0*R_sq)*m;
 
-    inertia[0] = x1;
-    inertia[1] = x1;
-    inertia[2] = 0.5*m*x0;
+    inertia[0] = I_xx_term_1;
+    inertia[1] = I_xx_term_1;
+    inertia[2] = 0.5*m*R_sq;
     inertia[3] = 0.0;
     inertia[4] = 0.0;
     inertia[5] = 0.0;
@@ -54,12 +54,12 @@ void symrot_inertia_cylinder_batch(
         const double m_k = m[k];
         const double R = dimensions[k];
         const double L = dimensions[n + k];
-        const double x0 = R*R;
-        const double x1 = 0.08333333333333333*(L*L + 3.0*x0)*m_k;
+        const double R_sq = R*R;
+        const double I_xx_term_1 = 0.08333333333333333*(L*L + 3.0*R_sq)*m_k;
 
-        inertia[k] = x1;
-        inertia[n + k] = x1;
-        inertia[2*n + k] = 0.5*m_k*x0;
+        inertia[k] = I_xx_term_1;
+        inertia[n + k] = I_xx_term_1;
+        inertia[2*n + k] = 0.5*m_k*R_sq;
         inertia[3*n + k] = 0.0;
         inertia[4*n + k] = 0.0;
         inertia[5*n + k] = 0.0;
@@ -73,12 +73,12 @@ void symrot_inertia_cylinderf(float m, const float dimensions[2], float inertia[
 {
     const float R = dimensions[0];
     const float L = dimensions[1];
-    const float x0 = R*R;
-    const float x1 = 0.083333333f*(L*L + 3.0f*x0)*m;
+    const float R_sq = R*R;
+    const float I_xx_term_1 = 0.083333333f*(L*L + 3.0f*R_sq)*m;
 
-    inertia[0] = x1;
-    inertia[1] = x1;
-    inertia[2] = 0.5f*m*x0;
+    inertia[0] = I_xx_term_1;
+    inertia[1] = I_xx_term_1;
+    inertia[2] = 0.5f*m*R_sq;
     inertia[3] = 0.0f;
     inertia[4] = 0.0f;
     inertia[5] = 0.0f;
@@ -96,12 +96,12 @@ void symrot_inertia_cylinderf_batch(
         const float m_k = m[k];
         const float R = dimensions[k];
         const float L = dimensions[n + k];
-        const float x0 = R*R;
-        const float x1 = 0.083333333f*(L*L + 3.0f*x0)*m_k;
+        const float R_sq = R*R;
+        const float I_xx_term_1 = 0.083333333f*(L*L + 3.0f*R_sq)*m_k;
 
-        inertia[k] = x1;
-        inertia[n + k] = x1;
-        inertia[2*n + k] = 0.5f*m_k*x0;
+        inertia[k] = I_xx_term_1;
+        inertia[n + k] = I_xx_term_1;
+        inertia[2*n + k] = 0.5f*m_k*R_sq;
         inertia[3*n + k] = 0.0f;
         inertia[4*n + k] = 0.0f;
         inertia[5*n + k] = 0.0f;

@@ -28,12 +28,12 @@
 void symrot_inertia_disk(double m, const double dimensions[1], double inertia[6], double center_of_mass[3])
 {
     const double R = dimensions[0];
-    const double x0 = m*(R*R);
-    const double x1 = 0.25*x0;
+    const double m_R_sq = m*(R*R);
+    const double quarter_m_R_sq = 0.25*m_R_sq;
 
-    inertia[0] = x1;
-    inertia[1] = x1;
-    inertia[2] = 0.5*x0;
+    inertia[0] = quarter_m_R_sq;
+    inertia[1] = quarter_m_R_sq;
+    inertia[2] = 0.5*m_R_sq;
     inertia[3] = 0.0;
     inertia[4] = 0.0;
     inertia[5] = 0.0;
@@ -50,12 +50,12 @@ void symrot_inertia_disk_batch(
     for (size_t k = 0; k < n; ++k) {
         const double m_k = m[k];
         const double R = dimensions[k];
-        const double x0 = m_k*(R*R);
-        const double x1 = 0.25*x0;
+        const double m_R_sq = m_k*(R*R);
+        const double quarter_m_R_sq = 0.25*m_R_sq;
 
-        inertia[k] = x1;
-        inertia[n + k] = x1;
-        inertia[2*n + k] = 0.5*x0;
+        inertia[k] = quarter_m_R_sq;
+        inertia[n + k] = quarter_m_R_sq;
+        inertia[2*n + k] = 0.5*m_R_sq;
         inertia[3*n + k] = 0.0;
         inertia[4*n + k] = 0.0;
         inertia[5*n + k] = 0.0;
@@ -68,12 +68,12 @@ void symrot_inertia_disk_batch(
 void symrot_inertia_diskf(float m, const float dimensions[1], float inertia[6], float center_of_mass[3])
 {
     const float R = dimensions[0];
-    const float x0 = m*(R*R);
-    const float x1 = 0.25f*x0;
+    const float m_R_sq = m*(R*R);
+    const float quarter_m_R_sq = 0.25f*m_R_sq;
 
-    inertia[0] = x1;
-    inertia[1] = x1;
-    inertia[2] = 0.5f*x0;
+    inertia[0] = quarter_m_R_sq;
+    inertia[1] = quarter_m_R_sq;
+    inertia[2] = 0.5f*m_R_sq;
     inertia[3] = 0.0f;
     inertia[4] = 0.0f;
     inertia[5] = 0.0f;
@@ -90,12 +90,12 @@ void symrot_inertia_diskf_batch(
     for (size_t k = 0; k < n; ++k) {
         const float m_k = m[k];
         const float R = dimensions[k];
-        const float x0 = m_k*(R*R);
-        const float x1 = 0.25f*x0;
+        const float m_R_sq = m_k*(R*R);
+        const float quarter_m_R_sq = 0.25f*m_R_sq;
 
-        inertia[k] = x1;
-        inertia[n + k] = x1;
-        inertia[2*n + k] = 0.5f*x0;
+        inertia[k] = quarter_m_R_sq;
+        inertia[n + k] = quarter_m_R_sq;
+        inertia[2*n + k] = 0.5f*m_R_sq;
         inertia[3*n + k] = 0.0f;
         inertia[4*n + k] = 0.0f;
         inertia[5*n + k] = 0.0f;

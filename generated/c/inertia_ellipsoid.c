@@ -34,14 +34,14 @@ void symrot_inertia_ellipsoid(
     const double a = dimensions[0];
     const double b = dimensions[1];
     const double c = dimensions[2];
-    const double x0 = b*b;
-    const double x1 = c*c;
-    const double x2 = 0.2*m;
-    const double x3 = a*a;
+    const double b_sq = b*b;
+    const double c_sq = c*c;
+    const double m_over_5 = 0.2*m;
+    const double a_sq = a*a;
 
-    inertia[0] = (x0 + x1)*x2;
-    inertia[1] = (x1 + x3)*x2;
-    inertia[2] = (x0 + x3)*x2;
+    inertia[0] = (b_sq + c_sq)*m_over_5;
+    inertia[1] = (c_sq + a_sq)*m_over_5;
+    inertia[2] = (b_sq + a_sq)*m_over_5;
     inertia[3] = 0.0;
     inertia[4] = 0.0;
     inertia[5] = 0.0;
@@ -60,14 +60,14 @@ void symrot_inertia_ellipsoid_batch(
         const double a = dimensions[k];
         const double b = dimensions[n + k];
         const double c = dimensions[2*n + k];
-        const double x0 = b*b;
-        const double x1 = c*c;
-        const double x2 = 0.2*m_k;
-        const double x3 = a*a;
+        const double b_sq = b*b;
+        const double c_sq = c*c;
+        const double m_over_5 = 0.2*m_k;
+        const double a_sq = a*a;
 
-        const double I_xx = (x0 + x1)*x2;
-        const double I_yy = (x1 + x3)*x2;
-        const double I_zz = (x0 + x3)*x2;
+        const double I_xx = (b_sq + c_sq)*m_over_5;
+        const double I_yy = (c_sq + a_sq)*m_over_5;
+        const double I_zz = (b_sq + a_sq)*m_over_5;
 
         inertia[k] = I_xx;
         inertia[n + k] = I_yy;
@@ -86,14 +86,14 @@ void symrot_inertia_ellipsoidf(float m, const float dimensions[3], float inertia
     const float a = dimensions[0];
     const float b = dimensions[1];
     const float c = dimensions[2];
-    const float x0 = b*b;
-    const float x1 = c*c;
-    const float x2 = 0.2f*m;
-    const float x3 = a*a;
+    const float b_sq = b*b;
+    const float c_sq = c*c;
+    const float m_over_5 = 0.2f*m;
+    const float a_sq = a*a;
 
-    inertia[0] = (x0 + x1)*x2;
-    inertia[1] = (x1 + x3)*x2;
-    inertia[2] = (x0 + x3)*x2;
+    inertia[0] = (b_sq + c_sq)*m_over_5;
+    inertia[1] = (c_sq + a_sq)*m_over_5;
+    inertia[2] = (b_sq + a_sq)*m_over_5;
     inertia[3] = 0.0f;
     inertia[4] = 0.0f;
     inertia[5] = 0.0f;
@@ -112,14 +112,14 @@ void symrot_inertia_ellipsoidf_batch(
         const float a = dimensions[k];
         const float b = dimensions[n + k];
         const float c = dimensions[2*n + k];
-        const float x0 = b*b;
-        const float x1 = c*c;
-        const float x2 = 0.2f*m_k;
-        const float x3 = a*a;
+        const float b_sq = b*b;
+        const float c_sq = c*c;
+        const float m_over_5 = 0.2f*m_k;
+        const float a_sq = a*a;
 
-        const float I_xx = (x0 + x1)*x2;
-        const float I_yy = (x1 + x3)*x2;
-        const float I_zz = (x0 + x3)*x2;
+        const float I_xx = (b_sq + c_sq)*m_over_5;
+        const float I_yy = (c_sq + a_sq)*m_over_5;
+        const float I_zz = (b_sq + a_sq)*m_over_5;
 
         inertia[k] = I_xx;
         inertia[n + k] = I_yy;

@@ -33,29 +33,31 @@ void symrot_inertia_frustum(double m, const double dimensions[3], double inertia
     const double R_1 = dimensions[0];
     const double R_2 = dimensions[1];
     const double h = dimensions[2];
-    const double x0 = R_1*R_1;
-    const double x1 = x0*x0;
-    const double x2 = R_2*R_2;
-    const double x3 = x2*x2;
-    const double x4 = R_1*R_2;
-    const double x5 = x2*x4;
-    const double x6 = h*h;
-    const double x7 = x0*x4;
-    const double x8 = x4*x4;
-    const double x9 = 1.0/(x0 + x2 + x4);
-    const double x10 = m*x9;
-    const double x11 = 0.0375*(4.0*(x0*x1 + x2*x3 + x5*x6 + x7*x6) + 8.0*(x4*x3 + x4*x1) + 12.0*(x2*x8 + x4*x8 + x0*x8)
-        + x1*x6 + x3*x6 + 10.0*x8*x6)*x10*x9;
+    const double R_1_sq = R_1*R_1;
+    const double R_1_pow_4 = R_1_sq*R_1_sq;
+    const double R_2_sq = R_2*R_2;
+    const double R_2_pow_4 = R_2_sq*R_2_sq;
+    const double R_1_R_2 = R_1*R_2;
+    const double R_2_cubed_R_1 = R_2_sq*R_1_R_2;
+    const double h_sq = h*h;
+    const double R_1_cubed_R_2 = R_1_sq*R_1_R_2;
+    const double R_1_sq_R_2_sq = R_1_R_2*R_1_R_2;
+    const double I_xx_term_1 = 1.0/(R_1_sq + R_2_sq + R_1_R_2);
+    const double m_I_xx_term_1 = m*I_xx_term_1;
+    const double I_xx_term_2 = 0.0375*(4.0*(R_1_sq*R_1_pow_4 + R_2_sq*R_2_pow_4 + R_2_cubed_R_1*h_sq +
+        R_1_cubed_R_2*h_sq) + 8.0*(R_1_R_2*R_2_pow_4 + R_1_R_2*R_1_pow_4) + 12.0*(R_2_sq*R_1_sq_R_2_sq +
+        R_1_R_2*R_1_sq_R_2_sq + R_1_sq*R_1_sq_R_2_sq) + R_1_pow_4*h_sq + R_2_pow_4*h_sq +
+        10.0*R_1_sq_R_2_sq*h_sq)*m_I_xx_term_1*I_xx_term_1;
 
-    inertia[0] = x11;
-    inertia[1] = x11;
-    inertia[2] = 0.3*(x1 + x3 + x5 + x8 + x7)*x10;
+    inertia[0] = I_xx_term_2;
+    inertia[1] = I_xx_term_2;
+    inertia[2] = 0.3*(R_1_pow_4 + R_2_pow_4 + R_2_cubed_R_1 + R_1_sq_R_2_sq + R_1_cubed_R_2)*m_I_xx_term_1;
     inertia[3] = 0.0;
     inertia[4] = 0.0;
     inertia[5] = 0.0;
     center_of_mass[0] = 0.0;
     center_of_mass[1] = 0.0;
-    center_of_mass[2] = 0.25*(x0 + 3.0*x2 + 2.0*x4)*h*x9;
+    center_of_mass[2] = 0.25*(R_1_sq + 3.0*R_2_sq + 2.0*R_1_R_2)*h*I_xx_term_1;
 }
 
 void symrot_inertia_frustum_batch(
@@ -68,25 +70,27 @@ void symrot_inertia_frustum_batch(
         const double R_1 = dimensions[k];
         const double R_2 = dimensions[n + k];
         const double h = dimensions[2*n + k];
-        const double x0 = R_1*R_1;
-        const double x1 = x0*x0;
-        const double x2 = R_2*R_2;
-        const double x3 = x2*x2;
-        const double x4 = R_1*R_2;
-        const double x5 = x2*x4;
-        const double x6 = h*h;
-        const double x7 = x0*x4;
-        const double x8 = x4*x4;
-        const double x9 = 1.0/(x0 + x2 + x4);
-        const double x10 = m_k*x9;
-        const double x11 = 0.0375*(4.0*(x0*x1 + x2*x3 + x5*x6 + x7*x6) + 8.0*(x4*x3 + x4*x1) + 12.0*(x2*x8 + x4*x8 +
-            x0*x8) + x1*x6 + x3*x6 + 10.0*x8*x6)*x10*x9;
+        const double R_1_sq = R_1*R_1;
+        const double R_1_pow_4 = R_1_sq*R_1_sq;
+        const double R_2_sq = R_2*R_2;
+        const double R_2_pow_4 = R_2_sq*R_2_sq;
+        const double R_1_R_2 = R_1*R_2;
+        const double R_2_cubed_R_1 = R_2_sq*R_1_R_2;
+        const double h_sq = h*h;
+        const double R_1_cubed_R_2 = R_1_sq*R_1_R_2;
+        const double R_1_sq_R_2_sq = R_1_R_2*R_1_R_2;
+        const double I_xx_term_1 = 1.0/(R_1_sq + R_2_sq + R_1_R_2);
+        const double m_I_xx_term_1 = m_k*I_xx_term_1;
+        const double I_xx_term_2 = 0.0375*(4.0*(R_1_sq*R_1_pow_4 + R_2_sq*R_2_pow_4 + R_2_cubed_R_1*h_sq +
+            R_1_cubed_R_2*h_sq) + 8.0*(R_1_R_2*R_2_pow_4 + R_1_R_2*R_1_pow_4) + 12.0*(R_2_sq*R_1_sq_R_2_sq +
+            R_1_R_2*R_1_sq_R_2_sq + R_1_sq*R_1_sq_R_2_sq) + R_1_pow_4*h_sq + R_2_pow_4*h_sq +
+            10.0*R_1_sq_R_2_sq*h_sq)*m_I_xx_term_1*I_xx_term_1;
 
-        const double I_zz = 0.3*(x1 + x3 + x5 + x8 + x7)*x10;
-        const double z = 0.25*(x0 + 3.0*x2 + 2.0*x4)*h*x9;
+        const double I_zz = 0.3*(R_1_pow_4 + R_2_pow_4 + R_2_cubed_R_1 + R_1_sq_R_2_sq + R_1_cubed_R_2)*m_I_xx_term_1;
+        const double z = 0.25*(R_1_sq + 3.0*R_2_sq + 2.0*R_1_R_2)*h*I_xx_term_1;
 
-        inertia[k] = x11;
-        inertia[n + k] = x11;
+        inertia[k] = I_xx_term_2;
+        inertia[n + k] = I_xx_term_2;
         inertia[2*n + k] = I_zz;
         inertia[3*n + k] = 0.0;
         inertia[4*n + k] = 0.0;
@@ -102,29 +106,31 @@ void symrot_inertia_frustumf(float m, const float dimensions[3], float inertia[6
     const float R_1 = dimensions[0];
     const float R_2 = dimensions[1];
     const float h = dimensions[2];
-    const float x0 = R_1*R_1;
-    const float x1 = x0*x0;
-    const float x2 = R_2*R_2;
-    const float x3 = x2*x2;
-    const float x4 = R_1*R_2;
-    const float x5 = x2*x4;
-    const float x6 = h*h;
-    const float x7 = x0*x4;
-    const float x8 = x4*x4;
-    const float x9 = 1.0f/(x0 + x2 + x4);
-    const float x10 = m*x9;
-    const float x11 = 0.0375f*(4.0f*(x0*x1 + x2*x3 + x5*x6 + x7*x6) + 8.0f*(x4*x3 + x4*x1) + 12.0f*(x2*x8 + x4*x8 +
-        x0*x8) + x1*x6 + x3*x6 + 1e+01f*x8*x6)*x10*x9;
+    const float R_1_sq = R_1*R_1;
+    const float R_1_pow_4 = R_1_sq*R_1_sq;
+    const float R_2_sq = R_2*R_2;
+    const float R_2_pow_4 = R_2_sq*R_2_sq;
+    const float R_1_R_2 = R_1*R_2;
+    const float R_2_cubed_R_1 = R_2_sq*R_1_R_2;
+    const float h_sq = h*h;
+    const float R_1_cubed_R_2 = R_1_sq*R_1_R_2;
+    const float R_1_sq_R_2_sq = R_1_R_2*R_1_R_2;
+    const float I_xx_term_1 = 1.0f/(R_1_sq + R_2_sq + R_1_R_2);
+    const float m_I_xx_term_1 = m*I_xx_term_1;
+    const float I_xx_term_2 = 0.0375f*(4.0f*(R_1_sq*R_1_pow_4 + R_2_sq*R_2_pow_4 + R_2_cubed_R_1*h_sq +
+        R_1_cubed_R_2*h_sq) + 8.0f*(R_1_R_2*R_2_pow_4 + R_1_R_2*R_1_pow_4) + 12.0f*(R_2_sq*R_1_sq_R_2_sq +
+        R_1_R_2*R_1_sq_R_2_sq + R_1_sq*R_1_sq_R_2_sq) + R_1_pow_4*h_sq + R_2_pow_4*h_sq +
+        1e+01f*R_1_sq_R_2_sq*h_sq)*m_I_xx_term_1*I_xx_term_1;
 
-    inertia[0] = x11;
-    inertia[1] = x11;
-    inertia[2] = 0.3f*(x1 + x3 + x5 + x8 + x7)*x10;
+    inertia[0] = I_xx_term_2;
+    inertia[1] = I_xx_term_2;
+    inertia[2] = 0.3f*(R_1_pow_4 + R_2_pow_4 + R_2_cubed_R_1 + R_1_sq_R_2_sq + R_1_cubed_R_2)*m_I_xx_term_1;
     inertia[3] = 0.0f;
     inertia[4] = 0.0f;
     inertia[5] = 0.0f;
     center_of_mass[0] = 0.0f;
     center_of_mass[1] = 0.0f;
-    center_of_mass[2] = 0.25f*(x0 + 3.0f*x2 + 2.0f*x4)*h*x9;
+    center_of_mass[2] = 0.25f*(R_1_sq + 3.0f*R_2_sq + 2.0f*R_1_R_2)*h*I_xx_term_1;
 }
 
 void symrot_inertia_frustumf_batch(
@@ -137,25 +143,27 @@ void symrot_inertia_frustumf_batch(
         const float R_1 = dimensions[k];
         const float R_2 = dimensions[n + k];
         const float h = dimensions[2*n + k];
-        const float x0 = R_1*R_1;
-        const float x1 = x0*x0;
-        const float x2 = R_2*R_2;
-        const float x3 = x2*x2;
-        const float x4 = R_1*R_2;
-        const float x5 = x2*x4;
-        const float x6 = h*h;
-        const float x7 = x0*x4;
-        const float x8 = x4*x4;
-        const float x9 = 1.0f/(x0 + x2 + x4);
-        const float x10 = m_k*x9;
-        const float x11 = 0.0375f*(4.0f*(x0*x1 + x2*x3 + x5*x6 + x7*x6) + 8.0f*(x4*x3 + x4*x1) + 12.0f*(x2*x8 + x4*x8 +
-            x0*x8) + x1*x6 + x3*x6 + 1e+01f*x8*x6)*x10*x9;
+        const float R_1_sq = R_1*R_1;
+        const float R_1_pow_4 = R_1_sq*R_1_sq;
+        const float R_2_sq = R_2*R_2;
+        const float R_2_pow_4 = R_2_sq*R_2_sq;
+        const float R_1_R_2 = R_1*R_2;
+        const float R_2_cubed_R_1 = R_2_sq*R_1_R_2;
+        const float h_sq = h*h;
+        const float R_1_cubed_R_2 = R_1_sq*R_1_R_2;
+        const float R_1_sq_R_2_sq = R_1_R_2*R_1_R_2;
+        const float I_xx_term_1 = 1.0f/(R_1_sq + R_2_sq + R_1_R_2);
+        const float m_I_xx_term_1 = m_k*I_xx_term_1;
+        const float I_xx_term_2 = 0.0375f*(4.0f*(R_1_sq*R_1_pow_4 + R_2_sq*R_2_pow_4 + R_2_cubed_R_1*h_sq +
+            R_1_cubed_R_2*h_sq) + 8.0f*(R_1_R_2*R_2_pow_4 + R_1_R_2*R_1_pow_4) + 12.0f*(R_2_sq*R_1_sq_R_2_sq +
+            R_1_R_2*R_1_sq_R_2_sq + R_1_sq*R_1_sq_R_2_sq) + R_1_pow_4*h_sq + R_2_pow_4*h_sq +
+            1e+01f*R_1_sq_R_2_sq*h_sq)*m_I_xx_term_1*I_xx_term_1;
 
-        const float I_zz = 0.3f*(x1 + x3 + x5 + x8 + x7)*x10;
-        const float z = 0.25f*(x0 + 3.0f*x2 + 2.0f*x4)*h*x9;
+        const float I_zz = 0.3f*(R_1_pow_4 + R_2_pow_4 + R_2_cubed_R_1 + R_1_sq_R_2_sq + R_1_cubed_R_2)*m_I_xx_term_1;
+        const float z = 0.25f*(R_1_sq + 3.0f*R_2_sq + 2.0f*R_1_R_2)*h*I_xx_term_1;
 
-        inertia[k] = x11;
-        inertia[n + k] = x11;
+        inertia[k] = I_xx_term_2;
+        inertia[n + k] = I_xx_term_2;
         inertia[2*n + k] = I_zz;
         inertia[3*n + k] = 0.0f;
         inertia[4*n + k] = 0.0f;

@@ -30,12 +30,12 @@ void symrot_inertia_hemisphere(
     double m, const double dimensions[1], double inertia[6], double center_of_mass[3])
 {
     const double R = dimensions[0];
-    const double x0 = m*(R*R);
-    const double x1 = 0.259375*x0;
+    const double m_R_sq = m*(R*R);
+    const double I_xx_term_1 = 0.259375*m_R_sq;
 
-    inertia[0] = x1;
-    inertia[1] = x1;
-    inertia[2] = 0.4*x0;
+    inertia[0] = I_xx_term_1;
+    inertia[1] = I_xx_term_1;
+    inertia[2] = 0.4*m_R_sq;
     inertia[3] = 0.0;
     inertia[4] = 0.0;
     inertia[5] = 0.0;
@@ -52,12 +52,12 @@ void symrot_inertia_hemisphere_batch(
     for (size_t k = 0; k < n; ++k) {
         const double m_k = m[k];
         const double R = dimensions[k];
-        const double x0 = m_k*(R*R);
-        const double x1 = 0.259375*x0;
+        const double m_R_sq = m_k*(R*R);
+        const double I_xx_term_1 = 0.259375*m_R_sq;
 
-        inertia[k] = x1;
-        inertia[n + k] = x1;
-        inertia[2*n + k] = 0.4*x0;
+        inertia[k] = I_xx_term_1;
+        inertia[n + k] = I_xx_term_1;
+        inertia[2*n + k] = 0.4*m_R_sq;
         inertia[3*n + k] = 0.0;
         inertia[4*n + k] = 0.0;
         inertia[5*n + k] = 0.0;
@@ -70,12 +70,12 @@ void symrot_inertia_hemisphere_batch(
 void symrot_inertia_hemispheref(float m, const float dimensions[1], float inertia[6], float center_of_mass[3])
 {
     const float R = dimensions[0];
-    const float x0 = m*(R*R);
-    const float x1 = 0.259375f*x0;
+    const float m_R_sq = m*(R*R);
+    const float I_xx_term_1 = 0.259375f*m_R_sq;
 
-    inertia[0] = x1;
-    inertia[1] = x1;
-    inertia[2] = 0.4f*x0;
+    inertia[0] = I_xx_term_1;
+    inertia[1] = I_xx_term_1;
+    inertia[2] = 0.4f*m_R_sq;
     inertia[3] = 0.0f;
     inertia[4] = 0.0f;
     inertia[5] = 0.0f;
@@ -92,12 +92,12 @@ void symrot_inertia_hemispheref_batch(
     for (size_t k = 0; k < n; ++k) {
         const float m_k = m[k];
         const float R = dimensions[k];
-        const float x0 = m_k*(R*R);
-        const float x1 = 0.259375f*x0;
+        const float m_R_sq = m_k*(R*R);
+        const float I_xx_term_1 = 0.259375f*m_R_sq;
 
-        inertia[k] = x1;
-        inertia[n + k] = x1;
-        inertia[2*n + k] = 0.4f*x0;
+        inertia[k] = I_xx_term_1;
+        inertia[n + k] = I_xx_term_1;
+        inertia[2*n + k] = 0.4f*m_R_sq;
         inertia[3*n + k] = 0.0f;
         inertia[4*n + k] = 0.0f;
         inertia[5*n + k] = 0.0f;

@@ -34,12 +34,12 @@ void symrot_inertia_hollow_cylinder(
     const double R_1 = dimensions[0];
     const double R_2 = dimensions[1];
     const double L = dimensions[2];
-    const double x0 = R_1*R_1 + R_2*R_2;
-    const double x1 = 0.08333333333333333*(L*L + 3.0*x0)*m;
+    const double R_1_sq_plus_R_2_sq = R_1*R_1 + R_2*R_2;
+    const double I_xx_term_1 = 0.08333333333333333*(L*L + 3.0*R_1_sq_plus_R_2_sq)*m;
 
-    inertia[0] = x1;
-    inertia[1] = x1;
-    inertia[2] = 0.5*m*x0;
+    inertia[0] = I_xx_term_1;
+    inertia[1] = I_xx_term_1;
+    inertia[2] = 0.5*m*R_1_sq_plus_R_2_sq;
     inertia[3] = 0.0;
     inertia[4] = 0.0;
     inertia[5] = 0.0;
@@ -58,13 +58,13 @@ void symrot_inertia_hollow_cylinder_batch(
         const double R_1 = dimensions[k];
         const double R_2 = dimensions[n + k];
         const double L = dimensions[2*n + k];
-        const double x0 = R_1*R_1 + R_2*R_2;
-        const double x1 = 0.08333333333333333*(L*L + 3.0*x0)*m_k;
+        const double R_1_sq_plus_R_2_sq = R_1*R_1 + R_2*R_2;
+        const double I_xx_term_1 = 0.08333333333333333*(L*L + 3.0*R_1_sq_plus_R_2_sq)*m_k;
 
-        const double I_zz = 0.5*m_k*x0;
+        const double I_zz = 0.5*m_k*R_1_sq_plus_R_2_sq;
 
-        inertia[k] = x1;
-        inertia[n + k] = x1;
+        inertia[k] = I_xx_term_1;
+        inertia[n + k] = I_xx_term_1;
         inertia[2*n + k] = I_zz;
         inertia[3*n + k] = 0.0;
         inertia[4*n + k] = 0.0;
@@ -81,12 +81,12 @@ void symrot_inertia_hollow_cylinderf(
     const float R_1 = dimensions[0];
     const float R_2 = dimensions[1];
     const float L = dimensions[2];
-    const float x0 = R_1*R_1 + R_2*R_2;
-    const float x1 = 0.083333333f*(L*L + 3.0f*x0)*m;
+    const float R_1_sq_plus_R_2_sq = R_1*R_1 + R_2*R_2;
+    const float I_xx_term_1 = 0.083333333f*(L*L + 3.0f*R_1_sq_plus_R_2_sq)*m;
 
-    inertia[0] = x1;
-    inertia[1] = x1;
-    inertia[2] = 0.5f*m*x0;
+    inertia[0] = I_xx_term_1;
+    inertia[1] = I_xx_term_1;
+    inertia[2] = 0.5f*m*R_1_sq_plus_R_2_sq;
     inertia[3] = 0.0f;
     inertia[4] = 0.0f;
     inertia[5] = 0.0f;
@@ -105,13 +105,13 @@ void symrot_inertia_hollow_cylinderf_batch(
         const float R_1 = dimensions[k];
         const float R_2 = dimensions[n + k];
         const float L = dimensions[2*n + k];
-        const float x0 = R_1*R_1 + R_2*R_2;
-        const float x1 = 0.083333333f*(L*L + 3.0f*x0)*m_k;
+        const float R_1_sq_plus_R_2_sq = R_1*R_1 + R_2*R_2;
+        const float I_xx_term_1 = 0.083333333f*(L*L + 3.0f*R_1_sq_plus_R_2_sq)*m_k;
 
-        const float I_zz = 0.5f*m_k*x0;
+        const float I_zz = 0.5f*m_k*R_1_sq_plus_R_2_sq;
 
-        inertia[k] = x1;
-        inertia[n + k] = x1;
+        inertia[k] = I_xx_term_1;
+        inertia[n + k] = I_xx_term_1;
         inertia[2*n + k] = I_zz;
         inertia[3*n + k] = 0.0f;
         inertia[4*n + k] = 0.0f;

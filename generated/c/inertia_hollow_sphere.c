@@ -31,14 +31,15 @@ void symrot_inertia_hollow_sphere(
 {
     const double R_1 = dimensions[0];
     const double R_2 = dimensions[1];
-    const double x0 = R_1*R_1;
-    const double x1 = R_2*R_2;
-    const double x2 = R_1*R_2;
-    const double x3 = 0.4*(x0*x0 + x1*x1 + x1*x2 + x0*x1 + x0*x2)*m/(x0 + x1 + x2);
+    const double R_1_sq = R_1*R_1;
+    const double R_2_sq = R_2*R_2;
+    const double R_1_R_2 = R_1*R_2;
+    const double I_xx_term_1 = 0.4*(R_1_sq*R_1_sq + R_2_sq*R_2_sq + R_2_sq*R_1_R_2 + R_1_sq*R_2_sq +
+        R_1_sq*R_1_R_2)*m/(R_1_sq + R_2_sq + R_1_R_2);
 
-    inertia[0] = x3;
-    inertia[1] = x3;
-    inertia[2] = x3;
+    inertia[0] = I_xx_term_1;
+    inertia[1] = I_xx_term_1;
+    inertia[2] = I_xx_term_1;
     inertia[3] = 0.0;
     inertia[4] = 0.0;
     inertia[5] = 0.0;
@@ -56,14 +57,15 @@ void symrot_inertia_hollow_sphere_batch(
         const double m_k = m[k];
         const double R_1 = dimensions[k];
         const double R_2 = dimensions[n + k];
-        const double x0 = R_1*R_1;
-        const double x1 = R_2*R_2;
-        const double x2 = R_1*R_2;
-        const double x3 = 0.4*(x0*x0 + x1*x1 + x1*x2 + x0*x1 + x0*x2)*m_k/(x0 + x1 + x2);
+        const double R_1_sq = R_1*R_1;
+        const double R_2_sq = R_2*R_2;
+        const double R_1_R_2 = R_1*R_2;
+        const double I_xx_term_1 = 0.4*(R_1_sq*R_1_sq + R_2_sq*R_2_sq + R_2_sq*R_1_R_2 + R_1_sq*R_2_sq +
+            R_1_sq*R_1_R_2)*m_k/(R_1_sq + R_2_sq + R_1_R_2);
 
-        inertia[k] = x3;
-        inertia[n + k] = x3;
-        inertia[2*n + k] = x3;
+        inertia[k] = I_xx_term_1;
+        inertia[n + k] = I_xx_term_1;
+        inertia[2*n + k] = I_xx_term_1;
         inertia[3*n + k] = 0.0;
         inertia[4*n + k] = 0.0;
         inertia[5*n + k] = 0.0;
@@ -78,14 +80,15 @@ void symrot_inertia_hollow_spheref(
 {
     const float R_1 = dimensions[0];
     const float R_2 = dimensions[1];
-    const float x0 = R_1*R_1;
-    const float x1 = R_2*R_2;
-    const float x2 = R_1*R_2;
-    const float x3 = 0.4f*(x0*x0 + x1*x1 + x1*x2 + x0*x1 + x0*x2)*m/(x0 + x1 + x2);
+    const float R_1_sq = R_1*R_1;
+    const float R_2_sq = R_2*R_2;
+    const float R_1_R_2 = R_1*R_2;
+    const float I_xx_term_1 = 0.4f*(R_1_sq*R_1_sq + R_2_sq*R_2_sq + R_2_sq*R_1_R_2 + R_1_sq*R_2_sq +
+        R_1_sq*R_1_R_2)*m/(R_1_sq + R_2_sq + R_1_R_2);
 
-    inertia[0] = x3;
-    inertia[1] = x3;
-    inertia[2] = x3;
+    inertia[0] = I_xx_term_1;
+    inertia[1] = I_xx_term_1;
+    inertia[2] = I_xx_term_1;
     inertia[3] = 0.0f;
     inertia[4] = 0.0f;
     inertia[5] = 0.0f;
@@ -103,14 +106,15 @@ void symrot_inertia_hollow_spheref_batch(
         const float m_k = m[k];
         const float R_1 = dimensions[k];
         const float R_2 = dimensions[n + k];
-        const float x0 = R_1*R_1;
-        const float x1 = R_2*R_2;
-        const float x2 = R_1*R_2;
-        const float x3 = 0.4f*(x0*x0 + x1*x1 + x1*x2 + x0*x1 + x0*x2)*m_k/(x0 + x1 + x2);
+        const float R_1_sq = R_1*R_1;
+        const float R_2_sq = R_2*R_2;
+        const float R_1_R_2 = R_1*R_2;
+        const float I_xx_term_1 = 0.4f*(R_1_sq*R_1_sq + R_2_sq*R_2_sq + R_2_sq*R_1_R_2 + R_1_sq*R_2_sq +
+            R_1_sq*R_1_R_2)*m_k/(R_1_sq + R_2_sq + R_1_R_2);
 
-        inertia[k] = x3;
-        inertia[n + k] = x3;
-        inertia[2*n + k] = x3;
+        inertia[k] = I_xx_term_1;
+        inertia[n + k] = I_xx_term_1;
+        inertia[2*n + k] = I_xx_term_1;
         inertia[3*n + k] = 0.0f;
         inertia[4*n + k] = 0.0f;
         inertia[5*n + k] = 0.0f;

@@ -41,15 +41,15 @@ void symrot_inertia_parallel_axis(const double inertia[6], double m, const doubl
     const double d_y = offset[1];
     const double d_z = offset[2];
     const double mass_times_d_y = m*d_y;
-    const double x1 = d_y*mass_times_d_y;
+    const double d_y_sq_m = d_y*mass_times_d_y;
     const double mass_times_d_z = m*d_z;
-    const double x3 = d_z*mass_times_d_z;
+    const double d_z_sq_m = d_z*mass_times_d_z;
     const double mass_times_d_x = d_x*m;
-    const double x5 = d_x*mass_times_d_x;
+    const double d_x_sq_m = d_x*mass_times_d_x;
 
-    moved[0] = I_xx + x1 + x3;
-    moved[1] = x3 + I_yy + x5;
-    moved[2] = x1 + x5 + I_zz;
+    moved[0] = I_xx + d_y_sq_m + d_z_sq_m;
+    moved[1] = d_z_sq_m + I_yy + d_x_sq_m;
+    moved[2] = d_y_sq_m + d_x_sq_m + I_zz;
     moved[3] = I_xy - mass_times_d_x*d_y;
     moved[4] = I_xz - mass_times_d_x*d_z;
     moved[5] = I_yz - mass_times_d_y*d_z;
@@ -72,15 +72,15 @@ void symrot_inertia_parallel_axis_batch(
         const double d_y = offset[n + k];
         const double d_z = offset[2*n + k];
         const double mass_times_d_y = m_k*d_y;
-        const double x1 = d_y*mass_times_d_y;
+        const double d_y_sq_m = d_y*mass_times_d_y;
         const double mass_times_d_z = m_k*d_z;
-        const double x3 = d_z*mass_times_d_z;
+        const double d_z_sq_m = d_z*mass_times_d_z;
         const double mass_times_d_x = d_x*m_k;
-        const double x5 = d_x*mass_times_d_x;
+        const double d_x_sq_m = d_x*mass_times_d_x;
 
-        const double moved_xx = I_xx + x1 + x3;
-        const double moved_yy = x3 + I_yy + x5;
-        const double moved_zz = x1 + x5 + I_zz;
+        const double moved_xx = I_xx + d_y_sq_m + d_z_sq_m;
+        const double moved_yy = d_z_sq_m + I_yy + d_x_sq_m;
+        const double moved_zz = d_y_sq_m + d_x_sq_m + I_zz;
         const double moved_xy = I_xy - mass_times_d_x*d_y;
         const double moved_xz = I_xz - mass_times_d_x*d_z;
         const double moved_yz = I_yz - mass_times_d_y*d_z;
@@ -106,15 +106,15 @@ void symrot_inertia_parallel_axisf(const float inertia[6], float m, const float 
     const float d_y = offset[1];
     const float d_z = offset[2];
     const float mass_times_d_y = m*d_y;
-    const float x1 = d_y*mass_times_d_y;
+    const float d_y_sq_m = d_y*mass_times_d_y;
     const float mass_times_d_z = m*d_z;
-    const float x3 = d_z*mass_times_d_z;
+    const float d_z_sq_m = d_z*mass_times_d_z;
     const float mass_times_d_x = d_x*m;
-    const float x5 = d_x*mass_times_d_x;
+    const float d_x_sq_m = d_x*mass_times_d_x;
 
-    moved[0] = I_xx + x1 + x3;
-    moved[1] = x3 + I_yy + x5;
-    moved[2] = x1 + x5 + I_zz;
+    moved[0] = I_xx + d_y_sq_m + d_z_sq_m;
+    moved[1] = d_z_sq_m + I_yy + d_x_sq_m;
+    moved[2] = d_y_sq_m + d_x_sq_m + I_zz;
     moved[3] = I_xy - mass_times_d_x*d_y;
     moved[4] = I_xz - mass_times_d_x*d_z;
     moved[5] = I_yz - mass_times_d_y*d_z;
@@ -137,15 +137,15 @@ void symrot_inertia_parallel_axisf_batch(
         const float d_y = offset[n + k];
         const float d_z = offset[2*n + k];
         const float mass_times_d_y = m_k*d_y;
-        const float x1 = d_y*mass_times_d_y;
+        const float d_y_sq_m = d_y*mass_times_d_y;
         const float mass_times_d_z = m_k*d_z;
-        const float x3 = d_z*mass_times_d_z;
+        const float d_z_sq_m = d_z*mass_times_d_z;
         const float mass_times_d_x = d_x*m_k;
-        const float x5 = d_x*mass_times_d_x;
+        const float d_x_sq_m = d_x*mass_times_d_x;
 
-        const float moved_xx = I_xx + x1 + x3;
-        const float moved_yy = x3 + I_yy + x5;
-        const float moved_zz = x1 + x5 + I_zz;
+        const float moved_xx = I_xx + d_y_sq_m + d_z_sq_m;
+        const float moved_yy = d_z_sq_m + I_yy + d_x_sq_m;
+        const float moved_zz = d_y_sq_m + d_x_sq_m + I_zz;
         const float moved_xy = I_xy - mass_times_d_x*d_y;
         const float moved_xz = I_xz - mass_times_d_x*d_z;
         const float moved_yz = I_yz - mass_times_d_y*d_z;

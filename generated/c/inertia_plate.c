@@ -30,13 +30,13 @@ void symrot_inertia_plate(double m, const double dimensions[2], double inertia[6
 {
     const double a = dimensions[0];
     const double b = dimensions[1];
-    const double x0 = b*b;
-    const double x1 = 0.08333333333333333*m;
-    const double x2 = a*a;
+    const double b_sq = b*b;
+    const double m_over_12 = 0.08333333333333333*m;
+    const double a_sq = a*a;
 
-    inertia[0] = x0*x1;
-    inertia[1] = x2*x1;
-    inertia[2] = (x2 + x0)*x1;
+    inertia[0] = b_sq*m_over_12;
+    inertia[1] = a_sq*m_over_12;
+    inertia[2] = (a_sq + b_sq)*m_over_12;
     inertia[3] = 0.0;
     inertia[4] = 0.0;
     inertia[5] = 0.0;
@@ -54,13 +54,13 @@ void symrot_inertia_plate_batch(
         const double m_k = m[k];
         const double a = dimensions[k];
         const double b = dimensions[n + k];
-        const double x0 = b*b;
-        const double x1 = 0.08333333333333333*m_k;
-        const double x2 = a*a;
+        const double b_sq = b*b;
+        const double m_over_12 = 0.08333333333333333*m_k;
+        const double a_sq = a*a;
 
-        inertia[k] = x0*x1;
-        inertia[n + k] = x2*x1;
-        inertia[2*n + k] = (x2 + x0)*x1;
+        inertia[k] = b_sq*m_over_12;
+        inertia[n + k] = a_sq*m_over_12;
+        inertia[2*n + k] = (a_sq + b_sq)*m_over_12;
         inertia[3*n + k] = 0.0;
         inertia[4*n + k] = 0.0;
         inertia[5*n + k] = 0.0;
@@ -74,13 +74,13 @@ void symrot_inertia_platef(float m, const float dimensions[2], float inertia[6],
 {
     const float a = dimensions[0];
     const float b = dimensions[1];
-    const float x0 = b*b;
-    const float x1 = 0.083333333f*m;
-    const float x2 = a*a;
+    const float b_sq = b*b;
+    const float m_over_12 = 0.083333333f*m;
+    const float a_sq = a*a;
 
-    inertia[0] = x0*x1;
-    inertia[1] = x2*x1;
-    inertia[2] = (x2 + x0)*x1;
+    inertia[0] = b_sq*m_over_12;
+    inertia[1] = a_sq*m_over_12;
+    inertia[2] = (a_sq + b_sq)*m_over_12;
     inertia[3] = 0.0f;
     inertia[4] = 0.0f;
     inertia[5] = 0.0f;
@@ -98,13 +98,13 @@ void symrot_inertia_platef_batch(
         const float m_k = m[k];
         const float a = dimensions[k];
         const float b = dimensions[n + k];
-        const float x0 = b*b;
-        const float x1 = 0.083333333f*m_k;
-        const float x2 = a*a;
+        const float b_sq = b*b;
+        const float m_over_12 = 0.083333333f*m_k;
+        const float a_sq = a*a;
 
-        inertia[k] = x0*x1;
-        inertia[n + k] = x2*x1;
-        inertia[2*n + k] = (x2 + x0)*x1;
+        inertia[k] = b_sq*m_over_12;
+        inertia[n + k] = a_sq*m_over_12;
+        inertia[2*n + k] = (a_sq + b_sq)*m_over_12;
         inertia[3*n + k] = 0.0f;
         inertia[4*n + k] = 0.0f;
         inertia[5*n + k] = 0.0f;

@@ -28,10 +28,10 @@
 void symrot_inertia_rod(double m, const double dimensions[1], double inertia[6], double center_of_mass[3])
 {
     const double L = dimensions[0];
-    const double x0 = 0.08333333333333333*L*L*m;
+    const double L_sq_m_over_12 = 0.08333333333333333*L*L*m;
 
-    inertia[0] = x0;
-    inertia[1] = x0;
+    inertia[0] = L_sq_m_over_12;
+    inertia[1] = L_sq_m_over_12;
     inertia[2] = 0.0;
     inertia[3] = 0.0;
     inertia[4] = 0.0;
@@ -49,10 +49,10 @@ void symrot_inertia_rod_batch(
     for (size_t k = 0; k < n; ++k) {
         const double m_k = m[k];
         const double L = dimensions[k];
-        const double x0 = 0.08333333333333333*L*L*m_k;
+        const double L_sq_m_over_12 = 0.08333333333333333*L*L*m_k;
 
-        inertia[k] = x0;
-        inertia[n + k] = x0;
+        inertia[k] = L_sq_m_over_12;
+        inertia[n + k] = L_sq_m_over_12;
         inertia[2*n + k] = 0.0;
         inertia[3*n + k] = 0.0;
         inertia[4*n + k] = 0.0;
@@ -66,10 +66,10 @@ void symrot_inertia_rod_batch(
 void symrot_inertia_rodf(float m, const float dimensions[1], float inertia[6], float center_of_mass[3])
 {
     const float L = dimensions[0];
-    const float x0 = 0.083333333f*L*L*m;
+    const float L_sq_m_over_12 = 0.083333333f*L*L*m;
 
-    inertia[0] = x0;
-    inertia[1] = x0;
+    inertia[0] = L_sq_m_over_12;
+    inertia[1] = L_sq_m_over_12;
     inertia[2] = 0.0f;
     inertia[3] = 0.0f;
     inertia[4] = 0.0f;
@@ -87,10 +87,10 @@ void symrot_inertia_rodf_batch(
     for (size_t k = 0; k < n; ++k) {
         const float m_k = m[k];
         const float L = dimensions[k];
-        const float x0 = 0.083333333f*L*L*m_k;
+        const float L_sq_m_over_12 = 0.083333333f*L*L*m_k;
 
-        inertia[k] = x0;
-        inertia[n + k] = x0;
+        inertia[k] = L_sq_m_over_12;
+        inertia[n + k] = L_sq_m_over_12;
         inertia[2*n + k] = 0.0f;
         inertia[3*n + k] = 0.0f;
         inertia[4*n + k] = 0.0f;

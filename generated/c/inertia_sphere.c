@@ -28,11 +28,11 @@
 void symrot_inertia_sphere(double m, const double dimensions[1], double inertia[6], double center_of_mass[3])
 {
     const double R = dimensions[0];
-    const double x0 = 0.4*R*R*m;
+    const double I_xx_term_1 = 0.4*R*R*m;
 
-    inertia[0] = x0;
-    inertia[1] = x0;
-    inertia[2] = x0;
+    inertia[0] = I_xx_term_1;
+    inertia[1] = I_xx_term_1;
+    inertia[2] = I_xx_term_1;
     inertia[3] = 0.0;
     inertia[4] = 0.0;
     inertia[5] = 0.0;
@@ -49,11 +49,11 @@ void symrot_inertia_sphere_batch(
     for (size_t k = 0; k < n; ++k) {
         const double m_k = m[k];
         const double R = dimensions[k];
-        const double x0 = 0.4*R*R*m_k;
+        const double I_xx_term_1 = 0.4*R*R*m_k;
 
-        inertia[k] = x0;
-        inertia[n + k] = x0;
-        inertia[2*n + k] = x0;
+        inertia[k] = I_xx_term_1;
+        inertia[n + k] = I_xx_term_1;
+        inertia[2*n + k] = I_xx_term_1;
         inertia[3*n + k] = 0.0;
         inertia[4*n + k] = 0.0;
         inertia[5*n + k] = 0.0;
@@ -66,11 +66,11 @@ void symrot_inertia_sphere_batch(
 void symrot_inertia_spheref(float m, const float dimensions[1], float inertia[6], float center_of_mass[3])
 {
     const float R = dimensions[0];
-    const float x0 = 0.4f*R*R*m;
+    const float I_xx_term_1 = 0.4f*R*R*m;
 
-    inertia[0] = x0;
-    inertia[1] = x0;
-    inertia[2] = x0;
+    inertia[0] = I_xx_term_1;
+    inertia[1] = I_xx_term_1;
+    inertia[2] = I_xx_term_1;
     inertia[3] = 0.0f;
     inertia[4] = 0.0f;
     inertia[5] = 0.0f;
@@ -87,11 +87,11 @@ void symrot_inertia_spheref_batch(
     for (size_t k = 0; k < n; ++k) {
         const float m_k = m[k];
         const float R = dimensions[k];
-        const float x0 = 0.4f*R*R*m_k;
+        const float I_xx_term_1 = 0.4f*R*R*m_k;
 
-        inertia[k] = x0;
-        inertia[n + k] = x0;
-        inertia[2*n + k] = x0;
+        inertia[k] = I_xx_term_1;
+        inertia[n + k] = I_xx_term_1;
+        inertia[2*n + k] = I_xx_term_1;
         inertia[3*n + k] = 0.0f;
         inertia[4*n + k] = 0.0f;
         inertia[5*n + k] = 0.0f;

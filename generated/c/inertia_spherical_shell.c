@@ -29,11 +29,11 @@ void symrot_inertia_spherical_shell(
     double m, const double dimensions[1], double inertia[6], double center_of_mass[3])
 {
     const double R = dimensions[0];
-    const double x0 = 0.6666666666666666*R*R*m;
+    const double two_thirds_R_sq_m = 0.6666666666666666*R*R*m;
 
-    inertia[0] = x0;
-    inertia[1] = x0;
-    inertia[2] = x0;
+    inertia[0] = two_thirds_R_sq_m;
+    inertia[1] = two_thirds_R_sq_m;
+    inertia[2] = two_thirds_R_sq_m;
     inertia[3] = 0.0;
     inertia[4] = 0.0;
     inertia[5] = 0.0;
@@ -50,11 +50,11 @@ void symrot_inertia_spherical_shell_batch(
     for (size_t k = 0; k < n; ++k) {
         const double m_k = m[k];
         const double R = dimensions[k];
-        const double x0 = 0.6666666666666666*R*R*m_k;
+        const double two_thirds_R_sq_m = 0.6666666666666666*R*R*m_k;
 
-        inertia[k] = x0;
-        inertia[n + k] = x0;
-        inertia[2*n + k] = x0;
+        inertia[k] = two_thirds_R_sq_m;
+        inertia[n + k] = two_thirds_R_sq_m;
+        inertia[2*n + k] = two_thirds_R_sq_m;
         inertia[3*n + k] = 0.0;
         inertia[4*n + k] = 0.0;
         inertia[5*n + k] = 0.0;
@@ -68,11 +68,11 @@ void symrot_inertia_spherical_shellf(
     float m, const float dimensions[1], float inertia[6], float center_of_mass[3])
 {
     const float R = dimensions[0];
-    const float x0 = 0.6666667f*R*R*m;
+    const float two_thirds_R_sq_m = 0.6666667f*R*R*m;
 
-    inertia[0] = x0;
-    inertia[1] = x0;
-    inertia[2] = x0;
+    inertia[0] = two_thirds_R_sq_m;
+    inertia[1] = two_thirds_R_sq_m;
+    inertia[2] = two_thirds_R_sq_m;
     inertia[3] = 0.0f;
     inertia[4] = 0.0f;
     inertia[5] = 0.0f;
@@ -89,11 +89,11 @@ void symrot_inertia_spherical_shellf_batch(
     for (size_t k = 0; k < n; ++k) {
         const float m_k = m[k];
         const float R = dimensions[k];
-        const float x0 = 0.6666667f*R*R*m_k;
+        const float two_thirds_R_sq_m = 0.6666667f*R*R*m_k;
 
-        inertia[k] = x0;
-        inertia[n + k] = x0;
-        inertia[2*n + k] = x0;
+        inertia[k] = two_thirds_R_sq_m;
+        inertia[n + k] = two_thirds_R_sq_m;
+        inertia[2*n + k] = two_thirds_R_sq_m;
         inertia[3*n + k] = 0.0f;
         inertia[4*n + k] = 0.0f;
         inertia[5*n + k] = 0.0f;

@@ -45,23 +45,23 @@ void symrot_inertia_tetrahedron(
     const double x_4 = dimensions[9];
     const double y_4 = dimensions[10];
     const double z_4 = dimensions[11];
-    const double x0 = y_1*y_1 + y_2*y_2 + (y_3*y_3 + y_4*y_4);
-    const double x1 = z_1*z_1 + z_2*z_2 + (z_3*z_3 + z_4*z_4);
-    const double x2 = y_2*y_4 + y_3*y_4 + (y_1*y_2 + y_1*y_3 + (y_1*y_4 + y_2*y_3));
-    const double x3 = z_2*z_4 + z_3*z_4 + (z_1*z_2 + z_1*z_3 + (z_1*z_4 + z_2*z_3));
-    const double x4 = 0.0125*m;
-    const double x5 = x_1*x_1 + x_2*x_2 + (x_3*x_3 + x_4*x_4);
-    const double x6 = x_2*x_4 + x_3*x_4 + (x_1*x_2 + x_1*x_3 + (x_1*x_4 + x_2*x_3));
+    const double I_xx_term_1 = y_1*y_1 + y_2*y_2 + (y_3*y_3 + y_4*y_4);
+    const double I_xx_term_2 = z_1*z_1 + z_2*z_2 + (z_3*z_3 + z_4*z_4);
+    const double I_xx_term_3 = y_2*y_4 + y_3*y_4 + (y_1*y_2 + y_1*y_3 + (y_1*y_4 + y_2*y_3));
+    const double I_xx_term_4 = z_2*z_4 + z_3*z_4 + (z_1*z_2 + z_1*z_3 + (z_1*z_4 + z_2*z_3));
+    const double m_over_80 = 0.0125*m;
+    const double I_yy_term_1 = x_1*x_1 + x_2*x_2 + (x_3*x_3 + x_4*x_4);
+    const double I_yy_term_2 = x_2*x_4 + x_3*x_4 + (x_1*x_2 + x_1*x_3 + (x_1*x_4 + x_2*x_3));
 
-    inertia[0] = (3.0*(x0 + x1) - 2.0*(x2 + x3))*x4;
-    inertia[1] = (3.0*(x1 + x5) - 2.0*(x3 + x6))*x4;
-    inertia[2] = (3.0*(x0 + x5) - 2.0*(x2 + x6))*x4;
+    inertia[0] = (3.0*(I_xx_term_1 + I_xx_term_2) - 2.0*(I_xx_term_3 + I_xx_term_4))*m_over_80;
+    inertia[1] = (3.0*(I_xx_term_2 + I_yy_term_1) - 2.0*(I_xx_term_4 + I_yy_term_2))*m_over_80;
+    inertia[2] = (3.0*(I_xx_term_1 + I_yy_term_1) - 2.0*(I_xx_term_3 + I_yy_term_2))*m_over_80;
     inertia[3] = (y_2*x_1 + y_3*x_1 + y_4*x_1 + y_1*x_2 + y_3*x_2 + y_4*x_2 + y_1*x_3 + y_2*x_3 + y_4*x_3 + y_1*x_4 +
-        y_2*x_4 + y_3*x_4 - 3.0*(y_1*x_1 + y_2*x_2 + y_3*x_3 + y_4*x_4))*x4;
+        y_2*x_4 + y_3*x_4 - 3.0*(y_1*x_1 + y_2*x_2 + y_3*x_3 + y_4*x_4))*m_over_80;
     inertia[4] = (z_2*x_1 + z_3*x_1 + z_4*x_1 + z_1*x_2 + z_3*x_2 + z_4*x_2 + z_1*x_3 + z_2*x_3 + z_4*x_3 + z_1*x_4 +
-        z_2*x_4 + z_3*x_4 - 3.0*(z_1*x_1 + z_2*x_2 + z_3*x_3 + z_4*x_4))*x4;
+        z_2*x_4 + z_3*x_4 - 3.0*(z_1*x_1 + z_2*x_2 + z_3*x_3 + z_4*x_4))*m_over_80;
     inertia[5] = (y_1*z_2 + y_1*z_3 + y_1*z_4 + y_2*z_1 + y_2*z_3 + y_2*z_4 + y_3*z_1 + y_3*z_2 + y_3*z_4 + y_4*z_1 +
-        y_4*z_2 + y_4*z_3 - 3.0*(y_1*z_1 + y_2*z_2 + y_3*z_3 + y_4*z_4))*x4;
+        y_4*z_2 + y_4*z_3 - 3.0*(y_1*z_1 + y_2*z_2 + y_3*z_3 + y_4*z_4))*m_over_80;
     center_of_mass[0] = 0.25*(x_1 + x_2 + x_3 + x_4);
     center_of_mass[1] = 0.25*(y_1 + y_2 + y_3 + y_4);
     center_of_mass[2] = 0.25*(z_1 + z_2 + z_3 + z_4);
@@ -91,23 +91,23 @@ void symrot_inertia_tetrahedron_batch(
         const double y = 0.25*(y_1 + y_2 + y_3 + y_4);
         const double z = 0.25*(z_1 + z_2 + z_3 + z_4);
 
-        const double x0 = y_1*y_1 + y_2*y_2 + (y_3*y_3 + y_4*y_4);
-        const double x1 = z_1*z_1 + z_2*z_2 + (z_3*z_3 + z_4*z_4);
-        const double x2 = y_2*y_4 + y_3*y_4 + (y_1*y_2 + y_1*y_3 + (y_1*y_4 + y_2*y_3));
-        const double x3 = z_2*z_4 + z_3*z_4 + (z_1*z_2 + z_1*z_3 + (z_1*z_4 + z_2*z_3));
-        const double x4 = 0.0125*m_k;
-        const double x5 = x_1*x_1 + x_2*x_2 + (x_3*x_3 + x_4*x_4);
-        const double x6 = x_2*x_4 + x_3*x_4 + (x_1*x_2 + x_1*x_3 + (x_1*x_4 + x_2*x_3));
+        const double I_xx_term_1 = y_1*y_1 + y_2*y_2 + (y_3*y_3 + y_4*y_4);
+        const double I_xx_term_2 = z_1*z_1 + z_2*z_2 + (z_3*z_3 + z_4*z_4);
+        const double I_xx_term_3 = y_2*y_4 + y_3*y_4 + (y_1*y_2 + y_1*y_3 + (y_1*y_4 + y_2*y_3));
+        const double I_xx_term_4 = z_2*z_4 + z_3*z_4 + (z_1*z_2 + z_1*z_3 + (z_1*z_4 + z_2*z_3));
+        const double m_over_80 = 0.0125*m_k;
+        const double I_yy_term_1 = x_1*x_1 + x_2*x_2 + (x_3*x_3 + x_4*x_4);
+        const double I_yy_term_2 = x_2*x_4 + x_3*x_4 + (x_1*x_2 + x_1*x_3 + (x_1*x_4 + x_2*x_3));
 
-        const double I_xx = (3.0*(x0 + x1) - 2.0*(x2 + x3))*x4;
-        const double I_yy = (3.0*(x1 + x5) - 2.0*(x3 + x6))*x4;
-        const double I_zz = (3.0*(x0 + x5) - 2.0*(x2 + x6))*x4;
+        const double I_xx = (3.0*(I_xx_term_1 + I_xx_term_2) - 2.0*(I_xx_term_3 + I_xx_term_4))*m_over_80;
+        const double I_yy = (3.0*(I_xx_term_2 + I_yy_term_1) - 2.0*(I_xx_term_4 + I_yy_term_2))*m_over_80;
+        const double I_zz = (3.0*(I_xx_term_1 + I_yy_term_1) - 2.0*(I_xx_term_3 + I_yy_term_2))*m_over_80;
         const double I_xy = (y_2*x_1 + y_3*x_1 + y_4*x_1 + y_1*x_2 + y_3*x_2 + y_4*x_2 + y_1*x_3 + y_2*x_3 + y_4*x_3 +
-            y_1*x_4 + y_2*x_4 + y_3*x_4 - 3.0*(y_1*x_1 + y_2*x_2 + y_3*x_3 + y_4*x_4))*x4;
+            y_1*x_4 + y_2*x_4 + y_3*x_4 - 3.0*(y_1*x_1 + y_2*x_2 + y_3*x_3 + y_4*x_4))*m_over_80;
         const double I_xz = (z_2*x_1 + z_3*x_1 + z_4*x_1 + z_1*x_2 + z_3*x_2 + z_4*x_2 + z_1*x_3 + z_2*x_3 + z_4*x_3 +
-            z_1*x_4 + z_2*x_4 + z_3*x_4 - 3.0*(z_1*x_1 + z_2*x_2 + z_3*x_3 + z_4*x_4))*x4;
+            z_1*x_4 + z_2*x_4 + z_3*x_4 - 3.0*(z_1*x_1 + z_2*x_2 + z_3*x_3 + z_4*x_4))*m_over_80;
         const double I_yz = (y_1*z_2 + y_1*z_3 + y_1*z_4 + y_2*z_1 + y_2*z_3 + y_2*z_4 + y_3*z_1 + y_3*z_2 + y_3*z_4 +
-            y_4*z_1 + y_4*z_2 + y_4*z_3 - 3.0*(y_1*z_1 + y_2*z_2 + y_3*z_3 + y_4*z_4))*x4;
+            y_4*z_1 + y_4*z_2 + y_4*z_3 - 3.0*(y_1*z_1 + y_2*z_2 + y_3*z_3 + y_4*z_4))*m_over_80;
 
         inertia[k] = I_xx;
         inertia[n + k] = I_yy;
@@ -136,23 +136,23 @@ void symrot_inertia_tetrahedronf(
     const float x_4 = dimensions[9];
     const float y_4 = dimensions[10];
     const float z_4 = dimensions[11];
-    const float x0 = y_1*y_1 + y_2*y_2 + (y_3*y_3 + y_4*y_4);
-    const float x1 = z_1*z_1 + z_2*z_2 + (z_3*z_3 + z_4*z_4);
-    const float x2 = y_2*y_4 + y_3*y_4 + (y_1*y_2 + y_1*y_3 + (y_1*y_4 + y_2*y_3));
-    const float x3 = z_2*z_4 + z_3*z_4 + (z_1*z_2 + z_1*z_3 + (z_1*z_4 + z_2*z_3));
-    const float x4 = 0.0125f*m;
-    const float x5 = x_1*x_1 + x_2*x_2 + (x_3*x_3 + x_4*x_4);
-    const float x6 = x_2*x_4 + x_3*x_4 + (x_1*x_2 + x_1*x_3 + (x_1*x_4 + x_2*x_3));
+    const float I_xx_term_1 = y_1*y_1 + y_2*y_2 + (y_3*y_3 + y_4*y_4);
+    const float I_xx_term_2 = z_1*z_1 + z_2*z_2 + (z_3*z_3 + z_4*z_4);
+    const float I_xx_term_3 = y_2*y_4 + y_3*y_4 + (y_1*y_2 + y_1*y_3 + (y_1*y_4 + y_2*y_3));
+    const float I_xx_term_4 = z_2*z_4 + z_3*z_4 + (z_1*z_2 + z_1*z_3 + (z_1*z_4 + z_2*z_3));
+    const float m_over_80 = 0.0125f*m;
+    const float I_yy_term_1 = x_1*x_1 + x_2*x_2 + (x_3*x_3 + x_4*x_4);
+    const float I_yy_term_2 = x_2*x_4 + x_3*x_4 + (x_1*x_2 + x_1*x_3 + (x_1*x_4 + x_2*x_3));
 
-    inertia[0] = (3.0f*(x0 + x1) - 2.0f*(x2 + x3))*x4;
-    inertia[1] = (3.0f*(x1 + x5) - 2.0f*(x3 + x6))*x4;
-    inertia[2] = (3.0f*(x0 + x5) - 2.0f*(x2 + x6))*x4;
+    inertia[0] = (3.0f*(I_xx_term_1 + I_xx_term_2) - 2.0f*(I_xx_term_3 + I_xx_term_4))*m_over_80;
+    inertia[1] = (3.0f*(I_xx_term_2 + I_yy_term_1) - 2.0f*(I_xx_term_4 + I_yy_term_2))*m_over_80;
+    inertia[2] = (3.0f*(I_xx_term_1 + I_yy_term_1) - 2.0f*(I_xx_term_3 + I_yy_term_2))*m_over_80;
     inertia[3] = (y_2*x_1 + y_3*x_1 + y_4*x_1 + y_1*x_2 + y_3*x_2 + y_4*x_2 + y_1*x_3 + y_2*x_3 + y_4*x_3 + y_1*x_4 +
-        y_2*x_4 + y_3*x_4 - 3.0f*(y_1*x_1 + y_2*x_2 + y_3*x_3 + y_4*x_4))*x4;
+        y_2*x_4 + y_3*x_4 - 3.0f*(y_1*x_1 + y_2*x_2 + y_3*x_3 + y_4*x_4))*m_over_80;
     inertia[4] = (z_2*x_1 + z_3*x_1 + z_4*x_1 + z_1*x_2 + z_3*x_2 + z_4*x_2 + z_1*x_3 + z_2*x_3 + z_4*x_3 + z_1*x_4 +
-        z_2*x_4 + z_3*x_4 - 3.0f*(z_1*x_1 + z_2*x_2 + z_3*x_3 + z_4*x_4))*x4;
+        z_2*x_4 + z_3*x_4 - 3.0f*(z_1*x_1 + z_2*x_2 + z_3*x_3 + z_4*x_4))*m_over_80;
     inertia[5] = (y_1*z_2 + y_1*z_3 + y_1*z_4 + y_2*z_1 + y_2*z_3 + y_2*z_4 + y_3*z_1 + y_3*z_2 + y_3*z_4 + y_4*z_1 +
-        y_4*z_2 + y_4*z_3 - 3.0f*(y_1*z_1 + y_2*z_2 + y_3*z_3 + y_4*z_4))*x4;
+        y_4*z_2 + y_4*z_3 - 3.0f*(y_1*z_1 + y_2*z_2 + y_3*z_3 + y_4*z_4))*m_over_80;
     center_of_mass[0] = 0.25f*(x_1 + x_2 + x_3 + x_4);
     center_of_mass[1] = 0.25f*(y_1 + y_2 + y_3 + y_4);
     center_of_mass[2] = 0.25f*(z_1 + z_2 + z_3 + z_4);
@@ -182,23 +182,23 @@ void symrot_inertia_tetrahedronf_batch(
         const float y = 0.25f*(y_1 + y_2 + y_3 + y_4);
         const float z = 0.25f*(z_1 + z_2 + z_3 + z_4);
 
-        const float x0 = y_1*y_1 + y_2*y_2 + (y_3*y_3 + y_4*y_4);
-        const float x1 = z_1*z_1 + z_2*z_2 + (z_3*z_3 + z_4*z_4);
-        const float x2 = y_2*y_4 + y_3*y_4 + (y_1*y_2 + y_1*y_3 + (y_1*y_4 + y_2*y_3));
-        const float x3 = z_2*z_4 + z_3*z_4 + (z_1*z_2 + z_1*z_3 + (z_1*z_4 + z_2*z_3));
-        const float x4 = 0.0125f*m_k;
-        const float x5 = x_1*x_1 + x_2*x_2 + (x_3*x_3 + x_4*x_4);
-        const float x6 = x_2*x_4 + x_3*x_4 + (x_1*x_2 + x_1*x_3 + (x_1*x_4 + x_2*x_3));
+        const float I_xx_term_1 = y_1*y_1 + y_2*y_2 + (y_3*y_3 + y_4*y_4);
+        const float I_xx_term_2 = z_1*z_1 + z_2*z_2 + (z_3*z_3 + z_4*z_4);
+        const float I_xx_term_3 = y_2*y_4 + y_3*y_4 + (y_1*y_2 + y_1*y_3 + (y_1*y_4 + y_2*y_3));
+        const float I_xx_term_4 = z_2*z_4 + z_3*z_4 + (z_1*z_2 + z_1*z_3 + (z_1*z_4 + z_2*z_3));
+        const float m_over_80 = 0.0125f*m_k;
+        const float I_yy_term_1 = x_1*x_1 + x_2*x_2 + (x_3*x_3 + x_4*x_4);
+        const float I_yy_term_2 = x_2*x_4 + x_3*x_4 + (x_1*x_2 + x_1*x_3 + (x_1*x_4 + x_2*x_3));
 
-        const float I_xx = (3.0f*(x0 + x1) - 2.0f*(x2 + x3))*x4;
-        const float I_yy = (3.0f*(x1 + x5) - 2.0f*(x3 + x6))*x4;
-        const float I_zz = (3.0f*(x0 + x5) - 2.0f*(x2 + x6))*x4;
+        const float I_xx = (3.0f*(I_xx_term_1 + I_xx_term_2) - 2.0f*(I_xx_term_3 + I_xx_term_4))*m_over_80;
+        const float I_yy = (3.0f*(I_xx_term_2 + I_yy_term_1) - 2.0f*(I_xx_term_4 + I_yy_term_2))*m_over_80;
+        const float I_zz = (3.0f*(I_xx_term_1 + I_yy_term_1) - 2.0f*(I_xx_term_3 + I_yy_term_2))*m_over_80;
         const float I_xy = (y_2*x_1 + y_3*x_1 + y_4*x_1 + y_1*x_2 + y_3*x_2 + y_4*x_2 + y_1*x_3 + y_2*x_3 + y_4*x_3 +
-            y_1*x_4 + y_2*x_4 + y_3*x_4 - 3.0f*(y_1*x_1 + y_2*x_2 + y_3*x_3 + y_4*x_4))*x4;
+            y_1*x_4 + y_2*x_4 + y_3*x_4 - 3.0f*(y_1*x_1 + y_2*x_2 + y_3*x_3 + y_4*x_4))*m_over_80;
         const float I_xz = (z_2*x_1 + z_3*x_1 + z_4*x_1 + z_1*x_2 + z_3*x_2 + z_4*x_2 + z_1*x_3 + z_2*x_3 + z_4*x_3 +
-            z_1*x_4 + z_2*x_4 + z_3*x_4 - 3.0f*(z_1*x_1 + z_2*x_2 + z_3*x_3 + z_4*x_4))*x4;
+            z_1*x_4 + z_2*x_4 + z_3*x_4 - 3.0f*(z_1*x_1 + z_2*x_2 + z_3*x_3 + z_4*x_4))*m_over_80;
         const float I_yz = (y_1*z_2 + y_1*z_3 + y_1*z_4 + y_2*z_1 + y_2*z_3 + y_2*z_4 + y_3*z_1 + y_3*z_2 + y_3*z_4 +
-            y_4*z_1 + y_4*z_2 + y_4*z_3 - 3.0f*(y_1*z_1 + y_2*z_2 + y_3*z_3 + y_4*z_4))*x4;
+            y_4*z_1 + y_4*z_2 + y_4*z_3 - 3.0f*(y_1*z_1 + y_2*z_2 + y_3*z_3 + y_4*z_4))*m_over_80;
 
         inertia[k] = I_xx;
         inertia[n + k] = I_yy;

@@ -31,13 +31,13 @@ void symrot_inertia_torus(double m, const double dimensions[2], double inertia[6
 {
     const double R = dimensions[0];
     const double r = dimensions[1];
-    const double x0 = 4.0*R*R;
-    const double x1 = r*r;
-    const double x2 = 0.125*(x0 + 5.0*x1)*m;
+    const double four_R_sq = 4.0*R*R;
+    const double r_sq = r*r;
+    const double I_xx_term_1 = 0.125*(four_R_sq + 5.0*r_sq)*m;
 
-    inertia[0] = x2;
-    inertia[1] = x2;
-    inertia[2] = 0.25*(x0 + 3.0*x1)*m;
+    inertia[0] = I_xx_term_1;
+    inertia[1] = I_xx_term_1;
+    inertia[2] = 0.25*(four_R_sq + 3.0*r_sq)*m;
     inertia[3] = 0.0;
     inertia[4] = 0.0;
     inertia[5] = 0.0;
@@ -55,13 +55,13 @@ void symrot_inertia_torus_batch(
         const double m_k = m[k];
         const double R = dimensions[k];
         const double r = dimensions[n + k];
-        const double x0 = 4.0*R*R;
-        const double x1 = r*r;
-        const double x2 = 0.125*(x0 + 5.0*x1)*m_k;
+        const double four_R_sq = 4.0*R*R;
+        const double r_sq = r*r;
+        const double I_xx_term_1 = 0.125*(four_R_sq + 5.0*r_sq)*m_k;
 
-        inertia[k] = x2;
-        inertia[n + k] = x2;
-        inertia[2*n + k] = 0.25*(x0 + 3.0*x1)*m_k;
+        inertia[k] = I_xx_term_1;
+        inertia[n + k] = I_xx_term_1;
+        inertia[2*n + k] = 0.25*(four_R_sq + 3.0*r_sq)*m_k;
         inertia[3*n + k] = 0.0;
         inertia[4*n + k] = 0.0;
         inertia[5*n + k] = 0.0;
@@ -75,13 +75,13 @@ void symrot_inertia_torusf(float m, const float dimensions[2], float inertia[6],
 {
     const float R = dimensions[0];
     const float r = dimensions[1];
-    const float x0 = 4.0f*R*R;
-    const float x1 = r*r;
-    const float x2 = 0.125f*(x0 + 5.0f*x1)*m;
+    const float four_R_sq = 4.0f*R*R;
+    const float r_sq = r*r;
+    const float I_xx_term_1 = 0.125f*(four_R_sq + 5.0f*r_sq)*m;
 
-    inertia[0] = x2;
-    inertia[1] = x2;
-    inertia[2] = 0.25f*(x0 + 3.0f*x1)*m;
+    inertia[0] = I_xx_term_1;
+    inertia[1] = I_xx_term_1;
+    inertia[2] = 0.25f*(four_R_sq + 3.0f*r_sq)*m;
     inertia[3] = 0.0f;
     inertia[4] = 0.0f;
     inertia[5] = 0.0f;
@@ -99,13 +99,13 @@ void symrot_inertia_torusf_batch(
         const float m_k = m[k];
         const float R = dimensions[k];
         const float r = dimensions[n + k];
-        const float x0 = 4.0f*R*R;
-        const float x1 = r*r;
-        const float x2 = 0.125f*(x0 + 5.0f*x1)*m_k;
+        const float four_R_sq = 4.0f*R*R;
+        const float r_sq = r*r;
+        const float I_xx_term_1 = 0.125f*(four_R_sq + 5.0f*r_sq)*m_k;
 
-        inertia[k] = x2;
-        inertia[n + k] = x2;
-        inertia[2*n + k] = 0.25f*(x0 + 3.0f*x1)*m_k;
+        inertia[k] = I_xx_term_1;
+        inertia[n + k] = I_xx_term_1;
+        inertia[2*n + k] = 0.25f*(four_R_sq + 3.0f*r_sq)*m_k;
         inertia[3*n + k] = 0.0f;
         inertia[4*n + k] = 0.0f;
         inertia[5*n + k] = 0.0f;

@@ -36,13 +36,13 @@ void symrot_inertia_triangular_plate(
     const double b = dimensions[0];
     const double h = dimensions[1];
     const double e = dimensions[2];
-    const double x0 = h*h;
-    const double x1 = 0.05555555555555555*m;
-    const double x2 = b*e - (b*b + e*e);
+    const double h_sq = h*h;
+    const double m_over_18 = 0.05555555555555555*m;
+    const double b_e_minus_b_sq_plus_e_sq = b*e - (b*b + e*e);
 
-    inertia[0] = x0*x1;
-    inertia[1] = (-x2)*x1;
-    inertia[2] = (x0 - x2)*x1;
+    inertia[0] = h_sq*m_over_18;
+    inertia[1] = (-b_e_minus_b_sq_plus_e_sq)*m_over_18;
+    inertia[2] = (h_sq - b_e_minus_b_sq_plus_e_sq)*m_over_18;
     inertia[3] = 0.027777777777777776*(b - 2.0*e)*h*m;
     inertia[4] = 0.0;
     inertia[5] = 0.0;
@@ -61,13 +61,13 @@ void symrot_inertia_triangular_plate_batch(
         const double b = dimensions[k];
         const double h = dimensions[n + k];
         const double e = dimensions[2*n + k];
-        const double x0 = h*h;
-        const double x1 = 0.05555555555555555*m_k;
-        const double x2 = b*e - (b*b + e*e);
+        const double h_sq = h*h;
+        const double m_over_18 = 0.05555555555555555*m_k;
+        const double b_e_minus_b_sq_plus_e_sq = b*e - (b*b + e*e);
 
-        const double I_xx = x0*x1;
-        const double I_yy = (-x2)*x1;
-        const double I_zz = (x0 - x2)*x1;
+        const double I_xx = h_sq*m_over_18;
+        const double I_yy = (-b_e_minus_b_sq_plus_e_sq)*m_over_18;
+        const double I_zz = (h_sq - b_e_minus_b_sq_plus_e_sq)*m_over_18;
         const double I_xy = 0.027777777777777776*(b - 2.0*e)*h*m_k;
         const double x = 0.3333333333333333*(b + e);
         const double y = 0.3333333333333333*h;
@@ -90,13 +90,13 @@ void symrot_inertia_triangular_platef(
     const float b = dimensions[0];
     const float h = dimensions[1];
     const float e = dimensions[2];
-    const float x0 = h*h;
-    const float x1 = 0.055555556f*m;
-    const float x2 = b*e - (b*b + e*e);
+    const float h_sq = h*h;
+    const float m_over_18 = 0.055555556f*m;
+    const float b_e_minus_b_sq_plus_e_sq = b*e - (b*b + e*e);
 
-    inertia[0] = x0*x1;
-    inertia[1] = (-x2)*x1;
-    inertia[2] = (x0 - x2)*x1;
+    inertia[0] = h_sq*m_over_18;
+    inertia[1] = (-b_e_minus_b_sq_plus_e_sq)*m_over_18;
+    inertia[2] = (h_sq - b_e_minus_b_sq_plus_e_sq)*m_over_18;
     inertia[3] = 0.027777778f*(b - 2.0f*e)*h*m;
     inertia[4] = 0.0f;
     inertia[5] = 0.0f;
@@ -115,13 +115,13 @@ void symrot_inertia_triangular_platef_batch(
         const float b = dimensions[k];
         const float h = dimensions[n + k];
         const float e = dimensions[2*n + k];
-        const float x0 = h*h;
-        const float x1 = 0.055555556f*m_k;
-        const float x2 = b*e - (b*b + e*e);
+        const float h_sq = h*h;
+        const float m_over_18 = 0.055555556f*m_k;
+        const float b_e_minus_b_sq_plus_e_sq = b*e - (b*b + e*e);
 
-        const float I_xx = x0*x1;
-        const float I_yy = (-x2)*x1;
-        const float I_zz = (x0 - x2)*x1;
+        const float I_xx = h_sq*m_over_18;
+        const float I_yy = (-b_e_minus_b_sq_plus_e_sq)*m_over_18;
+        const float I_zz = (h_sq - b_e_minus_b_sq_plus_e_sq)*m_over_18;
         const float I_xy = 0.027777778f*(b - 2.0f*e)*h*m_k;
         const float x = 0.33333333f*(b + e);
         const float y = 0.33333333f*h;

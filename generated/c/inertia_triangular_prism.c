@@ -38,15 +38,15 @@ void symrot_inertia_triangular_prism(
     const double h = dimensions[1];
     const double e = dimensions[2];
     const double L = dimensions[3];
-    const double x0 = 3.0*L*L;
-    const double x1 = h*h;
-    const double x2 = 0.027777777777777776*m;
-    const double x3 = b*e - (b*b + e*e);
+    const double three_L_sq = 3.0*L*L;
+    const double h_sq = h*h;
+    const double m_over_36 = 0.027777777777777776*m;
+    const double b_e_minus_b_sq_plus_e_sq = b*e - (b*b + e*e);
 
-    inertia[0] = (x0 + 2.0*x1)*x2;
-    inertia[1] = (x0 + 2.0*(-x3))*x2;
-    inertia[2] = 0.05555555555555555*(x1 - x3)*m;
-    inertia[3] = (b - 2.0*e)*h*x2;
+    inertia[0] = (three_L_sq + 2.0*h_sq)*m_over_36;
+    inertia[1] = (three_L_sq + 2.0*(-b_e_minus_b_sq_plus_e_sq))*m_over_36;
+    inertia[2] = 0.05555555555555555*(h_sq - b_e_minus_b_sq_plus_e_sq)*m;
+    inertia[3] = (b - 2.0*e)*h*m_over_36;
     inertia[4] = 0.0;
     inertia[5] = 0.0;
     center_of_mass[0] = 0.3333333333333333*(b + e);
@@ -65,15 +65,15 @@ void symrot_inertia_triangular_prism_batch(
         const double h = dimensions[n + k];
         const double e = dimensions[2*n + k];
         const double L = dimensions[3*n + k];
-        const double x0 = 3.0*L*L;
-        const double x1 = h*h;
-        const double x2 = 0.027777777777777776*m_k;
-        const double x3 = b*e - (b*b + e*e);
+        const double three_L_sq = 3.0*L*L;
+        const double h_sq = h*h;
+        const double m_over_36 = 0.027777777777777776*m_k;
+        const double b_e_minus_b_sq_plus_e_sq = b*e - (b*b + e*e);
 
-        const double I_xx = (x0 + 2.0*x1)*x2;
-        const double I_yy = (x0 + 2.0*(-x3))*x2;
-        const double I_zz = 0.05555555555555555*(x1 - x3)*m_k;
-        const double I_xy = (b - 2.0*e)*h*x2;
+        const double I_xx = (three_L_sq + 2.0*h_sq)*m_over_36;
+        const double I_yy = (three_L_sq + 2.0*(-b_e_minus_b_sq_plus_e_sq))*m_over_36;
+        const double I_zz = 0.05555555555555555*(h_sq - b_e_minus_b_sq_plus_e_sq)*m_k;
+        const double I_xy = (b - 2.0*e)*h*m_over_36;
         const double x = 0.3333333333333333*(b + e);
         const double y = 0.3333333333333333*h;
 
@@ -96,15 +96,15 @@ void symrot_inertia_triangular_prismf(
     const float h = dimensions[1];
     const float e = dimensions[2];
     const float L = dimensions[3];
-    const float x0 = 3.0f*L*L;
-    const float x1 = h*h;
-    const float x2 = 0.027777778f*m;
-    const float x3 = b*e - (b*b + e*e);
+    const float three_L_sq = 3.0f*L*L;
+    const float h_sq = h*h;
+    const float m_over_36 = 0.027777778f*m;
+    const float b_e_minus_b_sq_plus_e_sq = b*e - (b*b + e*e);
 
-    inertia[0] = (x0 + 2.0f*x1)*x2;
-    inertia[1] = (x0 + 2.0f*(-x3))*x2;
-    inertia[2] = 0.055555556f*(x1 - x3)*m;
-    inertia[3] = (b - 2.0f*e)*h*x2;
+    inertia[0] = (three_L_sq + 2.0f*h_sq)*m_over_36;
+    inertia[1] = (three_L_sq + 2.0f*(-b_e_minus_b_sq_plus_e_sq))*m_over_36;
+    inertia[2] = 0.055555556f*(h_sq - b_e_minus_b_sq_plus_e_sq)*m;
+    inertia[3] = (b - 2.0f*e)*h*m_over_36;
     inertia[4] = 0.0f;
     inertia[5] = 0.0f;
     center_of_mass[0] = 0.33333333f*(b + e);
@@ -123,15 +123,15 @@ void symrot_inertia_triangular_prismf_batch(
         const float h = dimensions[n + k];
         const float e = dimensions[2*n + k];
         const float L = dimensions[3*n + k];
-        const float x0 = 3.0f*L*L;
-        const float x1 = h*h;
-        const float x2 = 0.027777778f*m_k;
-        const float x3 = b*e - (b*b + e*e);
+        const float three_L_sq = 3.0f*L*L;
+        const float h_sq = h*h;
+        const float m_over_36 = 0.027777778f*m_k;
+        const float b_e_minus_b_sq_plus_e_sq = b*e - (b*b + e*e);
 
-        const float I_xx = (x0 + 2.0f*x1)*x2;
-        const float I_yy = (x0 + 2.0f*(-x3))*x2;
-        const float I_zz = 0.055555556f*(x1 - x3)*m_k;
-        const float I_xy = (b - 2.0f*e)*h*x2;
+        const float I_xx = (three_L_sq + 2.0f*h_sq)*m_over_36;
+        const float I_yy = (three_L_sq + 2.0f*(-b_e_minus_b_sq_plus_e_sq))*m_over_36;
+        const float I_zz = 0.055555556f*(h_sq - b_e_minus_b_sq_plus_e_sq)*m_k;
+        const float I_xy = (b - 2.0f*e)*h*m_over_36;
         const float x = 0.33333333f*(b + e);
         const float y = 0.33333333f*h;
 

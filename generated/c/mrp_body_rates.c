@@ -31,14 +31,14 @@ void symrot_mrp_body_rates(const double parameters[3], const double omega[3], do
     const double omega_3 = omega[2];
     const double half_1 = 0.5*omega_1;
     const double square = s1*s1 + s2*s2 + s3*s3;
-    const double x2 = 0.5*(1.0 - square);
+    const double ds1_term_1 = 0.5*(1.0 - square);
     const double half_3 = 0.5*omega_3;
     const double half_2 = 0.5*omega_2;
-    const double x5 = s1*half_1 + s2*half_2 + s3*half_3;
+    const double ds1_term_2 = s1*half_1 + s2*half_2 + s3*half_3;
 
-    rates[0] = half_1*x2 + s2*half_3 + s1*x5 - s3*half_2;
-    rates[1] = s3*half_1 + s2*x5 + half_2*x2 - s1*half_3;
-    rates[2] = s1*half_2 + s3*x5 + half_3*x2 - s2*half_1;
+    rates[0] = half_1*ds1_term_1 + s2*half_3 + s1*ds1_term_2 - s3*half_2;
+    rates[1] = s3*half_1 + s2*ds1_term_2 + half_2*ds1_term_1 - s1*half_3;
+    rates[2] = s1*half_2 + s3*ds1_term_2 + half_3*ds1_term_1 - s2*half_1;
 }
 
 void symrot_mrp_body_rates_batch(
@@ -55,14 +55,14 @@ void symrot_mrp_body_rates_batch(
         const double omega_3 = omega[2*n + k];
         const double half_1 = 0.5*omega_1;
         const double square = s1*s1 + s2*s2 + s3*s3;
-        const double x2 = 0.5*(1.0 - square);
+        const double ds1_term_1 = 0.5*(1.0 - square);
         const double half_3 = 0.5*omega_3;
         const double half_2 = 0.5*omega_2;
-        const double x5 = s1*half_1 + s2*half_2 + s3*half_3;
+        const double ds1_term_2 = s1*half_1 + s2*half_2 + s3*half_3;
 
-        rates[k] = half_1*x2 + s2*half_3 + s1*x5 - s3*half_2;
-        rates[n + k] = s3*half_1 + s2*x5 + half_2*x2 - s1*half_3;
-        rates[2*n + k] = s1*half_2 + s3*x5 + half_3*x2 - s2*half_1;
+        rates[k] = half_1*ds1_term_1 + s2*half_3 + s1*ds1_term_2 - s3*half_2;
+        rates[n + k] = s3*half_1 + s2*ds1_term_2 + half_2*ds1_term_1 - s1*half_3;
+        rates[2*n + k] = s1*half_2 + s3*ds1_term_2 + half_3*ds1_term_1 - s2*half_1;
     }
 }
 
@@ -76,14 +76,14 @@ void symrot_mrp_body_ratesf(const float parameters[3], const float omega[3], flo
     const float omega_3 = omega[2];
     const float half_1 = 0.5f*omega_1;
     const float square = s1*s1 + s2*s2 + s3*s3;
-    const float x2 = 0.5f*(1.0f - square);
+    const float ds1_term_1 = 0.5f*(1.0f - square);
     const float half_3 = 0.5f*omega_3;
     const float half_2 = 0.5f*omega_2;
-    const float x5 = s1*half_1 + s2*half_2 + s3*half_3;
+    const float ds1_term_2 = s1*half_1 + s2*half_2 + s3*half_3;
 
-    rates[0] = half_1*x2 + s2*half_3 + s1*x5 - s3*half_2;
-    rates[1] = s3*half_1 + s2*x5 + half_2*x2 - s1*half_3;
-    rates[2] = s1*half_2 + s3*x5 + half_3*x2 - s2*half_1;
+    rates[0] = half_1*ds1_term_1 + s2*half_3 + s1*ds1_term_2 - s3*half_2;
+    rates[1] = s3*half_1 + s2*ds1_term_2 + half_2*ds1_term_1 - s1*half_3;
+    rates[2] = s1*half_2 + s3*ds1_term_2 + half_3*ds1_term_1 - s2*half_1;
 }
 
 void symrot_mrp_body_ratesf_batch(
@@ -100,13 +100,13 @@ void symrot_mrp_body_ratesf_batch(
         const float omega_3 = omega[2*n + k];
         const float half_1 = 0.5f*omega_1;
         const float square = s1*s1 + s2*s2 + s3*s3;
-        const float x2 = 0.5f*(1.0f - square);
+        const float ds1_term_1 = 0.5f*(1.0f - square);
         const float half_3 = 0.5f*omega_3;
         const float half_2 = 0.5f*omega_2;
-        const float x5 = s1*half_1 + s2*half_2 + s3*half_3;
+        const float ds1_term_2 = s1*half_1 + s2*half_2 + s3*half_3;
 
-        rates[k] = half_1*x2 + s2*half_3 + s1*x5 - s3*half_2;
-        rates[n + k] = s3*half_1 + s2*x5 + half_2*x2 - s1*half_3;
-        rates[2*n + k] = s1*half_2 + s3*x5 + half_3*x2 - s2*half_1;
+        rates[k] = half_1*ds1_term_1 + s2*half_3 + s1*ds1_term_2 - s3*half_2;
+        rates[n + k] = s3*half_1 + s2*ds1_term_2 + half_2*ds1_term_1 - s1*half_3;
+        rates[2*n + k] = s1*half_2 + s3*ds1_term_2 + half_3*ds1_term_1 - s2*half_1;
     }
 }

@@ -38,12 +38,12 @@ void symrot_mrp_of_quaternion(const double q[4], double parameters[3])
     const double q1 = q[1];
     const double q2 = q[2];
     const double q3 = q[3];
-    const double x0 = symrot_select_ge(q0, 0.0, 1.0, -1.0);
-    const double x1 = x0/(1.0 + q0*x0);
+    const double s1_choice_1 = symrot_select_ge(q0, 0.0, 1.0, -1.0);
+    const double s1_term_1 = s1_choice_1/(1.0 + q0*s1_choice_1);
 
-    parameters[0] = q1*x1;
-    parameters[1] = q2*x1;
-    parameters[2] = q3*x1;
+    parameters[0] = q1*s1_term_1;
+    parameters[1] = q2*s1_term_1;
+    parameters[2] = q3*s1_term_1;
 }
 
 void symrot_mrp_of_quaternion_batch(
@@ -55,12 +55,12 @@ void symrot_mrp_of_quaternion_batch(
         const double q1 = q[n + k];
         const double q2 = q[2*n + k];
         const double q3 = q[3*n + k];
-        const double x0 = symrot_choose_ge(q0, 0.0, 1.0, -1.0);
-        const double x1 = x0/(1.0 + q0*x0);
+        const double s1_choice_1 = symrot_choose_ge(q0, 0.0, 1.0, -1.0);
+        const double s1_term_1 = s1_choice_1/(1.0 + q0*s1_choice_1);
 
-        parameters[k] = q1*x1;
-        parameters[n + k] = q2*x1;
-        parameters[2*n + k] = q3*x1;
+        parameters[k] = q1*s1_term_1;
+        parameters[n + k] = q2*s1_term_1;
+        parameters[2*n + k] = q3*s1_term_1;
     }
 }
 
@@ -70,12 +70,12 @@ void symrot_mrp_of_quaternionf(const float q[4], float parameters[3])
     const float q1 = q[1];
     const float q2 = q[2];
     const float q3 = q[3];
-    const float x0 = symrot_select_gef(q0, 0.0f, 1.0f, -1.0f);
-    const float x1 = x0/(1.0f + q0*x0);
+    const float s1_choice_1 = symrot_select_gef(q0, 0.0f, 1.0f, -1.0f);
+    const float s1_term_1 = s1_choice_1/(1.0f + q0*s1_choice_1);
 
-    parameters[0] = q1*x1;
-    parameters[1] = q2*x1;
-    parameters[2] = q3*x1;
+    parameters[0] = q1*s1_term_1;
+    parameters[1] = q2*s1_term_1;
+    parameters[2] = q3*s1_term_1;
 }
 
 void symrot_mrp_of_quaternionf_batch(
@@ -87,11 +87,11 @@ void symrot_mrp_of_quaternionf_batch(
         const float q1 = q[n + k];
         const float q2 = q[2*n + k];
         const float q3 = q[3*n + k];
-        const float x0 = symrot_choose_gef(q0, 0.0f, 1.0f, -1.0f);
-        const float x1 = x0/(1.0f + q0*x0);
+        const float s1_choice_1 = symrot_choose_gef(q0, 0.0f, 1.0f, -1.0f);
+        const float s1_term_1 = s1_choice_1/(1.0f + q0*s1_choice_1);
 
-        parameters[k] = q1*x1;
-        parameters[n + k] = q2*x1;
-        parameters[2*n + k] = q3*x1;
+        parameters[k] = q1*s1_term_1;
+        parameters[n + k] = q2*s1_term_1;
+        parameters[2*n + k] = q3*s1_term_1;
     }
 }

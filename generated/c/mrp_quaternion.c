@@ -25,14 +25,14 @@ void symrot_mrp_quaternion(const double parameters[3], double q[4])
     const double s1 = parameters[0];
     const double s2 = parameters[1];
     const double s3 = parameters[2];
-    const double x0 = s3*s3 + (s1*s1 + s2*s2);
-    const double x1 = 1.0/(1.0 + x0);
-    const double x2 = 2.0*x1;
+    const double s3_sq_plus_s1_sq_plus_s2_sq = s3*s3 + (s1*s1 + s2*s2);
+    const double q0_term_1 = 1.0/(1.0 + s3_sq_plus_s1_sq_plus_s2_sq);
+    const double two_q0_term_1 = 2.0*q0_term_1;
 
-    q[0] = (1.0 - x0)*x1;
-    q[1] = s1*x2;
-    q[2] = s2*x2;
-    q[3] = s3*x2;
+    q[0] = (1.0 - s3_sq_plus_s1_sq_plus_s2_sq)*q0_term_1;
+    q[1] = s1*two_q0_term_1;
+    q[2] = s2*two_q0_term_1;
+    q[3] = s3*two_q0_term_1;
 }
 
 void symrot_mrp_quaternion_batch(
@@ -43,14 +43,14 @@ void symrot_mrp_quaternion_batch(
         const double s1 = parameters[k];
         const double s2 = parameters[n + k];
         const double s3 = parameters[2*n + k];
-        const double x0 = s3*s3 + (s1*s1 + s2*s2);
-        const double x1 = 1.0/(1.0 + x0);
-        const double x2 = 2.0*x1;
+        const double s3_sq_plus_s1_sq_plus_s2_sq = s3*s3 + (s1*s1 + s2*s2);
+        const double q0_term_1 = 1.0/(1.0 + s3_sq_plus_s1_sq_plus_s2_sq);
+        const double two_q0_term_1 = 2.0*q0_term_1;
 
-        q[k] = (1.0 - x0)*x1;
-        q[n + k] = s1*x2;
-        q[2*n + k] = s2*x2;
-        q[3*n + k] = s3*x2;
+        q[k] = (1.0 - s3_sq_plus_s1_sq_plus_s2_sq)*q0_term_1;
+        q[n + k] = s1*two_q0_term_1;
+        q[2*n + k] = s2*two_q0_term_1;
+        q[3*n + k] = s3*two_q0_term_1;
     }
 }
 
@@ -59,14 +59,14 @@ void symrot_mrp_quaternionf(const float parameters[3], float q[4])
     const float s1 = parameters[0];
     const float s2 = parameters[1];
     const float s3 = parameters[2];
-    const float x0 = s3*s3 + (s1*s1 + s2*s2);
-    const float x1 = 1.0f/(1.0f + x0);
-    const float x2 = 2.0f*x1;
+    const float s3_sq_plus_s1_sq_plus_s2_sq = s3*s3 + (s1*s1 + s2*s2);
+    const float q0_term_1 = 1.0f/(1.0f + s3_sq_plus_s1_sq_plus_s2_sq);
+    const float two_q0_term_1 = 2.0f*q0_term_1;
 
-    q[0] = (1.0f - x0)*x1;
-    q[1] = s1*x2;
-    q[2] = s2*x2;
-    q[3] = s3*x2;
+    q[0] = (1.0f - s3_sq_plus_s1_sq_plus_s2_sq)*q0_term_1;
+    q[1] = s1*two_q0_term_1;
+    q[2] = s2*two_q0_term_1;
+    q[3] = s3*two_q0_term_1;
 }
 
 void symrot_mrp_quaternionf_batch(size_t n, const float *SYMROT_RESTRICT parameters, float *SYMROT_RESTRICT q)
@@ -76,13 +76,13 @@ void symrot_mrp_quaternionf_batch(size_t n, const float *SYMROT_RESTRICT paramet
         const float s1 = parameters[k];
         const float s2 = parameters[n + k];
         const float s3 = parameters[2*n + k];
-        const float x0 = s3*s3 + (s1*s1 + s2*s2);
-        const float x1 = 1.0f/(1.0f + x0);
-        const float x2 = 2.0f*x1;
+        const float s3_sq_plus_s1_sq_plus_s2_sq = s3*s3 + (s1*s1 + s2*s2);
+        const float q0_term_1 = 1.0f/(1.0f + s3_sq_plus_s1_sq_plus_s2_sq);
+        const float two_q0_term_1 = 2.0f*q0_term_1;
 
-        q[k] = (1.0f - x0)*x1;
-        q[n + k] = s1*x2;
-        q[2*n + k] = s2*x2;
-        q[3*n + k] = s3*x2;
+        q[k] = (1.0f - s3_sq_plus_s1_sq_plus_s2_sq)*q0_term_1;
+        q[n + k] = s1*two_q0_term_1;
+        q[2*n + k] = s2*two_q0_term_1;
+        q[3*n + k] = s3*two_q0_term_1;
     }
 }

@@ -36,15 +36,18 @@ void symrot_mrp_shadow(const double parameters[3], double switched[3])
     const double s1 = parameters[0];
     const double s2 = parameters[1];
     const double s3 = parameters[2];
-    const double x0 = s1*s1 + s2*s2 + s3*s3;
-    const double x1 = 1.0/x0;
-    const double x2 = symrot_select_ge(1.0, x0, s1, -(s1*x1));
-    const double x3 = symrot_select_ge(1.0, x0, s2, -(s2*x1));
-    const double x4 = symrot_select_ge(1.0, x0, s3, -(s3*x1));
+    const double s1_sq_plus_s2_sq_plus_s3_sq = s1*s1 + s2*s2 + s3*s3;
+    const double inv_s1_sq_plus_s2_sq_plus_s3_sq = 1.0/s1_sq_plus_s2_sq_plus_s3_sq;
+    const double turned_1_choice_1 = symrot_select_ge(1.0, s1_sq_plus_s2_sq_plus_s3_sq, s1,
+        -(s1*inv_s1_sq_plus_s2_sq_plus_s3_sq));
+    const double turned_2_choice_1 = symrot_select_ge(1.0, s1_sq_plus_s2_sq_plus_s3_sq, s2,
+        -(s2*inv_s1_sq_plus_s2_sq_plus_s3_sq));
+    const double turned_3_choice_1 = symrot_select_ge(1.0, s1_sq_plus_s2_sq_plus_s3_sq, s3,
+        -(s3*inv_s1_sq_plus_s2_sq_plus_s3_sq));
 
-    switched[0] = x2;
-    switched[1] = x3;
-    switched[2] = x4;
+    switched[0] = turned_1_choice_1;
+    switched[1] = turned_2_choice_1;
+    switched[2] = turned_3_choice_1;
 }
 
 void symrot_mrp_shadow_batch(
@@ -55,15 +58,18 @@ void symrot_mrp_shadow_batch(
         const double s1 = parameters[k];
         const double s2 = parameters[n + k];
         const double s3 = parameters[2*n + k];
-        const double x0 = s1*s1 + s2*s2 + s3*s3;
-        const double x1 = 1.0/x0;
-        const double x2 = symrot_choose_ge(1.0, x0, s1, -(s1*x1));
-        const double x3 = symrot_choose_ge(1.0, x0, s2, -(s2*x1));
-        const double x4 = symrot_choose_ge(1.0, x0, s3, -(s3*x1));
+        const double s1_sq_plus_s2_sq_plus_s3_sq = s1*s1 + s2*s2 + s3*s3;
+        const double inv_s1_sq_plus_s2_sq_plus_s3_sq = 1.0/s1_sq_plus_s2_sq_plus_s3_sq;
+        const double turned_1_choice_1 = symrot_choose_ge(1.0, s1_sq_plus_s2_sq_plus_s3_sq, s1,
+            -(s1*inv_s1_sq_plus_s2_sq_plus_s3_sq));
+        const double turned_2_choice_1 = symrot_choose_ge(1.0, s1_sq_plus_s2_sq_plus_s3_sq, s2,
+            -(s2*inv_s1_sq_plus_s2_sq_plus_s3_sq));
+        const double turned_3_choice_1 = symrot_choose_ge(1.0, s1_sq_plus_s2_sq_plus_s3_sq, s3,
+            -(s3*inv_s1_sq_plus_s2_sq_plus_s3_sq));
 
-        switched[k] = x2;
-        switched[n + k] = x3;
-        switched[2*n + k] = x4;
+        switched[k] = turned_1_choice_1;
+        switched[n + k] = turned_2_choice_1;
+        switched[2*n + k] = turned_3_choice_1;
     }
 }
 
@@ -72,15 +78,18 @@ void symrot_mrp_shadowf(const float parameters[3], float switched[3])
     const float s1 = parameters[0];
     const float s2 = parameters[1];
     const float s3 = parameters[2];
-    const float x0 = s1*s1 + s2*s2 + s3*s3;
-    const float x1 = 1.0f/x0;
-    const float x2 = symrot_select_gef(1.0f, x0, s1, -(s1*x1));
-    const float x3 = symrot_select_gef(1.0f, x0, s2, -(s2*x1));
-    const float x4 = symrot_select_gef(1.0f, x0, s3, -(s3*x1));
+    const float s1_sq_plus_s2_sq_plus_s3_sq = s1*s1 + s2*s2 + s3*s3;
+    const float inv_s1_sq_plus_s2_sq_plus_s3_sq = 1.0f/s1_sq_plus_s2_sq_plus_s3_sq;
+    const float turned_1_choice_1 = symrot_select_gef(1.0f, s1_sq_plus_s2_sq_plus_s3_sq, s1,
+        -(s1*inv_s1_sq_plus_s2_sq_plus_s3_sq));
+    const float turned_2_choice_1 = symrot_select_gef(1.0f, s1_sq_plus_s2_sq_plus_s3_sq, s2,
+        -(s2*inv_s1_sq_plus_s2_sq_plus_s3_sq));
+    const float turned_3_choice_1 = symrot_select_gef(1.0f, s1_sq_plus_s2_sq_plus_s3_sq, s3,
+        -(s3*inv_s1_sq_plus_s2_sq_plus_s3_sq));
 
-    switched[0] = x2;
-    switched[1] = x3;
-    switched[2] = x4;
+    switched[0] = turned_1_choice_1;
+    switched[1] = turned_2_choice_1;
+    switched[2] = turned_3_choice_1;
 }
 
 void symrot_mrp_shadowf_batch(
@@ -91,14 +100,17 @@ void symrot_mrp_shadowf_batch(
         const float s1 = parameters[k];
         const float s2 = parameters[n + k];
         const float s3 = parameters[2*n + k];
-        const float x0 = s1*s1 + s2*s2 + s3*s3;
-        const float x1 = 1.0f/x0;
-        const float x2 = symrot_choose_gef(1.0f, x0, s1, -(s1*x1));
-        const float x3 = symrot_choose_gef(1.0f, x0, s2, -(s2*x1));
-        const float x4 = symrot_choose_gef(1.0f, x0, s3, -(s3*x1));
+        const float s1_sq_plus_s2_sq_plus_s3_sq = s1*s1 + s2*s2 + s3*s3;
+        const float inv_s1_sq_plus_s2_sq_plus_s3_sq = 1.0f/s1_sq_plus_s2_sq_plus_s3_sq;
+        const float turned_1_choice_1 = symrot_choose_gef(1.0f, s1_sq_plus_s2_sq_plus_s3_sq, s1,
+            -(s1*inv_s1_sq_plus_s2_sq_plus_s3_sq));
+        const float turned_2_choice_1 = symrot_choose_gef(1.0f, s1_sq_plus_s2_sq_plus_s3_sq, s2,
+            -(s2*inv_s1_sq_plus_s2_sq_plus_s3_sq));
+        const float turned_3_choice_1 = symrot_choose_gef(1.0f, s1_sq_plus_s2_sq_plus_s3_sq, s3,
+            -(s3*inv_s1_sq_plus_s2_sq_plus_s3_sq));
 
-        switched[k] = x2;
-        switched[n + k] = x3;
-        switched[2*n + k] = x4;
+        switched[k] = turned_1_choice_1;
+        switched[n + k] = turned_2_choice_1;
+        switched[2*n + k] = turned_3_choice_1;
     }
 }

@@ -31,14 +31,14 @@ void symrot_mrp_space_rates(const double parameters[3], const double omega[3], d
     const double omega_z = omega[2];
     const double half_1 = 0.5*omega_x;
     const double square = s1*s1 + s2*s2 + s3*s3;
-    const double x2 = 0.5*(1.0 - square);
+    const double ds1_term_1 = 0.5*(1.0 - square);
     const double half_2 = 0.5*omega_y;
     const double half_3 = 0.5*omega_z;
-    const double x5 = s1*half_1 + s2*half_2 + s3*half_3;
+    const double ds1_term_2 = s1*half_1 + s2*half_2 + s3*half_3;
 
-    rates[0] = half_1*x2 + s3*half_2 + s1*x5 - s2*half_3;
-    rates[1] = s1*half_3 + s2*x5 + half_2*x2 - s3*half_1;
-    rates[2] = s2*half_1 + s3*x5 + half_3*x2 - s1*half_2;
+    rates[0] = half_1*ds1_term_1 + s3*half_2 + s1*ds1_term_2 - s2*half_3;
+    rates[1] = s1*half_3 + s2*ds1_term_2 + half_2*ds1_term_1 - s3*half_1;
+    rates[2] = s2*half_1 + s3*ds1_term_2 + half_3*ds1_term_1 - s1*half_2;
 }
 
 void symrot_mrp_space_rates_batch(
@@ -55,14 +55,14 @@ void symrot_mrp_space_rates_batch(
         const double omega_z = omega[2*n + k];
         const double half_1 = 0.5*omega_x;
         const double square = s1*s1 + s2*s2 + s3*s3;
-        const double x2 = 0.5*(1.0 - square);
+        const double ds1_term_1 = 0.5*(1.0 - square);
         const double half_2 = 0.5*omega_y;
         const double half_3 = 0.5*omega_z;
-        const double x5 = s1*half_1 + s2*half_2 + s3*half_3;
+        const double ds1_term_2 = s1*half_1 + s2*half_2 + s3*half_3;
 
-        rates[k] = half_1*x2 + s3*half_2 + s1*x5 - s2*half_3;
-        rates[n + k] = s1*half_3 + s2*x5 + half_2*x2 - s3*half_1;
-        rates[2*n + k] = s2*half_1 + s3*x5 + half_3*x2 - s1*half_2;
+        rates[k] = half_1*ds1_term_1 + s3*half_2 + s1*ds1_term_2 - s2*half_3;
+        rates[n + k] = s1*half_3 + s2*ds1_term_2 + half_2*ds1_term_1 - s3*half_1;
+        rates[2*n + k] = s2*half_1 + s3*ds1_term_2 + half_3*ds1_term_1 - s1*half_2;
     }
 }
 
@@ -76,14 +76,14 @@ void symrot_mrp_space_ratesf(const float parameters[3], const float omega[3], fl
     const float omega_z = omega[2];
     const float half_1 = 0.5f*omega_x;
     const float square = s1*s1 + s2*s2 + s3*s3;
-    const float x2 = 0.5f*(1.0f - square);
+    const float ds1_term_1 = 0.5f*(1.0f - square);
     const float half_2 = 0.5f*omega_y;
     const float half_3 = 0.5f*omega_z;
-    const float x5 = s1*half_1 + s2*half_2 + s3*half_3;
+    const float ds1_term_2 = s1*half_1 + s2*half_2 + s3*half_3;
 
-    rates[0] = half_1*x2 + s3*half_2 + s1*x5 - s2*half_3;
-    rates[1] = s1*half_3 + s2*x5 + half_2*x2 - s3*half_1;
-    rates[2] = s2*half_1 + s3*x5 + half_3*x2 - s1*half_2;
+    rates[0] = half_1*ds1_term_1 + s3*half_2 + s1*ds1_term_2 - s2*half_3;
+    rates[1] = s1*half_3 + s2*ds1_term_2 + half_2*ds1_term_1 - s3*half_1;
+    rates[2] = s2*half_1 + s3*ds1_term_2 + half_3*ds1_term_1 - s1*half_2;
 }
 
 void symrot_mrp_space_ratesf_batch(
@@ -100,13 +100,13 @@ void symrot_mrp_space_ratesf_batch(
         const float omega_z = omega[2*n + k];
         const float half_1 = 0.5f*omega_x;
         const float square = s1*s1 + s2*s2 + s3*s3;
-        const float x2 = 0.5f*(1.0f - square);
+        const float ds1_term_1 = 0.5f*(1.0f - square);
         const float half_2 = 0.5f*omega_y;
         const float half_3 = 0.5f*omega_z;
-        const float x5 = s1*half_1 + s2*half_2 + s3*half_3;
+        const float ds1_term_2 = s1*half_1 + s2*half_2 + s3*half_3;
 
-        rates[k] = half_1*x2 + s3*half_2 + s1*x5 - s2*half_3;
-        rates[n + k] = s1*half_3 + s2*x5 + half_2*x2 - s3*half_1;
-        rates[2*n + k] = s2*half_1 + s3*x5 + half_3*x2 - s1*half_2;
+        rates[k] = half_1*ds1_term_1 + s3*half_2 + s1*ds1_term_2 - s2*half_3;
+        rates[n + k] = s1*half_3 + s2*ds1_term_2 + half_2*ds1_term_1 - s3*half_1;
+        rates[2*n + k] = s2*half_1 + s3*ds1_term_2 + half_3*ds1_term_1 - s1*half_2;
     }
 }

@@ -27,27 +27,27 @@ void symrot_rodrigues_dcm(const double parameters[3], double dcm[9])
     const double g2 = parameters[1];
     const double g3 = parameters[2];
     const double norm = 1.0 + g1*g1 + g2*g2 + g3*g3;
-    const double x1 = 2.0/norm;
-    const double twice_3 = g3*x1;
-    const double x3 = g3*twice_3;
-    const double twice_2 = g2*x1;
-    const double x5 = 1.0 - g2*twice_2;
-    const double x6 = g1*twice_2;
-    const double x7 = g1*twice_3;
-    const double twice_1 = g1*x1;
-    const double x9 = g1*twice_1;
-    const double lost_2 = x9 + x3;
-    const double x11 = g2*twice_3;
+    const double two_over_norm = 2.0/norm;
+    const double twice_3 = g3*two_over_norm;
+    const double two_g3_sq_over_norm = g3*twice_3;
+    const double twice_2 = g2*two_over_norm;
+    const double one_minus_two_g2_sq_over_norm = 1.0 - g2*twice_2;
+    const double two_g1_g2_over_norm = g1*twice_2;
+    const double two_g1_g3_over_norm = g1*twice_3;
+    const double twice_1 = g1*two_over_norm;
+    const double two_g1_sq_over_norm = g1*twice_1;
+    const double lost_2 = two_g1_sq_over_norm + two_g3_sq_over_norm;
+    const double two_g2_g3_over_norm = g2*twice_3;
 
-    dcm[0] = x5 - x3;
-    dcm[1] = x6 - twice_3;
-    dcm[2] = twice_2 + x7;
-    dcm[3] = twice_3 + x6;
+    dcm[0] = one_minus_two_g2_sq_over_norm - two_g3_sq_over_norm;
+    dcm[1] = two_g1_g2_over_norm - twice_3;
+    dcm[2] = twice_2 + two_g1_g3_over_norm;
+    dcm[3] = twice_3 + two_g1_g2_over_norm;
     dcm[4] = 1.0 - lost_2;
-    dcm[5] = x11 - twice_1;
-    dcm[6] = x7 - twice_2;
-    dcm[7] = twice_1 + x11;
-    dcm[8] = x5 - x9;
+    dcm[5] = two_g2_g3_over_norm - twice_1;
+    dcm[6] = two_g1_g3_over_norm - twice_2;
+    dcm[7] = twice_1 + two_g2_g3_over_norm;
+    dcm[8] = one_minus_two_g2_sq_over_norm - two_g1_sq_over_norm;
 }
 
 void symrot_rodrigues_dcm_batch(
@@ -59,27 +59,27 @@ void symrot_rodrigues_dcm_batch(
         const double g2 = parameters[n + k];
         const double g3 = parameters[2*n + k];
         const double norm = 1.0 + g1*g1 + g2*g2 + g3*g3;
-        const double x1 = 2.0/norm;
-        const double twice_3 = g3*x1;
-        const double x3 = g3*twice_3;
-        const double twice_2 = g2*x1;
-        const double x5 = 1.0 - g2*twice_2;
-        const double x6 = g1*twice_2;
-        const double x7 = g1*twice_3;
-        const double twice_1 = g1*x1;
-        const double x9 = g1*twice_1;
-        const double lost_2 = x9 + x3;
-        const double x11 = g2*twice_3;
+        const double two_over_norm = 2.0/norm;
+        const double twice_3 = g3*two_over_norm;
+        const double two_g3_sq_over_norm = g3*twice_3;
+        const double twice_2 = g2*two_over_norm;
+        const double one_minus_two_g2_sq_over_norm = 1.0 - g2*twice_2;
+        const double two_g1_g2_over_norm = g1*twice_2;
+        const double two_g1_g3_over_norm = g1*twice_3;
+        const double twice_1 = g1*two_over_norm;
+        const double two_g1_sq_over_norm = g1*twice_1;
+        const double lost_2 = two_g1_sq_over_norm + two_g3_sq_over_norm;
+        const double two_g2_g3_over_norm = g2*twice_3;
 
-        dcm[k] = x5 - x3;
-        dcm[n + k] = x6 - twice_3;
-        dcm[2*n + k] = twice_2 + x7;
-        dcm[3*n + k] = twice_3 + x6;
+        dcm[k] = one_minus_two_g2_sq_over_norm - two_g3_sq_over_norm;
+        dcm[n + k] = two_g1_g2_over_norm - twice_3;
+        dcm[2*n + k] = twice_2 + two_g1_g3_over_norm;
+        dcm[3*n + k] = twice_3 + two_g1_g2_over_norm;
         dcm[4*n + k] = 1.0 - lost_2;
-        dcm[5*n + k] = x11 - twice_1;
-        dcm[6*n + k] = x7 - twice_2;
-        dcm[7*n + k] = twice_1 + x11;
-        dcm[8*n + k] = x5 - x9;
+        dcm[5*n + k] = two_g2_g3_over_norm - twice_1;
+        dcm[6*n + k] = two_g1_g3_over_norm - twice_2;
+        dcm[7*n + k] = twice_1 + two_g2_g3_over_norm;
+        dcm[8*n + k] = one_minus_two_g2_sq_over_norm - two_g1_sq_over_norm;
     }
 }
 
@@ -89,27 +89,27 @@ void symrot_rodrigues_dcmf(const float parameters[3], float dcm[9])
     const float g2 = parameters[1];
     const float g3 = parameters[2];
     const float norm = 1.0f + g1*g1 + g2*g2 + g3*g3;
-    const float x1 = 2.0f/norm;
-    const float twice_3 = g3*x1;
-    const float x3 = g3*twice_3;
-    const float twice_2 = g2*x1;
-    const float x5 = 1.0f - g2*twice_2;
-    const float x6 = g1*twice_2;
-    const float x7 = g1*twice_3;
-    const float twice_1 = g1*x1;
-    const float x9 = g1*twice_1;
-    const float lost_2 = x9 + x3;
-    const float x11 = g2*twice_3;
+    const float two_over_norm = 2.0f/norm;
+    const float twice_3 = g3*two_over_norm;
+    const float two_g3_sq_over_norm = g3*twice_3;
+    const float twice_2 = g2*two_over_norm;
+    const float one_minus_two_g2_sq_over_norm = 1.0f - g2*twice_2;
+    const float two_g1_g2_over_norm = g1*twice_2;
+    const float two_g1_g3_over_norm = g1*twice_3;
+    const float twice_1 = g1*two_over_norm;
+    const float two_g1_sq_over_norm = g1*twice_1;
+    const float lost_2 = two_g1_sq_over_norm + two_g3_sq_over_norm;
+    const float two_g2_g3_over_norm = g2*twice_3;
 
-    dcm[0] = x5 - x3;
-    dcm[1] = x6 - twice_3;
-    dcm[2] = twice_2 + x7;
-    dcm[3] = twice_3 + x6;
+    dcm[0] = one_minus_two_g2_sq_over_norm - two_g3_sq_over_norm;
+    dcm[1] = two_g1_g2_over_norm - twice_3;
+    dcm[2] = twice_2 + two_g1_g3_over_norm;
+    dcm[3] = twice_3 + two_g1_g2_over_norm;
     dcm[4] = 1.0f - lost_2;
-    dcm[5] = x11 - twice_1;
-    dcm[6] = x7 - twice_2;
-    dcm[7] = twice_1 + x11;
-    dcm[8] = x5 - x9;
+    dcm[5] = two_g2_g3_over_norm - twice_1;
+    dcm[6] = two_g1_g3_over_norm - twice_2;
+    dcm[7] = twice_1 + two_g2_g3_over_norm;
+    dcm[8] = one_minus_two_g2_sq_over_norm - two_g1_sq_over_norm;
 }
 
 void symrot_rodrigues_dcmf_batch(
@@ -121,26 +121,26 @@ void symrot_rodrigues_dcmf_batch(
         const float g2 = parameters[n + k];
         const float g3 = parameters[2*n + k];
         const float norm = 1.0f + g1*g1 + g2*g2 + g3*g3;
-        const float x1 = 2.0f/norm;
-        const float twice_3 = g3*x1;
-        const float x3 = g3*twice_3;
-        const float twice_2 = g2*x1;
-        const float x5 = 1.0f - g2*twice_2;
-        const float x6 = g1*twice_2;
-        const float x7 = g1*twice_3;
-        const float twice_1 = g1*x1;
-        const float x9 = g1*twice_1;
-        const float lost_2 = x9 + x3;
-        const float x11 = g2*twice_3;
+        const float two_over_norm = 2.0f/norm;
+        const float twice_3 = g3*two_over_norm;
+        const float two_g3_sq_over_norm = g3*twice_3;
+        const float twice_2 = g2*two_over_norm;
+        const float one_minus_two_g2_sq_over_norm = 1.0f - g2*twice_2;
+        const float two_g1_g2_over_norm = g1*twice_2;
+        const float two_g1_g3_over_norm = g1*twice_3;
+        const float twice_1 = g1*two_over_norm;
+        const float two_g1_sq_over_norm = g1*twice_1;
+        const float lost_2 = two_g1_sq_over_norm + two_g3_sq_over_norm;
+        const float two_g2_g3_over_norm = g2*twice_3;
 
-        dcm[k] = x5 - x3;
-        dcm[n + k] = x6 - twice_3;
-        dcm[2*n + k] = twice_2 + x7;
-        dcm[3*n + k] = twice_3 + x6;
+        dcm[k] = one_minus_two_g2_sq_over_norm - two_g3_sq_over_norm;
+        dcm[n + k] = two_g1_g2_over_norm - twice_3;
+        dcm[2*n + k] = twice_2 + two_g1_g3_over_norm;
+        dcm[3*n + k] = twice_3 + two_g1_g2_over_norm;
         dcm[4*n + k] = 1.0f - lost_2;
-        dcm[5*n + k] = x11 - twice_1;
-        dcm[6*n + k] = x7 - twice_2;
-        dcm[7*n + k] = twice_1 + x11;
-        dcm[8*n + k] = x5 - x9;
+        dcm[5*n + k] = two_g2_g3_over_norm - twice_1;
+        dcm[6*n + k] = two_g1_g3_over_norm - twice_2;
+        dcm[7*n + k] = twice_1 + two_g2_g3_over_norm;
+        dcm[8*n + k] = one_minus_two_g2_sq_over_norm - two_g1_sq_over_norm;
     }
 }

@@ -26,11 +26,11 @@ void symrot_rodrigues_of_quaternion(const double q[4], double parameters[3])
     const double q1 = q[1];
     const double q2 = q[2];
     const double q3 = q[3];
-    const double x0 = 1.0/q0;
+    const double inv_q0 = 1.0/q0;
 
-    parameters[0] = q1*x0;
-    parameters[1] = q2*x0;
-    parameters[2] = q3*x0;
+    parameters[0] = q1*inv_q0;
+    parameters[1] = q2*inv_q0;
+    parameters[2] = q3*inv_q0;
 }
 
 void symrot_rodrigues_of_quaternion_batch(
@@ -42,11 +42,11 @@ void symrot_rodrigues_of_quaternion_batch(
         const double q1 = q[n + k];
         const double q2 = q[2*n + k];
         const double q3 = q[3*n + k];
-        const double x0 = 1.0/q0;
+        const double inv_q0 = 1.0/q0;
 
-        parameters[k] = q1*x0;
-        parameters[n + k] = q2*x0;
-        parameters[2*n + k] = q3*x0;
+        parameters[k] = q1*inv_q0;
+        parameters[n + k] = q2*inv_q0;
+        parameters[2*n + k] = q3*inv_q0;
     }
 }
 
@@ -56,11 +56,11 @@ void symrot_rodrigues_of_quaternionf(const float q[4], float parameters[3])
     const float q1 = q[1];
     const float q2 = q[2];
     const float q3 = q[3];
-    const float x0 = 1.0f/q0;
+    const float inv_q0 = 1.0f/q0;
 
-    parameters[0] = q1*x0;
-    parameters[1] = q2*x0;
-    parameters[2] = q3*x0;
+    parameters[0] = q1*inv_q0;
+    parameters[1] = q2*inv_q0;
+    parameters[2] = q3*inv_q0;
 }
 
 void symrot_rodrigues_of_quaternionf_batch(
@@ -72,10 +72,10 @@ void symrot_rodrigues_of_quaternionf_batch(
         const float q1 = q[n + k];
         const float q2 = q[2*n + k];
         const float q3 = q[3*n + k];
-        const float x0 = 1.0f/q0;
+        const float inv_q0 = 1.0f/q0;
 
-        parameters[k] = q1*x0;
-        parameters[n + k] = q2*x0;
-        parameters[2*n + k] = q3*x0;
+        parameters[k] = q1*inv_q0;
+        parameters[n + k] = q2*inv_q0;
+        parameters[2*n + k] = q3*inv_q0;
     }
 }

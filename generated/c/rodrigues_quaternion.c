@@ -26,13 +26,13 @@ void symrot_rodrigues_quaternion(const double parameters[3], double q[4])
     const double g1 = parameters[0];
     const double g2 = parameters[1];
     const double g3 = parameters[2];
-    const double x0 = sqrt(1.0 + g1*g1 + g2*g2 + g3*g3);
-    const double x1 = 1.0/x0;
+    const double q0_root_1 = sqrt(1.0 + g1*g1 + g2*g2 + g3*g3);
+    const double inv_q0_root_1 = 1.0/q0_root_1;
 
-    q[0] = x1;
-    q[1] = g1*x1;
-    q[2] = g2*x1;
-    q[3] = g3*x1;
+    q[0] = inv_q0_root_1;
+    q[1] = g1*inv_q0_root_1;
+    q[2] = g2*inv_q0_root_1;
+    q[3] = g3*inv_q0_root_1;
 }
 
 void symrot_rodrigues_quaternion_batch(
@@ -43,13 +43,13 @@ void symrot_rodrigues_quaternion_batch(
         const double g1 = parameters[k];
         const double g2 = parameters[n + k];
         const double g3 = parameters[2*n + k];
-        const double x0 = sqrt(1.0 + g1*g1 + g2*g2 + g3*g3);
-        const double x1 = 1.0/x0;
+        const double q0_root_1 = sqrt(1.0 + g1*g1 + g2*g2 + g3*g3);
+        const double inv_q0_root_1 = 1.0/q0_root_1;
 
-        q[k] = x1;
-        q[n + k] = g1*x1;
-        q[2*n + k] = g2*x1;
-        q[3*n + k] = g3*x1;
+        q[k] = inv_q0_root_1;
+        q[n + k] = g1*inv_q0_root_1;
+        q[2*n + k] = g2*inv_q0_root_1;
+        q[3*n + k] = g3*inv_q0_root_1;
     }
 }
 
@@ -58,13 +58,13 @@ void symrot_rodrigues_quaternionf(const float parameters[3], float q[4])
     const float g1 = parameters[0];
     const float g2 = parameters[1];
     const float g3 = parameters[2];
-    const float x0 = sqrtf(1.0f + g1*g1 + g2*g2 + g3*g3);
-    const float x1 = 1.0f/x0;
+    const float q0_root_1 = sqrtf(1.0f + g1*g1 + g2*g2 + g3*g3);
+    const float inv_q0_root_1 = 1.0f/q0_root_1;
 
-    q[0] = x1;
-    q[1] = g1*x1;
-    q[2] = g2*x1;
-    q[3] = g3*x1;
+    q[0] = inv_q0_root_1;
+    q[1] = g1*inv_q0_root_1;
+    q[2] = g2*inv_q0_root_1;
+    q[3] = g3*inv_q0_root_1;
 }
 
 void symrot_rodrigues_quaternionf_batch(
@@ -75,12 +75,12 @@ void symrot_rodrigues_quaternionf_batch(
         const float g1 = parameters[k];
         const float g2 = parameters[n + k];
         const float g3 = parameters[2*n + k];
-        const float x0 = sqrtf(1.0f + g1*g1 + g2*g2 + g3*g3);
-        const float x1 = 1.0f/x0;
+        const float q0_root_1 = sqrtf(1.0f + g1*g1 + g2*g2 + g3*g3);
+        const float inv_q0_root_1 = 1.0f/q0_root_1;
 
-        q[k] = x1;
-        q[n + k] = g1*x1;
-        q[2*n + k] = g2*x1;
-        q[3*n + k] = g3*x1;
+        q[k] = inv_q0_root_1;
+        q[n + k] = g1*inv_q0_root_1;
+        q[2*n + k] = g2*inv_q0_root_1;
+        q[3*n + k] = g3*inv_q0_root_1;
     }
 }

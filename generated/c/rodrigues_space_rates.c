@@ -32,11 +32,11 @@ void symrot_rodrigues_space_rates(const double parameters[3], const double omega
     const double half_1 = 0.5*omega_x;
     const double half_2 = 0.5*omega_y;
     const double half_3 = 0.5*omega_z;
-    const double x3 = half_1*g1 + half_2*g2 + half_3*g3;
+    const double dg1_term_1 = half_1*g1 + half_2*g2 + half_3*g3;
 
-    rates[0] = half_1 + g1*x3 + half_2*g3 - half_3*g2;
-    rates[1] = half_2 + half_3*g1 + g2*x3 - half_1*g3;
-    rates[2] = half_3 + half_1*g2 + g3*x3 - half_2*g1;
+    rates[0] = half_1 + g1*dg1_term_1 + half_2*g3 - half_3*g2;
+    rates[1] = half_2 + half_3*g1 + g2*dg1_term_1 - half_1*g3;
+    rates[2] = half_3 + half_1*g2 + g3*dg1_term_1 - half_2*g1;
 }
 
 void symrot_rodrigues_space_rates_batch(
@@ -54,11 +54,11 @@ void symrot_rodrigues_space_rates_batch(
         const double half_1 = 0.5*omega_x;
         const double half_2 = 0.5*omega_y;
         const double half_3 = 0.5*omega_z;
-        const double x3 = half_1*g1 + half_2*g2 + half_3*g3;
+        const double dg1_term_1 = half_1*g1 + half_2*g2 + half_3*g3;
 
-        rates[k] = half_1 + g1*x3 + half_2*g3 - half_3*g2;
-        rates[n + k] = half_2 + half_3*g1 + g2*x3 - half_1*g3;
-        rates[2*n + k] = half_3 + half_1*g2 + g3*x3 - half_2*g1;
+        rates[k] = half_1 + g1*dg1_term_1 + half_2*g3 - half_3*g2;
+        rates[n + k] = half_2 + half_3*g1 + g2*dg1_term_1 - half_1*g3;
+        rates[2*n + k] = half_3 + half_1*g2 + g3*dg1_term_1 - half_2*g1;
     }
 }
 
@@ -73,11 +73,11 @@ void symrot_rodrigues_space_ratesf(const float parameters[3], const float omega[
     const float half_1 = 0.5f*omega_x;
     const float half_2 = 0.5f*omega_y;
     const float half_3 = 0.5f*omega_z;
-    const float x3 = half_1*g1 + half_2*g2 + half_3*g3;
+    const float dg1_term_1 = half_1*g1 + half_2*g2 + half_3*g3;
 
-    rates[0] = half_1 + g1*x3 + half_2*g3 - half_3*g2;
-    rates[1] = half_2 + half_3*g1 + g2*x3 - half_1*g3;
-    rates[2] = half_3 + half_1*g2 + g3*x3 - half_2*g1;
+    rates[0] = half_1 + g1*dg1_term_1 + half_2*g3 - half_3*g2;
+    rates[1] = half_2 + half_3*g1 + g2*dg1_term_1 - half_1*g3;
+    rates[2] = half_3 + half_1*g2 + g3*dg1_term_1 - half_2*g1;
 }
 
 void symrot_rodrigues_space_ratesf_batch(
@@ -95,10 +95,10 @@ void symrot_rodrigues_space_ratesf_batch(
         const float half_1 = 0.5f*omega_x;
         const float half_2 = 0.5f*omega_y;
         const float half_3 = 0.5f*omega_z;
-        const float x3 = half_1*g1 + half_2*g2 + half_3*g3;
+        const float dg1_term_1 = half_1*g1 + half_2*g2 + half_3*g3;
 
-        rates[k] = half_1 + g1*x3 + half_2*g3 - half_3*g2;
-        rates[n + k] = half_2 + half_3*g1 + g2*x3 - half_1*g3;
-        rates[2*n + k] = half_3 + half_1*g2 + g3*x3 - half_2*g1;
+        rates[k] = half_1 + g1*dg1_term_1 + half_2*g3 - half_3*g2;
+        rates[n + k] = half_2 + half_3*g1 + g2*dg1_term_1 - half_1*g3;
+        rates[2*n + k] = half_3 + half_1*g2 + g3*dg1_term_1 - half_2*g1;
     }
 }

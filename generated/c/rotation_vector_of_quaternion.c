@@ -51,13 +51,13 @@ void symrot_rotation_vector_of_quaternion(const double q[4], double v[3])
     const double q3 = q[3];
     const double length = sqrt(q1*q1 + q2*q2 + q3*q3);
     const double cosine = fabs(q0);
-    const double x1 = symrot_arc_ratio(length, cosine);
-    const double x2 = copysign(1.0, q0);
-    const double x3 = 2.0*(x1*x2);
+    const double v1_arc_ratio_1 = symrot_arc_ratio(length, cosine);
+    const double v1_copysign_1 = copysign(1.0, q0);
+    const double two_v1_arc_ratio_1_v1_copysign_1 = 2.0*(v1_arc_ratio_1*v1_copysign_1);
 
-    v[0] = q1*x3;
-    v[1] = q2*x3;
-    v[2] = q3*x3;
+    v[0] = q1*two_v1_arc_ratio_1_v1_copysign_1;
+    v[1] = q2*two_v1_arc_ratio_1_v1_copysign_1;
+    v[2] = q3*two_v1_arc_ratio_1_v1_copysign_1;
 }
 
 void symrot_rotation_vector_of_quaternion_batch(
@@ -71,13 +71,13 @@ void symrot_rotation_vector_of_quaternion_batch(
         const double q3 = q[3*n + k];
         const double length = sqrt(q1*q1 + q2*q2 + q3*q3);
         const double cosine = fabs(q0);
-        const double x1 = symrot_near_arc_ratio(length, cosine);
-        const double x2 = copysign(1.0, q0);
-        const double x3 = 2.0*(x1*x2);
+        const double v1_arc_ratio_1 = symrot_near_arc_ratio(length, cosine);
+        const double v1_copysign_1 = copysign(1.0, q0);
+        const double two_v1_arc_ratio_1_v1_copysign_1 = 2.0*(v1_arc_ratio_1*v1_copysign_1);
 
-        v[k] = q1*x3;
-        v[n + k] = q2*x3;
-        v[2*n + k] = q3*x3;
+        v[k] = q1*two_v1_arc_ratio_1_v1_copysign_1;
+        v[n + k] = q2*two_v1_arc_ratio_1_v1_copysign_1;
+        v[2*n + k] = q3*two_v1_arc_ratio_1_v1_copysign_1;
     }
 }
 
@@ -89,13 +89,13 @@ void symrot_rotation_vector_of_quaternionf(const float q[4], float v[3])
     const float q3 = q[3];
     const float length = sqrtf(q1*q1 + q2*q2 + q3*q3);
     const float cosine = fabsf(q0);
-    const float x1 = symrot_arc_ratiof(length, cosine);
-    const float x2 = copysignf(1.0f, q0);
-    const float x3 = 2.0f*(x1*x2);
+    const float v1_arc_ratio_1 = symrot_arc_ratiof(length, cosine);
+    const float v1_copysign_1 = copysignf(1.0f, q0);
+    const float two_v1_arc_ratio_1_v1_copysign_1 = 2.0f*(v1_arc_ratio_1*v1_copysign_1);
 
-    v[0] = q1*x3;
-    v[1] = q2*x3;
-    v[2] = q3*x3;
+    v[0] = q1*two_v1_arc_ratio_1_v1_copysign_1;
+    v[1] = q2*two_v1_arc_ratio_1_v1_copysign_1;
+    v[2] = q3*two_v1_arc_ratio_1_v1_copysign_1;
 }
 
 void symrot_rotation_vector_of_quaternionf_batch(
@@ -109,12 +109,12 @@ void symrot_rotation_vector_of_quaternionf_batch(
         const float q3 = q[3*n + k];
         const float length = sqrtf(q1*q1 + q2*q2 + q3*q3);
         const float cosine = fabsf(q0);
-        const float x1 = symrot_near_arc_ratiof(length, cosine);
-        const float x2 = copysignf(1.0f, q0);
-        const float x3 = 2.0f*(x1*x2);
+        const float v1_arc_ratio_1 = symrot_near_arc_ratiof(length, cosine);
+        const float v1_copysign_1 = copysignf(1.0f, q0);
+        const float two_v1_arc_ratio_1_v1_copysign_1 = 2.0f*(v1_arc_ratio_1*v1_copysign_1);
 
-        v[k] = q1*x3;
-        v[n + k] = q2*x3;
-        v[2*n + k] = q3*x3;
+        v[k] = q1*two_v1_arc_ratio_1_v1_copysign_1;
+        v[n + k] = q2*two_v1_arc_ratio_1_v1_copysign_1;
+        v[2*n + k] = q3*two_v1_arc_ratio_1_v1_copysign_1;
     }
 }

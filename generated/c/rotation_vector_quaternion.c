@@ -48,15 +48,15 @@ void symrot_rotation_vector_quaternion(const double v[3], double q[4])
     const double v2 = v[1];
     const double v3 = v[2];
     const double angle = sqrt(v1*v1 + v2*v2 + v3*v3);
-    const double x1 = 0.5*angle;
-    const double x2 = cos(x1);
-    const double x3 = symrot_sinc(x1);
-    const double x4 = 0.5*x3;
+    const double half_angle = 0.5*angle;
+    const double cos_half_angle = cos(half_angle);
+    const double sinc_half_angle = symrot_sinc(half_angle);
+    const double half_sinc_half_angle = 0.5*sinc_half_angle;
 
-    q[0] = x2;
-    q[1] = v1*x4;
-    q[2] = v2*x4;
-    q[3] = v3*x4;
+    q[0] = cos_half_angle;
+    q[1] = v1*half_sinc_half_angle;
+    q[2] = v2*half_sinc_half_angle;
+    q[3] = v3*half_sinc_half_angle;
 }
 
 void symrot_rotation_vector_quaternion_batch(
@@ -71,16 +71,16 @@ void symrot_rotation_vector_quaternion_batch(
             const double v2 = v[n + k];
             const double v3 = v[2*n + k];
             const double angle = sqrt(v1*v1 + v2*v2 + v3*v3);
-            const double x1 = 0.5*angle;
-            const double x2 = symrot_cos(x1);
-            const double x3 = symrot_near_sinc(x1);
-            const double x4 = 0.5*x3;
+            const double half_angle = 0.5*angle;
+            const double cos_half_angle = symrot_cos(half_angle);
+            const double sinc_half_angle = symrot_near_sinc(half_angle);
+            const double half_sinc_half_angle = 0.5*sinc_half_angle;
 
-            q[k] = x2;
-            q[n + k] = v1*x4;
-            q[2*n + k] = v2*x4;
-            q[3*n + k] = v3*x4;
-            beyond += symrot_far(x1);
+            q[k] = cos_half_angle;
+            q[n + k] = v1*half_sinc_half_angle;
+            q[2*n + k] = v2*half_sinc_half_angle;
+            q[3*n + k] = v3*half_sinc_half_angle;
+            beyond += symrot_far(half_angle);
         }
         const size_t again = beyond == 0 ? start : end;
         for (size_t k = start; k < again; ++k) {
@@ -88,15 +88,15 @@ void symrot_rotation_vector_quaternion_batch(
             const double v2 = v[n + k];
             const double v3 = v[2*n + k];
             const double angle = sqrt(v1*v1 + v2*v2 + v3*v3);
-            const double x1 = 0.5*angle;
-            const double x2 = cos(x1);
-            const double x3 = symrot_sinc(x1);
-            const double x4 = 0.5*x3;
+            const double half_angle = 0.5*angle;
+            const double cos_half_angle = cos(half_angle);
+            const double sinc_half_angle = symrot_sinc(half_angle);
+            const double half_sinc_half_angle = 0.5*sinc_half_angle;
 
-            q[k] = x2;
-            q[n + k] = v1*x4;
-            q[2*n + k] = v2*x4;
-            q[3*n + k] = v3*x4;
+            q[k] = cos_half_angle;
+            q[n + k] = v1*half_sinc_half_angle;
+            q[2*n + k] = v2*half_sinc_half_angle;
+            q[3*n + k] = v3*half_sinc_half_angle;
         }
     }
 }
@@ -107,15 +107,15 @@ void symrot_rotation_vector_quaternionf(const float v[3], float q[4])
     const float v2 = v[1];
     const float v3 = v[2];
     const float angle = sqrtf(v1*v1 + v2*v2 + v3*v3);
-    const float x1 = 0.5f*angle;
-    const float x2 = cosf(x1);
-    const float x3 = symrot_sincf(x1);
-    const float x4 = 0.5f*x3;
+    const float half_angle = 0.5f*angle;
+    const float cos_half_angle = cosf(half_angle);
+    const float sinc_half_angle = symrot_sincf(half_angle);
+    const float half_sinc_half_angle = 0.5f*sinc_half_angle;
 
-    q[0] = x2;
-    q[1] = v1*x4;
-    q[2] = v2*x4;
-    q[3] = v3*x4;
+    q[0] = cos_half_angle;
+    q[1] = v1*half_sinc_half_angle;
+    q[2] = v2*half_sinc_half_angle;
+    q[3] = v3*half_sinc_half_angle;
 }
 
 void symrot_rotation_vector_quaternionf_batch(
@@ -130,16 +130,16 @@ void symrot_rotation_vector_quaternionf_batch(
             const float v2 = v[n + k];
             const float v3 = v[2*n + k];
             const float angle = sqrtf(v1*v1 + v2*v2 + v3*v3);
-            const float x1 = 0.5f*angle;
-            const float x2 = symrot_cosf(x1);
-            const float x3 = symrot_near_sincf(x1);
-            const float x4 = 0.5f*x3;
+            const float half_angle = 0.5f*angle;
+            const float cos_half_angle = symrot_cosf(half_angle);
+            const float sinc_half_angle = symrot_near_sincf(half_angle);
+            const float half_sinc_half_angle = 0.5f*sinc_half_angle;
 
-            q[k] = x2;
-            q[n + k] = v1*x4;
-            q[2*n + k] = v2*x4;
-            q[3*n + k] = v3*x4;
-            beyond += symrot_farf(x1);
+            q[k] = cos_half_angle;
+            q[n + k] = v1*half_sinc_half_angle;
+            q[2*n + k] = v2*half_sinc_half_angle;
+            q[3*n + k] = v3*half_sinc_half_angle;
+            beyond += symrot_farf(half_angle);
         }
         const size_t again = beyond == 0 ? start : end;
         for (size_t k = start; k < again; ++k) {
@@ -147,15 +147,15 @@ void symrot_rotation_vector_quaternionf_batch(
             const float v2 = v[n + k];
             const float v3 = v[2*n + k];
             const float angle = sqrtf(v1*v1 + v2*v2 + v3*v3);
-            const float x1 = 0.5f*angle;
-            const float x2 = cosf(x1);
-            const float x3 = symrot_sincf(x1);
-            const float x4 = 0.5f*x3;
+            const float half_angle = 0.5f*angle;
+            const float cos_half_angle = cosf(half_angle);
+            const float sinc_half_angle = symrot_sincf(half_angle);
+            const float half_sinc_half_angle = 0.5f*sinc_half_angle;
 
-            q[k] = x2;
-            q[n + k] = v1*x4;
-            q[2*n + k] = v2*x4;
-            q[3*n + k] = v3*x4;
+            q[k] = cos_half_angle;
+            q[n + k] = v1*half_sinc_half_angle;
+            q[2*n + k] = v2*half_sinc_half_angle;
+            q[3*n + k] = v3*half_sinc_half_angle;
         }
     }
 }

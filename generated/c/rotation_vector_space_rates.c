@@ -89,14 +89,14 @@ void symrot_rotation_vector_space_rates(const double v[3], const double omega[3]
     const double cross_2 = v3*omega_x - v1*omega_z;
     const double cross_3 = v1*omega_y - v2*omega_x;
     const double angle = sqrt(v1*v1 + v2*v2 + v3*v3);
-    const double x4 = 0.5*angle;
-    const double x5 = symrot_tangent_gap(x4);
-    const double x6 = symrot_sinc(x4);
-    const double x7 = 0.25*(x5/x6);
+    const double half_angle = 0.5*angle;
+    const double tangent_gap_half_angle = symrot_tangent_gap(half_angle);
+    const double sinc_half_angle = symrot_sinc(half_angle);
+    const double dv1_term_1 = 0.25*(tangent_gap_half_angle/sinc_half_angle);
 
-    dv[0] = omega_x + (v2*cross_3 - v3*cross_2)*x7 - 0.5*cross_1;
-    dv[1] = omega_y + (v3*cross_1 - v1*cross_3)*x7 - 0.5*cross_2;
-    dv[2] = omega_z + (v1*cross_2 - v2*cross_1)*x7 - 0.5*cross_3;
+    dv[0] = omega_x + (v2*cross_3 - v3*cross_2)*dv1_term_1 - 0.5*cross_1;
+    dv[1] = omega_y + (v3*cross_1 - v1*cross_3)*dv1_term_1 - 0.5*cross_2;
+    dv[2] = omega_z + (v1*cross_2 - v2*cross_1)*dv1_term_1 - 0.5*cross_3;
 }
 
 void symrot_rotation_vector_space_rates_batch(
@@ -117,15 +117,15 @@ void symrot_rotation_vector_space_rates_batch(
             const double cross_2 = v3*omega_x - v1*omega_z;
             const double cross_3 = v1*omega_y - v2*omega_x;
             const double angle = sqrt(v1*v1 + v2*v2 + v3*v3);
-            const double x4 = 0.5*angle;
-            const double x5 = symrot_near_tangent_gap(x4);
-            const double x6 = symrot_near_sinc(x4);
-            const double x7 = 0.25*(x5/x6);
+            const double half_angle = 0.5*angle;
+            const double tangent_gap_half_angle = symrot_near_tangent_gap(half_angle);
+            const double sinc_half_angle = symrot_near_sinc(half_angle);
+            const double dv1_term_1 = 0.25*(tangent_gap_half_angle/sinc_half_angle);
 
-            dv[k] = omega_x + (v2*cross_3 - v3*cross_2)*x7 - 0.5*cross_1;
-            dv[n + k] = omega_y + (v3*cross_1 - v1*cross_3)*x7 - 0.5*cross_2;
-            dv[2*n + k] = omega_z + (v1*cross_2 - v2*cross_1)*x7 - 0.5*cross_3;
-            beyond += symrot_far(x4);
+            dv[k] = omega_x + (v2*cross_3 - v3*cross_2)*dv1_term_1 - 0.5*cross_1;
+            dv[n + k] = omega_y + (v3*cross_1 - v1*cross_3)*dv1_term_1 - 0.5*cross_2;
+            dv[2*n + k] = omega_z + (v1*cross_2 - v2*cross_1)*dv1_term_1 - 0.5*cross_3;
+            beyond += symrot_far(half_angle);
         }
         const size_t again = beyond == 0 ? start : end;
         for (size_t k = start; k < again; ++k) {
@@ -139,14 +139,14 @@ void symrot_rotation_vector_space_rates_batch(
             const double cross_2 = v3*omega_x - v1*omega_z;
             const double cross_3 = v1*omega_y - v2*omega_x;
             const double angle = sqrt(v1*v1 + v2*v2 + v3*v3);
-            const double x4 = 0.5*angle;
-            const double x5 = symrot_tangent_gap(x4);
-            const double x6 = symrot_sinc(x4);
-            const double x7 = 0.25*(x5/x6);
+            const double half_angle = 0.5*angle;
+            const double tangent_gap_half_angle = symrot_tangent_gap(half_angle);
+            const double sinc_half_angle = symrot_sinc(half_angle);
+            const double dv1_term_1 = 0.25*(tangent_gap_half_angle/sinc_half_angle);
 
-            dv[k] = omega_x + (v2*cross_3 - v3*cross_2)*x7 - 0.5*cross_1;
-            dv[n + k] = omega_y + (v3*cross_1 - v1*cross_3)*x7 - 0.5*cross_2;
-            dv[2*n + k] = omega_z + (v1*cross_2 - v2*cross_1)*x7 - 0.5*cross_3;
+            dv[k] = omega_x + (v2*cross_3 - v3*cross_2)*dv1_term_1 - 0.5*cross_1;
+            dv[n + k] = omega_y + (v3*cross_1 - v1*cross_3)*dv1_term_1 - 0.5*cross_2;
+            dv[2*n + k] = omega_z + (v1*cross_2 - v2*cross_1)*dv1_term_1 - 0.5*cross_3;
         }
     }
 }
@@ -163,14 +163,14 @@ void symrot_rotation_vector_space_ratesf(const float v[3], const float omega[3],
     const float cross_2 = v3*omega_x - v1*omega_z;
     const float cross_3 = v1*omega_y - v2*omega_x;
     const float angle = sqrtf(v1*v1 + v2*v2 + v3*v3);
-    const float x4 = 0.5f*angle;
-    const float x5 = symrot_tangent_gapf(x4);
-    const float x6 = symrot_sincf(x4);
-    const float x7 = 0.25f*(x5/x6);
+    const float half_angle = 0.5f*angle;
+    const float tangent_gap_half_angle = symrot_tangent_gapf(half_angle);
+    const float sinc_half_angle = symrot_sincf(half_angle);
+    const float dv1_term_1 = 0.25f*(tangent_gap_half_angle/sinc_half_angle);
 
-    dv[0] = omega_x + (v2*cross_3 - v3*cross_2)*x7 - 0.5f*cross_1;
-    dv[1] = omega_y + (v3*cross_1 - v1*cross_3)*x7 - 0.5f*cross_2;
-    dv[2] = omega_z + (v1*cross_2 - v2*cross_1)*x7 - 0.5f*cross_3;
+    dv[0] = omega_x + (v2*cross_3 - v3*cross_2)*dv1_term_1 - 0.5f*cross_1;
+    dv[1] = omega_y + (v3*cross_1 - v1*cross_3)*dv1_term_1 - 0.5f*cross_2;
+    dv[2] = omega_z + (v1*cross_2 - v2*cross_1)*dv1_term_1 - 0.5f*cross_3;
 }
 
 void symrot_rotation_vector_space_ratesf_batch(
@@ -191,15 +191,15 @@ void symrot_rotation_vector_space_ratesf_batch(
             const float cross_2 = v3*omega_x - v1*omega_z;
             const float cross_3 = v1*omega_y - v2*omega_x;
             const float angle = sqrtf(v1*v1 + v2*v2 + v3*v3);
-            const float x4 = 0.5f*angle;
-            const float x5 = symrot_near_tangent_gapf(x4);
-            const float x6 = symrot_near_sincf(x4);
-            const float x7 = 0.25f*(x5/x6);
+            const float half_angle = 0.5f*angle;
+            const float tangent_gap_half_angle = symrot_near_tangent_gapf(half_angle);
+            const float sinc_half_angle = symrot_near_sincf(half_angle);
+            const float dv1_term_1 = 0.25f*(tangent_gap_half_angle/sinc_half_angle);
 
-            dv[k] = omega_x + (v2*cross_3 - v3*cross_2)*x7 - 0.5f*cross_1;
-            dv[n + k] = omega_y + (v3*cross_1 - v1*cross_3)*x7 - 0.5f*cross_2;
-            dv[2*n + k] = omega_z + (v1*cross_2 - v2*cross_1)*x7 - 0.5f*cross_3;
-            beyond += symrot_farf(x4);
+            dv[k] = omega_x + (v2*cross_3 - v3*cross_2)*dv1_term_1 - 0.5f*cross_1;
+            dv[n + k] = omega_y + (v3*cross_1 - v1*cross_3)*dv1_term_1 - 0.5f*cross_2;
+            dv[2*n + k] = omega_z + (v1*cross_2 - v2*cross_1)*dv1_term_1 - 0.5f*cross_3;
+            beyond += symrot_farf(half_angle);
         }
         const size_t again = beyond == 0 ? start : end;
         for (size_t k = start; k < again; ++k) {
@@ -213,14 +213,14 @@ void symrot_rotation_vector_space_ratesf_batch(
             const float cross_2 = v3*omega_x - v1*omega_z;
             const float cross_3 = v1*omega_y - v2*omega_x;
             const float angle = sqrtf(v1*v1 + v2*v2 + v3*v3);
-            const float x4 = 0.5f*angle;
-            const float x5 = symrot_tangent_gapf(x4);
-            const float x6 = symrot_sincf(x4);
-            const float x7 = 0.25f*(x5/x6);
+            const float half_angle = 0.5f*angle;
+            const float tangent_gap_half_angle = symrot_tangent_gapf(half_angle);
+            const float sinc_half_angle = symrot_sincf(half_angle);
+            const float dv1_term_1 = 0.25f*(tangent_gap_half_angle/sinc_half_angle);
 
-            dv[k] = omega_x + (v2*cross_3 - v3*cross_2)*x7 - 0.5f*cross_1;
-            dv[n + k] = omega_y + (v3*cross_1 - v1*cross_3)*x7 - 0.5f*cross_2;
-            dv[2*n + k] = omega_z + (v1*cross_2 - v2*cross_1)*x7 - 0.5f*cross_3;
+            dv[k] = omega_x + (v2*cross_3 - v3*cross_2)*dv1_term_1 - 0.5f*cross_1;
+            dv[n + k] = omega_y + (v3*cross_1 - v1*cross_3)*dv1_term_1 - 0.5f*cross_2;
+            dv[2*n + k] = omega_z + (v1*cross_2 - v2*cross_1)*dv1_term_1 - 0.5f*cross_3;
         }
     }
 }

@@ -31,13 +31,16 @@ void symrot_torque_constant_space(const double q[4], const double torque[3], dou
     const double torque_1 = torque[0];
     const double torque_2 = torque[1];
     const double torque_3 = torque[2];
-    const double x0 = torque_2*q1 - torque_1*q2;
-    const double x1 = torque_3*q1 - torque_1*q3;
-    const double x2 = q2*torque_3 - q3*torque_2;
+    const double torque_2_q1_minus_torque_1_q2 = torque_2*q1 - torque_1*q2;
+    const double torque_3_q1_minus_torque_1_q3 = torque_3*q1 - torque_1*q3;
+    const double q2_torque_3_minus_q3_torque_2 = q2*torque_3 - q3*torque_2;
 
-    torque_b[0] = torque_1 + 2.0*(q2*x0 + q3*x1 - q0*x2);
-    torque_b[1] = torque_2 + 2.0*(q0*x1 + q3*x2 - q1*x0);
-    torque_b[2] = torque_3 - 2.0*(q0*x0 + q1*x1 + q2*x2);
+    torque_b[0] = torque_1 + 2.0*(q2*torque_2_q1_minus_torque_1_q2 + q3*torque_3_q1_minus_torque_1_q3 -
+        q0*q2_torque_3_minus_q3_torque_2);
+    torque_b[1] = torque_2 + 2.0*(q0*torque_3_q1_minus_torque_1_q3 + q3*q2_torque_3_minus_q3_torque_2 -
+        q1*torque_2_q1_minus_torque_1_q2);
+    torque_b[2] = torque_3 - 2.0*(q0*torque_2_q1_minus_torque_1_q2 + q1*torque_3_q1_minus_torque_1_q3 +
+        q2*q2_torque_3_minus_q3_torque_2);
 }
 
 void symrot_torque_constant_space_batch(
@@ -53,13 +56,16 @@ void symrot_torque_constant_space_batch(
         const double torque_1 = torque[k];
         const double torque_2 = torque[n + k];
         const double torque_3 = torque[2*n + k];
-        const double x0 = torque_2*q1 - torque_1*q2;
-        const double x1 = torque_3*q1 - torque_1*q3;
-        const double x2 = q2*torque_3 - q3*torque_2;
+        const double torque_2_q1_minus_torque_1_q2 = torque_2*q1 - torque_1*q2;
+        const double torque_3_q1_minus_torque_1_q3 = torque_3*q1 - torque_1*q3;
+        const double q2_torque_3_minus_q3_torque_2 = q2*torque_3 - q3*torque_2;
 
-        torque_b[k] = torque_1 + 2.0*(q2*x0 + q3*x1 - q0*x2);
-        torque_b[n + k] = torque_2 + 2.0*(q0*x1 + q3*x2 - q1*x0);
-        torque_b[2*n + k] = torque_3 - 2.0*(q0*x0 + q1*x1 + q2*x2);
+        torque_b[k] = torque_1 + 2.0*(q2*torque_2_q1_minus_torque_1_q2 + q3*torque_3_q1_minus_torque_1_q3 -
+            q0*q2_torque_3_minus_q3_torque_2);
+        torque_b[n + k] = torque_2 + 2.0*(q0*torque_3_q1_minus_torque_1_q3 + q3*q2_torque_3_minus_q3_torque_2 -
+            q1*torque_2_q1_minus_torque_1_q2);
+        torque_b[2*n + k] = torque_3 - 2.0*(q0*torque_2_q1_minus_torque_1_q2 + q1*torque_3_q1_minus_torque_1_q3 +
+            q2*q2_torque_3_minus_q3_torque_2);
     }
 }
 
@@ -72,13 +78,16 @@ void symrot_torque_constant_spacef(const float q[4], const float torque[3], floa
     const float torque_1 = torque[0];
     const float torque_2 = torque[1];
     const float torque_3 = torque[2];
-    const float x0 = torque_2*q1 - torque_1*q2;
-    const float x1 = torque_3*q1 - torque_1*q3;
-    const float x2 = q2*torque_3 - q3*torque_2;
+    const float torque_2_q1_minus_torque_1_q2 = torque_2*q1 - torque_1*q2;
+    const float torque_3_q1_minus_torque_1_q3 = torque_3*q1 - torque_1*q3;
+    const float q2_torque_3_minus_q3_torque_2 = q2*torque_3 - q3*torque_2;
 
-    torque_b[0] = torque_1 + 2.0f*(q2*x0 + q3*x1 - q0*x2);
-    torque_b[1] = torque_2 + 2.0f*(q0*x1 + q3*x2 - q1*x0);
-    torque_b[2] = torque_3 - 2.0f*(q0*x0 + q1*x1 + q2*x2);
+    torque_b[0] = torque_1 + 2.0f*(q2*torque_2_q1_minus_torque_1_q2 + q3*torque_3_q1_minus_torque_1_q3 -
+        q0*q2_torque_3_minus_q3_torque_2);
+    torque_b[1] = torque_2 + 2.0f*(q0*torque_3_q1_minus_torque_1_q3 + q3*q2_torque_3_minus_q3_torque_2 -
+        q1*torque_2_q1_minus_torque_1_q2);
+    torque_b[2] = torque_3 - 2.0f*(q0*torque_2_q1_minus_torque_1_q2 + q1*torque_3_q1_minus_torque_1_q3 +
+        q2*q2_torque_3_minus_q3_torque_2);
 }
 
 void symrot_torque_constant_spacef_batch(
@@ -94,12 +103,15 @@ void symrot_torque_constant_spacef_batch(
         const float torque_1 = torque[k];
         const float torque_2 = torque[n + k];
         const float torque_3 = torque[2*n + k];
-        const float x0 = torque_2*q1 - torque_1*q2;
-        const float x1 = torque_3*q1 - torque_1*q3;
-        const float x2 = q2*torque_3 - q3*torque_2;
+        const float torque_2_q1_minus_torque_1_q2 = torque_2*q1 - torque_1*q2;
+        const float torque_3_q1_minus_torque_1_q3 = torque_3*q1 - torque_1*q3;
+        const float q2_torque_3_minus_q3_torque_2 = q2*torque_3 - q3*torque_2;
 
-        torque_b[k] = torque_1 + 2.0f*(q2*x0 + q3*x1 - q0*x2);
-        torque_b[n + k] = torque_2 + 2.0f*(q0*x1 + q3*x2 - q1*x0);
-        torque_b[2*n + k] = torque_3 - 2.0f*(q0*x0 + q1*x1 + q2*x2);
+        torque_b[k] = torque_1 + 2.0f*(q2*torque_2_q1_minus_torque_1_q2 + q3*torque_3_q1_minus_torque_1_q3 -
+            q0*q2_torque_3_minus_q3_torque_2);
+        torque_b[n + k] = torque_2 + 2.0f*(q0*torque_3_q1_minus_torque_1_q3 + q3*q2_torque_3_minus_q3_torque_2 -
+            q1*torque_2_q1_minus_torque_1_q2);
+        torque_b[2*n + k] = torque_3 - 2.0f*(q0*torque_2_q1_minus_torque_1_q2 + q1*torque_3_q1_minus_torque_1_q3 +
+            q2*q2_torque_3_minus_q3_torque_2);
     }
 }

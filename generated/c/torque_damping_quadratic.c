@@ -28,12 +28,12 @@ void symrot_torque_damping_quadratic(const double omega[3], double quadratic, do
     const double omega_1 = omega[0];
     const double omega_2 = omega[1];
     const double omega_3 = omega[2];
-    const double x0 = sqrt(omega_1*omega_1 + omega_2*omega_2 + omega_3*omega_3);
-    const double x1 = quadratic*x0;
+    const double tau_1_root_1 = sqrt(omega_1*omega_1 + omega_2*omega_2 + omega_3*omega_3);
+    const double quadratic_tau_1_root_1 = quadratic*tau_1_root_1;
 
-    torque_b[0] = -(omega_1*x1);
-    torque_b[1] = -(omega_2*x1);
-    torque_b[2] = -(omega_3*x1);
+    torque_b[0] = -(omega_1*quadratic_tau_1_root_1);
+    torque_b[1] = -(omega_2*quadratic_tau_1_root_1);
+    torque_b[2] = -(omega_3*quadratic_tau_1_root_1);
 }
 
 void symrot_torque_damping_quadratic_batch(
@@ -46,12 +46,12 @@ void symrot_torque_damping_quadratic_batch(
         const double omega_1 = omega[k];
         const double omega_2 = omega[n + k];
         const double omega_3 = omega[2*n + k];
-        const double x0 = sqrt(omega_1*omega_1 + omega_2*omega_2 + omega_3*omega_3);
-        const double x1 = quadratic_k*x0;
+        const double tau_1_root_1 = sqrt(omega_1*omega_1 + omega_2*omega_2 + omega_3*omega_3);
+        const double quadratic_tau_1_root_1 = quadratic_k*tau_1_root_1;
 
-        torque_b[k] = -(omega_1*x1);
-        torque_b[n + k] = -(omega_2*x1);
-        torque_b[2*n + k] = -(omega_3*x1);
+        torque_b[k] = -(omega_1*quadratic_tau_1_root_1);
+        torque_b[n + k] = -(omega_2*quadratic_tau_1_root_1);
+        torque_b[2*n + k] = -(omega_3*quadratic_tau_1_root_1);
     }
 }
 
@@ -60,12 +60,12 @@ void symrot_torque_damping_quadraticf(const float omega[3], float quadratic, flo
     const float omega_1 = omega[0];
     const float omega_2 = omega[1];
     const float omega_3 = omega[2];
-    const float x0 = sqrtf(omega_1*omega_1 + omega_2*omega_2 + omega_3*omega_3);
-    const float x1 = quadratic*x0;
+    const float tau_1_root_1 = sqrtf(omega_1*omega_1 + omega_2*omega_2 + omega_3*omega_3);
+    const float quadratic_tau_1_root_1 = quadratic*tau_1_root_1;
 
-    torque_b[0] = -(omega_1*x1);
-    torque_b[1] = -(omega_2*x1);
-    torque_b[2] = -(omega_3*x1);
+    torque_b[0] = -(omega_1*quadratic_tau_1_root_1);
+    torque_b[1] = -(omega_2*quadratic_tau_1_root_1);
+    torque_b[2] = -(omega_3*quadratic_tau_1_root_1);
 }
 
 void symrot_torque_damping_quadraticf_batch(
@@ -78,11 +78,11 @@ void symrot_torque_damping_quadraticf_batch(
         const float omega_1 = omega[k];
         const float omega_2 = omega[n + k];
         const float omega_3 = omega[2*n + k];
-        const float x0 = sqrtf(omega_1*omega_1 + omega_2*omega_2 + omega_3*omega_3);
-        const float x1 = quadratic_k*x0;
+        const float tau_1_root_1 = sqrtf(omega_1*omega_1 + omega_2*omega_2 + omega_3*omega_3);
+        const float quadratic_tau_1_root_1 = quadratic_k*tau_1_root_1;
 
-        torque_b[k] = -(omega_1*x1);
-        torque_b[n + k] = -(omega_2*x1);
-        torque_b[2*n + k] = -(omega_3*x1);
+        torque_b[k] = -(omega_1*quadratic_tau_1_root_1);
+        torque_b[n + k] = -(omega_2*quadratic_tau_1_root_1);
+        torque_b[2*n + k] = -(omega_3*quadratic_tau_1_root_1);
     }
 }

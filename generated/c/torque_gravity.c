@@ -43,16 +43,16 @@ void symrot_torque_gravity(
     const double direction_1 = direction[0];
     const double direction_2 = direction[1];
     const double direction_3 = direction[2];
-    const double x0 = direction_1*q2 - direction_2*q1;
-    const double x1 = direction_1*q3 - direction_3*q1;
-    const double x2 = direction_2*q3 - direction_3*q2;
-    const double x3 = direction_3 + 2.0*(q0*x0 + q1*x1 + q2*x2);
-    const double x4 = direction_2 + 2.0*(q1*x0 - q0*x1 - q3*x2);
-    const double x5 = direction_1 + 2.0*(q0*x2 - q2*x0 - q3*x1);
+    const double tau_1_term_1 = direction_1*q2 - direction_2*q1;
+    const double tau_1_term_2 = direction_1*q3 - direction_3*q1;
+    const double tau_1_term_3 = direction_2*q3 - direction_3*q2;
+    const double tau_1_term_4 = direction_3 + 2.0*(q0*tau_1_term_1 + q1*tau_1_term_2 + q2*tau_1_term_3);
+    const double tau_1_term_5 = direction_2 + 2.0*(q1*tau_1_term_1 - q0*tau_1_term_2 - q3*tau_1_term_3);
+    const double tau_2_term_1 = direction_1 + 2.0*(q0*tau_1_term_3 - q2*tau_1_term_1 - q3*tau_1_term_2);
 
-    torque_b[0] = (center_of_mass_2*x3 - center_of_mass_3*x4)*weight;
-    torque_b[1] = (center_of_mass_3*x5 - x3*center_of_mass_1)*weight;
-    torque_b[2] = (x4*center_of_mass_1 - center_of_mass_2*x5)*weight;
+    torque_b[0] = (center_of_mass_2*tau_1_term_4 - center_of_mass_3*tau_1_term_5)*weight;
+    torque_b[1] = (center_of_mass_3*tau_2_term_1 - tau_1_term_4*center_of_mass_1)*weight;
+    torque_b[2] = (tau_1_term_5*center_of_mass_1 - center_of_mass_2*tau_2_term_1)*weight;
 }
 
 void symrot_torque_gravity_batch(
@@ -73,16 +73,16 @@ void symrot_torque_gravity_batch(
         const double direction_1 = direction[k];
         const double direction_2 = direction[n + k];
         const double direction_3 = direction[2*n + k];
-        const double x0 = direction_1*q2 - direction_2*q1;
-        const double x1 = direction_1*q3 - direction_3*q1;
-        const double x2 = direction_2*q3 - direction_3*q2;
-        const double x3 = direction_3 + 2.0*(q0*x0 + q1*x1 + q2*x2);
-        const double x4 = direction_2 + 2.0*(q1*x0 - q0*x1 - q3*x2);
-        const double x5 = direction_1 + 2.0*(q0*x2 - q2*x0 - q3*x1);
+        const double tau_1_term_1 = direction_1*q2 - direction_2*q1;
+        const double tau_1_term_2 = direction_1*q3 - direction_3*q1;
+        const double tau_1_term_3 = direction_2*q3 - direction_3*q2;
+        const double tau_1_term_4 = direction_3 + 2.0*(q0*tau_1_term_1 + q1*tau_1_term_2 + q2*tau_1_term_3);
+        const double tau_1_term_5 = direction_2 + 2.0*(q1*tau_1_term_1 - q0*tau_1_term_2 - q3*tau_1_term_3);
+        const double tau_2_term_1 = direction_1 + 2.0*(q0*tau_1_term_3 - q2*tau_1_term_1 - q3*tau_1_term_2);
 
-        const double tau_1 = (center_of_mass_2*x3 - center_of_mass_3*x4)*weight_k;
-        const double tau_2 = (center_of_mass_3*x5 - x3*center_of_mass_1)*weight_k;
-        const double tau_3 = (x4*center_of_mass_1 - center_of_mass_2*x5)*weight_k;
+        const double tau_1 = (center_of_mass_2*tau_1_term_4 - center_of_mass_3*tau_1_term_5)*weight_k;
+        const double tau_2 = (center_of_mass_3*tau_2_term_1 - tau_1_term_4*center_of_mass_1)*weight_k;
+        const double tau_3 = (tau_1_term_5*center_of_mass_1 - center_of_mass_2*tau_2_term_1)*weight_k;
 
         torque_b[k] = tau_1;
         torque_b[n + k] = tau_2;
@@ -103,16 +103,16 @@ void symrot_torque_gravityf(
     const float direction_1 = direction[0];
     const float direction_2 = direction[1];
     const float direction_3 = direction[2];
-    const float x0 = direction_1*q2 - direction_2*q1;
-    const float x1 = direction_1*q3 - direction_3*q1;
-    const float x2 = direction_2*q3 - direction_3*q2;
-    const float x3 = direction_3 + 2.0f*(q0*x0 + q1*x1 + q2*x2);
-    const float x4 = direction_2 + 2.0f*(q1*x0 - q0*x1 - q3*x2);
-    const float x5 = direction_1 + 2.0f*(q0*x2 - q2*x0 - q3*x1);
+    const float tau_1_term_1 = direction_1*q2 - direction_2*q1;
+    const float tau_1_term_2 = direction_1*q3 - direction_3*q1;
+    const float tau_1_term_3 = direction_2*q3 - direction_3*q2;
+    const float tau_1_term_4 = direction_3 + 2.0f*(q0*tau_1_term_1 + q1*tau_1_term_2 + q2*tau_1_term_3);
+    const float tau_1_term_5 = direction_2 + 2.0f*(q1*tau_1_term_1 - q0*tau_1_term_2 - q3*tau_1_term_3);
+    const float tau_2_term_1 = direction_1 + 2.0f*(q0*tau_1_term_3 - q2*tau_1_term_1 - q3*tau_1_term_2);
 
-    torque_b[0] = (center_of_mass_2*x3 - center_of_mass_3*x4)*weight;
-    torque_b[1] = (center_of_mass_3*x5 - x3*center_of_mass_1)*weight;
-    torque_b[2] = (x4*center_of_mass_1 - center_of_mass_2*x5)*weight;
+    torque_b[0] = (center_of_mass_2*tau_1_term_4 - center_of_mass_3*tau_1_term_5)*weight;
+    torque_b[1] = (center_of_mass_3*tau_2_term_1 - tau_1_term_4*center_of_mass_1)*weight;
+    torque_b[2] = (tau_1_term_5*center_of_mass_1 - center_of_mass_2*tau_2_term_1)*weight;
 }
 
 void symrot_torque_gravityf_batch(
@@ -133,16 +133,16 @@ void symrot_torque_gravityf_batch(
         const float direction_1 = direction[k];
         const float direction_2 = direction[n + k];
         const float direction_3 = direction[2*n + k];
-        const float x0 = direction_1*q2 - direction_2*q1;
-        const float x1 = direction_1*q3 - direction_3*q1;
-        const float x2 = direction_2*q3 - direction_3*q2;
-        const float x3 = direction_3 + 2.0f*(q0*x0 + q1*x1 + q2*x2);
-        const float x4 = direction_2 + 2.0f*(q1*x0 - q0*x1 - q3*x2);
-        const float x5 = direction_1 + 2.0f*(q0*x2 - q2*x0 - q3*x1);
+        const float tau_1_term_1 = direction_1*q2 - direction_2*q1;
+        const float tau_1_term_2 = direction_1*q3 - direction_3*q1;
+        const float tau_1_term_3 = direction_2*q3 - direction_3*q2;
+        const float tau_1_term_4 = direction_3 + 2.0f*(q0*tau_1_term_1 + q1*tau_1_term_2 + q2*tau_1_term_3);
+        const float tau_1_term_5 = direction_2 + 2.0f*(q1*tau_1_term_1 - q0*tau_1_term_2 - q3*tau_1_term_3);
+        const float tau_2_term_1 = direction_1 + 2.0f*(q0*tau_1_term_3 - q2*tau_1_term_1 - q3*tau_1_term_2);
 
-        const float tau_1 = (center_of_mass_2*x3 - center_of_mass_3*x4)*weight_k;
-        const float tau_2 = (center_of_mass_3*x5 - x3*center_of_mass_1)*weight_k;
-        const float tau_3 = (x4*center_of_mass_1 - center_of_mass_2*x5)*weight_k;
+        const float tau_1 = (center_of_mass_2*tau_1_term_4 - center_of_mass_3*tau_1_term_5)*weight_k;
+        const float tau_2 = (center_of_mass_3*tau_2_term_1 - tau_1_term_4*center_of_mass_1)*weight_k;
+        const float tau_3 = (tau_1_term_5*center_of_mass_1 - center_of_mass_2*tau_2_term_1)*weight_k;
 
         torque_b[k] = tau_1;
         torque_b[n + k] = tau_2;

@@ -42,26 +42,31 @@ void symrot_torque_gravity_gradient(
     const double q1 = q[1];
     const double q2 = q[2];
     const double q3 = q[3];
-    const double x0 = mean_motion*t;
-    const double x1 = cos(x0);
-    const double x2 = x1*q3;
-    const double x3 = sin(x0);
-    const double x4 = x3*q3;
-    const double x5 = q1*x3 - q2*x1;
-    const double radius_3 = 2.0*(q1*x2 + q2*x4 - x5*q0);
-    const double x7 = radius_3*radius_3;
-    const double radius_1 = x1 + 2.0*(q2*x5 + q0*x4 - q3*x2);
-    const double x9 = radius_1*radius_3;
-    const double radius_2 = x3 - 2.0*(q1*x5 + q3*x4 + q0*x2);
-    const double x11 = radius_2*radius_3;
-    const double x12 = radius_2*radius_2;
-    const double x13 = radius_1*radius_2;
-    const double x14 = 3.0*(mean_motion*mean_motion);
-    const double x15 = radius_1*radius_1;
+    const double mean_motion_t = mean_motion*t;
+    const double cos_mean_motion_t = cos(mean_motion_t);
+    const double cos_mean_motion_t_q3 = cos_mean_motion_t*q3;
+    const double sin_mean_motion_t = sin(mean_motion_t);
+    const double sin_mean_motion_t_q3 = sin_mean_motion_t*q3;
+    const double tau_1_term_1 = q1*sin_mean_motion_t - q2*cos_mean_motion_t;
+    const double radius_3 = 2.0*(q1*cos_mean_motion_t_q3 + q2*sin_mean_motion_t_q3 - tau_1_term_1*q0);
+    const double radius_3_sq = radius_3*radius_3;
+    const double radius_1 = cos_mean_motion_t + 2.0*(q2*tau_1_term_1 + q0*sin_mean_motion_t_q3 -
+        q3*cos_mean_motion_t_q3);
+    const double radius_1_radius_3 = radius_1*radius_3;
+    const double radius_2 = sin_mean_motion_t - 2.0*(q1*tau_1_term_1 + q3*sin_mean_motion_t_q3 +
+        q0*cos_mean_motion_t_q3);
+    const double radius_2_radius_3 = radius_2*radius_3;
+    const double radius_2_sq = radius_2*radius_2;
+    const double radius_1_radius_2 = radius_1*radius_2;
+    const double three_mean_motion_sq = 3.0*(mean_motion*mean_motion);
+    const double radius_1_sq = radius_1*radius_1;
 
-    torque_b[0] = (I_yz*x12 + (I_zz - I_yy)*x11 + I_xz*x13 - I_yz*x7 - I_xy*x9)*x14;
-    torque_b[1] = (I_xz*x7 + I_xy*x11 + (I_xx - I_zz)*x9 - I_xz*x15 - I_yz*x13)*x14;
-    torque_b[2] = (I_xy*x15 + (I_yy - I_xx)*x13 + I_yz*x9 - I_xy*x12 - I_xz*x11)*x14;
+    torque_b[0] = (I_yz*radius_2_sq + (I_zz - I_yy)*radius_2_radius_3 + I_xz*radius_1_radius_2 - I_yz*radius_3_sq -
+        I_xy*radius_1_radius_3)*three_mean_motion_sq;
+    torque_b[1] = (I_xz*radius_3_sq + I_xy*radius_2_radius_3 + (I_xx - I_zz)*radius_1_radius_3 - I_xz*radius_1_sq -
+        I_yz*radius_1_radius_2)*three_mean_motion_sq;
+    torque_b[2] = (I_xy*radius_1_sq + (I_yy - I_xx)*radius_1_radius_2 + I_yz*radius_1_radius_3 - I_xy*radius_2_sq -
+        I_xz*radius_2_radius_3)*three_mean_motion_sq;
 }
 
 void symrot_torque_gravity_gradient_batch(
@@ -86,31 +91,36 @@ void symrot_torque_gravity_gradient_batch(
             const double q1 = q[n + k];
             const double q2 = q[2*n + k];
             const double q3 = q[3*n + k];
-            const double x0 = mean_motion_k*t_k;
-            const double x1 = symrot_cos(x0);
-            const double x2 = x1*q3;
-            const double x3 = symrot_sin(x0);
-            const double x4 = x3*q3;
-            const double x5 = q1*x3 - q2*x1;
-            const double radius_3 = 2.0*(q1*x2 + q2*x4 - x5*q0);
-            const double x7 = radius_3*radius_3;
-            const double radius_1 = x1 + 2.0*(q2*x5 + q0*x4 - q3*x2);
-            const double x9 = radius_1*radius_3;
-            const double radius_2 = x3 - 2.0*(q1*x5 + q3*x4 + q0*x2);
-            const double x11 = radius_2*radius_3;
-            const double x12 = radius_2*radius_2;
-            const double x13 = radius_1*radius_2;
-            const double x14 = 3.0*(mean_motion_k*mean_motion_k);
-            const double x15 = radius_1*radius_1;
+            const double mean_motion_t = mean_motion_k*t_k;
+            const double cos_mean_motion_t = symrot_cos(mean_motion_t);
+            const double cos_mean_motion_t_q3 = cos_mean_motion_t*q3;
+            const double sin_mean_motion_t = symrot_sin(mean_motion_t);
+            const double sin_mean_motion_t_q3 = sin_mean_motion_t*q3;
+            const double tau_1_term_1 = q1*sin_mean_motion_t - q2*cos_mean_motion_t;
+            const double radius_3 = 2.0*(q1*cos_mean_motion_t_q3 + q2*sin_mean_motion_t_q3 - tau_1_term_1*q0);
+            const double radius_3_sq = radius_3*radius_3;
+            const double radius_1 = cos_mean_motion_t + 2.0*(q2*tau_1_term_1 + q0*sin_mean_motion_t_q3 -
+                q3*cos_mean_motion_t_q3);
+            const double radius_1_radius_3 = radius_1*radius_3;
+            const double radius_2 = sin_mean_motion_t - 2.0*(q1*tau_1_term_1 + q3*sin_mean_motion_t_q3 +
+                q0*cos_mean_motion_t_q3);
+            const double radius_2_radius_3 = radius_2*radius_3;
+            const double radius_2_sq = radius_2*radius_2;
+            const double radius_1_radius_2 = radius_1*radius_2;
+            const double three_mean_motion_sq = 3.0*(mean_motion_k*mean_motion_k);
+            const double radius_1_sq = radius_1*radius_1;
 
-            const double tau_1 = (I_yz*x12 + (I_zz - I_yy)*x11 + I_xz*x13 - I_yz*x7 - I_xy*x9)*x14;
-            const double tau_2 = (I_xz*x7 + I_xy*x11 + (I_xx - I_zz)*x9 - I_xz*x15 - I_yz*x13)*x14;
-            const double tau_3 = (I_xy*x15 + (I_yy - I_xx)*x13 + I_yz*x9 - I_xy*x12 - I_xz*x11)*x14;
+            const double tau_1 = (I_yz*radius_2_sq + (I_zz - I_yy)*radius_2_radius_3 + I_xz*radius_1_radius_2 -
+                I_yz*radius_3_sq - I_xy*radius_1_radius_3)*three_mean_motion_sq;
+            const double tau_2 = (I_xz*radius_3_sq + I_xy*radius_2_radius_3 + (I_xx - I_zz)*radius_1_radius_3 -
+                I_xz*radius_1_sq - I_yz*radius_1_radius_2)*three_mean_motion_sq;
+            const double tau_3 = (I_xy*radius_1_sq + (I_yy - I_xx)*radius_1_radius_2 + I_yz*radius_1_radius_3 -
+                I_xy*radius_2_sq - I_xz*radius_2_radius_3)*three_mean_motion_sq;
 
             torque_b[k] = tau_1;
             torque_b[n + k] = tau_2;
             torque_b[2*n + k] = tau_3;
-            beyond += symrot_far(x0);
+            beyond += symrot_far(mean_motion_t);
         }
         const size_t again = beyond == 0 ? start : end;
         for (size_t k = start; k < again; ++k) {
@@ -126,26 +136,31 @@ void symrot_torque_gravity_gradient_batch(
             const double q1 = q[n + k];
             const double q2 = q[2*n + k];
             const double q3 = q[3*n + k];
-            const double x0 = mean_motion_k*t_k;
-            const double x1 = cos(x0);
-            const double x2 = x1*q3;
-            const double x3 = sin(x0);
-            const double x4 = x3*q3;
-            const double x5 = q1*x3 - q2*x1;
-            const double radius_3 = 2.0*(q1*x2 + q2*x4 - x5*q0);
-            const double x7 = radius_3*radius_3;
-            const double radius_1 = x1 + 2.0*(q2*x5 + q0*x4 - q3*x2);
-            const double x9 = radius_1*radius_3;
-            const double radius_2 = x3 - 2.0*(q1*x5 + q3*x4 + q0*x2);
-            const double x11 = radius_2*radius_3;
-            const double x12 = radius_2*radius_2;
-            const double x13 = radius_1*radius_2;
-            const double x14 = 3.0*(mean_motion_k*mean_motion_k);
-            const double x15 = radius_1*radius_1;
+            const double mean_motion_t = mean_motion_k*t_k;
+            const double cos_mean_motion_t = cos(mean_motion_t);
+            const double cos_mean_motion_t_q3 = cos_mean_motion_t*q3;
+            const double sin_mean_motion_t = sin(mean_motion_t);
+            const double sin_mean_motion_t_q3 = sin_mean_motion_t*q3;
+            const double tau_1_term_1 = q1*sin_mean_motion_t - q2*cos_mean_motion_t;
+            const double radius_3 = 2.0*(q1*cos_mean_motion_t_q3 + q2*sin_mean_motion_t_q3 - tau_1_term_1*q0);
+            const double radius_3_sq = radius_3*radius_3;
+            const double radius_1 = cos_mean_motion_t + 2.0*(q2*tau_1_term_1 + q0*sin_mean_motion_t_q3 -
+                q3*cos_mean_motion_t_q3);
+            const double radius_1_radius_3 = radius_1*radius_3;
+            const double radius_2 = sin_mean_motion_t - 2.0*(q1*tau_1_term_1 + q3*sin_mean_motion_t_q3 +
+                q0*cos_mean_motion_t_q3);
+            const double radius_2_radius_3 = radius_2*radius_3;
+            const double radius_2_sq = radius_2*radius_2;
+            const double radius_1_radius_2 = radius_1*radius_2;
+            const double three_mean_motion_sq = 3.0*(mean_motion_k*mean_motion_k);
+            const double radius_1_sq = radius_1*radius_1;
 
-            const double tau_1 = (I_yz*x12 + (I_zz - I_yy)*x11 + I_xz*x13 - I_yz*x7 - I_xy*x9)*x14;
-            const double tau_2 = (I_xz*x7 + I_xy*x11 + (I_xx - I_zz)*x9 - I_xz*x15 - I_yz*x13)*x14;
-            const double tau_3 = (I_xy*x15 + (I_yy - I_xx)*x13 + I_yz*x9 - I_xy*x12 - I_xz*x11)*x14;
+            const double tau_1 = (I_yz*radius_2_sq + (I_zz - I_yy)*radius_2_radius_3 + I_xz*radius_1_radius_2 -
+                I_yz*radius_3_sq - I_xy*radius_1_radius_3)*three_mean_motion_sq;
+            const double tau_2 = (I_xz*radius_3_sq + I_xy*radius_2_radius_3 + (I_xx - I_zz)*radius_1_radius_3 -
+                I_xz*radius_1_sq - I_yz*radius_1_radius_2)*three_mean_motion_sq;
+            const double tau_3 = (I_xy*radius_1_sq + (I_yy - I_xx)*radius_1_radius_2 + I_yz*radius_1_radius_3 -
+                I_xy*radius_2_sq - I_xz*radius_2_radius_3)*three_mean_motion_sq;
 
             torque_b[k] = tau_1;
             torque_b[n + k] = tau_2;
@@ -167,26 +182,31 @@ void symrot_torque_gravity_gradientf(
     const float q1 = q[1];
     const float q2 = q[2];
     const float q3 = q[3];
-    const float x0 = mean_motion*t;
-    const float x1 = cosf(x0);
-    const float x2 = x1*q3;
-    const float x3 = sinf(x0);
-    const float x4 = x3*q3;
-    const float x5 = q1*x3 - q2*x1;
-    const float radius_3 = 2.0f*(q1*x2 + q2*x4 - x5*q0);
-    const float x7 = radius_3*radius_3;
-    const float radius_1 = x1 + 2.0f*(q2*x5 + q0*x4 - q3*x2);
-    const float x9 = radius_1*radius_3;
-    const float radius_2 = x3 - 2.0f*(q1*x5 + q3*x4 + q0*x2);
-    const float x11 = radius_2*radius_3;
-    const float x12 = radius_2*radius_2;
-    const float x13 = radius_1*radius_2;
-    const float x14 = 3.0f*(mean_motion*mean_motion);
-    const float x15 = radius_1*radius_1;
+    const float mean_motion_t = mean_motion*t;
+    const float cos_mean_motion_t = cosf(mean_motion_t);
+    const float cos_mean_motion_t_q3 = cos_mean_motion_t*q3;
+    const float sin_mean_motion_t = sinf(mean_motion_t);
+    const float sin_mean_motion_t_q3 = sin_mean_motion_t*q3;
+    const float tau_1_term_1 = q1*sin_mean_motion_t - q2*cos_mean_motion_t;
+    const float radius_3 = 2.0f*(q1*cos_mean_motion_t_q3 + q2*sin_mean_motion_t_q3 - tau_1_term_1*q0);
+    const float radius_3_sq = radius_3*radius_3;
+    const float radius_1 = cos_mean_motion_t + 2.0f*(q2*tau_1_term_1 + q0*sin_mean_motion_t_q3 -
+        q3*cos_mean_motion_t_q3);
+    const float radius_1_radius_3 = radius_1*radius_3;
+    const float radius_2 = sin_mean_motion_t - 2.0f*(q1*tau_1_term_1 + q3*sin_mean_motion_t_q3 +
+        q0*cos_mean_motion_t_q3);
+    const float radius_2_radius_3 = radius_2*radius_3;
+    const float radius_2_sq = radius_2*radius_2;
+    const float radius_1_radius_2 = radius_1*radius_2;
+    const float three_mean_motion_sq = 3.0f*(mean_motion*mean_motion);
+    const float radius_1_sq = radius_1*radius_1;
 
-    torque_b[0] = (I_yz*x12 + (I_zz - I_yy)*x11 + I_xz*x13 - I_yz*x7 - I_xy*x9)*x14;
-    torque_b[1] = (I_xz*x7 + I_xy*x11 + (I_xx - I_zz)*x9 - I_xz*x15 - I_yz*x13)*x14;
-    torque_b[2] = (I_xy*x15 + (I_yy - I_xx)*x13 + I_yz*x9 - I_xy*x12 - I_xz*x11)*x14;
+    torque_b[0] = (I_yz*radius_2_sq + (I_zz - I_yy)*radius_2_radius_3 + I_xz*radius_1_radius_2 - I_yz*radius_3_sq -
+        I_xy*radius_1_radius_3)*three_mean_motion_sq;
+    torque_b[1] = (I_xz*radius_3_sq + I_xy*radius_2_radius_3 + (I_xx - I_zz)*radius_1_radius_3 - I_xz*radius_1_sq -
+        I_yz*radius_1_radius_2)*three_mean_motion_sq;
+    torque_b[2] = (I_xy*radius_1_sq + (I_yy - I_xx)*radius_1_radius_2 + I_yz*radius_1_radius_3 - I_xy*radius_2_sq -
+        I_xz*radius_2_radius_3)*three_mean_motion_sq;
 }
 
 void symrot_torque_gravity_gradientf_batch(
@@ -210,31 +230,36 @@ void symrot_torque_gravity_gradientf_batch(
             const float q1 = q[n + k];
             const float q2 = q[2*n + k];
             const float q3 = q[3*n + k];
-            const float x0 = mean_motion_k*t_k;
-            const float x1 = symrot_cosf(x0);
-            const float x2 = x1*q3;
-            const float x3 = symrot_sinf(x0);
-            const float x4 = x3*q3;
-            const float x5 = q1*x3 - q2*x1;
-            const float radius_3 = 2.0f*(q1*x2 + q2*x4 - x5*q0);
-            const float x7 = radius_3*radius_3;
-            const float radius_1 = x1 + 2.0f*(q2*x5 + q0*x4 - q3*x2);
-            const float x9 = radius_1*radius_3;
-            const float radius_2 = x3 - 2.0f*(q1*x5 + q3*x4 + q0*x2);
-            const float x11 = radius_2*radius_3;
-            const float x12 = radius_2*radius_2;
-            const float x13 = radius_1*radius_2;
-            const float x14 = 3.0f*(mean_motion_k*mean_motion_k);
-            const float x15 = radius_1*radius_1;
+            const float mean_motion_t = mean_motion_k*t_k;
+            const float cos_mean_motion_t = symrot_cosf(mean_motion_t);
+            const float cos_mean_motion_t_q3 = cos_mean_motion_t*q3;
+            const float sin_mean_motion_t = symrot_sinf(mean_motion_t);
+            const float sin_mean_motion_t_q3 = sin_mean_motion_t*q3;
+            const float tau_1_term_1 = q1*sin_mean_motion_t - q2*cos_mean_motion_t;
+            const float radius_3 = 2.0f*(q1*cos_mean_motion_t_q3 + q2*sin_mean_motion_t_q3 - tau_1_term_1*q0);
+            const float radius_3_sq = radius_3*radius_3;
+            const float radius_1 = cos_mean_motion_t + 2.0f*(q2*tau_1_term_1 + q0*sin_mean_motion_t_q3 -
+                q3*cos_mean_motion_t_q3);
+            const float radius_1_radius_3 = radius_1*radius_3;
+            const float radius_2 = sin_mean_motion_t - 2.0f*(q1*tau_1_term_1 + q3*sin_mean_motion_t_q3 +
+                q0*cos_mean_motion_t_q3);
+            const float radius_2_radius_3 = radius_2*radius_3;
+            const float radius_2_sq = radius_2*radius_2;
+            const float radius_1_radius_2 = radius_1*radius_2;
+            const float three_mean_motion_sq = 3.0f*(mean_motion_k*mean_motion_k);
+            const float radius_1_sq = radius_1*radius_1;
 
-            const float tau_1 = (I_yz*x12 + (I_zz - I_yy)*x11 + I_xz*x13 - I_yz*x7 - I_xy*x9)*x14;
-            const float tau_2 = (I_xz*x7 + I_xy*x11 + (I_xx - I_zz)*x9 - I_xz*x15 - I_yz*x13)*x14;
-            const float tau_3 = (I_xy*x15 + (I_yy - I_xx)*x13 + I_yz*x9 - I_xy*x12 - I_xz*x11)*x14;
+            const float tau_1 = (I_yz*radius_2_sq + (I_zz - I_yy)*radius_2_radius_3 + I_xz*radius_1_radius_2 -
+                I_yz*radius_3_sq - I_xy*radius_1_radius_3)*three_mean_motion_sq;
+            const float tau_2 = (I_xz*radius_3_sq + I_xy*radius_2_radius_3 + (I_xx - I_zz)*radius_1_radius_3 -
+                I_xz*radius_1_sq - I_yz*radius_1_radius_2)*three_mean_motion_sq;
+            const float tau_3 = (I_xy*radius_1_sq + (I_yy - I_xx)*radius_1_radius_2 + I_yz*radius_1_radius_3 -
+                I_xy*radius_2_sq - I_xz*radius_2_radius_3)*three_mean_motion_sq;
 
             torque_b[k] = tau_1;
             torque_b[n + k] = tau_2;
             torque_b[2*n + k] = tau_3;
-            beyond += symrot_farf(x0);
+            beyond += symrot_farf(mean_motion_t);
         }
         const size_t again = beyond == 0 ? start : end;
         for (size_t k = start; k < again; ++k) {
@@ -250,26 +275,31 @@ void symrot_torque_gravity_gradientf_batch(
             const float q1 = q[n + k];
             const float q2 = q[2*n + k];
             const float q3 = q[3*n + k];
-            const float x0 = mean_motion_k*t_k;
-            const float x1 = cosf(x0);
-            const float x2 = x1*q3;
-            const float x3 = sinf(x0);
-            const float x4 = x3*q3;
-            const float x5 = q1*x3 - q2*x1;
-            const float radius_3 = 2.0f*(q1*x2 + q2*x4 - x5*q0);
-            const float x7 = radius_3*radius_3;
-            const float radius_1 = x1 + 2.0f*(q2*x5 + q0*x4 - q3*x2);
-            const float x9 = radius_1*radius_3;
-            const float radius_2 = x3 - 2.0f*(q1*x5 + q3*x4 + q0*x2);
-            const float x11 = radius_2*radius_3;
-            const float x12 = radius_2*radius_2;
-            const float x13 = radius_1*radius_2;
-            const float x14 = 3.0f*(mean_motion_k*mean_motion_k);
-            const float x15 = radius_1*radius_1;
+            const float mean_motion_t = mean_motion_k*t_k;
+            const float cos_mean_motion_t = cosf(mean_motion_t);
+            const float cos_mean_motion_t_q3 = cos_mean_motion_t*q3;
+            const float sin_mean_motion_t = sinf(mean_motion_t);
+            const float sin_mean_motion_t_q3 = sin_mean_motion_t*q3;
+            const float tau_1_term_1 = q1*sin_mean_motion_t - q2*cos_mean_motion_t;
+            const float radius_3 = 2.0f*(q1*cos_mean_motion_t_q3 + q2*sin_mean_motion_t_q3 - tau_1_term_1*q0);
+            const float radius_3_sq = radius_3*radius_3;
+            const float radius_1 = cos_mean_motion_t + 2.0f*(q2*tau_1_term_1 + q0*sin_mean_motion_t_q3 -
+                q3*cos_mean_motion_t_q3);
+            const float radius_1_radius_3 = radius_1*radius_3;
+            const float radius_2 = sin_mean_motion_t - 2.0f*(q1*tau_1_term_1 + q3*sin_mean_motion_t_q3 +
+                q0*cos_mean_motion_t_q3);
+            const float radius_2_radius_3 = radius_2*radius_3;
+            const float radius_2_sq = radius_2*radius_2;
+            const float radius_1_radius_2 = radius_1*radius_2;
+            const float three_mean_motion_sq = 3.0f*(mean_motion_k*mean_motion_k);
+            const float radius_1_sq = radius_1*radius_1;
 
-            const float tau_1 = (I_yz*x12 + (I_zz - I_yy)*x11 + I_xz*x13 - I_yz*x7 - I_xy*x9)*x14;
-            const float tau_2 = (I_xz*x7 + I_xy*x11 + (I_xx - I_zz)*x9 - I_xz*x15 - I_yz*x13)*x14;
-            const float tau_3 = (I_xy*x15 + (I_yy - I_xx)*x13 + I_yz*x9 - I_xy*x12 - I_xz*x11)*x14;
+            const float tau_1 = (I_yz*radius_2_sq + (I_zz - I_yy)*radius_2_radius_3 + I_xz*radius_1_radius_2 -
+                I_yz*radius_3_sq - I_xy*radius_1_radius_3)*three_mean_motion_sq;
+            const float tau_2 = (I_xz*radius_3_sq + I_xy*radius_2_radius_3 + (I_xx - I_zz)*radius_1_radius_3 -
+                I_xz*radius_1_sq - I_yz*radius_1_radius_2)*three_mean_motion_sq;
+            const float tau_3 = (I_xy*radius_1_sq + (I_yy - I_xx)*radius_1_radius_2 + I_yz*radius_1_radius_3 -
+                I_xy*radius_2_sq - I_xz*radius_2_radius_3)*three_mean_motion_sq;
 
             torque_b[k] = tau_1;
             torque_b[n + k] = tau_2;

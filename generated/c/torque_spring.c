@@ -35,11 +35,11 @@ void symrot_torque_spring(const double q[4], double stiffness, const double atti
     const double attitude_1 = attitude[1];
     const double attitude_2 = attitude[2];
     const double attitude_3 = attitude[3];
-    const double x0 = 2.0*((attitude_0*q0 + attitude_1*q1 + attitude_2*q2 + attitude_3*q3)*stiffness);
+    const double tau_1_term_1 = 2.0*((attitude_0*q0 + attitude_1*q1 + attitude_2*q2 + attitude_3*q3)*stiffness);
 
-    torque_b[0] = (q0*attitude_1 + attitude_2*q3 - attitude_0*q1 - q2*attitude_3)*x0;
-    torque_b[1] = (q0*attitude_2 + q1*attitude_3 - attitude_0*q2 - attitude_1*q3)*x0;
-    torque_b[2] = (attitude_1*q2 + q0*attitude_3 - attitude_0*q3 - q1*attitude_2)*x0;
+    torque_b[0] = (q0*attitude_1 + attitude_2*q3 - attitude_0*q1 - q2*attitude_3)*tau_1_term_1;
+    torque_b[1] = (q0*attitude_2 + q1*attitude_3 - attitude_0*q2 - attitude_1*q3)*tau_1_term_1;
+    torque_b[2] = (attitude_1*q2 + q0*attitude_3 - attitude_0*q3 - q1*attitude_2)*tau_1_term_1;
 }
 
 void symrot_torque_spring_batch(
@@ -57,11 +57,11 @@ void symrot_torque_spring_batch(
         const double attitude_1 = attitude[n + k];
         const double attitude_2 = attitude[2*n + k];
         const double attitude_3 = attitude[3*n + k];
-        const double x0 = 2.0*((attitude_0*q0 + attitude_1*q1 + attitude_2*q2 + attitude_3*q3)*stiffness_k);
+        const double tau_1_term_1 = 2.0*((attitude_0*q0 + attitude_1*q1 + attitude_2*q2 + attitude_3*q3)*stiffness_k);
 
-        torque_b[k] = (q0*attitude_1 + attitude_2*q3 - attitude_0*q1 - q2*attitude_3)*x0;
-        torque_b[n + k] = (q0*attitude_2 + q1*attitude_3 - attitude_0*q2 - attitude_1*q3)*x0;
-        torque_b[2*n + k] = (attitude_1*q2 + q0*attitude_3 - attitude_0*q3 - q1*attitude_2)*x0;
+        torque_b[k] = (q0*attitude_1 + attitude_2*q3 - attitude_0*q1 - q2*attitude_3)*tau_1_term_1;
+        torque_b[n + k] = (q0*attitude_2 + q1*attitude_3 - attitude_0*q2 - attitude_1*q3)*tau_1_term_1;
+        torque_b[2*n + k] = (attitude_1*q2 + q0*attitude_3 - attitude_0*q3 - q1*attitude_2)*tau_1_term_1;
     }
 }
 
@@ -75,11 +75,11 @@ void symrot_torque_springf(const float q[4], float stiffness, const float attitu
     const float attitude_1 = attitude[1];
     const float attitude_2 = attitude[2];
     const float attitude_3 = attitude[3];
-    const float x0 = 2.0f*((attitude_0*q0 + attitude_1*q1 + attitude_2*q2 + attitude_3*q3)*stiffness);
+    const float tau_1_term_1 = 2.0f*((attitude_0*q0 + attitude_1*q1 + attitude_2*q2 + attitude_3*q3)*stiffness);
 
-    torque_b[0] = (q0*attitude_1 + attitude_2*q3 - attitude_0*q1 - q2*attitude_3)*x0;
-    torque_b[1] = (q0*attitude_2 + q1*attitude_3 - attitude_0*q2 - attitude_1*q3)*x0;
-    torque_b[2] = (attitude_1*q2 + q0*attitude_3 - attitude_0*q3 - q1*attitude_2)*x0;
+    torque_b[0] = (q0*attitude_1 + attitude_2*q3 - attitude_0*q1 - q2*attitude_3)*tau_1_term_1;
+    torque_b[1] = (q0*attitude_2 + q1*attitude_3 - attitude_0*q2 - attitude_1*q3)*tau_1_term_1;
+    torque_b[2] = (attitude_1*q2 + q0*attitude_3 - attitude_0*q3 - q1*attitude_2)*tau_1_term_1;
 }
 
 void symrot_torque_springf_batch(
@@ -97,10 +97,10 @@ void symrot_torque_springf_batch(
         const float attitude_1 = attitude[n + k];
         const float attitude_2 = attitude[2*n + k];
         const float attitude_3 = attitude[3*n + k];
-        const float x0 = 2.0f*((attitude_0*q0 + attitude_1*q1 + attitude_2*q2 + attitude_3*q3)*stiffness_k);
+        const float tau_1_term_1 = 2.0f*((attitude_0*q0 + attitude_1*q1 + attitude_2*q2 + attitude_3*q3)*stiffness_k);
 
-        torque_b[k] = (q0*attitude_1 + attitude_2*q3 - attitude_0*q1 - q2*attitude_3)*x0;
-        torque_b[n + k] = (q0*attitude_2 + q1*attitude_3 - attitude_0*q2 - attitude_1*q3)*x0;
-        torque_b[2*n + k] = (attitude_1*q2 + q0*attitude_3 - attitude_0*q3 - q1*attitude_2)*x0;
+        torque_b[k] = (q0*attitude_1 + attitude_2*q3 - attitude_0*q1 - q2*attitude_3)*tau_1_term_1;
+        torque_b[n + k] = (q0*attitude_2 + q1*attitude_3 - attitude_0*q2 - attitude_1*q3)*tau_1_term_1;
+        torque_b[2*n + k] = (attitude_1*q2 + q0*attitude_3 - attitude_0*q3 - q1*attitude_2)*tau_1_term_1;
     }
 }

@@ -20,9 +20,9 @@ def euler_equations_spherical(inertia, omega, torque):
     tau_1 = torque[0]
     tau_2 = torque[1]
     tau_3 = torque[2]
-    x0 = 1.0/A
+    inv_A = 1.0/A
     domega = np.empty((3, *np.shape(inertia)[1:]))
-    domega[0] = tau_1*x0
-    domega[1] = tau_2*x0
-    domega[2] = tau_3*x0
+    domega[0] = tau_1*inv_A
+    domega[1] = tau_2*inv_A
+    domega[2] = tau_3*inv_A
     return domega

@@ -25,10 +25,10 @@ def euler_equations_symmetric(inertia, omega, torque):
     tau_1 = torque[0]
     tau_2 = torque[1]
     tau_3 = torque[2]
-    x0 = (A - C)*omega_3
-    x1 = 1.0/A
+    domega_1_term_1 = (A - C)*omega_3
+    inv_A = 1.0/A
     domega = np.empty((3, *np.shape(inertia)[1:]))
-    domega[0] = (tau_1 + omega_2*x0)*x1
-    domega[1] = (tau_2 - omega_1*x0)*x1
+    domega[0] = (tau_1 + omega_2*domega_1_term_1)*inv_A
+    domega[1] = (tau_2 - omega_1*domega_1_term_1)*inv_A
     domega[2] = tau_3/C
     return domega

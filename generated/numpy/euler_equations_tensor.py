@@ -36,11 +36,11 @@ def euler_equations_tensor(inertia, omega, torque):
     cofactor_2 = I_xz*I_yz - I_xy*I_zz
     cofactor_3 = I_xy*I_yz - I_xz*I_yy
     determinant = I_xx*cofactor_1 + I_xy*cofactor_2 + I_xz*cofactor_3
-    x6 = 1.0/determinant
-    M_1 = (tau_1 + omega_3*L_2 - omega_2*L_3)*x6
+    inv_determinant = 1.0/determinant
+    M_1 = (tau_1 + omega_3*L_2 - omega_2*L_3)*inv_determinant
     L_1 = I_xx*omega_1 + I_xy*omega_2 + I_xz*omega_3
-    M_2 = (tau_2 + omega_1*L_3 - omega_3*L_1)*x6
-    M_3 = (tau_3 + omega_2*L_1 - omega_1*L_2)*x6
+    M_2 = (tau_2 + omega_1*L_3 - omega_3*L_1)*inv_determinant
+    M_3 = (tau_3 + omega_2*L_1 - omega_1*L_2)*inv_determinant
     cofactor_4 = I_xx*I_zz - I_xz*I_xz
     cofactor_5 = I_xy*I_xz - I_xx*I_yz
     cofactor_6 = I_xx*I_yy - I_xy*I_xy

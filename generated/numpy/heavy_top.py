@@ -32,13 +32,13 @@ def heavy_top(inertia, W, center_of_mass, omega, q):
     q1 = q[1]
     q2 = q[2]
     q3 = q[3]
-    x0 = 2.0*W
-    moment_of_weight_3 = c_3*x0
+    two_W = 2.0*W
+    moment_of_weight_3 = c_3*two_W
     half_vertical_2 = q0*q1 + q2*q3
-    moment_of_weight_2 = c_2*x0
+    moment_of_weight_2 = c_2*two_W
     half_vertical_3 = 0.5 - q1*q1 - q2*q2
     half_vertical_1 = q1*q3 - q0*q2
-    moment_of_weight_1 = c_1*x0
+    moment_of_weight_1 = c_1*two_W
     half_1 = 0.5*omega_1
     half_2 = 0.5*omega_2
     half_3 = 0.5*omega_3

@@ -21,12 +21,12 @@ import numpy as np
 def inertia_cylinder(m, dimensions):
     R = dimensions[0]
     L = dimensions[1]
-    x0 = R*R
-    x1 = 0.08333333333333333*(L*L + 3.0*x0)*m
+    R_sq = R*R
+    I_xx_term_1 = 0.08333333333333333*(L*L + 3.0*R_sq)*m
     inertia = np.empty((6, *np.shape(dimensions)[1:]))
-    inertia[0] = x1
-    inertia[1] = x1
-    inertia[2] = 0.5*m*x0
+    inertia[0] = I_xx_term_1
+    inertia[1] = I_xx_term_1
+    inertia[2] = 0.5*m*R_sq
     inertia[3] = 0.0
     inertia[4] = 0.0
     inertia[5] = 0.0

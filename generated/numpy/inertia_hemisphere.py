@@ -20,12 +20,12 @@ import numpy as np
 
 def inertia_hemisphere(m, dimensions):
     R = dimensions[0]
-    x0 = m*(R*R)
-    x1 = 0.259375*x0
+    m_R_sq = m*(R*R)
+    I_xx_term_1 = 0.259375*m_R_sq
     inertia = np.empty((6, *np.shape(dimensions)[1:]))
-    inertia[0] = x1
-    inertia[1] = x1
-    inertia[2] = 0.4*x0
+    inertia[0] = I_xx_term_1
+    inertia[1] = I_xx_term_1
+    inertia[2] = 0.4*m_R_sq
     inertia[3] = 0.0
     inertia[4] = 0.0
     inertia[5] = 0.0

@@ -24,12 +24,12 @@ def inertia_hollow_cylinder(m, dimensions):
     R_1 = dimensions[0]
     R_2 = dimensions[1]
     L = dimensions[2]
-    x0 = R_1*R_1 + R_2*R_2
-    x1 = 0.08333333333333333*(L*L + 3.0*x0)*m
+    R_1_sq_plus_R_2_sq = R_1*R_1 + R_2*R_2
+    I_xx_term_1 = 0.08333333333333333*(L*L + 3.0*R_1_sq_plus_R_2_sq)*m
     inertia = np.empty((6, *np.shape(dimensions)[1:]))
-    inertia[0] = x1
-    inertia[1] = x1
-    inertia[2] = 0.5*m*x0
+    inertia[0] = I_xx_term_1
+    inertia[1] = I_xx_term_1
+    inertia[2] = 0.5*m*R_1_sq_plus_R_2_sq
     inertia[3] = 0.0
     inertia[4] = 0.0
     inertia[5] = 0.0

@@ -21,14 +21,14 @@ import numpy as np
 def inertia_hollow_sphere(m, dimensions):
     R_1 = dimensions[0]
     R_2 = dimensions[1]
-    x0 = R_1*R_1
-    x1 = R_2*R_2
-    x2 = R_1*R_2
-    x3 = 0.4*(x0*x0 + x1*x1 + x1*x2 + x0*x1 + x0*x2)*m/(x0 + x1 + x2)
+    R_1_sq = R_1*R_1
+    R_2_sq = R_2*R_2
+    R_1_R_2 = R_1*R_2
+    I_xx_term_1 = 0.4*(R_1_sq*R_1_sq + R_2_sq*R_2_sq + R_2_sq*R_1_R_2 + R_1_sq*R_2_sq + R_1_sq*R_1_R_2)*m/(R_1_sq + R_2_sq + R_1_R_2)
     inertia = np.empty((6, *np.shape(dimensions)[1:]))
-    inertia[0] = x3
-    inertia[1] = x3
-    inertia[2] = x3
+    inertia[0] = I_xx_term_1
+    inertia[1] = I_xx_term_1
+    inertia[2] = I_xx_term_1
     inertia[3] = 0.0
     inertia[4] = 0.0
     inertia[5] = 0.0

@@ -21,13 +21,13 @@ import numpy as np
 def inertia_plate(m, dimensions):
     a = dimensions[0]
     b = dimensions[1]
-    x0 = b*b
-    x1 = 0.08333333333333333*m
-    x2 = a*a
+    b_sq = b*b
+    m_over_12 = 0.08333333333333333*m
+    a_sq = a*a
     inertia = np.empty((6, *np.shape(dimensions)[1:]))
-    inertia[0] = x0*x1
-    inertia[1] = x2*x1
-    inertia[2] = (x2 + x0)*x1
+    inertia[0] = b_sq*m_over_12
+    inertia[1] = a_sq*m_over_12
+    inertia[2] = (a_sq + b_sq)*m_over_12
     inertia[3] = 0.0
     inertia[4] = 0.0
     inertia[5] = 0.0

@@ -19,12 +19,12 @@ import numpy as np
 
 def inertia_ring(m, dimensions):
     R = dimensions[0]
-    x0 = m*(R*R)
-    x1 = 0.5*x0
+    m_R_sq = m*(R*R)
+    half_m_R_sq = 0.5*m_R_sq
     inertia = np.empty((6, *np.shape(dimensions)[1:]))
-    inertia[0] = x1
-    inertia[1] = x1
-    inertia[2] = x0
+    inertia[0] = half_m_R_sq
+    inertia[1] = half_m_R_sq
+    inertia[2] = m_R_sq
     inertia[3] = 0.0
     inertia[4] = 0.0
     inertia[5] = 0.0

@@ -19,10 +19,10 @@ import numpy as np
 
 def inertia_rod(m, dimensions):
     L = dimensions[0]
-    x0 = 0.08333333333333333*L*L*m
+    L_sq_m_over_12 = 0.08333333333333333*L*L*m
     inertia = np.empty((6, *np.shape(dimensions)[1:]))
-    inertia[0] = x0
-    inertia[1] = x0
+    inertia[0] = L_sq_m_over_12
+    inertia[1] = L_sq_m_over_12
     inertia[2] = 0.0
     inertia[3] = 0.0
     inertia[4] = 0.0

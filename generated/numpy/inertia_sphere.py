@@ -19,11 +19,11 @@ import numpy as np
 
 def inertia_sphere(m, dimensions):
     R = dimensions[0]
-    x0 = 0.4*R*R*m
+    I_xx_term_1 = 0.4*R*R*m
     inertia = np.empty((6, *np.shape(dimensions)[1:]))
-    inertia[0] = x0
-    inertia[1] = x0
-    inertia[2] = x0
+    inertia[0] = I_xx_term_1
+    inertia[1] = I_xx_term_1
+    inertia[2] = I_xx_term_1
     inertia[3] = 0.0
     inertia[4] = 0.0
     inertia[5] = 0.0

@@ -19,11 +19,11 @@ import numpy as np
 
 def inertia_spherical_shell(m, dimensions):
     R = dimensions[0]
-    x0 = 0.6666666666666666*R*R*m
+    two_thirds_R_sq_m = 0.6666666666666666*R*R*m
     inertia = np.empty((6, *np.shape(dimensions)[1:]))
-    inertia[0] = x0
-    inertia[1] = x0
-    inertia[2] = x0
+    inertia[0] = two_thirds_R_sq_m
+    inertia[1] = two_thirds_R_sq_m
+    inertia[2] = two_thirds_R_sq_m
     inertia[3] = 0.0
     inertia[4] = 0.0
     inertia[5] = 0.0

@@ -22,13 +22,13 @@ import numpy as np
 def inertia_torus(m, dimensions):
     R = dimensions[0]
     r = dimensions[1]
-    x0 = 4.0*R*R
-    x1 = r*r
-    x2 = 0.125*(x0 + 5.0*x1)*m
+    four_R_sq = 4.0*R*R
+    r_sq = r*r
+    I_xx_term_1 = 0.125*(four_R_sq + 5.0*r_sq)*m
     inertia = np.empty((6, *np.shape(dimensions)[1:]))
-    inertia[0] = x2
-    inertia[1] = x2
-    inertia[2] = 0.25*(x0 + 3.0*x1)*m
+    inertia[0] = I_xx_term_1
+    inertia[1] = I_xx_term_1
+    inertia[2] = 0.25*(four_R_sq + 3.0*r_sq)*m
     inertia[3] = 0.0
     inertia[4] = 0.0
     inertia[5] = 0.0

@@ -23,10 +23,10 @@ def mrp_of_quaternion(q):
     q1 = q[1]
     q2 = q[2]
     q3 = q[3]
-    x0 = _select_ge(q0, 0.0, 1.0, -1.0)
-    x1 = x0/(1.0 + q0*x0)
+    s1_choice_1 = _select_ge(q0, 0.0, 1.0, -1.0)
+    s1_term_1 = s1_choice_1/(1.0 + q0*s1_choice_1)
     parameters = np.empty((3, *np.shape(q)[1:]))
-    parameters[0] = q1*x1
-    parameters[1] = q2*x1
-    parameters[2] = q3*x1
+    parameters[0] = q1*s1_term_1
+    parameters[1] = q2*s1_term_1
+    parameters[2] = q3*s1_term_1
     return parameters

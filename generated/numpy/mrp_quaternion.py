@@ -17,12 +17,12 @@ def mrp_quaternion(parameters):
     s1 = parameters[0]
     s2 = parameters[1]
     s3 = parameters[2]
-    x0 = s3*s3 + (s1*s1 + s2*s2)
-    x1 = 1.0/(1.0 + x0)
-    x2 = 2.0*x1
+    s3_sq_plus_s1_sq_plus_s2_sq = s3*s3 + (s1*s1 + s2*s2)
+    q0_term_1 = 1.0/(1.0 + s3_sq_plus_s1_sq_plus_s2_sq)
+    two_q0_term_1 = 2.0*q0_term_1
     q = np.empty((4, *np.shape(parameters)[1:]))
-    q[0] = (1.0 - x0)*x1
-    q[1] = s1*x2
-    q[2] = s2*x2
-    q[3] = s3*x2
+    q[0] = (1.0 - s3_sq_plus_s1_sq_plus_s2_sq)*q0_term_1
+    q[1] = s1*two_q0_term_1
+    q[2] = s2*two_q0_term_1
+    q[3] = s3*two_q0_term_1
     return q

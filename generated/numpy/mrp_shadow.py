@@ -22,13 +22,13 @@ def mrp_shadow(parameters):
     s1 = parameters[0]
     s2 = parameters[1]
     s3 = parameters[2]
-    x0 = s1*s1 + s2*s2 + s3*s3
-    x1 = 1.0/x0
-    x2 = _select_ge(1.0, x0, s1, -(s1*x1))
-    x3 = _select_ge(1.0, x0, s2, -(s2*x1))
-    x4 = _select_ge(1.0, x0, s3, -(s3*x1))
+    s1_sq_plus_s2_sq_plus_s3_sq = s1*s1 + s2*s2 + s3*s3
+    inv_s1_sq_plus_s2_sq_plus_s3_sq = 1.0/s1_sq_plus_s2_sq_plus_s3_sq
+    turned_1_choice_1 = _select_ge(1.0, s1_sq_plus_s2_sq_plus_s3_sq, s1, -(s1*inv_s1_sq_plus_s2_sq_plus_s3_sq))
+    turned_2_choice_1 = _select_ge(1.0, s1_sq_plus_s2_sq_plus_s3_sq, s2, -(s2*inv_s1_sq_plus_s2_sq_plus_s3_sq))
+    turned_3_choice_1 = _select_ge(1.0, s1_sq_plus_s2_sq_plus_s3_sq, s3, -(s3*inv_s1_sq_plus_s2_sq_plus_s3_sq))
     switched = np.empty((3, *np.shape(parameters)[1:]))
-    switched[0] = x2
-    switched[1] = x3
-    switched[2] = x4
+    switched[0] = turned_1_choice_1
+    switched[1] = turned_2_choice_1
+    switched[2] = turned_3_choice_1
     return switched

@@ -23,12 +23,12 @@ def mrp_space_rates(parameters, omega):
     omega_z = omega[2]
     half_1 = 0.5*omega_x
     square = s1*s1 + s2*s2 + s3*s3
-    x2 = 0.5*(1.0 - square)
+    ds1_term_1 = 0.5*(1.0 - square)
     half_2 = 0.5*omega_y
     half_3 = 0.5*omega_z
-    x5 = s1*half_1 + s2*half_2 + s3*half_3
+    ds1_term_2 = s1*half_1 + s2*half_2 + s3*half_3
     rates = np.empty((3, *np.shape(parameters)[1:]))
-    rates[0] = half_1*x2 + s3*half_2 + s1*x5 - s2*half_3
-    rates[1] = s1*half_3 + s2*x5 + half_2*x2 - s3*half_1
-    rates[2] = s2*half_1 + s3*x5 + half_3*x2 - s1*half_2
+    rates[0] = half_1*ds1_term_1 + s3*half_2 + s1*ds1_term_2 - s2*half_3
+    rates[1] = s1*half_3 + s2*ds1_term_2 + half_2*ds1_term_1 - s3*half_1
+    rates[2] = s2*half_1 + s3*ds1_term_2 + half_3*ds1_term_1 - s1*half_2
     return rates

@@ -18,9 +18,9 @@ def rodrigues_of_quaternion(q):
     q1 = q[1]
     q2 = q[2]
     q3 = q[3]
-    x0 = 1.0/q0
+    inv_q0 = 1.0/q0
     parameters = np.empty((3, *np.shape(q)[1:]))
-    parameters[0] = q1*x0
-    parameters[1] = q2*x0
-    parameters[2] = q3*x0
+    parameters[0] = q1*inv_q0
+    parameters[1] = q2*inv_q0
+    parameters[2] = q3*inv_q0
     return parameters

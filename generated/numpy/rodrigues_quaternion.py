@@ -17,11 +17,11 @@ def rodrigues_quaternion(parameters):
     g1 = parameters[0]
     g2 = parameters[1]
     g3 = parameters[2]
-    x0 = np.sqrt(1.0 + g1*g1 + g2*g2 + g3*g3)
-    x1 = 1.0/x0
+    q0_root_1 = np.sqrt(1.0 + g1*g1 + g2*g2 + g3*g3)
+    inv_q0_root_1 = 1.0/q0_root_1
     q = np.empty((4, *np.shape(parameters)[1:]))
-    q[0] = x1
-    q[1] = g1*x1
-    q[2] = g2*x1
-    q[3] = g3*x1
+    q[0] = inv_q0_root_1
+    q[1] = g1*inv_q0_root_1
+    q[2] = g2*inv_q0_root_1
+    q[3] = g3*inv_q0_root_1
     return q

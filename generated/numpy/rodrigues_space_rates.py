@@ -24,9 +24,9 @@ def rodrigues_space_rates(parameters, omega):
     half_1 = 0.5*omega_x
     half_2 = 0.5*omega_y
     half_3 = 0.5*omega_z
-    x3 = half_1*g1 + half_2*g2 + half_3*g3
+    dg1_term_1 = half_1*g1 + half_2*g2 + half_3*g3
     rates = np.empty((3, *np.shape(parameters)[1:]))
-    rates[0] = half_1 + g1*x3 + half_2*g3 - half_3*g2
-    rates[1] = half_2 + half_3*g1 + g2*x3 - half_1*g3
-    rates[2] = half_3 + half_1*g2 + g3*x3 - half_2*g1
+    rates[0] = half_1 + g1*dg1_term_1 + half_2*g3 - half_3*g2
+    rates[1] = half_2 + half_3*g1 + g2*dg1_term_1 - half_1*g3
+    rates[2] = half_3 + half_1*g2 + g3*dg1_term_1 - half_2*g1
     return rates

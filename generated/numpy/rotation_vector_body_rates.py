@@ -37,12 +37,12 @@ def rotation_vector_body_rates(v, omega):
     cross_2 = v3*omega_1 - v1*omega_3
     cross_3 = v1*omega_2 - v2*omega_1
     angle = np.sqrt(v1*v1 + v2*v2 + v3*v3)
-    x4 = 0.5*angle
-    x5 = _tangent_gap(x4)
-    x6 = _sinc(x4)
-    x7 = 0.25*(x5/x6)
+    half_angle = 0.5*angle
+    tangent_gap_half_angle = _tangent_gap(half_angle)
+    sinc_half_angle = _sinc(half_angle)
+    dv1_term_1 = 0.25*(tangent_gap_half_angle/sinc_half_angle)
     dv = np.empty((3, *np.shape(v)[1:]))
-    dv[0] = omega_1 + 0.5*cross_1 + (v2*cross_3 - v3*cross_2)*x7
-    dv[1] = omega_2 + 0.5*cross_2 + (v3*cross_1 - v1*cross_3)*x7
-    dv[2] = omega_3 + 0.5*cross_3 + (v1*cross_2 - v2*cross_1)*x7
+    dv[0] = omega_1 + 0.5*cross_1 + (v2*cross_3 - v3*cross_2)*dv1_term_1
+    dv[1] = omega_2 + 0.5*cross_2 + (v3*cross_1 - v1*cross_3)*dv1_term_1
+    dv[2] = omega_3 + 0.5*cross_3 + (v1*cross_2 - v2*cross_1)*dv1_term_1
     return dv

@@ -25,11 +25,11 @@ def rotation_vector_of_quaternion(q):
     q3 = q[3]
     length = np.sqrt(q1*q1 + q2*q2 + q3*q3)
     cosine = np.abs(q0)
-    x1 = _arc_ratio(length, cosine)
-    x2 = np.copysign(1.0, q0)
-    x3 = 2.0*(x1*x2)
+    v1_arc_ratio_1 = _arc_ratio(length, cosine)
+    v1_copysign_1 = np.copysign(1.0, q0)
+    two_v1_arc_ratio_1_v1_copysign_1 = 2.0*(v1_arc_ratio_1*v1_copysign_1)
     v = np.empty((3, *np.shape(q)[1:]))
-    v[0] = q1*x3
-    v[1] = q2*x3
-    v[2] = q3*x3
+    v[0] = q1*two_v1_arc_ratio_1_v1_copysign_1
+    v[1] = q2*two_v1_arc_ratio_1_v1_copysign_1
+    v[2] = q3*two_v1_arc_ratio_1_v1_copysign_1
     return v

@@ -23,13 +23,13 @@ def rotation_vector_quaternion(v):
     v2 = v[1]
     v3 = v[2]
     angle = np.sqrt(v1*v1 + v2*v2 + v3*v3)
-    x1 = 0.5*angle
-    x2 = np.cos(x1)
-    x3 = _sinc(x1)
-    x4 = 0.5*x3
+    half_angle = 0.5*angle
+    cos_half_angle = np.cos(half_angle)
+    sinc_half_angle = _sinc(half_angle)
+    half_sinc_half_angle = 0.5*sinc_half_angle
     q = np.empty((4, *np.shape(v)[1:]))
-    q[0] = x2
-    q[1] = v1*x4
-    q[2] = v2*x4
-    q[3] = v3*x4
+    q[0] = cos_half_angle
+    q[1] = v1*half_sinc_half_angle
+    q[2] = v2*half_sinc_half_angle
+    q[3] = v3*half_sinc_half_angle
     return q

@@ -23,11 +23,11 @@ def torque_constant_space(q, torque):
     torque_1 = torque[0]
     torque_2 = torque[1]
     torque_3 = torque[2]
-    x0 = torque_2*q1 - torque_1*q2
-    x1 = torque_3*q1 - torque_1*q3
-    x2 = q2*torque_3 - q3*torque_2
+    torque_2_q1_minus_torque_1_q2 = torque_2*q1 - torque_1*q2
+    torque_3_q1_minus_torque_1_q3 = torque_3*q1 - torque_1*q3
+    q2_torque_3_minus_q3_torque_2 = q2*torque_3 - q3*torque_2
     torque_b = np.empty((3, *np.shape(q)[1:]))
-    torque_b[0] = torque_1 + 2.0*(q2*x0 + q3*x1 - q0*x2)
-    torque_b[1] = torque_2 + 2.0*(q0*x1 + q3*x2 - q1*x0)
-    torque_b[2] = torque_3 - 2.0*(q0*x0 + q1*x1 + q2*x2)
+    torque_b[0] = torque_1 + 2.0*(q2*torque_2_q1_minus_torque_1_q2 + q3*torque_3_q1_minus_torque_1_q3 - q0*q2_torque_3_minus_q3_torque_2)
+    torque_b[1] = torque_2 + 2.0*(q0*torque_3_q1_minus_torque_1_q3 + q3*q2_torque_3_minus_q3_torque_2 - q1*torque_2_q1_minus_torque_1_q2)
+    torque_b[2] = torque_3 - 2.0*(q0*torque_2_q1_minus_torque_1_q2 + q1*torque_3_q1_minus_torque_1_q3 + q2*q2_torque_3_minus_q3_torque_2)
     return torque_b

@@ -19,10 +19,10 @@ def torque_damping_quadratic(omega, quadratic):
     omega_1 = omega[0]
     omega_2 = omega[1]
     omega_3 = omega[2]
-    x0 = np.sqrt(omega_1*omega_1 + omega_2*omega_2 + omega_3*omega_3)
-    x1 = quadratic*x0
+    tau_1_root_1 = np.sqrt(omega_1*omega_1 + omega_2*omega_2 + omega_3*omega_3)
+    quadratic_tau_1_root_1 = quadratic*tau_1_root_1
     torque_b = np.empty((3, *np.shape(omega)[1:]))
-    torque_b[0] = -(omega_1*x1)
-    torque_b[1] = -(omega_2*x1)
-    torque_b[2] = -(omega_3*x1)
+    torque_b[0] = -(omega_1*quadratic_tau_1_root_1)
+    torque_b[1] = -(omega_2*quadratic_tau_1_root_1)
+    torque_b[2] = -(omega_3*quadratic_tau_1_root_1)
     return torque_b

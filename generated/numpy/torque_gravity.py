@@ -32,14 +32,14 @@ def torque_gravity(q, weight, center_of_mass, direction):
     direction_1 = direction[0]
     direction_2 = direction[1]
     direction_3 = direction[2]
-    x0 = direction_1*q2 - direction_2*q1
-    x1 = direction_1*q3 - direction_3*q1
-    x2 = direction_2*q3 - direction_3*q2
-    x3 = direction_3 + 2.0*(q0*x0 + q1*x1 + q2*x2)
-    x4 = direction_2 + 2.0*(q1*x0 - q0*x1 - q3*x2)
-    x5 = direction_1 + 2.0*(q0*x2 - q2*x0 - q3*x1)
+    tau_1_term_1 = direction_1*q2 - direction_2*q1
+    tau_1_term_2 = direction_1*q3 - direction_3*q1
+    tau_1_term_3 = direction_2*q3 - direction_3*q2
+    tau_1_term_4 = direction_3 + 2.0*(q0*tau_1_term_1 + q1*tau_1_term_2 + q2*tau_1_term_3)
+    tau_1_term_5 = direction_2 + 2.0*(q1*tau_1_term_1 - q0*tau_1_term_2 - q3*tau_1_term_3)
+    tau_2_term_1 = direction_1 + 2.0*(q0*tau_1_term_3 - q2*tau_1_term_1 - q3*tau_1_term_2)
     torque_b = np.empty((3, *np.shape(q)[1:]))
-    torque_b[0] = (center_of_mass_2*x3 - center_of_mass_3*x4)*weight
-    torque_b[1] = (center_of_mass_3*x5 - x3*center_of_mass_1)*weight
-    torque_b[2] = (x4*center_of_mass_1 - center_of_mass_2*x5)*weight
+    torque_b[0] = (center_of_mass_2*tau_1_term_4 - center_of_mass_3*tau_1_term_5)*weight
+    torque_b[1] = (center_of_mass_3*tau_2_term_1 - tau_1_term_4*center_of_mass_1)*weight
+    torque_b[2] = (tau_1_term_5*center_of_mass_1 - center_of_mass_2*tau_2_term_1)*weight
     return torque_b

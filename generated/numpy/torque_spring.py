@@ -27,9 +27,9 @@ def torque_spring(q, stiffness, attitude):
     attitude_1 = attitude[1]
     attitude_2 = attitude[2]
     attitude_3 = attitude[3]
-    x0 = 2.0*((attitude_0*q0 + attitude_1*q1 + attitude_2*q2 + attitude_3*q3)*stiffness)
+    tau_1_term_1 = 2.0*((attitude_0*q0 + attitude_1*q1 + attitude_2*q2 + attitude_3*q3)*stiffness)
     torque_b = np.empty((3, *np.shape(q)[1:]))
-    torque_b[0] = (q0*attitude_1 + attitude_2*q3 - attitude_0*q1 - q2*attitude_3)*x0
-    torque_b[1] = (q0*attitude_2 + q1*attitude_3 - attitude_0*q2 - attitude_1*q3)*x0
-    torque_b[2] = (attitude_1*q2 + q0*attitude_3 - attitude_0*q3 - q1*attitude_2)*x0
+    torque_b[0] = (q0*attitude_1 + attitude_2*q3 - attitude_0*q1 - q2*attitude_3)*tau_1_term_1
+    torque_b[1] = (q0*attitude_2 + q1*attitude_3 - attitude_0*q2 - attitude_1*q3)*tau_1_term_1
+    torque_b[2] = (attitude_1*q2 + q0*attitude_3 - attitude_0*q3 - q1*attitude_2)*tau_1_term_1
     return torque_b

@@ -40,10 +40,10 @@ void symrot_damped_disk_rates(double t, const double y[7], const double p[4], do
     const double p1 = p[1];
     const double p2 = p[2];
     const double p3 = p[3];
-    const double x0 = p0*omega_3;
+    const double p0_omega_3 = p0*omega_3;
 
-    dy[0] = omega_2*x0 - p1*omega_1;
-    dy[1] = -(p2*omega_2 + omega_1*x0);
+    dy[0] = omega_2*p0_omega_3 - p1*omega_1;
+    dy[1] = -(p2*omega_2 + omega_1*p0_omega_3);
     dy[2] = -(p3*omega_3);
     dy[3] = (-0.5)*(omega_1*q1 + omega_2*q2 + omega_3*q3);
     dy[4] = 0.5*(omega_1*q0 + omega_3*q2 - omega_2*q3);
@@ -69,10 +69,10 @@ void symrot_damped_disk_rates_batch(
         const double p1 = p[1];
         const double p2 = p[2];
         const double p3 = p[3];
-        const double x0 = p0*omega_3;
+        const double p0_omega_3 = p0*omega_3;
 
-        const double domega_1 = omega_2*x0 - p1*omega_1;
-        const double domega_2 = -(p2*omega_2 + omega_1*x0);
+        const double domega_1 = omega_2*p0_omega_3 - p1*omega_1;
+        const double domega_2 = -(p2*omega_2 + omega_1*p0_omega_3);
         const double domega_3 = -(p3*omega_3);
         const double dq0 = (-0.5)*(omega_1*q1 + omega_2*q2 + omega_3*q3);
         const double dq1 = 0.5*(omega_1*q0 + omega_3*q2 - omega_2*q3);

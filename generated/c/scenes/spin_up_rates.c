@@ -35,10 +35,10 @@ void symrot_spin_up_rates(double t, const double y[7], const double p[2], double
     const double q3 = y[6];
     const double p0 = p[0];
     const double p1 = p[1];
-    const double x0 = p0*omega_3;
+    const double p0_omega_3 = p0*omega_3;
 
-    dy[0] = omega_2*x0;
-    dy[1] = -(omega_1*x0);
+    dy[0] = omega_2*p0_omega_3;
+    dy[1] = -(omega_1*p0_omega_3);
     dy[2] = p1;
     dy[3] = (-0.5)*(omega_1*q1 + omega_2*q2 + omega_3*q3);
     dy[4] = 0.5*(omega_1*q0 + omega_3*q2 - omega_2*q3);
@@ -62,10 +62,10 @@ void symrot_spin_up_rates_batch(
         const double q3 = y[6*n + k];
         const double p0 = p[0];
         const double p1 = p[1];
-        const double x0 = p0*omega_3;
+        const double p0_omega_3 = p0*omega_3;
 
-        const double domega_1 = omega_2*x0;
-        const double domega_2 = -(omega_1*x0);
+        const double domega_1 = omega_2*p0_omega_3;
+        const double domega_2 = -(omega_1*p0_omega_3);
         const double dq0 = (-0.5)*(omega_1*q1 + omega_2*q2 + omega_3*q3);
         const double dq1 = 0.5*(omega_1*q0 + omega_3*q2 - omega_2*q3);
         const double dq2 = 0.5*(omega_1*q3 + omega_2*q0 - omega_3*q1);

@@ -33,10 +33,10 @@ def damped_disk_rates(t, y, p):
     p1 = p[1]
     p2 = p[2]
     p3 = p[3]
-    x0 = p0*omega_3
+    p0_omega_3 = p0*omega_3
     dy = np.empty((7, *np.shape(y)[1:]))
-    dy[0] = omega_2*x0 - p1*omega_1
-    dy[1] = -(p2*omega_2 + omega_1*x0)
+    dy[0] = omega_2*p0_omega_3 - p1*omega_1
+    dy[1] = -(p2*omega_2 + omega_1*p0_omega_3)
     dy[2] = -(p3*omega_3)
     dy[3] = (-0.5)*(omega_1*q1 + omega_2*q2 + omega_3*q3)
     dy[4] = 0.5*(omega_1*q0 + omega_3*q2 - omega_2*q3)
