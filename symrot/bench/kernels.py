@@ -28,7 +28,7 @@ from symrot.bench.by_hand.kernel_heyoka import LANES, heyoka_code
 from symrot.bench.by_hand.kernel_peers import PEERS_IN_C, casadi_function, counted, textbook
 from symrot.build import cache as build_cache
 from symrot.codegen.library_kernels import kernel_program
-from symrot.codegen.printing.c_source import MATH_HEADER
+from symrot.codegen.printing.c_source import MATH_HEADER, c_name
 from symrot.codegen.printing.math_header import math_header
 from symrot.errors import InputError
 from symrot.formula.program import Argument, Signature
@@ -119,15 +119,15 @@ def _drivers(signature: Signature, batch: bool) -> str:
     every = [*inputs, *outputs]
     apart = [sum(a.size for a in (inputs if each in inputs else outputs)) for each in every]
     one = ", ".join(f"{'' if a.is_scalar else '&'}a[{i}][{apart[i]}*k]" for i, a in enumerate(every))
-    lines = [] if batch else _batch_of_one(signature.name, inputs, outputs)
+    lines = [] if batch else _batch_of_one(c_name(signature.name), inputs, outputs)
     parameters = [f"{'const ' if a in inputs else ''}double {'' if a.is_scalar else '*'}{a.name}" for a in every]
     lines += [f"static __attribute__((noinline)) void single({', '.join(parameters)})", "{",
-              f"    {signature.name}({', '.join(a.name for a in every)});", "}"]  # fmt: skip
+              f"    {c_name(signature.name)}({', '.join(a.name for a in every)});", "}"]  # fmt: skip
     arguments = ", ".join(f"a[{i}]" for i in range(len(every)))
     return "\n".join([
         "#include <stddef.h>", *lines,
         _REPEAT_ONE.format(call=f"single({one})"),
-        _REPEAT_BATCH.format(call=f"{f'{signature.name}_batch' if batch else 'batch'}(n, {arguments})"),
+        _REPEAT_BATCH.format(call=f"{f'{c_name(signature.name)}_batch' if batch else 'batch'}(n, {arguments})"),
     ])  # fmt: skip
 
 
@@ -313,7 +313,8 @@ def _casadi_text(name: str, function: Any) -> str:
     inputs = [a for a in signature.arguments if a.role == "in"]
     values = ", ".join(a.name if a.is_scalar else f"{a.name}[{i}]" for a in inputs for i in range(a.size))
     size = sum(a.size for a in signature.arguments if a.role == "out")
-    lines += [f"static inline void {name}({', '.join(arguments)})", "{", f"    const double x[] = {{{values}}};",
+    lines += [f"static inline void {c_name(name)}({', '.join(arguments)})", "{",
+              f"    const double x[] = {{{values}}};",
               f"    double y[{size}];", "    const double *arg[1] = {x};", "    double *res[1] = {y};",
               "    peer(arg, res, 0, 0, 0);"]  # fmt: skip
     for a in signature.arguments:

@@ -177,7 +177,7 @@ def _proven(subject: Subject) -> Data:
     return {
         "laws": [_law(prove_law(subject.name, law, known)) for law in subject.laws],
         "readback": {
-            f"{subject.name}{suffix}": _readback(subject, suffix, real) for suffix, real in subject.types.items()
+            f"symrot_{subject.name}{suffix}": _readback(subject, suffix, real) for suffix, real in subject.types.items()
         },
     }
 
@@ -203,7 +203,7 @@ def _plain(value: Any) -> Any:
 
 
 def _readback(subject: Subject, suffix: str, real: str) -> Data:
-    name, file = f"{subject.name}{suffix}", f"{subject.name}.c"
+    name, file = f"symrot_{subject.name}{suffix}", f"{subject.name}.c"
     text = subject.files[file]
     one, batch = read_kernel(text, name, file), read_batch(text, f"{name}_batch", file)
     if one.digest() != batch.digest():

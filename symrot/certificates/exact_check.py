@@ -212,7 +212,9 @@ class Kernel:
 
         def of_sample(place):
             base, _, index = place.partition("[")
-            return place if base == "p" else f"{base}[{index[:-1]} * n + k]" if index else f"{base}[k]"
+            if base == "p" or not index:
+                return place if base == "p" else f"{base}[k]"
+            return f"{base}[{ {'0]': '', '1]': 'n + '}.get(index, index[:-1] + ' * n + ') }k]"
 
         batch = {of_sample(place): value for place, value in self.inputs.items()}
         self.compare([self.found[self.name][3]], self.inputs, self.outputs)

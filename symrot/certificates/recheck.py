@@ -202,7 +202,10 @@ def check_c(name, said, real, data, formulas, functions, found):
     own |= {f"symrot_{f}{end}": names[f] for f in ("select_lt", "select_eq", "atan2")}
     own |= {f"symrot_{f}{end}": lambda x, f=f: near.add(x) or names[f](x) for f in ("sin", "cos")}
     own |= {f"symrot_choose_ge{end}": names["select_ge"], f"symrot_far{end}": lambda x: [x]}
-    need(not own.keys() & found.keys() and name == data["kernel"] + end, "a function has another meaning, or type")
+    need(
+        not own.keys() & found.keys() and name == f"symrot_{data['kernel']}{end}",
+        "a function has another meaning, or type",
+    )
     own |= {"at_": number}
     doubles, exact, limits = machine(end, nearest), *sample(data, bits, nearest, formulas, functions)
     placed = {place: doubles["at_"](exact[place]) for place in inputs if limits}
@@ -222,7 +225,8 @@ def check_c(name, said, real, data, formulas, functions, found):
         for loop in loops:
             near = set()
             need(not frame or not re.search(r"(?<!\bp)\[\d+\]|\bp\[\d+\*", loop), f"{name} takes one sample alone")
-            loop = loop.replace("*n + k]", "]").replace("[k]", "") if frame else loop
+            loop = re.sub(r"(\w+)\[k]", lambda m: m[1] if m[1] in inputs else f"{m[1]}[0]", loop) if frame else loop
+            loop = loop.replace("[n + k]", "[1]").replace("*n + k]", "]") if frame else loop
             results.append(run(loop, inputs, own))
             rounded = run(loop, placed, doubles) if limits else {}
             need(all(abs(Decimal(rounded.get(p, 0)) - exact[p]) <= limits[p] for p in limits.keys() & rounded), far)

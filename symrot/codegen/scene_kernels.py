@@ -9,7 +9,7 @@ from sympy import Expr, Symbol
 from symrot import symbols
 from symrot.codegen.lowering.lower import Lowered, lower
 from symrot.codegen.printing.banner import CONTRACT, Description
-from symrot.codegen.printing.c_source import c_function
+from symrot.codegen.printing.c_source import c_function, c_name
 from symrot.dynamics.equations import PLANAR_ANGLE, Equations, equations_of_motion
 from symrot.dynamics.invariants import find_invariants
 from symrot.dynamics.structure import Structure
@@ -21,12 +21,12 @@ from symrot.planning.scene_kernel import Conserved, Parameters, SceneKernel, bin
 __all__ = ["derive_scene_kernel", "rates_program", "rates_source", "scene_description", "with_values"]
 
 MEANING = {
-    **{f"omega_{i + 1}": f"angular velocity about body axis {i + 1}" for i in range(3)},
+    **{f"omega_{i + 1}": "angular velocity, body components" for i in range(3)},
     **{f"q{i}": "attitude, body to space" for i in range(4)},
-    **{name: f"Euler angle {i + 1}" for i, name in enumerate(("phi", "theta", "psi"))},
+    **dict.fromkeys(("phi", "theta", "psi"), "Euler angles, in order of application"),
 }
-PLANAR_MEANING = "angle turned since the start"
-RATES = "symrot_rates"  # the name of the kernel in a compiled library
+PLANAR_MEANING = "angle of rotation since the start"
+RATES = "rates"  # the kernel of a compiled library; its function in C is symrot_rates
 TIME = Argument("t", "in", (("t", "s", "time"),), is_scalar=True)
 
 
@@ -45,7 +45,7 @@ def _state_argument(equations: Equations) -> Argument:
 def rates_program(equations: Equations, name: str) -> Lowered:
     """Return the right-hand side ``dy/dt`` of a plan as a program of the given name."""
     per_second = {"rad/s": "rad/s^2", "1": "1/s", "rad": "rad/s"}
-    results = tuple((f"d{s}", per_second[_unit(s)], f"rate of {s}") for s in equations.states)
+    results = tuple((f"d{s}", per_second[_unit(s)], "time derivative of the state") for s in equations.states)
     signature = Signature(name, (TIME, _state_argument(equations), Argument("dy", "out", results)))
     return lower(signature, [(f"d{s}", r) for s, r in zip(equations.states, equations.rates, strict=True)],
                  equations.definitions)  # fmt: skip
@@ -97,9 +97,10 @@ def rates_source(rates: Lowered) -> str:
     source = c_function(rates.program, "static inline ")
     if rates.parameters:
         return source
-    bare = source.replace(f" {RATES}(", f" {RATES}_bare(", 1)
-    adapter = f"static inline void {RATES}(double t, const double *y, const double *p, double *dy)"
-    return f"{bare}\n{adapter}\n{{\n    (void)p;\n    {RATES}_bare(t, y, dy);\n}}\n"
+    name = c_name(RATES)
+    bare = source.replace(f" {name}(", f" {name}_bare(", 1)
+    adapter = f"static inline void {name}(double t, const double *y, const double *p, double *dy)"
+    return f"{bare}\n{adapter}\n{{\n    (void)p;\n    {name}_bare(t, y, dy);\n}}\n"
 
 
 def with_values(program: Program, parameters: Parameters, constants: Mapping[str, Fraction]) -> Program:

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -20,7 +21,7 @@ from symrot.kernels.library import definition, kernel_names
 from symrot.report.layout import apart, columns
 from symrot.scene.file import shipped_names
 from symrot.scene.reader import nearest
-from symrot.workshop.emit import emit, scene_inputs
+from symrot.workshop.emit import Emitted, emit, scene_inputs
 from symrot.workshop.input_ranges import input_box
 
 __all__ = ["facts", "lines", "require_known", "rounding_problem", "section", "target_facts", "target_lines"]
@@ -69,8 +70,14 @@ def _check_unit(group: Sequence[str], kernel_problem: Problem, box: Mapping[str,
         raise InputError(f"--box: expected a box that contains a unit quaternion, got {ranges}")
 
 
+def _operations(emitted: Emitted, suffix: str = "") -> Operations:
+    """Return the operations of an emitted kernel under its name without the prefix of C."""
+    operations = read_kernel(emitted.source, f"{emitted.function}{suffix}", f"{emitted.name}.c")
+    return replace(operations, name=f"{emitted.name}{suffix}")
+
+
 def _of_library(kernel: str, precision: str) -> tuple[Operations, Problem, None]:
-    operations = read_kernel(emit(kernel).source, f"{kernel}{PRECISIONS[precision]}", f"{kernel}.c")
+    operations = _operations(emit(kernel), PRECISIONS[precision])
     return operations, problem(definition(kernel), operations), None
 
 
@@ -89,7 +96,7 @@ def _of_scene(scene: str, precision: str) -> tuple[Operations, Problem, SceneInp
     if precision != "double":
         raise InputError(f"--precision: expected double for a scene, whose kernel is in double only, got {precision}")
     emitted = emit(scene)
-    operations = read_kernel(emitted.source, emitted.name, f"{emitted.name}.c")
+    operations = _operations(emitted)
     inputs = scene_inputs(scene)
     return operations, scene_problem(inputs, operations), inputs
 

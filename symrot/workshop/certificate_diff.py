@@ -67,7 +67,7 @@ def _meaning(text: str, emitted: Subject) -> str:
     same = True
     try:
         for suffix in emitted.types:
-            name = f"{emitted.name}{suffix}"
+            name = f"symrot_{emitted.name}{suffix}"
             now, was = read_kernel(text, name, file), read_kernel(emitted.files[file], name, file)
             prove_equal(now, symbols, formulas, emitted.named, emitted.parameters)
             same = same and now.digest() == was.digest() == read_batch(text, f"{name}_batch", file).digest()

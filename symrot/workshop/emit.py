@@ -36,7 +36,9 @@ class _Texts(NamedTuple):
 
 
 class Emitted(_Texts):
-    """An emitted kernel: the name of its function, the text, and in C the header (empty otherwise).
+    """An emitted kernel: its name, the text, and in C the header (empty otherwise).
+
+    In NumPy the function has the name of the kernel; in C it is ``function``, the name with the prefix ``symrot_``.
 
     ``certificate`` is the text of its certificate; it is proven at the first access. The certificate of a kernel of the
     library contains the bounds of its rounding errors on its own box; that of a scene's kernel contains the bounds that
@@ -45,6 +47,11 @@ class Emitted(_Texts):
 
     kernel: Any = None
     bounds: Mapping[str, Any] | None = None
+
+    @property
+    def function(self) -> str:
+        """The name of the C function for one sample in double precision."""
+        return f"symrot_{self.name}"
 
     @cached_property
     def certificate(self) -> str:

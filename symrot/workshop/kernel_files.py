@@ -72,11 +72,12 @@ def stored_bounds(kernel: str | Path, directory: Path | None) -> Mapping[str, An
     """
     if directory is None or kernel in kernel_names():
         return None
-    name, source, _ = emit(kernel)
+    emitted = emit(kernel)
+    name, source = emitted.name, emitted.source
     section = _slots(directory / f"{name}.cert.json").get("rounding")
     if not isinstance(section, dict):
         return None
-    operations = read_kernel(source, name, f"{name}.c")
+    operations = read_kernel(source, emitted.function, f"{name}.c")
     try:
         check_section(section, operations, None)
         check_bounds(section, operations, None)

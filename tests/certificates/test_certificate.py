@@ -312,7 +312,7 @@ def test_arguments_that_a_kernel_does_not_take_are_refused(kernels):
 def test_recheck_refuses_a_text_that_rounds_more_than_it_says(name, term, huge, tmp_path):
     """``(x + 1e20) - 1e20`` is x in exact arithmetic, and nearly always 0 in C."""
     files = Files(tmp_path, subject(name), emit(name).certificate)
-    head = files.source.index("{\n", files.source.index(f"void {name}("))
+    head = files.source.index("{\n", files.source.index(f"void symrot_{name}("))
     place = re.compile(term).search(files.source, head)
     text = f"{files.source[: place.start()]}(({place[0]} + {huge}) - {huge}){files.source[place.end() :]}"
     (files.directory / f"{name}.c").write_text(text, encoding="utf-8")
@@ -427,10 +427,10 @@ def test_a_kernel_may_be_named_by_what_was_emitted_of_it(path, tmp_path, capsys)
 
 EDITS = {  # file, what is edited -> what takes its place, what is said of it
     "sign": (".c", "omega_2*cos_psi - sin_psi", "omega_2*cos_psi + sin_psi",
-             "line 49 is 'dangles[1] = omega_2*cos_psi + sin_psi*omega_3;'", "expected dangles[1] to be omega_2*cos(psi) - omega"),
+             "line 40 is 'dangles[1] = omega_2*cos_psi + sin_psi*omega_3;'", "expected dangles[1] to be omega_2*cos(psi) - omega"),
     "order": (".c", "omega_2*cos_psi - ", "cos_psi*omega_2 - ", "with other operations", "but symrot emits"),
     "arguments": (".c", "(const double angles[3], const double omega[3]", "(const double omega[3], const double angles[3]",
-                  "is 'void euler_zyx_body_rates(const double omega[3], const double angles[3]", "but symrot emits"),
+                  "is 'void symrot_euler_zyx_body_rates(const double omega[3], const double angles[3]", "but symrot emits"),
     "constant": (".c", "cos_theta;\n", "cos_theta*1.0000000000000002;\n", "1.0000000000000002", "but symrot emits"),
     "header": (".h", "double dangles[3]);", "double dangles[4]);", "double dangles[4]);'", "euler_zyx_body_rates.h is not"),
     "more": (".h", "\n#endif\n", "\n#endif\n#define sin cos\n", "'#define sin cos', but symrot emits no such line", ".h is not"),

@@ -28,7 +28,7 @@ def proven(name, text, suffix=""):
         for i, component in enumerate(a.components)
     }
     formulas = {f"{a.name}[{i}]": formula for a, each in found.results for i, formula in enumerate(each)}
-    return prove_equal(read_kernel(text, f"{name}{suffix}", name), places, formulas, found.named)
+    return prove_equal(read_kernel(text, f"symrot_{name}{suffix}", name), places, formulas, found.named)
 
 
 def text_of(name):

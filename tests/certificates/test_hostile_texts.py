@@ -23,14 +23,14 @@ SUM, TURN = (
     "dangles[1] = omega_2*cos_psi - sin_psi*omega_3;",
     "const double turning = (omega_2*sin_psi + omega_3*cos_psi)/cos_theta;",
 )
-EACH, GUARD = SUM.replace("[1]", "[1*n + k]"), "SYMROT_ROTATION_VECTOR_OF_QUATERNION_H"
+EACH, GUARD = SUM.replace("[1]", "[n + k]"), "SYMROT_ROTATION_VECTOR_OF_QUATERNION_H"
 PSI, FAR = "const double psi = angles[2];", "beyond += symrot_far(psi) + symrot_far(theta);"
 HOSTILE = {  # what it is: kernel, what is replaced in the text of it, by what
     "integer division": (R, SUM, SUM.replace("cos_psi -", "cos_psi + 1/2 -")),
     "integer": (R, SUM, SUM.replace("cos_psi -", "cos_psi*1 -")),
     "octal index": (Q, "dcm[8]", "dcm[010]"),
-    "hex": (S, "2.0*(x1", "0x2p0*(x1"),
-    "underscores": (S, "2.0*(x1", "2_0.0e-1*(x1"),
+    "hex": (S, "2.0*(v1_arc_ratio_1", "0x2p0*(v1_arc_ratio_1"),
+    "underscores": (S, "2.0*(v1_arc_ratio_1", "2_0.0e-1*(v1_arc_ratio_1"),
     "power of a pointer": (R, "omega_2*sin_psi", "omega_2**omega*sin_psi"),
     "line comment": (R, "turning*sin_theta;", "turning // *sin_theta\n;"),
     "comment that ends twice": (R, SUM, SUM.replace(" - ", " /*/ - /*/ + ")),
@@ -44,8 +44,8 @@ HOSTILE = {  # what it is: kernel, what is replaced in the text of it, by what
     "vertical tab": (R, SUM, SUM.replace(" - ", " -\v ")),
     "other alphabet": (R, "psi = angles[2]", "p\u0455i = angles[2]"),
     "float in double": (R, TURN, TURN.replace("double", "float")),
-    "float literal": (S, "2.0*(x1", "2.0f*(x1"),
-    "long literal": (S, "2.0*(x1", "2.0L*(x1"),
+    "float literal": (S, "2.0*(v1_arc_ratio_1", "2.0f*(v1_arc_ratio_1"),
+    "long literal": (S, "2.0*(v1_arc_ratio_1", "2.0L*(v1_arc_ratio_1"),
     "float function": (R, "sin(psi)", "sinf(psi)"),
     "cast": (R, TURN, TURN.replace("= (", "= (float)(")),
     "cast of minus": (R, SUM, SUM.replace("= omega_2", "= (int)-omega_2")),
@@ -57,7 +57,7 @@ HOSTILE = {  # what it is: kernel, what is replaced in the text of it, by what
     "comma": (R, SUM, SUM.replace("= omega_2", "= (omega_1, omega_2)")),
     "chain of choices": (S, "s == 0.0 ? 1.0/c : atan2(s, c)/s", "s == 0.0 ? 1.0/c : c == 0.0 ? 1.0 : atan2(s, c)/s"),
     "chain of comparisons": (S, "s == 0.0 ? 1.0/c", "0.0 < s == 0.0 ? 1.0/c"),
-    "choice at a threshold": (Q, "const double x0 = 1.0 + R_11;", "const double x0 = symrot_select_ge(R_22, 1000.0, R_11, 1.0 + R_11);"),
+    "choice at a threshold": (Q, "const double one_plus_R_11 = 1.0 + R_11;", "const double one_plus_R_11 = symrot_select_ge(R_22, 1000.0, R_11, 1.0 + R_11);"),
     "bump": (R, SUM, SUM.replace(";", " + fabs(psi - 7.0) + fabs(psi - 8.0) - 2.0*fabs(psi - 7.5);")),
     "square root of a square": (R, SUM, SUM.replace("= omega_2", "= sqrt((omega_2 + 9.0)*(omega_2 + 9.0)) - 9.0 + 0.0*omega_2")),
     "decrement": (R, SUM, SUM.replace(" - sin", " --sin")),
@@ -75,7 +75,7 @@ HOSTILE = {  # what it is: kernel, what is replaced in the text of it, by what
     "input written": (R, SUM, SUM + " ((double *)omega)[0] = 0.0;"),
     "input not const": (R, "(const double angles[3]", "(double angles[3]"),
     "arguments swapped": (R, "const double angles[3], const double omega[3]", "const double omega[3], const double angles[3]"),
-    "function twice": (R, "\nvoid", "\nvoid euler_zyx_body_rates_batch(size_t n) { }\n\nvoid"),
+    "function twice": (R, "\nvoid", "\nvoid symrot_euler_zyx_body_rates_batch(size_t n) { }\n\nvoid"),
     "own sine": (R, "\nvoid", "\nstatic inline double symrot_sin(double x)\n{\n    return x;\n}\n\nvoid"),
     "global": (R, "\nvoid", "\nstatic const double pi = 3.0;\n\nvoid"),
     "local function": (R, SUM, "double cos(double); " + SUM),
@@ -222,7 +222,8 @@ FORGED = {  # what it is: kernel, part of its readback or law, what takes its pl
 def test_a_certificate_of_other_constants_or_series_is_refused(kernels, refused, what):
     name, part, changed = FORGED[what]
     readback = json.loads(json.dumps(kernels[name].data["readback"]))
-    readback[name][part][0] = changed(readback[name][part][0])
+    function = f"symrot_{name}"
+    readback[function][part][0] = changed(readback[function][part][0])
     assert refused(name, kernels[name].source, readback=readback)
 
 

@@ -196,14 +196,14 @@ def test_no_error_of_any_kernel_is_larger_than_its_bound(name):
 
 def test_a_kernel_that_rounds_worse_has_a_larger_bound():
     text = text_of("euler_zyx_body_rates")
-    at = text.index("void euler_zyx_body_rates(")
+    at = text.index("void symrot_euler_zyx_body_rates(")
     body = text[at : text.index("}", at)]
     product = next(line for line in body.splitlines() if "dangles[0]" in line)
     value = product.split("=", 1)[1].strip().rstrip(";")
     changed = text.replace(product, product.replace(value, f"({value} + 1024.0) - 1024.0"), 1)
     found = []
     for source in (text, changed):
-        operations = read_kernel(source, "euler_zyx_body_rates")
+        operations = read_kernel(source, "symrot_euler_zyx_body_rates")
         given = problem(definition("euler_zyx_body_rates"), operations)
         found.append(bound_outputs(operations, given.box, budget=BUDGET)[0].bound)
     assert found[1] > 2 * found[0]

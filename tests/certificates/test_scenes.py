@@ -117,7 +117,7 @@ def test_a_forged_bound_is_not_printed_again(tmp_path, capsys, monkeypatch, part
     else:
         data["rounding"]["budget"] = 10**9
     emitted = emit("t_handle")
-    check_section(data["rounding"], read_kernel(emitted.source, emitted.name, "t_handle_rates.c"), None)
+    check_section(data["rounding"], read_kernel(emitted.source, emitted.function, "t_handle_rates.c"), None)
     path.write_text(json.dumps(data), encoding="utf-8")
     assert stored_bounds("t_handle", Path("k")) is None
     assert main(["emit", "t_handle", "-o", "k"]) == 0
@@ -148,7 +148,7 @@ def test_time_is_the_span_of_the_scene_and_parameters_are_points():
     assert all(low == high for place, (low, high) in box.items() if place[0] == "p")
     _, _, free = rounding_problem("t_handle", CUBE, "double")
     emitted = emit("t_handle")
-    operations = read_kernel(emitted.source, emitted.name, "t_handle_rates.c")
+    operations = read_kernel(emitted.source, emitted.function, "t_handle_rates.c")
     assert list(free) == list(operations.inputs) and free["t"][1] > 10**308  # not used: any
 
 

@@ -234,7 +234,7 @@ def test_c_cpp_numpy_and_program_agree_to_the_last_bit(tmp_path, name, language)
     y, t = draw.normal(size=(size, n)), draw.normal(size=n)
     p = array(bind(lowered.parameters, plan.constants))
     by_numpy = load_numpy_kernel(lowered.program)
-    one, batch = getattr(library, emitted.name), getattr(library, f"{emitted.name}_batch")
+    one, batch = getattr(library, emitted.function), getattr(library, f"{emitted.function}_batch")
     many = np.empty((size, n))
     arguments = [pointer(t), pointer(array(y)), *([pointer(p)] if len(p) else []), pointer(many)]
     batch(ctypes.c_size_t(n), *arguments)

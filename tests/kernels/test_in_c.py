@@ -129,7 +129,7 @@ def test_what_kernels_call_is_within_its_stated_error():
 def test_arc_tangents_at_zeros_and_beyond_numbers():
     """Zeros of either sign as in C, the axes and diagonals to the last bit; NaN of what is no number."""
     (function,) = (each for each in ulps.FUNCTIONS if each.name == "atan2")
-    loaded = ctypes.CDLL(str(ulps.library.build(ulps._text(function), "ulps", ulps.FLAGS)))
+    loaded = ctypes.CDLL(str(ulps.cache.build(ulps._text(function), "ulps", ulps.FLAGS)))
     sides = (0.0, -0.0, 1.0, -1.0, 3.0, -3.0)
     given = np.array([(y, x) for y in sides for x in sides if abs(y) == abs(x) or not y * x]).T
     for real, kind in ((ulps.DOUBLE, np.float64), (ulps.FLOAT, np.float32)):

@@ -35,6 +35,7 @@ class _Scope:
 
     values: dict[str, int] = field(default_factory=dict)
     arrays: dict[str, Parameter] = field(default_factory=dict)
+    scalars: frozenset[str] = frozenset()  # arrays of a batch that hold one number for each sample
     written: dict[tuple[str, int], int] = field(default_factory=dict)
     loop: str = ""  # name of the index of the sample, in a batch
     count: str = ""  # name of the number of samples
@@ -98,7 +99,7 @@ class _Reader:
         scope.written[name, index] = value
 
     def _index(self, cursor: Cursor, scope: _Scope, array: Parameter) -> int:
-        """Read ``[i]`` of an array with a size, ``[i*n + k]`` of one in a batch."""
+        """Read ``[i]`` of an array with a size; in a batch ``[k]``, ``[n + k]`` or ``[i*n + k]``."""
         cursor.expect("[")
         if array.size > 0:
             index = cursor.integer()
@@ -107,8 +108,14 @@ class _Reader:
         else:
             if not scope.loop:
                 raise cursor.fail(f"an array with a size instead of {array.name}")
-            index = cursor.integer()
-            cursor.expect("*", scope.count, "+", scope.loop)
+            index = 0
+            if cursor.peek() == scope.count:
+                index = 1
+                cursor.expect(scope.count, "+")
+            elif cursor.peek() != scope.loop:
+                index = cursor.integer()
+                cursor.expect("*", scope.count, "+")
+            cursor.expect(scope.loop)
         cursor.expect("]")
         return index
 
@@ -180,7 +187,7 @@ class _Reader:
         array = scope.arrays.get(name)
         if array is None or not array.is_const:
             raise cursor.fail(f"an input array instead of {name}, before")
-        if scope.loop and cursor.peek(1) == scope.loop:  # a scalar of one sample, t[k]
+        if scope.loop and name in scope.scalars:  # a scalar of one sample, t[k]
             cursor.expect("[", scope.loop, "]")
             return self.input(name)
         return self.input(f"{name}[{self._index(cursor, scope, array)}]")
@@ -313,6 +320,8 @@ def read_batch(text: str, name: str, where: str = "kernel") -> Operations:
         raise CertificateError(f"{where}, line {function.line}: expected one number of samples for {name}")
     reader, scope = _Reader(functions, where, real, batch=True), _Scope(count=counts[0])
     scope.arrays = {p.name: p for p in function.parameters if p.type != "size_t"}
+    one = functions.get(name.removesuffix("_batch"))
+    scope.scalars = frozenset(p.name for p in one.parameters if not p.size) if one else frozenset()
     cursor = Cursor(function.body, where)
     while cursor.peek() == "(":
         cursor.expect("(", "void", ")")
@@ -345,7 +354,7 @@ def _parts(cursor: Cursor, reader: _Reader, scope: _Scope) -> None:
     """Read loops over the same samples, one block after the other: each assigns outputs of its own."""
     _heads(cursor, scope, SPAN)
     while cursor.peek() != "}":
-        part = _Scope(arrays=scope.arrays, count=scope.count)
+        part = _Scope(arrays=scope.arrays, scalars=scope.scalars, count=scope.count)
         reader.statements(Cursor(_samples(cursor, part, "start", "end"), cursor.where), part)
         twice = [f"{name}[{index}]" for name, index in part.written if (name, index) in scope.written]
         if twice:
@@ -370,7 +379,7 @@ def _blocks(cursor: Cursor, reader: _Reader, scope: _Scope) -> None:
     far = "symrot_farf" if reader.real == "float" else "symrot_far"
     body = _samples(cursor, scope, "start", "end")
     split = next((i for i, token in enumerate(body) if token.text == "beyond"), len(body))
-    plain = _Scope(arrays=scope.arrays, loop=scope.loop, count=scope.count)
+    plain = _Scope(arrays=scope.arrays, scalars=scope.scalars, loop=scope.loop, count=scope.count)
     reader.turning = set()
     reader.statements(Cursor(body[:split], cursor.where), scope)
     asked, mark = set(), "="

@@ -71,7 +71,7 @@ def problem(found: Definition, operations: Operations) -> Problem:
 
 def operations_of(name: str, text: str) -> tuple[Operations, Operations]:
     """Return the double and the float function of a kernel's C text."""
-    return read_kernel(text, name, f"{name}.c"), read_kernel(text, f"{name}f", f"{name}.c")
+    return tuple(read_kernel(text, f"symrot_{name}{suffix}", f"{name}.c") for suffix in ("", "f"))
 
 
 def _work(task: Task) -> Search:
