@@ -17,7 +17,7 @@ from typing import Any
 from symrot.certificates import exact_check
 from symrot.certificates.certificate import Data, printed, shown
 from symrot.certificates.readback.header import check_header
-from symrot.certificates.readback.intended_constants import meaning
+from symrot.certificates.readback.intended_constants import intended_value
 from symrot.certificates.readback.operations import Operations
 from symrot.certificates.readback.readback import read_batch, read_kernel
 from symrot.certificates.rounding.bounds import check_bounds, check_section
@@ -172,7 +172,9 @@ def _check_readback(data: Data, source: str) -> None:
             "digest": one.digest() == batch.digest() == said["digest"],
             "counts": said["operations"] == one.counts(),
             "constants": listed == [each for each in constants if each in listed]
-            and all(means == shown(meaning(Fraction(written), one.precision)) for written, means in said["constants"]),
+            and all(
+                means == shown(intended_value(Fraction(written), one.precision)) for written, means in said["constants"]
+            ),
             "series": series == [each for each in REMOVABLE if f"symrot_{each}{end}(" in source]
             and all(str(Fraction(text)) == text for _, split, _, rest in said["series"] for text in (split, rest)),
         }

@@ -20,7 +20,7 @@ from symrot.certificates.flags import flags_section
 from symrot.certificates.laws.equality import SAFE, Equality, prove_equal
 from symrot.certificates.laws.law_proof import CaseProof
 from symrot.certificates.laws.laws import LawProof, prove_law
-from symrot.certificates.readback.intended_constants import Meant
+from symrot.certificates.readback.intended_constants import IntendedConstant
 from symrot.certificates.readback.readback import read_batch, read_kernel
 from symrot.codegen.printing.banner import Description
 from symrot.errors import CertificateError
@@ -221,7 +221,7 @@ def _readback(subject: Subject, suffix: str, real: str) -> Data:
     }
 
 
-def shown(meant: Meant) -> str:
+def shown(meant: IntendedConstant) -> str:
     """Return what a constant stands for, as text."""
     return f"{meant.fraction}*pi" if meant.times_pi else str(meant.fraction)
 

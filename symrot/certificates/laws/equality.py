@@ -17,7 +17,7 @@ from sympy import QQ, Abs, Expr, Integer, Symbol, atan2, pi
 from sympy.polys.orderings import lex
 from sympy.polys.rings import PolyElement, PolyRing
 
-from symrot.certificates.readback.intended_constants import Meant, meaning
+from symrot.certificates.readback.intended_constants import IntendedConstant, intended_value
 from symrot.certificates.readback.operations import Operations
 from symrot.errors import CertificateError
 from symrot.kernels.removable import REMOVABLE, arc_ratio, explicit, sinc
@@ -48,7 +48,7 @@ class Equality:
 
     atoms: tuple[tuple[str, str, tuple[str, ...]], ...]
     formulas: tuple[tuple[str, str, str], ...]
-    rounded: tuple[Meant, ...]
+    rounded: tuple[IntendedConstant, ...]
     truncations: tuple[Truncation, ...]
 
 
@@ -158,7 +158,7 @@ class _Prover:
     ) -> None:
         self.operations, self.fractions, self.symbol_of, self.meant = operations, fractions, symbol_of, meant
         self.values: list[Quotient] = []
-        self.rounded: dict[Fraction, Meant] = {}
+        self.rounded: dict[Fraction, IntendedConstant] = {}
         self.truncations: list[Truncation] = []
         self.in_series: set[int] = set()
 
@@ -203,7 +203,7 @@ class _Prover:
         return fractions.atom(kind, tuple(taken))
 
     def _constant(self, value: Fraction) -> Quotient:
-        meant = meaning(value, self.operations.precision)
+        meant = intended_value(value, self.operations.precision)
         if meant.fraction != value or meant.times_pi:
             self.rounded[value] = meant
         number = self.fractions.number(meant.fraction)
@@ -265,7 +265,7 @@ class _Prover:
     def _truncated(self, name: str, split: Fraction, written: list[Fraction]) -> Truncation:
         exact = REMOVABLE[name].taylor(len(written) + 1)
         for value, true in zip(written, exact, strict=False):
-            if not Meant(value, true, False).rounds(self.operations.precision):
+            if not IntendedConstant(value, true, False).rounds(self.operations.precision):
                 expected = f"the coefficient {true} of the series of {name}"
                 raise CertificateError(f"{self.operations.name}: expected {expected}, got {float(value)!r}")
         terms = [abs(a) * split**k for k, a in enumerate(exact)]

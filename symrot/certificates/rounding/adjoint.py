@@ -21,7 +21,7 @@ from math import inf, nextafter, pi
 import numpy as np
 from numpy.typing import NDArray
 
-from symrot.certificates.readback.intended_constants import meaning
+from symrot.certificates.readback.intended_constants import intended_value
 from symrot.certificates.readback.operations import Node
 from symrot.certificates.rounding import functions, intervals
 from symrot.certificates.rounding.centred import Centred
@@ -113,7 +113,7 @@ def _constant_error(written: Fraction, precision: str, told: bool) -> float:
     if is_short(written):
         return 0.0
     try:
-        meant = meaning(written, precision) if told else None
+        meant = intended_value(written, precision) if told else None
     except CertificateError:
         meant = None
     if meant is None:
