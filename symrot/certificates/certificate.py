@@ -17,7 +17,7 @@ from sympy import Expr, Function, Symbol
 from symrot.build import cache as library
 from symrot.certificates.coq.library import coq_section
 from symrot.certificates.flags import flags_section
-from symrot.certificates.laws.equality import SAFE, Equality, prove_equal
+from symrot.certificates.laws.equality import FUNCTIONS_WITH_LIMIT, Equality, prove_equal
 from symrot.certificates.laws.law_proof import CaseProof
 from symrot.certificates.laws.laws import LawProof, prove_law
 from symrot.certificates.readback.intended_constants import IntendedConstant
@@ -112,7 +112,7 @@ def certificate_text(subject: Subject) -> str:
 
 
 PROVERS = (
-    "certificate", "laws/equality", "laws/law_proof", "laws/laws", "readback/c_functions",
+    "certificate", "laws/equality", "laws/fractions", "laws/law_proof", "laws/laws", "readback/c_functions",
     "readback/intended_constants", "readback/operations", "readback/readback", "../kernels/removable",
 )  # fmt: skip
 """The programs that find proofs: another one of them, other proofs."""
@@ -157,7 +157,7 @@ def _functions(formulas: Sequence[Expr]) -> list[list[str]]:
     x, y = (Symbol(name, real=True) for name in "xy")
     found = {type(call).__name__ for formula in formulas for call in formula.atoms(Function)}
     texts = {}
-    for safe in SAFE:
+    for safe in FUNCTIONS_WITH_LIMIT:
         limit, formula = (
             each.xreplace(dict(zip(safe.arguments, (x, y), strict=False))) for each in (safe.limit, safe.formula)
         )
@@ -184,7 +184,7 @@ def _proven(subject: Subject) -> Data:
 
 def _law(found: LawProof) -> Data:
     return {
-        "law": found.text, "vanishing": list(found.vanishing), "given": list(found.given),
+        "law": found.text, "vanishing": list(found.vanishing), "given": list(found.hypothesis_names),
         "witness": dict(found.witness), "cases": [_case(case) for case in found.cases],
     }  # fmt: skip
 
