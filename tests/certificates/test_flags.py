@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from symrot.certificates.flags import BITS, BOUNDS, NOTHING, flags_section, judge
+from symrot.certificates.flags import BITS, BOUNDS, NOTHING, classify_flags, flags_section
 from symrot.cli.main import main
 from symrot.errors import InputError
 
@@ -40,9 +40,9 @@ KERNELS = Path(__file__).parents[2] / "generated" / "c"
     ],
 )
 def test_flags_are_judged_in_their_order(flags, holds):
-    found = judge(flags)
+    found = classify_flags(flags)
     assert found.holds == holds and found.accepted == (holds != NOTHING)
-    assert found == judge(flags.split())
+    assert found == classify_flags(flags.split())
     if holds == NOTHING:
         assert found.sentence().startswith("the certificate is void (-")
 
@@ -54,7 +54,7 @@ def test_flags_are_judged_in_their_order(flags, holds):
 )  # fmt: skip
 def test_a_flag_or_a_compiler_that_nobody_knows_is_refused_in_one_sentence(flag):
     with pytest.raises(InputError, match=r"^flags: expected"):
-        judge(flag)
+        classify_flags(flag)
 
 
 @pytest.mark.parametrize(
@@ -65,7 +65,7 @@ def test_a_flag_or_a_compiler_that_nobody_knows_is_refused_in_one_sentence(flag)
 )  # fmt: skip
 def test_compilers_are_known_by_their_names(flags, holds):
     """One for a processor with x87 keeps more digits than a type has, unless it is told to use SSE."""
-    assert judge(flags).holds == holds
+    assert classify_flags(flags).holds == holds
 
 
 def test_the_section_of_flags_gives_a_reason_for_each():
@@ -74,9 +74,9 @@ def test_the_section_of_flags_gives_a_reason_for_each():
     for name, rows in section.items():
         assert all(rows.values()), name
     for flag in section["void"]:
-        assert judge([flag, "-ffp-contract=off"]).holds == NOTHING
+        assert classify_flags([flag, "-ffp-contract=off"]).holds == NOTHING
     for flag in section["allowed"]:
-        assert judge([flag, "-ffp-contract=off"]).holds == BITS
+        assert classify_flags([flag, "-ffp-contract=off"]).holds == BITS
 
 
 @pytest.mark.parametrize(

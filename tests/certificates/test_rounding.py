@@ -14,10 +14,17 @@ import pytest
 from symrot.certificates.readback.readback import read_kernel
 from symrot.certificates.rounding import functions, intervals
 from symrot.certificates.rounding.adjoint import evaluate
-from symrot.certificates.rounding.bounds import STORE, bound_outputs, bound_task, check_section, rounding_section, tasks
-from symrot.certificates.rounding.bounds_text import in_words, library_section, rounded_up
-from symrot.certificates.rounding.library import largest_box, operations_of, prepare, problem, resized
-from symrot.certificates.rounding.output_graph import cone_of
+from symrot.certificates.rounding.bounds import (
+    STORE,
+    bound_outputs,
+    bound_task,
+    bound_tasks,
+    check_section,
+    rounding_section,
+)
+from symrot.certificates.rounding.bounds_text import bounds_sentence, library_section, rounded_up
+from symrot.certificates.rounding.library import largest_box, library_problem, operations_of, prepare, resized
+from symrot.certificates.rounding.output_graph import output_graph
 from symrot.certificates.rounding.region import Region
 from symrot.certificates.rounding.store import TABLE, method, printed_table, table
 from symrot.cli.main import main
@@ -172,7 +179,7 @@ def test_arithmetic_is_enclosed_and_exact_ends_stay():
 
 def rows_of(name, suffix="", points=3000, budget=BUDGET):
     operations = operations_of(name, text_of(name))[1 if suffix else 0]
-    given = problem(definition(name), operations)
+    given = library_problem(definition(name), operations)
     bounds = bound_outputs(operations, given.box, given.region, budget)
     return compare(operations, bounds, measure(operations, given.box, bounds, given.region, points), name)
 
@@ -204,7 +211,7 @@ def test_a_kernel_that_rounds_worse_has_a_larger_bound():
     found = []
     for source in (text, changed):
         operations = read_kernel(source, "euler_zyx_body_rates")
-        given = problem(definition("euler_zyx_body_rates"), operations)
+        given = library_problem(definition("euler_zyx_body_rates"), operations)
         found.append(bound_outputs(operations, given.box, budget=BUDGET)[0].bound)
     assert found[1] > 2 * found[0]
 
@@ -212,19 +219,19 @@ def test_a_kernel_that_rounds_worse_has_a_larger_bound():
 def test_the_bound_of_a_part_is_never_larger():
     """Bounds on halves of a box are at most that of the box, and a point is at most its box."""
     operations = operations_of("euler_zyx_body_rates", text_of("euler_zyx_body_rates"))[0]
-    given = problem(definition("euler_zyx_body_rates"), operations)
-    cone = cone_of(operations, operations.outputs[0][1])
-    ends = np.array([[float(given.box[place][k]) for place in cone.places] for k in (0, 1)])
+    given = library_problem(definition("euler_zyx_body_rates"), operations)
+    graph = output_graph(operations, operations.outputs[0][1])
+    ends = np.array([[float(given.box[place][k]) for place in graph.places] for k in (0, 1)])
     rng = np.random.default_rng(2)
-    inner = np.sort(rng.uniform(ends[0][:, None], ends[1][:, None], (2, len(cone.places), 200)), axis=0)
+    inner = np.sort(rng.uniform(ends[0][:, None], ends[1][:, None], (2, len(graph.places), 200)), axis=0)
     outer = np.stack([(inner[0] + ends[0][:, None]) / 2, (inner[1] + ends[1][:, None]) / 2])
     none = np.zeros((0, 200), np.int8)
-    assert (evaluate(cone, inner, none).bound <= evaluate(cone, outer, none).bound * (1 + 1e-12)).all()
+    assert (evaluate(graph, inner, none).bound <= evaluate(graph, outer, none).bound * (1 + 1e-12)).all()
 
 
 def test_an_angle_is_compared_modulo_whole_turns_and_said_so():
     operations = operations_of("euler_zxz_of_quaternion", text_of("euler_zxz_of_quaternion"))[0]
-    given = problem(definition("euler_zxz_of_quaternion"), operations)
+    given = library_problem(definition("euler_zxz_of_quaternion"), operations)
     first, second, _ = bound_outputs(operations, given.box, given.region, BUDGET)
     assert first.turns and not second.turns
     assert all("whole turns" in choice for choice in first.choices)
@@ -236,14 +243,14 @@ def test_an_angle_is_compared_modulo_whole_turns_and_said_so():
 @pytest.fixture(scope="module")
 def section():
     kernels = operations_of("quaternion_dcm", text_of("quaternion_dcm"))
-    given = problem(definition("quaternion_dcm"), kernels[0])
+    given = library_problem(definition("quaternion_dcm"), kernels[0])
     return rounding_section(*kernels, given.box, given.region, BUDGET), kernels
 
 
 def test_a_section_is_plain_data_and_the_same_again(section):
     found, kernels = section
     again = rounding_section(
-        *kernels, problem(definition("quaternion_dcm"), kernels[0]).box, Region(), BUDGET, fresh=True
+        *kernels, library_problem(definition("quaternion_dcm"), kernels[0]).box, Region(), BUDGET, fresh=True
     )
     assert json.dumps(again) == json.dumps(json.loads(json.dumps(found)))
     check_section(found, *kernels)
@@ -330,8 +337,8 @@ def test_the_table_is_of_this_method_and_holds_the_library():
     assert table()["method"] == method()
     for name in SLICE:
         for operations in operations_of(name, text_of(name)):
-            given = problem(definition(name), operations)
-            for task in tasks(operations, given.box, given.region).values():
+            given = library_problem(definition(name), operations)
+            for task in bound_tasks(operations, given.box, given.region).values():
                 assert task.key in table()["bounds"]
     found = {key: STORE.get(key) for key in table()["bounds"]}
     assert printed_table(found.items()) == TABLE.read_text(encoding="utf-8")
@@ -341,8 +348,8 @@ def test_the_table_is_of_this_method_and_holds_the_library():
 @pytest.mark.parametrize("name", ["quaternion_dcm", "inertia_cone"])
 def test_bounds_of_the_table_are_found_again(name):
     for operations in operations_of(name, text_of(name)):
-        given = problem(definition(name), operations)
-        for task in tasks(operations, given.box, given.region).values():
+        given = library_problem(definition(name), operations)
+        for task in bound_tasks(operations, given.box, given.region).values():
             assert bound_task(task, fresh=True) == STORE.get(task.key)
 
 
@@ -352,8 +359,8 @@ def test_bounds_of_the_table_are_found_again(name):
 def test_a_forged_bound_of_the_table_is_found(change, monkeypatch):
     """By the point that it names: `python -m symrot.workshop.bound_table --check` looks at all of them."""
     double, _ = operations_of("quaternion_dcm", text_of("quaternion_dcm"))
-    given = problem(definition("quaternion_dcm"), double)
-    wanted = {task.key: task for task in tasks(double, given.box, given.region).values()}
+    given = library_problem(definition("quaternion_dcm"), double)
+    wanted = {task.key: task for task in bound_tasks(double, given.box, given.region).values()}
     assert understated(wanted) == []
     key = next(iter(wanted))
     forged = replace(STORE.get(key), **change)
@@ -368,7 +375,7 @@ def test_certificates_and_heads_say_the_bounds_of_the_text_under_them():
         section = library_section(name, text)
         assert json.loads((GENERATED / f"{name}.cert.json").read_text(encoding="utf-8"))["rounding"] == section
         head = " ".join(line.strip(" *") for line in text[: text.index("*/")].splitlines())
-        assert f"Errors: {in_words(name, text)}." in head
+        assert f"Errors: {bounds_sentence(name, text)}." in head
 
 
 @pytest.mark.parametrize("value", ["0", "1/3", "1", "999", "9991/10", "1/1000", "123456789", "1/99999"])

@@ -5,8 +5,8 @@ import pytest
 
 from symrot.certificates.readback.operations import RELATIONS
 from symrot.certificates.rounding import functions
-from symrot.certificates.rounding.choices import decide, narrow
-from symrot.certificates.rounding.output_graph import Cone
+from symrot.certificates.rounding.choices import decide_branches, narrow_to_branch
+from symrot.certificates.rounding.output_graph import OutputGraph
 from symrot.certificates.rounding.region import Region, narrowed, off_unit
 
 
@@ -53,15 +53,15 @@ def test_what_a_branch_tells_holds_of_computed_numbers(relation):
     values = [a, b, total, difference]
     nodes = (("in", 0), ("in", 1), ("add", 0, 1), ("sub", 0, 1))
     for i, j in ((0, 1), (2, 3), (3, 2), (1, 2)):
-        cone = Cone("binary32", ("a", "b"), nodes, ((relation, i, j),))
+        graph = OutputGraph("binary32", ("a", "b"), nodes, ((relation, i, j),))
         boxes = [np.stack([x - rng.uniform(0, 0.5, 400), x + rng.uniform(0, 0.5, 400)]) for x in values]
         truth = RELATIONS[relation](values[i], values[j])
         given = np.where(rng.random(400) < 0.5, truth, -1).astype(np.int8)
-        outside, open_ = decide(relation, boxes[i], boxes[j], given)
+        outside, open_ = decide_branches(relation, boxes[i], boxes[j], given)
         assert not outside.any() and (open_ | (given == truth)).all()
-        narrow(cone, 0, given, boxes)
+        narrow_to_branch(graph, 0, given, boxes)
         for x, box in zip(values, boxes, strict=True):
             assert ((box[0] <= x) & (x <= box[1])).all()
         wrong = (1 - truth).astype(np.int8)
         apart = (boxes[i][0] > boxes[j][1]) | (boxes[i][1] < boxes[j][0])
-        assert decide(relation, boxes[i], boxes[j], wrong)[0][apart].all()
+        assert decide_branches(relation, boxes[i], boxes[j], wrong)[0][apart].all()

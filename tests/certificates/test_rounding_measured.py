@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from symrot.certificates.rounding.bounds import bound_outputs
-from symrot.certificates.rounding.library import operations_of, problem
+from symrot.certificates.rounding.library import library_problem, operations_of
 from symrot.certificates.rounding.region import UNIT_NORM, Region
 from symrot.kernels.library import definition
 from tests.campaigns.certificates import rounding_campaign
@@ -31,7 +31,7 @@ def text_of(name):
 def test_a_bound_that_is_too_small_is_caught(name, part, suffix):
     """By the points that the adversary finds: bounds are not twice as large as they have to be."""
     operations = operations_of(name, text_of(name))[1 if suffix else 0]
-    given = problem(definition(name), operations)
+    given = library_problem(definition(name), operations)
     bounds = bound_outputs(operations, given.box, given.region)[:1]
     found = measure(operations, given.box, bounds, given.region, 100_000)
     assert all(row.holds and row.tight for row in compare(operations, bounds, found, name))
@@ -54,7 +54,7 @@ def test_the_campaign_refuses_a_bound_that_is_too_small(monkeypatch, capsys):
 
 def test_what_is_measured_is_found_again_and_of_the_region():
     operations = operations_of("euler_zxz_of_quaternion", text_of("euler_zxz_of_quaternion"))[0]
-    given = problem(definition("euler_zxz_of_quaternion"), operations)
+    given = library_problem(definition("euler_zxz_of_quaternion"), operations)
     bounds = bound_outputs(operations, given.box, given.region)[:1]
     first, second = (measure(operations, given.box, bounds, given.region, 2000) for _ in range(2))
     assert first == second

@@ -10,7 +10,7 @@ import pytest
 from symrot.certificates import recheck
 from symrot.certificates.readback.readback import read_kernel
 from symrot.certificates.rounding.bounds import check_section
-from symrot.certificates.rounding.constants import enclosed
+from symrot.certificates.rounding.constants import parameter_range
 from symrot.cli.main import main
 from symrot.errors import InputError
 from symrot.formula.tree import parse
@@ -187,16 +187,16 @@ def _states(scene):
 def test_a_range_of_a_constant_is_as_wide_as_the_parameters_it_makes():
     """A constant that is given as the point it has changes nothing; powers, roots and quotients are enclosed."""
     a, ends = parse("a"), (Fraction(-1), Fraction(2))
-    assert enclosed("p", a, {}, {"a": ends}) == ends
-    assert enclosed("p", parse("a**2"), {}, {"a": ends}) == (0, 4)
-    assert enclosed("p", parse("abs(a)**3"), {}, {"a": ends}) == (0, 8)
-    low, high = enclosed("p", parse("sqrt(a)/(1 + a)"), {}, {"a": (Fraction(1), Fraction(4))})
+    assert parameter_range("p", a, {}, {"a": ends}) == ends
+    assert parameter_range("p", parse("a**2"), {}, {"a": ends}) == (0, 4)
+    assert parameter_range("p", parse("abs(a)**3"), {}, {"a": ends}) == (0, 8)
+    low, high = parameter_range("p", parse("sqrt(a)/(1 + a)"), {}, {"a": (Fraction(1), Fraction(4))})
     assert Fraction(39, 100) < low < Fraction(2, 5) and Fraction(1, 2) < high < Fraction(51, 100)
-    low, high = enclosed("p", parse("b*sin(a)*pi"), {"b": Fraction(2)}, {"a": ends})
+    low, high = parameter_range("p", parse("b*sin(a)*pi"), {"b": Fraction(2)}, {"a": ends})
     assert (low, high) == (-high, high) and 6 < high < 7
     for formula in ("1/a", "sqrt(a)", "a**-2"):
         with pytest.raises(InputError, match=r"is a finite number, got a -1 \.\. 2"):
-            enclosed("p", parse(formula), {}, {"a": ends})
+            parameter_range("p", parse(formula), {}, {"a": ends})
     _, _, points = rounding_problem("t_handle", CUBE, "double")
     exact = scene_inputs("t_handle").constants["A"]
     _, _, same = rounding_problem(

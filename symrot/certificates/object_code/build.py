@@ -11,7 +11,7 @@ from shutil import which
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from symrot.certificates.flags import judge
+from symrot.certificates.flags import classify_flags
 from symrot.certificates.object_code.comparison import ObjectVerdict, compare_object
 from symrot.certificates.tools import run_tool
 from symrot.errors import CertificateError, CompilerError
@@ -129,7 +129,7 @@ def _object(
         compile_object(compiler, flags, source, target)
         verdicts = compare_object(text, target, functions, source.name)
         digest = sha256(target.read_bytes()).hexdigest()
-    judgement = judge((compiler, *flags))
+    judgement = classify_flags((compiler, *flags))
     return {
         "compiler": compiler,
         "version": version,

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from symrot.certificates.rounding.adjoint import evaluate
 from symrot.certificates.rounding.intervals import DIGITS
-from symrot.certificates.rounding.output_graph import Cone
+from symrot.certificates.rounding.output_graph import OutputGraph
 from symrot.certificates.rounding.region import UNIT_NORM, Region
 from tests.campaigns.certificates.rounding_replay import FLOAT, Points
 
@@ -87,15 +87,15 @@ class Field:
         return rounded.astype(self.kind), inside
 
 
-def pointwise(cone: Cone, field: Field, libm_ulp: float) -> Errors:
+def pointwise(graph: OutputGraph, field: Field, libm_ulp: float) -> Errors:
     """Return the bounds that the method finds at single points: where they are large, roundings are coarse."""
-    rows = [field.places.index(place) for place in cone.places]
+    rows = [field.places.index(place) for place in graph.places]
 
     def bounds(points: Points) -> NDArray[np.float64]:
         at = points[rows].astype(np.float64)
-        decided = np.full((len(cone.conditions), at.shape[1]), -1, np.int8)
+        decided = np.full((len(graph.conditions), at.shape[1]), -1, np.int8)
         with np.errstate(all="ignore"):
-            found = evaluate(cone, np.stack([at, at]), decided, field.region, libm_ulp).bound
+            found = evaluate(graph, np.stack([at, at]), decided, field.region, libm_ulp).bound
         return np.where(np.isfinite(found), found, -1.0)
 
     return bounds

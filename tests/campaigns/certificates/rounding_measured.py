@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from symrot.certificates.readback.operations import RELATIONS, Operations, operands
 from symrot.certificates.rounding.adjoint import LIBM_ULP
 from symrot.certificates.rounding.bounds import Box, OutputBound
-from symrot.certificates.rounding.output_graph import cone_of
+from symrot.certificates.rounding.output_graph import output_graph
 from symrot.certificates.rounding.region import EVERYWHERE, Region
 from tests.campaigns.certificates.rounding_adversary import BROOD, CHAINS, Field, climb, distinct, pointwise, top
 from tests.campaigns.certificates.rounding_replay import Points, behind, meant, replay, scan
@@ -91,7 +91,7 @@ def measure(
 
 def _coarse(operations: Operations, field: Field, output: str, points: Points, rng: np.random.Generator) -> Points:
     """Return points where the method's bound of an output is large, found from some."""
-    bounds = pointwise(cone_of(operations, dict(operations.outputs)[output]), field, LIBM_ULP)
+    bounds = pointwise(output_graph(operations, dict(operations.outputs)[output]), field, LIBM_ULP)
     return climb(bounds, field, points[:, top(bounds(points))], AIMED, rng)
 
 
