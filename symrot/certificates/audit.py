@@ -115,6 +115,7 @@ def audit(path: Path, symrot_statement: Callable[[Data], Data | None]) -> tuple[
 
 
 def _audited(path: Path, data: Data, symrot_statement: Callable[[Data], Data | None]) -> list[str]:
+    """Return the findings of the checks that need symrot's own derivations."""
     name = data["kernel"]
     source, header = ((path.parent / f"{name}{end}").read_text(encoding="utf-8") for end in (".c", ".h"))
     check_header(header, source, name)
@@ -135,6 +136,7 @@ def _compared(data: Data) -> list[str]:
 
 
 def _compare(path: Path, data: Mapping[str, Any], statement: Mapping[str, Any]) -> None:
+    """Raise CertificateError if a part of a certificate differs from what symrot states now."""
     for name, value in statement.items():
         if json.dumps(data[name]) != json.dumps(value):
             raise CertificateError(f"{path}: expected {name!r} as symrot prints it now, and it is not (emit it again)")

@@ -93,6 +93,7 @@ class KernelUnderTest:
 
 
 def _places(argument: Argument) -> list[tuple[str, tuple[str, str, str]]]:
+    """Return the places of an argument, each with its component (symbol, unit, description)."""
     if argument.is_scalar:
         return [(argument.name, argument.components[0])]
     return [(f"{argument.name}[{i}]", component) for i, component in enumerate(argument.components)]
@@ -215,6 +216,7 @@ def _plain(value: Any) -> Any:
 
 
 def _readback(kernel: KernelUnderTest, suffix: str, real: str) -> Data:
+    """Return the ``readback`` entry of one function: its operations and the proof that they are the formulas."""
     name, file = f"{kernel.name}{suffix}", f"{kernel.name}.c"
     text = kernel.files[file]
     one, batch = read_kernel(text, name, file), read_batch(text, f"{name}_batch", file)

@@ -95,13 +95,16 @@ class Evaluator:
         self.constants, self.cases, self.near = dict(constants), cases, set()
 
     def parsed(self, text):
+        """Return the syntax tree of an expression, in which numbers are strings."""
         require(text.isascii() and not re.search(r"//|\+\+|--|['\"\\#]", text), f"no formula: {text[:60]!r}")
         return ast.parse(NUMBER.sub(r"'\1'", text.strip()), mode="eval").body
 
     def read(self, text):
+        """Return the value of an expression, a text."""
         return self.value(self.parsed(text))
 
     def value(self, node):
+        """Return the value of a syntax tree."""
         match node:
             case ast.Constant(value=int(number)) if not self.real:
                 return Fraction(number)
@@ -130,6 +133,7 @@ class Evaluator:
         raise ValueError(f"no formula of kernels: {ast.unparse(node)[:60]}")
 
     def call(self, name, *values):
+        """Return the value of a function at some arguments."""
         if self.cases is not None and name == "Abs":
             return self.call("copysign", Fraction(1), *values) * values[0]
         if self.cases is not None and name in SAFE and name != "select_ge":
@@ -202,6 +206,7 @@ class KernelCheck:
         return computed
 
     def check(self):
+        """Check the function for one sample and the batch function."""
         for function, bare in self.own.items():
             self.check_own(function, bare)
         places = [*self.inputs, *self.outputs]
@@ -233,6 +238,7 @@ class KernelCheck:
         self.compare([again], batch, map(of_sample, self.outputs))
 
     def compare(self, bodies, places, targets, near=()):
+        """Check that bodies assign to targets the values of the formulas."""
         targets, computed = [*targets], {}
         for body in bodies:
             computed |= self.run(body, places, [target for target in targets if target not in computed], near)
@@ -281,6 +287,7 @@ def hypotheses(values):
 def prove(law, case, formulas):
     """Check the proof of a law in one case: each entry, times a factor, is a sum of cofactors times relations.
 
+    An entry is an expression that the law says is zero.
     Factors and cofactors are also evaluated at the witness, where the hypotheses hold, so that none of them hides a
     division by zero.
     """

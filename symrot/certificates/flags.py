@@ -233,11 +233,13 @@ def _compiler(words: Sequence[str]) -> tuple[str, int]:
 
 
 def _check_file(word: str) -> None:
+    """Raise InputError if a word is neither a flag nor the name of a file."""
     if not _FILE.fullmatch(word):
         raise InputError(f"flags: expected flags and names of files such as kernel.c, got {word[:80]!r}")
 
 
 def _rule(flag: str) -> FlagRule:
+    """Return the rule for a flag; raise InputError if there is none."""
     for rule in TABLE:
         if re.fullmatch(rule.form, flag):
             return rule

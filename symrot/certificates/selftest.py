@@ -38,6 +38,8 @@ CHECKS: tuple[tuple[str, str], ...] = (
 
 @dataclass(frozen=True)
 class _CheckedFunction:
+    """A function of libm to test: its name, the allowed error, and a generator of test arguments."""
+
     name: str
     allowed: Fraction  # ulp
     arguments: Callable[[Random, int], Iterator[tuple[float, float]]]
@@ -66,6 +68,7 @@ def _angles(random: Random, digits: int) -> Iterator[tuple[float, float]]:
 
 
 def _sides(random: Random, digits: int) -> Iterator[tuple[float, float]]:
+    """Return arguments (y, x) of atan2, with ratios of many magnitudes."""
     from mpmath import mpf
 
     for size in (1e-12, 1e-6, 1e-3, 0.3, 1.0, 1.0, 3.0, 1e3, 1e6, 1e12):
@@ -77,6 +80,7 @@ def _sides(random: Random, digits: int) -> Iterator[tuple[float, float]]:
 
 
 def _radicands(random: Random, digits: int) -> Iterator[tuple[float, float]]:
+    """Return arguments of the square root, of many magnitudes."""
     from mpmath import mpf
 
     for _ in range(POINTS):

@@ -29,7 +29,7 @@ from symrot.scene.file import names_with_kernels
 from symrot.symbols import constant
 from symrot.workshop import certify as certificates
 from symrot.workshop.emit import emit, subject
-from tests.campaigns.certificates.claims import claims_no_more, same_but_for_bounds
+from tests.campaigns.certificates.claims import is_weaker_or_equal, same_but_for_bounds
 from tests.campaigns.certificates.mutations import Files, corrupted_c, tampered_certificates
 
 SLICE = ("quaternion_dcm", "quaternion_of_dcm", "euler_zyx_body_rates", "euler_zxz_of_quaternion", "mrp_shadow",
@@ -102,7 +102,7 @@ def test_every_certificate_holds(name, tmp_path):
     assert Files(tmp_path, subject(name), emit(name).certificate).accepted() == ["recheck", "exact", "audit"]
 
 
-# --- link 1 -----------------------------------------------------------------------------------------------------------
+# --- laws -------------------------------------------------------------------------------------------------------------
 
 
 def test_a_law_that_does_not_follow_is_refused():
@@ -277,16 +277,16 @@ def test_what_claims_the_same(kernels):
     def with_law(**changes):
         return data | {"laws": [law | changes, *laws]}
 
-    assert claims_no_more(data, data | {"title": "of any torque", "laws": data["laws"][:1]})
+    assert is_weaker_or_equal(data, data | {"title": "of any torque", "laws": data["laws"][:1]})
     for true in (f"-({text})", f"7*({text})", f"weight*({text})"):
-        assert claims_no_more(data, with_law(vanishing=[true])), true
+        assert is_weaker_or_equal(data, with_law(vanishing=[true])), true
     place, symbol, formula = spec["formulas"][0]
     for other in (
         with_law(vanishing=[f"{text} + weight"]), with_law(vanishing=["weight"]), with_law(vanishing=[7]),
         data | {"inputs": [["more", "more", ""], *data["inputs"]]}, data | {"files": {}, "laws": [{}]},
         data | {"spec": spec | {"formulas": [[place, symbol, f"2*({formula})"], *spec["formulas"][1:]]}},
     ):  # fmt: skip
-        assert not claims_no_more(data, other)
+        assert not is_weaker_or_equal(data, other)
     assert same_but_for_bounds(data, data, *files.operations)
     assert not same_but_for_bounds(data, data | {"domain": "all"}, *files.operations)
     assert not same_but_for_bounds(data, data | {"rounding": None}, *files.operations)

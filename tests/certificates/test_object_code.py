@@ -265,7 +265,7 @@ def test_code_of_another_part_of_the_file_does_not_stand_for_a_function(tmp_path
         compare_object(TEXT, tmp_path / "both.o")
 
 
-# --- link 5 of certificates -------------------------------------------------------------------------------------------
+# --- objects in certificates ------------------------------------------------------------------------------------------
 
 
 @needs_objdump

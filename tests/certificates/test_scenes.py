@@ -1,4 +1,4 @@
-"""Link 4 of a scene's own kernel: bounded on a box given for its states, audited, said in the head of its C."""
+"""Rounding bounds of a scene's own kernel: on a box that the user states, audited, quoted in its C header comment."""
 
 import json
 from fractions import Fraction

@@ -24,6 +24,7 @@ class Theorem:
 
     @property
     def text(self) -> str:
+        """The theorem as text of Coq, with its comment and proof."""
         lines = [f"Theorem {self.name} :", *f"{self.statement}.".split("\n"), "Proof.", *self.proof.split("\n"), "Qed."]
         return "\n".join([comment(self.about), *(_short(line) for line in lines)])
 
@@ -63,6 +64,7 @@ class CoqFile:
 
     @property
     def digest(self) -> str:
+        """The SHA-256 of the file's text."""
         return sha256(self.text.encode()).hexdigest()
 
 

@@ -146,6 +146,7 @@ class _EqualityProver:
         return {index} | self._below(node[1], leaf) | self._below(node[2], leaf)
 
     def _value(self, node: tuple[Any, ...]) -> Quotient:
+        """Return the value of a node; the nodes before it have values."""
         fractions, kind = self.fractions, node[0]
         if kind == "in":
             if node[1] not in self.symbol_of:
@@ -165,6 +166,7 @@ class _EqualityProver:
         return fractions.atom(kind, tuple(arguments))
 
     def _constant(self, value: Fraction) -> Quotient:
+        """Return the number that a constant stands for."""
         intended = intended_value(value, self.operations.precision)
         if intended.fraction != value or intended.times_pi:
             self.rounded[value] = intended
@@ -172,6 +174,7 @@ class _EqualityProver:
         return self.fractions.multiply(number, self.fractions.generator("pi")) if intended.times_pi else number
 
     def _choice(self, node: tuple[Any, ...]) -> Quotient:
+        """Return the value of a choice: an atom of the formulas, or a choice that the formulas make too."""
         _, relation, *places = node
         if relation == "<":
             return self._series(*places)
@@ -231,6 +234,7 @@ class _EqualityProver:
         return product
 
     def _truncated(self, name: str, split: Fraction, written: list[Fraction]) -> Truncation:
+        """Check the coefficients of a series and return its truncation, with a bound of its error."""
         exact = REMOVABLE[name].taylor(len(written) + 1)
         for value, true in zip(written, exact, strict=False):
             if not IntendedConstant(value, true, False).rounds(self.operations.precision):

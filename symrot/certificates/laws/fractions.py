@@ -22,7 +22,7 @@ Quotient = tuple[PolyElement, PolyElement]  # numerator, denominator, in lowest 
 class FractionField:
     """The field of fractions of a polynomial ring; equal fractions are equal tuples.
 
-    ``name`` is that of the kernel, for errors.
+    ``name`` is the name of the kernel, for errors.
     """
 
     def __init__(self, ring: PolyRing, name: str) -> None:
@@ -100,7 +100,7 @@ class FormulaReader(ABC):
 
     @abstractmethod
     def function(self, expr: Expr) -> Quotient:
-        """Return the value of the call of a function."""
+        """Return the value of a function call."""
 
     def read(self, expr: Expr) -> Quotient:
         """Return a formula as a fraction."""

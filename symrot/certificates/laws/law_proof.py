@@ -135,9 +135,11 @@ class LawProver(FormulaReader):
     # --- expressions --------------------------------------------------------------------------------------------------
 
     def symbol(self, name: str) -> Quotient:
+        """Return the value of a symbol: its formula if it has one, else the generator of its name."""
         return self.read(self.formulas[name]) if name in self.formulas else self.fractions.generator(name)
 
     def function(self, expr: Expr) -> Quotient:
+        """Return a function call in generators; record the facts that this uses."""
         name = "abs" if isinstance(expr, Abs) else expr.func.__name__
         if isinstance(expr, (cos, sin)):
             return self.cosine_and_sine(self.angle(expr.args[0]))[isinstance(expr, sin)]
@@ -149,13 +151,13 @@ class LawProver(FormulaReader):
         if name == "copysign" and expr.args[0] == 1:
             return self.sign(self.read(expr.args[1])), self.ring.one
         if name == "select_ge":
-            return self.read(expr.args[2 if self.is_taken(expr) else 3])
+            return self.read(expr.args[2 if self.takes_first_branch(expr) else 3])
         plain = explicit(expr)
         if plain == expr:
             raise CertificateError(f"{self.name}: expected functions of kernels in a law, got {name}")
         return self.read(plain)
 
-    def is_taken(self, choice: Expr) -> bool:
+    def takes_first_branch(self, choice: Expr) -> bool:
         """Tell whether the current case takes the first branch of a choice."""
         left, right = (quotient_text(self.read(argument)) for argument in choice.args[:2])
         if (left, right) not in self.decided:
@@ -199,7 +201,7 @@ class LawProver(FormulaReader):
         return self.radicals[inside]
 
     def perfect(self, inside: PolyElement) -> PolyElement | None:
-        """Return the square root of a polynomial as a polynomial that is never negative, or None if there is none."""
+        """Return the root of a polynomial that is a perfect square, if that root is never negative; None otherwise."""
         content, factors = inside.factor_list()
         roots = [isqrt(abs(int(number))) for number in (content.numerator, content.denominator)]
         if content < 0 or roots[0] ** 2 != content.numerator or roots[1] ** 2 != content.denominator:
@@ -358,6 +360,7 @@ class LawProver(FormulaReader):
         return tuple((place, str(cofactor)) for place, cofactor in enumerate(by_relation) if cofactor)
 
     def _combined(self, value: PolyElement, degree: int) -> tuple[list[PolyElement], PolyElement]:
+        """Return the quotients by rules and hypotheses and the remainder, for hypothesis cofactors of a degree."""
         by_rules, remainder = value.div(self.rules) if self.rules else ([], value)
         by_hypotheses = _combination(remainder, self.hypotheses, degree)
         return (list(by_rules), remainder) if by_hypotheses is None else ([*by_rules, *by_hypotheses], self.ring.zero)

@@ -124,6 +124,7 @@ MEANS = (
 def _object(
     source: Path, text: str, functions: Sequence[str], compiler: str, version: str, flags: tuple[str, ...]
 ) -> dict[str, Any]:
+    """Compile a C file once and return the entry for it in the ``objects`` section."""
     with TemporaryDirectory(prefix="symrot-") as directory:
         target = Path(directory) / f"{source.stem}.o"
         compile_object(compiler, flags, source, target)

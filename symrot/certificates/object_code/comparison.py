@@ -61,6 +61,7 @@ class ObjectVerdict:
 
     @property
     def accepted(self) -> bool:
+        """Whether the verdict accepts the function."""
         return self.verdict in (IDENTICAL, CONTRACTED)
 
     def sentence(self) -> str:
@@ -128,6 +129,7 @@ def compare_function(text: Operations, function: Function, listing: Listing) -> 
 
 
 def _compare(text: Operations, function: Function, listing: Listing, start: tuple[str, int], top: int) -> ObjectVerdict:
+    """Compare a function with its machine code, for one place of the return address on the stack."""
     width, terms = WIDTH[text.precision], Terms()
     expected = _terms_from_operations(text, terms, width)
     pointers = [p for p in function.parameters if p.size > 0]
@@ -249,6 +251,7 @@ def _split_product(terms: Terms, roots: list[int]) -> str:
 
 
 def _is_exact(terms: Terms, product: int) -> bool:
+    """Return whether a product is exact because a factor is 2."""
     width = terms.width(product)
     return any(terms.constant(factor) == terms.constant(terms.number(width, Fraction(2)))
                for factor in terms.nodes[product][2:])  # fmt: skip

@@ -175,6 +175,7 @@ def read_listing(path: Path) -> Listing:
 
 
 def _objdump(path: Path, *options: str) -> str:
+    """Run objdump on a file and return its output."""
     environment = {"LC_ALL": "C", "PATH": _search_path()}
     command = ["objdump", *options, "--", str(path)]
     done = run_tool(command, SECONDS, environment=environment)
@@ -192,6 +193,7 @@ def _search_path() -> str:
 
 
 def _symbols(text: str, where: str) -> dict[str, tuple[str, int]]:
+    """Return the symbol table: name -> section and offset."""
     symbols: dict[str, tuple[str, int]] = {}
     for line in text.splitlines():
         match = _SYMBOL.fullmatch(line)
@@ -205,6 +207,7 @@ def _symbols(text: str, where: str) -> dict[str, tuple[str, int]]:
 
 
 def _constants(path: Path, where: str) -> dict[str, bytes]:
+    """Return the bytes of the read-only sections that need no relocation."""
     constants: dict[str, bytes] = {}
     for line in _objdump(path, "-h", "-w").splitlines():
         match = _SECTION.fullmatch(line)
@@ -228,6 +231,7 @@ def _constants(path: Path, where: str) -> dict[str, bytes]:
 
 
 def _code(text: str, where: str) -> dict[tuple[str, int], Instruction]:
+    """Return the instructions of all sections, by section and address."""
     rows: list[tuple[str, int, bytes, str]] = []
     relocations: dict[tuple[str, int], tuple[str, str, int]] = {}
     section = ""
@@ -259,6 +263,7 @@ def _instruction(
     section: str, address: int, content: bytes, text: str,
     relocations: Mapping[tuple[str, int], tuple[str, str, int]], where: str,
 ) -> Instruction:  # fmt: skip
+    """Return one instruction from a line of disassembly and the relocations inside it."""
     inside = [
         (at, relocations[section, at]) for at in range(address, address + len(content)) if (section, at) in relocations
     ]
@@ -289,6 +294,7 @@ def _operands(text: str) -> tuple[Operand, ...] | None:
 
 
 def _operand(text: str) -> Operand | None:
+    """Return an operand in Intel syntax, or None if it cannot be parsed."""
     if re.fullmatch(r"-?0x[0-9a-f]+|[0-9a-f]+|\d+", text) and not re.fullmatch(r"[a-d][hl]", text):
         return Constant(int(text, 16))
     if re.fullmatch(r"[a-z]\w*", text):
@@ -303,6 +309,7 @@ def _operand(text: str) -> Operand | None:
 
 
 def _address(inside: str, size: int, segment: str) -> Memory | None:
+    """Return a memory operand from the text between its brackets, or None if it cannot be parsed."""
     base = index = ""
     scale, offset, position = 1, 0, 0
     while position < len(inside):

@@ -43,6 +43,7 @@ CONDITIONS = set(OF_NUMBERS) | set(OF_INTEGERS)
 
 
 def memory_place(state: MachineState, instruction: Instruction, operand: Memory) -> tuple[str, int]:
+    """Return the base and offset of a memory operand, which may be relative to the instruction pointer."""
     if operand.base != "rip":
         return state.address(operand)
     if operand.segment or operand.index:
@@ -90,6 +91,7 @@ def read(state: MachineState, instruction: Instruction, operand: object, size: i
 
 
 def write(state: MachineState, instruction: Instruction, operand: object, words: Words) -> None:
+    """Write words to a destination operand: a general register or memory."""
     if isinstance(operand, Register):
         state.set_register(operand.name, words)
     elif isinstance(operand, Memory) and operand.size == 4 * len(words):
@@ -137,6 +139,7 @@ def _lea(state: MachineState, instruction: Instruction) -> None:
 
 
 def operands_of(instruction: Instruction, count: int) -> tuple[object, ...]:
+    """Return the operands of an instruction; raise NotUnderstood if their number is not ``count``."""
     if len(instruction.operands) != count:
         raise NotUnderstood(f"{len(instruction.operands)} operands")
     return instruction.operands
@@ -176,6 +179,7 @@ def _known_byte(state: MachineState, name: str) -> int:
 
 
 def _computed(state: MachineState, name: str, first: Words, second: Words) -> tuple[Words, tuple[str, tuple[int, ...]]]:
+    """Return the result of an operation on integers or addresses, and the flags after it."""
     terms, bits = state.context.terms, 32 * len(first)
     x, y = state.integer(first), state.integer(second)
     a, b = state.whole(first), state.whole(second)
@@ -216,7 +220,7 @@ def _flags(name: str, x: int, y: int, value: int, bits: int) -> tuple[int, int, 
 
 
 def _one(name: str, number: int) -> Callable[[MachineState, Instruction], None]:
-    """Return inc or dec, as an operation with a constant."""
+    """Return the effect of inc or dec: adding or subtracting a constant."""
 
     def step(state: MachineState, instruction: Instruction) -> None:
         (target,) = operands_of(instruction, 1)
@@ -269,6 +273,7 @@ def _pop(state: MachineState, instruction: Instruction) -> None:
 
 
 def pop_words(state: MachineState) -> Words:
+    """Pop 8 bytes from the stack and return their words."""
     base, offset = stack_place(state)
     words = state.load(base, offset, 2)
     state.general["rsp"] = state.halves(state.context.terms.address(base, offset + 8))
@@ -276,6 +281,7 @@ def pop_words(state: MachineState) -> Words:
 
 
 def stack_place(state: MachineState) -> tuple[str, int]:
+    """Return the base and offset to which the stack pointer points."""
     node = state.context.terms.nodes[state.whole(state.general["rsp"])]
     if node[0] != "address" or node[2] != STACK:
         raise NotUnderstood("a stack pointer that does not point into the stack")

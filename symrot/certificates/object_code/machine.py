@@ -112,6 +112,7 @@ def execution_paths(state: MachineState) -> Iterator[ExecutionPath]:
 
 
 def _run_step(state: MachineState) -> None:
+    """Execute the instruction at which the machine is; name it in the error if it is not understood."""
     instruction = state.context.listing.code.get(state.at)
     if instruction is None:
         raise NotUnderstood(f"no instruction at {state.at[1]:#x} of {state.at[0]}")

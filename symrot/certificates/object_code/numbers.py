@@ -107,7 +107,7 @@ def _compare(suffix: str, outcomes: Outcomes | None) -> Numeric:
 
 
 def _fused(suffix: str, order: str, negated: bool, subtracted: tuple[bool, ...]) -> Numeric:
-    """Return a*b + c rounded once.
+    """Return the effect of a fused multiply-add: a*b + c, rounded once.
 
     ``order`` says which operands are a, b and c; ``subtracted`` whether c is subtracted, in even and odd lanes.
     """

@@ -87,17 +87,21 @@ class Terms:
         return self.places[term]
 
     def width(self, a: int) -> int:
+        """Return the number of bits of a term, 32 or 64."""
         return int(self.nodes[a][1])
 
     def kind(self, a: int) -> str:
+        """Return the kind of a term, such as ``"add"``."""
         return str(self.nodes[a][0])
 
     # --- leaves ---------------------------------------------------------------------------------------------------
 
     def input(self, width: int, place: str) -> int:
+        """Return the number that the caller passes at a place, such as ``"q[1]"``."""
         return self._add("in", width, place)
 
     def bits(self, width: int, value: int) -> int:
+        """Return a constant from its bits."""
         return self._add("bits", width, value & ((1 << width) - 1))
 
     def number(self, width: int, value: Fraction) -> int:
@@ -121,6 +125,7 @@ class Terms:
         return self._add("token", 64, name)
 
     def address(self, base: str, offset: int) -> int:
+        """Return the address at an offset from a base: an array, the stack, a section or a symbol."""
         return self._add("address", 64, base, offset)
 
     def constant(self, a: int) -> int | None:
@@ -158,6 +163,7 @@ class Terms:
         return 1 << self.width(a) - 1
 
     def bit_and(self, a: int, b: int) -> int:
+        """Return ``a & b``."""
         if self.constant(b) is None:
             a, b = b, a
         mask, width = self.constant(b), self.width(a)
@@ -183,6 +189,7 @@ class Terms:
         return self._add("andn", self.width(a), a, b)
 
     def bit_or(self, a: int, b: int) -> int:
+        """Return ``a | b``."""
         if self.constant(b) is None:
             a, b = b, a
         mask, value = self.constant(b), self.constant(a)
@@ -195,6 +202,7 @@ class Terms:
         return self._add("or", self.width(a), *sorted((a, b)))
 
     def bit_xor(self, a: int, b: int) -> int:
+        """Return ``a ^ b``."""
         if self.constant(b) is None:
             a, b = b, a
         mask, value, width = self.constant(b), self.constant(a), self.width(a)
@@ -212,12 +220,14 @@ class Terms:
         return self._add("xor", width, *sorted((a, b)))
 
     def neg(self, a: int) -> int:
+        """Return ``a`` with its sign bit inverted."""
         node = self.nodes[a]
         if node[0] == "bits":
             return self.bits(node[1], node[2] ^ self._sign_bit(a))
         return int(node[2]) if node[0] == "neg" else self._add("neg", node[1], a)
 
     def abs(self, a: int) -> int:
+        """Return ``a`` with its sign bit cleared."""
         node = self.nodes[a]
         if node[0] == "bits":
             return self.bits(node[1], node[2] & (self._sign_bit(a) - 1))
@@ -235,6 +245,7 @@ class Terms:
         return self._add("sign", node[1], a)
 
     def copysign(self, a: int, b: int) -> int:
+        """Return the magnitude of a with the sign of b."""
         return self.bit_or(self.abs(a), self.sign(b))
 
     # --- rounded operations -------------------------------------------------------------------------------------------
@@ -258,6 +269,7 @@ class Terms:
         return (self.neg(a), True) if value is not None and value & self._sign_bit(a) else (a, False)
 
     def add(self, a: int, b: int) -> int:
+        """Return a + b, rounded."""
         folded = self._folded(a, b, lambda x, y: x + y)
         if folded is not None:
             return folded
@@ -269,9 +281,11 @@ class Terms:
         return self._add("add", self.width(a), *sorted((a, b)))
 
     def sub(self, a: int, b: int) -> int:
+        """Return a - b, rounded."""
         return self.add(a, self.neg(b))
 
     def mul(self, a: int, b: int) -> int:
+        """Return a*b, rounded."""
         folded = self._folded(a, b, lambda x, y: x * y)
         if folded is not None:
             return folded
@@ -301,6 +315,7 @@ class Terms:
         return self._add("mul", width, *sorted((a, b)))
 
     def div(self, a: int, b: int) -> int:
+        """Return a/b, rounded."""
         if self._value(b) != 0.0:
             folded = self._folded(a, b, lambda x, y: x / y)
             if folded is not None:
@@ -315,6 +330,7 @@ class Terms:
         return self.neg(quotient) if first != second else quotient
 
     def sqrt(self, a: int) -> int:
+        """Return the square root of a, rounded."""
         return self._add("sqrt", self.width(a), a)
 
     def fma(self, a: int, b: int, c: int) -> int:
@@ -323,6 +339,7 @@ class Terms:
         return self._add("fnma" if first != second else "fma", self.width(a), *sorted((a, b)), c)
 
     def call(self, name: str, width: int, arguments: Iterable[int]) -> int:
+        """Return the value of a function of the C library."""
         return self._add("call", width, name, *arguments)
 
     def opaque(self, name: str, width: int, *arguments: int) -> int:
@@ -365,6 +382,7 @@ class Terms:
     # --- the whole graph ----------------------------------------------------------------------------------------------
 
     def operands(self, a: int) -> tuple[int, ...]:
+        """Return the operands of a term."""
         node = self.nodes[a]
         return tuple(node[_FIRST_OPERAND[node[0]] :]) if node[0] in _FIRST_OPERAND else ()
 

@@ -50,6 +50,7 @@ class Function:
 
 
 def _tokens(text: str, where: str) -> list[Token]:
+    """Return the tokens of a C file without comments and directives."""
     if "??" in text or "\\" in text:  # trigraphs and spliced lines are never emitted, and could hide code from a reader
         raise CertificateError(f"{where}: expected C as symrot emits it, got a backslash or a trigraph")
     bare = _COMMENT.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
@@ -151,6 +152,7 @@ def functions_of(text: str, where: str = "kernel") -> dict[str, Function]:
 
 
 def _function(cursor: Cursor) -> Function | None:
+    """Read a function definition; return None for a prototype."""
     while cursor.peek() in ("static", "inline"):
         cursor.next()
     line = cursor.tokens[cursor.index].line if cursor.index < len(cursor.tokens) else 0
@@ -173,6 +175,7 @@ def _function(cursor: Cursor) -> Function | None:
 
 
 def _parameter(cursor: Cursor) -> Parameter:
+    """Read one parameter of a function."""
     is_const = cursor.peek() == "const"
     if is_const:
         cursor.next()

@@ -114,6 +114,7 @@ def _computed(
     node: Node, known: Sequence[Any], values: Mapping[str, Any],
     functions: Mapping[str, Callable[..., Any]], number: Callable[[Fraction], Any],
 ) -> Any:  # fmt: skip
+    """Return the value of a node from the values of the nodes before it."""
     kind = node[0]
     if kind == "in":
         return values[node[1]]

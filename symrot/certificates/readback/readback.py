@@ -54,6 +54,7 @@ class _BodyReader:
         self.vectorised_angles: set[int] | None = None
 
     def input(self, place: str) -> int:
+        """Return the node of the input at a place."""
         return self.inputs.setdefault(place, self.builder.add("in", place))
 
     def statements(self, cursor: Cursor, scope: _Scope) -> int | None:
@@ -83,10 +84,12 @@ class _BodyReader:
         return None
 
     def _known(self, cursor: Cursor, scope: _Scope, name: str) -> None:
+        """Raise CertificateError if a name is neither a value nor an array."""
         if name not in scope.values and name not in scope.arrays:
             raise cursor.fail(f"the name of a parameter instead of {name}")
 
     def _assignment(self, cursor: Cursor, scope: _Scope) -> None:
+        """Read an assignment to one element of an output array."""
         name = cursor.name()
         array = scope.arrays.get(name)
         if array is None or array.is_const:
@@ -115,6 +118,7 @@ class _BodyReader:
         return index
 
     def expression(self, cursor: Cursor, scope: _Scope) -> int:
+        """Read a choice or a sum, the whole of an expression; return its node."""
         self.depth += 1
         if self.depth > DEEPEST:
             raise cursor.fail(f"at most {DEEPEST} nested levels")
@@ -131,6 +135,7 @@ class _BodyReader:
         return value
 
     def sum(self, cursor: Cursor, scope: _Scope) -> int:
+        """Read terms with + or - between them; return the node."""
         value = self.product(cursor, scope)
         while cursor.peek() in ("+", "-"):
             kind = "add" if cursor.next().text == "+" else "sub"
@@ -138,6 +143,7 @@ class _BodyReader:
         return value
 
     def product(self, cursor: Cursor, scope: _Scope) -> int:
+        """Read factors with * or / between them; return the node."""
         value = self.factor(cursor, scope)
         while cursor.peek() in ("*", "/"):
             kind = "mul" if cursor.next().text == "*" else "div"
@@ -145,6 +151,7 @@ class _BodyReader:
         return value
 
     def factor(self, cursor: Cursor, scope: _Scope) -> int:
+        """Read a sign, a bracket, a literal, a call, an array element or a name; return the node."""
         if cursor.peek() == "-":
             cursor.next()
             value = self.factor(cursor, scope)
@@ -167,6 +174,7 @@ class _BodyReader:
         return scope.values[name]
 
     def _literal(self, cursor: Cursor) -> int:
+        """Read a floating-point literal of the type of the kernel; return the node."""
         text = cursor.peek()
         is_float = text.endswith("f")  # a suffix in hexadecimal literals too: their exponent is decimal
         if is_float != (self.real == "float") or text.isdigit():
@@ -179,6 +187,7 @@ class _BodyReader:
         return self.builder.add("const", Fraction(value))
 
     def _element(self, cursor: Cursor, scope: _Scope, name: str) -> int:
+        """Read an element of an input array; return the node."""
         array = scope.arrays.get(name)
         if array is None or not array.is_const:
             raise cursor.fail(f"an input array instead of {name}, before")
@@ -188,6 +197,7 @@ class _BodyReader:
         return self.input(f"{name}[{self._index(cursor, scope, array)}]")
 
     def _call(self, cursor: Cursor, scope: _Scope, name: str) -> int:
+        """Read the arguments of a function; return the node of the call."""
         cursor.expect("(")
         arguments = [self.expression(cursor, scope)]
         while cursor.peek() == ",":
@@ -213,6 +223,7 @@ class _BodyReader:
         return self.builder.add("call", bare, tuple(arguments))
 
     def _inlined(self, cursor: Cursor, function: Function, arguments: list[int]) -> int:
+        """Read the body of a function of the same file with these arguments; return the node of its result."""
         parameters = function.parameters
         if function.returns != self.real or any(p.size or p.type != self.real for p in parameters):
             raise cursor.fail(f"a function of {self.real} instead of {function.name}, before")
@@ -242,12 +253,14 @@ def _nearest_float(digits: str, value: float) -> float:
 
 
 def _defined(functions: Mapping[str, Function], name: str, where: str) -> Function:
+    """Return the function of a name, or raise CertificateError."""
     if name not in functions:
         raise CertificateError(f"{where}: expected a definition of {name}, got {', '.join(functions) or 'no function'}")
     return functions[name]
 
 
 def _real_of(function: Function, where: str) -> str:
+    """Return the type of all numbers of a kernel, double or float."""
     types = {p.type for p in function.parameters} - {"size_t"}
     if function.returns != "void" or len(types) != 1:
         raise CertificateError(f"{where}, line {function.line}: expected a kernel of one type, double or float")
@@ -398,6 +411,7 @@ def _blocks(cursor: Cursor, reader: _BodyReader, scope: _Scope) -> None:
 def _finished(
     reader: _BodyReader, scope: _Scope, function: Function, places: list[tuple[str, int]], where: str
 ) -> Operations:
+    """Return the operations that were read; raise CertificateError if an output is not assigned."""
     missing = [f"{name}[{index}]" for name, index in places if (name, index) not in scope.written]
     if missing or not places:
         raise CertificateError(f"{where}: expected {function.name} to assign {', '.join(missing) or 'an output'}")

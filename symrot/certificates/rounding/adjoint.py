@@ -91,6 +91,8 @@ class _ErrorPass:
         return intervals.widened(exact, error), error
 
 
+# --- forward: the values of a node and a bound of its rounding error, None if it has no error -------------------------
+
 Forward = Callable[[_ErrorPass, Node, Sequence[Array]], tuple[Array, Array | None]]
 
 
@@ -304,6 +306,8 @@ FORWARD: dict[str, Forward] = {
     "sqrt": _root, "neg": _sign, "abs": _sign, "copysign": _sign, "sin": _circular, "cos": _circular, "atan2": _angle,
     "norm": _norm, "sinc": _sinc, "arc_ratio": _arc_ratio, "gap": _gap, "select": _choice,
 }  # fmt: skip
+
+# --- backward: the derivative of the output by each operand, from its derivative by the node --------------------------
 
 _multiply = intervals.multiply_loosely
 

@@ -127,12 +127,14 @@ def bound_tasks(
 
 
 def _outward(value: Fraction, direction: float) -> float:
+    """Return a value rounded to a float towards ``direction``, which is -inf or inf."""
     near = float(value)
     exact = Fraction(near)
     return near if exact == value or (exact < value) == (direction < 0) else nextafter(near, direction)
 
 
 def _check_box(operations: Operations, box: Box) -> None:
+    """Raise InputError if a box has no proper range for an input, or has one for an unknown input."""
     unknown = sorted(set(box) - set(operations.inputs))
     if unknown:
         raise InputError(
@@ -195,6 +197,7 @@ def bound_outputs(
 
 
 def _output_bound(operations: Operations, place: str, task: BoundTask, result: SearchResult) -> OutputBound:
+    """Return the bound of an output from the result of a search; raise InputError if it is infinite."""
     at = tuple(zip(task.graph.places, result.worst, strict=True))
     if result.bound == inf:
         inputs = task.graph.inputs_of[result.obstacle]
@@ -407,6 +410,7 @@ def check_bounds(
 def _check_precision(
     part: Mapping[str, Any], operations: Operations, box: Box, region: Region, libm_ulp: float
 ) -> None:
+    """Check the part of a section about one precision, as far as single points can."""
     name = operations.name
     if part["operations_sha256"] != operations.digest():
         raise CertificateError(f"{name}: expected bounds of these operations, got bounds of others")

@@ -49,6 +49,8 @@ class SearchResult:
 
 @dataclass
 class _Parts:
+    """Sub-boxes of a search with their decided branches, bounds and obstacles."""
+
     boxes: Array  # (2, inputs, n)
     decided: NDArray[np.int8]  # (conditions, n)
     bound: Array
@@ -70,6 +72,8 @@ class _Parts:
 
 
 class _BoundSearch:
+    """One search for the largest error: the problem, and the largest error at a point so far."""
+
     def __init__(self, graph: OutputGraph, box: Array, region: Region, libm_ulp: float, centred: bool) -> None:
         self.centred = centred
         self.graph, self.box, self.region, self.libm_ulp = graph, box, region, libm_ulp
@@ -302,6 +306,7 @@ def _narrowest(run: _BoundSearch, parts: _Parts) -> tuple[tuple[float, ...], int
 
 
 def _result(run: _BoundSearch, parts: _Parts, settled: float) -> SearchResult:
+    """Return the result when the search ends with these parts unsettled."""
     bound = max(settled, float(parts.bound.max(initial=-1.0)), 0.0)
     pointwise, worst, obstacle = max(run.pointwise, 0.0), run.worst, -1
     if np.isinf(bound):

@@ -188,12 +188,14 @@ class _GraphReader:
         self.root = -1  # the output of the graph inside a gap, which must not become a gap again
 
     def put(self, *node: Any) -> int:
+        """Return the index of a node of the graph; the node is added if it is new."""
         if node not in self.known:
             self.known[node] = len(self.nodes)
             self.nodes.append(node)
         return self.known[node]
 
     def read(self, index: int) -> int:
+        """Return the index of the node that an operation becomes."""
         if index not in self.done:
             self.done[index] = self._read(self.source[index], index)
         return self.done[index]
@@ -236,6 +238,7 @@ class _GraphReader:
 
 
 def _norm(reader: _GraphReader, node: Node) -> int | None:
+    """Return the node ``norm`` for the root of a sum of squares, or None for any other node."""
     squares = reader.squares(node[1]) if node[0] == "sqrt" else None
     if not squares:
         return None
@@ -251,6 +254,7 @@ def _at_zero(reader: _GraphReader, node: Node) -> tuple[Node, Node] | None:
 
 
 def _sinc(reader: _GraphReader, node: Node) -> int | None:
+    """Return the node ``sinc`` for ``x == 0 ? 1 : sin(x)/x``, or None for any other node."""
     branches = _at_zero(reader, node)
     if not branches or branches[0] != ("const", Fraction(1)):
         return None
@@ -260,6 +264,7 @@ def _sinc(reader: _GraphReader, node: Node) -> int | None:
 
 
 def _arc_ratio(reader: _GraphReader, node: Node) -> int | None:
+    """Return the node ``arc_ratio`` for ``s == 0 ? 1/c : atan2(s, c)/s``, or None for any other node."""
     branches = _at_zero(reader, node)
     if not branches or branches[0][0] != "div" or reader.source[branches[0][1]] != ("const", Fraction(1)):
         return None
@@ -290,6 +295,7 @@ def _at_origin(reader: _GraphReader, index: int, square: int) -> Fraction | None
 
 
 def _gap(reader: _GraphReader, node: Node) -> int | None:
+    """Return the node ``gap`` for a choice between a series and a formula, or None for any other node."""
     if node[0] != "select" or node[1] != "<" or reader.source[node[2]][0] != "mul":
         return None
     leaf, other = reader.source[node[2]][1:]
