@@ -96,7 +96,9 @@ class Evaluator:
 
     def parsed(self, text):
         """Return the syntax tree of an expression, in which numbers are strings."""
-        require(text.isascii() and not re.search(r"//|\+\+|--|['\"\\#]", text), f"no formula: {text[:60]!r}")
+        require(
+            text.isascii() and not re.search(r"//|\+\+|--|['\"\\#]", text), f"expected a formula, got {text[:60]!r}"
+        )
         return ast.parse(NUMBER.sub(r"'\1'", text.strip()), mode="eval").body
 
     def read(self, text):
@@ -119,7 +121,10 @@ class Evaluator:
             case ast.BinOp(left=left, op=ast.Pow(), right=right) if not self.real:
                 base, power = self.value(left), self.value(right)
                 base, power = (self.call("sqrt", base), 2 * power) if power.denominator == 2 else (base, power)
-                require(power.denominator == 1 and abs(power) < 99, f"no power: {power}")
+                require(
+                    power.denominator == 1 and abs(power) < 99,
+                    f"expected a power that is a multiple of 1/2 below 99, got {power}",
+                )
                 return base**power
             case ast.BinOp(left=left, op=sign, right=right):
                 return OPERATORS[type(sign)](self.value(left), self.value(right))
@@ -130,7 +135,7 @@ class Evaluator:
                 if re.match("symrot_(?:(sin|cos)f?$|near_(?!arc_))", name):
                     self.near.add(values[0])
                 return self.call(self.calls[name] if self.real else name, *values)
-        raise ValueError(f"no formula of kernels: {ast.unparse(node)[:60]}")
+        raise ValueError(f"expected a formula of kernels, got {ast.unparse(node)[:60]}")
 
     def call(self, name, *values):
         """Return the value of a function at some arguments."""
@@ -145,21 +150,25 @@ class Evaluator:
     def run(self, body, places, targets=()):
         """Run statements of C; return the values that they assign, by target, or the value that they return."""
         self.names, results, statements = dict(places), {}, body.split(";")
-        require(not statements.pop().strip(), f"no statement: {body[-60:]!r}")
+        require(not statements.pop().strip(), f"expected a semicolon at the end, got {body[-60:]!r}")
         for place, statement in enumerate(statements, 1):
-            match = require(STATEMENT.fullmatch(statement), f"no statement: {statement[:60]!r}")
+            match = require(STATEMENT.fullmatch(statement), f"expected a statement, got {statement[:60]!r}")
             real, name, formula, target, assigned, returned = match.groups()
             if returned:
-                require(place == len(statements), "something follows after return")
+                require(place == len(statements), "expected nothing after return")
                 return self.read(CHOICE.sub(r"(\4) if (\1) \2 (\3) else (\5)", returned))
             if name:
                 require(
-                    real == self.real and name not in (*self.names, *self.calls, "n", "k"), f"{name} is no new name"
+                    real == self.real and name not in (*self.names, *self.calls, "n", "k"),
+                    f"expected a new name, got {name}",
                 )
                 self.names[name] = self.read(formula)
             if target:
                 target = ast.unparse(self.parsed(target))
-                require(target in targets and target not in results, f"{target} is assigned")
+                require(
+                    target in targets and target not in results,
+                    f"expected an output that is not assigned yet, got {target}",
+                )
                 results[target] = self.read(assigned)
         return results
 
@@ -179,9 +188,15 @@ class KernelCheck:
         self.calls |= self.own
         inputs = {place: self.spec["parameters"].get(symbol, symbol) for place, symbol, _ in data["inputs"]}
         parameters = {symbol for place, symbol, _ in data["inputs"] if place.startswith("p[")}
-        require({*self.spec["parameters"]} == parameters, "a parameter is no input")
-        require(all(symbol.isidentifier() for _, symbol, _ in data["inputs"]), "an input is no name")
-        require(len({*inputs.values(), "pi"}) == len(data["inputs"]) + 1, "two inputs are one")
+        require(
+            {*self.spec["parameters"]} == parameters,
+            "expected the same parameters in the formulas and among the inputs",
+        )
+        require(all(symbol.isidentifier() for _, symbol, _ in data["inputs"]), "expected inputs that are names")
+        require(
+            len({*inputs.values(), "pi"}) == len(data["inputs"]) + 1,
+            "expected inputs that differ from each other and from pi",
+        )
         formula = Evaluator(self.symbols, self.functions)
         self.inputs = {place: formula.read(text) for place, text in inputs.items()}
         for symbol, text in self.spec["named"]:
@@ -202,7 +217,10 @@ class KernelCheck:
         """Return the values that a body computes; only the angles ``near`` may go to functions of limited range."""
         reader = Evaluator({}, self.functions, self.real, self.calls, self.constants if targets else ())
         computed = reader.run(body, places, targets)
-        require(reader.near <= set(map(reader.read, near)), f"{self.name} takes angles beyond their range")
+        require(
+            reader.near <= set(map(reader.read, near)),
+            f"{self.name} calls a function of limited range for an untested angle",
+        )
         return computed
 
     def check(self):
@@ -214,7 +232,10 @@ class KernelCheck:
         for base in bases:
             own = [place for place in places if place.partition("[")[0] == base]
             bases[base] = 0 if own == [base] else len(own)
-            require(own in ([base], [f"{base}[{k}]" for k in range(len(own))]), f"{own[0]} and others are no argument")
+            require(
+                own in ([base], [f"{base}[{k}]" for k in range(len(own))]),
+                f"expected the places of one argument, numbered from 0, got {', '.join(own)}",
+            )
         typed = {base: "const " * (f"{base}[0]" not in self.outputs) + self.real for base in bases}
         one = [f"{typed[base]} {base}[{size}]" if size else f"{self.real} {base}" for base, size in bases.items()]
         many = [one[k] if base == "p" else f"{typed[base]} *SYMROT_RESTRICT {base}" for k, base in enumerate(bases)]
@@ -230,10 +251,15 @@ class KernelCheck:
         self.compare([self.c_functions[self.name][3]], self.inputs, self.outputs)
         if loop := LOOP.fullmatch(loops) or PARTS.fullmatch(loops):
             return self.compare(loop.groups(), batch, map(of_sample, self.outputs))
-        bits, first, far, again = require(BLOCKS.fullmatch(loops), f"{self.name}_batch is no loop").groups()
+        bits, first, far, again = require(
+            BLOCKS.fullmatch(loops), f"{self.name}_batch is not a loop over all samples"
+        ).groups()
         tested = re.findall(rf"symrot_far{self.end}\(((?:[^()]|\([^()]*\))*)\)", far)
         holds = far == " + ".join(f"symrot_far{self.end}({each})" for each in tested)
-        require(holds and bits == {"double": "64", "float": "32"}[self.real], f"{far} asks for no range")
+        require(
+            holds and bits == {"double": "64", "float": "32"}[self.real],
+            f"{far} is not the test of the range of angles",
+        )
         self.compare([first], batch, map(of_sample, self.outputs), tested)
         self.compare([again], batch, map(of_sample, self.outputs))
 
@@ -255,7 +281,7 @@ class KernelCheck:
             falling = [abs(each) * Fraction(split) ** k for k, each in enumerate(taylor)]
             holds = sorted(falling, reverse=True) == falling and [*map(Fraction, coefficients)] == taylor[:-1]
             holds = holds and Fraction(rest) == falling[-1] / (falling[0] - falling[1])
-            require(holds, f"the series of {bare}, or its bound, is another")
+            require(holds, f"the series of {bare}, or its bound, is wrong")
             series = [f"({nearest(each, self.real)})*x**{2 * k}" for k, each in enumerate(taylor[:-1])]
             case = case.format(series=" + ".join(series), split=split)
         names = [argument.removeprefix(f"{self.real} ") for argument in arguments.split(", ")]
@@ -312,7 +338,7 @@ def prove(law, case, formulas):
     for kind, first, *rest in case["steps"]:
         second = rest[0] if rest else ""
         if kind == "name":
-            require(re.fullmatch(r"g\d+_", first) and first not in witness, f"{first} is no new name")
+            require(re.fullmatch(r"g\d+_", first) and first not in witness, f"expected a new name, got {first}")
             reader.names[first], witness[first] = reader.read(second), there.read(second)
             match reader.parsed(second):
                 case ast.Call(func=ast.Name(id="sqrt")):
@@ -322,7 +348,7 @@ def prove(law, case, formulas):
                 case ast.Call(func=ast.Name(id="sin" | "cos" | "atan2" | "copysign")):
                     pass
                 case _:
-                    raise ValueError(f"{first} stands for no function")
+                    raise ValueError(f"expected a function that {first} stands for")
         elif kind == "square":
             square, value = map(reader.read, (first, second))
             holds = never_negative(second) and combined(square - value**2, *rest[1:])
@@ -335,12 +361,18 @@ def prove(law, case, formulas):
             for left, right in zip(sides[::2], sides[1::2]):
                 node = reader.parsed(left)
                 reader.functions[node.func.id, *map(reader.value, node.args)] = reader.read(right)
-    require(relations == [*map(reader.read, case["relations"])], "the relations are not those of the steps")
+    require(
+        relations == [*map(reader.read, case["relations"])],
+        "the relations of a proof are not those that its steps make",
+    )
     reader.cases = {(reader.read(left), reader.read(right)): sign for left, sign, right in case["case"]}
     for name, text in formulas:
-        require(name not in reader.names and name.isidentifier(), f"{name} is no new name")
+        require(name not in reader.names and name.isidentifier(), f"expected a new name, got {name}")
         reader.names[name] = reader.read(text)
-    require(len(case["entries"]) == len(law["vanishing"]), f"the law {law['law']!r} has other entries")
+    require(
+        len(case["entries"]) == len(law["vanishing"]),
+        f"the proof of the law {law['law']!r} has another number of entries than the law",
+    )
     for text, entry in zip(law["vanishing"], case["entries"]):
         require(combined(reader.read(text), *entry), f"the law {law['law']!r} does not follow")
 
@@ -357,13 +389,15 @@ def complete(cases):
 def functions_of(text, name, files):
     """Return the functions of a C file, name -> (static, type, arguments, body); raise ValueError for other content."""
     odd = re.search(r"\\|\?\?|//|[\0-\x09\x0b-\x1f]", text)
-    require(not odd, "there is a backslash, a trigraph, a comment of later C or a control character")
+    require(not odd, "expected no backslash, trigraph, // comment or control character in the C text")
     known = ["#include <math.h>", f'#include "{name}.h"', *['#include "symrot_math.h"'] * ("symrot_math.h" in files)]
     lines = [line for line in re.sub(r"/\*.*?\*/", " ", text, flags=re.S).split("\n") if line.strip() not in known]
     functions, (*chunks, end) = {}, re.split(r"^\}$", "\n".join(lines), flags=re.M)
-    require(not end.strip(), f"no function: {end.strip()[:60]!r}")
+    require(not end.strip(), f"expected a function, got {end.strip()[:60]!r}")
     for chunk in chunks:
-        head = require(HEAD.fullmatch(" ".join(chunk.split()) + " "), f"no function: {chunk.strip()[:60]!r}")
+        head = require(
+            HEAD.fullmatch(" ".join(chunk.split()) + " "), f"expected a function, got {chunk.strip()[:60]!r}"
+        )
         require(
             head[3] not in functions and (not head[1] or head[3].startswith("symrot_")), f"{head[3]} is defined twice"
         )
@@ -384,7 +418,7 @@ def check(path):
     for function in readback:
         KernelCheck(function, data, c_functions).check()
     formulas = [*spec["named"], *(item[1:] for item in spec["formulas"])]
-    for law in require(data["laws"], "there are no laws"):
+    for law in require(data["laws"], "expected laws, got none"):
         require(complete([case["case"] for case in law["cases"]]), f"cases of the law {law['law']!r} are missing")
         for case in law["cases"]:
             prove(law, case, formulas)

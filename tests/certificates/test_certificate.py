@@ -301,7 +301,7 @@ def test_arguments_that_a_kernel_does_not_take_are_refused(kernels):
         resealed(files, inputs=[[place, *described], *inputs])
         refused(files, "argument|two inputs|of")
     resealed(files, spec=files.data["spec"] | {"parameters": {"other": 1}})
-    refused(files, "a parameter is no input")
+    refused(files, "the same parameters")
     files.restore()
 
 

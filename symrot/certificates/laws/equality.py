@@ -150,7 +150,7 @@ class _EqualityProver:
         fractions, kind = self.fractions, node[0]
         if kind == "in":
             if node[1] not in self.symbol_of:
-                expected = f"no input but {', '.join(self.symbol_of)}, got {node[1]}"
+                expected = f"one of the inputs {', '.join(self.symbol_of)}, got {node[1]}"
                 raise CertificateError(f"{self.operations.name}: expected {expected}")
             symbol = self.symbol_of[node[1]]
             return self.intended.get(symbol) or fractions.generator(symbol)
@@ -242,7 +242,9 @@ class _EqualityProver:
                 raise CertificateError(f"{self.operations.name}: expected {expected}, got {float(value)!r}")
         terms = [abs(a) * split**k for k, a in enumerate(exact)]
         if sorted(terms, reverse=True) != terms or any(a * b >= 0 for a, b in pairwise(exact)):
-            raise CertificateError(f"{self.operations.name}: expected a series that falls up to x^2 = {split}")
+            raise CertificateError(
+                f"{self.operations.name}: expected a series with decreasing terms up to x^2 = {split}"
+            )
         return Truncation(name, split, len(written), terms[-1] / (terms[0] - terms[1]))
 
 

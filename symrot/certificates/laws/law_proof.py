@@ -178,13 +178,15 @@ class LawProver(FormulaReader):
         if square not in self.roots:
             above, below = self.fractions.lowest(self.remainder(square[0]), self.remainder(square[1]))
             if not self.is_nonnegative(below):
-                raise CertificateError(f"{self.name}: expected a root over a sum of squares, got one over {below}")
+                raise CertificateError(
+                    f"{self.name}: expected a root divided by a sum of squares, got one divided by {below}"
+                )
             value = self.roots[square] = self.fractions.lowest(self.radical(above * below), below)
             if square != (above * below, below) or value[0] in self.radicals:
                 factor = square[1] * value[1] ** 2
                 cofactors = self.cofactors(square[0] * value[1] ** 2 - value[0] ** 2 * square[1])
                 if cofactors is None:
-                    raise CertificateError(f"{self.name}: expected the square of a root to be what it is the root of")
+                    raise CertificateError(f"{self.name}: expected the square of a root to equal its radicand")
                 self.step("square", quotient_text(square), quotient_text(value), str(factor), cofactors)
         return self.roots[square]
 

@@ -185,7 +185,7 @@ def _outputs(path: ExecutionPath, text: Operations, terms: Terms, width: int) ->
         name, index = place.removesuffix("]").split("[")
         words = [path.memory.get((name, (int(index) * width + 32 * part) // 8)) for part in range(width // 32)]
         if None in words:
-            raise NotUnderstood(f"an end at which {place} is not written")
+            raise NotUnderstood(f"a path at whose end {place} is not written")
         outputs.append(words[0] if width == 32 else terms.join(*(word for word in words if word is not None)))
     return [item for item in outputs if item is not None]
 

@@ -165,7 +165,7 @@ def _byte_test(state: MachineState, instruction: Instruction, name: str) -> None
     """Execute ``test al, al`` and the like, whose byte must have a known value."""
     target, source = instruction.operands
     if name not in ("test", "or", "and") or target != source or not isinstance(target, Register):
-        raise NotUnderstood("single bytes")
+        raise NotUnderstood("an operation on single bytes")
     value = _known_byte(state, target.name)
     state.flags = ("integers", (int(value == 0), value >> 7, 0, 0))
 
@@ -174,7 +174,7 @@ def _known_byte(state: MachineState, name: str) -> int:
     whole, size = GENERAL.get(name, ("", 0))
     low = state.context.terms.lowest_byte(state.general[whole][0]) if size == 1 else None
     if low is None:
-        raise NotUnderstood("single bytes")
+        raise NotUnderstood("an operation on single bytes")
     return low
 
 
@@ -308,7 +308,7 @@ def _set(condition: str) -> Callable[[MachineState, Instruction], None]:
     def set_byte(state: MachineState, instruction: Instruction) -> None:
         (target,) = operands_of(instruction, 1)
         if not isinstance(target, Register) or GENERAL.get(target.name, ("", 0))[1] != 1:
-            raise NotUnderstood("single bytes")
+            raise NotUnderstood("an operation on single bytes")
         whole, terms = GENERAL[target.name][0], state.context.terms
         low = terms.constant(state.general[whole][0])
         is_set = condition_holds(state, condition)
@@ -323,7 +323,7 @@ def _set(condition: str) -> Callable[[MachineState, Instruction], None]:
 def _movzx(state: MachineState, instruction: Instruction) -> None:
     target, source = operands_of(instruction, 2)
     if not isinstance(source, Register) or not isinstance(target, Register):
-        raise NotUnderstood("single bytes")
+        raise NotUnderstood("an operation on single bytes")
     byte = _known_byte(state, source.name)
     state.set_register(target.name, read(state, instruction, Constant(byte), GENERAL[target.name][1]))
 

@@ -159,7 +159,7 @@ def _target(state: MachineState, instruction: Instruction) -> tuple[str, int] | 
         base, offset = relocated_place(state, instruction, RELATIVE)
         if base or not offset:
             return (base.removeprefix("section "), offset) if base else instruction.relocation.symbol
-        raise NotUnderstood("a jump to a place between others")
+        raise NotUnderstood("a jump into the middle of a function")
     node = state.context.terms.nodes[state.whole(read(state, instruction, operand, 8))]
     if node[0] != "address" or not node[2].startswith("symbol ") or node[3]:
         raise NotUnderstood("a jump to an address that is computed")
@@ -221,7 +221,7 @@ def _call_library(state: MachineState, name: str, on_stack: int) -> None:
     terms = state.context.terms
     _, offset = stack_place(state)
     if (offset + on_stack) % 16:
-        raise NotUnderstood("a call with the stack between two places of 16 bytes")
+        raise NotUnderstood("a call with a stack pointer that is not aligned to 16 bytes")
     bare, width = (name[:-1], 32) if name.endswith("f") else (name, 64)
     operands = [state.whole(state.vector[f"ymm{place}"][: width // 32]) for place in range(2)]
     written: list[tuple[str, int, Words]] = []
@@ -230,7 +230,7 @@ def _call_library(state: MachineState, name: str, on_stack: int) -> None:
         for pointer, function in (("rdi", "sin"), ("rsi", "cos")):
             node = terms.nodes[state.whole(state.general[pointer])]
             if node[0] != "address":
-                raise NotUnderstood("sincos to an address that is not known")
+                raise NotUnderstood("a call of sincos with an address that is not known")
             written.append((node[2], node[3], state.halves(terms.call(function, width, operands[:1]))))
     elif bare in LIBRARY:
         result = state.halves(terms.call(bare, width, operands[: LIBRARY[bare]]))

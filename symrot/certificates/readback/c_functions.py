@@ -95,10 +95,11 @@ class Cursor:
         self.index += 1
         return self.tokens[self.index - 1]
 
-    def fail(self, expected: str) -> CertificateError:
-        """Return the error that says what was expected instead of the current token, and in which line."""
+    def fail(self, expected: str, got: str = "") -> CertificateError:
+        """Return the error that says what was expected in a line, and what it is: by default the current token."""
         at = min(self.index, len(self.tokens) - 1)
-        got = repr(self.tokens[at].text) if 0 <= self.index < len(self.tokens) else "the end"
+        if not got:
+            got = repr(self.tokens[at].text) if 0 <= self.index < len(self.tokens) else "the end"
         line = self.tokens[at].line if self.tokens else 1
         return CertificateError(f"{self.where}, line {line}: expected {expected}, got {got}")
 
@@ -167,7 +168,7 @@ def _function(cursor: Cursor) -> Function | None:
         parameters.append(_parameter(cursor))
     cursor.expect(")")
     if len({parameter.name for parameter in parameters}) != len(parameters):
-        raise cursor.fail(f"different names for the parameters of {name}")
+        raise cursor.fail(f"different names for the parameters of {name}", "one name twice")
     if cursor.peek() == ";":
         cursor.next()
         return None

@@ -75,7 +75,7 @@ class _BodyReader:
                 cursor.expect("const", self.real)
                 name = cursor.name()
                 if name in scope.values or name in scope.arrays or name in (scope.loop, scope.count):
-                    raise cursor.fail(f"a new name instead of {name}")
+                    raise cursor.fail("a new name", repr(name))
                 cursor.expect("=")
                 scope.values[name] = self.expression(cursor, scope)
                 cursor.expect(";")
@@ -86,20 +86,20 @@ class _BodyReader:
     def _known(self, cursor: Cursor, scope: _Scope, name: str) -> None:
         """Raise CertificateError if a name is neither a value nor an array."""
         if name not in scope.values and name not in scope.arrays:
-            raise cursor.fail(f"the name of a parameter instead of {name}")
+            raise cursor.fail("the name of a parameter", repr(name))
 
     def _assignment(self, cursor: Cursor, scope: _Scope) -> None:
         """Read an assignment to one element of an output array."""
         name = cursor.name()
         array = scope.arrays.get(name)
         if array is None or array.is_const:
-            raise cursor.fail(f"an output array instead of {name}")
+            raise cursor.fail("an output array", repr(name))
         index = self._index(cursor, scope, array)
         cursor.expect("=")
         value = self.expression(cursor, scope)
         cursor.expect(";")
         if (name, index) in scope.written:
-            raise cursor.fail(f"one assignment to {name}[{index}], and here is a second; before")
+            raise cursor.fail(f"one assignment to {name}[{index}]", "a second one")
         scope.written[name, index] = value
 
     def _index(self, cursor: Cursor, scope: _Scope, array: Parameter) -> int:
@@ -108,10 +108,10 @@ class _BodyReader:
         if array.size > 0:
             index = cursor.integer()
             if index >= array.size:
-                raise cursor.fail(f"an index below {array.size} for {array.name}")
+                raise cursor.fail(f"an index below {array.size} for {array.name}", str(index))
         else:
             if not scope.loop:
-                raise cursor.fail(f"an array with a size instead of {array.name}")
+                raise cursor.fail("an array with a size", repr(array.name))
             index = cursor.integer()
             cursor.expect("*", scope.count, "+", scope.loop)
         cursor.expect("]")
@@ -121,7 +121,7 @@ class _BodyReader:
         """Read a choice or a sum, the whole of an expression; return its node."""
         self.depth += 1
         if self.depth > DEEPEST:
-            raise cursor.fail(f"at most {DEEPEST} nested levels")
+            raise cursor.fail(f"an expression of at most {DEEPEST} nested levels", "a deeper one")
         value = self.sum(cursor, scope)
         relation = cursor.peek()
         if relation in RELATIONS:
@@ -170,7 +170,7 @@ class _BodyReader:
         if cursor.peek() == "[":
             return self._element(cursor, scope, name)
         if name not in scope.values:
-            raise cursor.fail(f"a name that has a value instead of {name}, before")
+            raise cursor.fail("a name that has a value", repr(name))
         return scope.values[name]
 
     def _literal(self, cursor: Cursor) -> int:
@@ -190,7 +190,7 @@ class _BodyReader:
         """Read an element of an input array; return the node."""
         array = scope.arrays.get(name)
         if array is None or not array.is_const:
-            raise cursor.fail(f"an input array instead of {name}, before")
+            raise cursor.fail("an input array", repr(name))
         if scope.loop and cursor.peek(1) == scope.loop:  # a scalar of one sample, t[k]
             cursor.expect("[", scope.loop, "]")
             return self.input(name)
@@ -208,7 +208,7 @@ class _BodyReader:
             return self._inlined(cursor, self.functions[name], arguments)
         bare = name.removesuffix("f") if self.real == "float" else name
         if self.real == "float" and bare == name:
-            raise cursor.fail(f"the float form of {name}, before")
+            raise cursor.fail(f"the float form of {name}", repr(name))
         if bare in ROUNDED and ROUNDED[bare][1] == len(arguments):
             return self.builder.add(ROUNDED[bare][0], *arguments)
         if self.vectorised_angles is not None and bare in VECTORISED and len(arguments) == 1:
@@ -219,24 +219,24 @@ class _BodyReader:
         if self.batch and bare in SELECT and len(arguments) == 4:
             return self.builder.add("select", SELECT[bare], *arguments)
         if LIBRARY.get(bare) != len(arguments):
-            raise cursor.fail(f"a function of <math.h> that kernels use instead of {name}, before")
+            raise cursor.fail("a function of <math.h> that kernels use", repr(name))
         return self.builder.add("call", bare, tuple(arguments))
 
     def _inlined(self, cursor: Cursor, function: Function, arguments: list[int]) -> int:
         """Read the body of a function of the same file with these arguments; return the node of its result."""
         parameters = function.parameters
         if function.returns != self.real or any(p.size or p.type != self.real for p in parameters):
-            raise cursor.fail(f"a function of {self.real} instead of {function.name}, before")
+            raise cursor.fail(f"a function of {self.real}", repr(function.name))
         if len(parameters) != len(arguments):
-            raise cursor.fail(f"{len(parameters)} arguments for {function.name} instead of {len(arguments)}, before")
+            raise cursor.fail(f"{len(parameters)} arguments for {function.name}", str(len(arguments)))
         if function.name in self.calls:
-            raise cursor.fail(f"no recursion, as in {function.name}, before")
+            raise cursor.fail("functions without recursion", f"a call of {function.name} in itself")
         self.calls.append(function.name)
         scope = _Scope(values={p.name: value for p, value in zip(parameters, arguments, strict=True)})
         value = self.statements(Cursor(function.body, self.where), scope)
         self.calls.pop()
         if value is None:
-            raise cursor.fail(f"a return in {function.name}, before")
+            raise cursor.fail(f"a return statement in {function.name}", "none")
         return value
 
 
@@ -364,7 +364,7 @@ def _parts(cursor: Cursor, reader: _BodyReader, scope: _Scope) -> None:
         reader.statements(Cursor(_samples(cursor, part, "start", "end"), cursor.where), part)
         twice = [f"{name}[{index}]" for name, index in part.written if (name, index) in scope.written]
         if twice:
-            raise cursor.fail(f"one assignment to {twice[0]}, and the loop before has a second; before")
+            raise cursor.fail(f"one assignment to {twice[0]}", "a second one in another loop")
         scope.written |= part.written
     cursor.expect("}")
 

@@ -171,5 +171,5 @@ def largest_box(
         middle = (low + high) / 2
         low, high = (middle, high) if holds(middle) else (low, middle)
     if not low:
-        raise InputError(f"{operations.name}: expected a target that a box of some size has, got {target:g}")
+        raise InputError(f"{operations.name}: expected a target that a box of some size meets, got {target:g}")
     return low, resized(box, low, chosen)
