@@ -134,7 +134,7 @@ TABLE: tuple[FlagRule, ...] = (
 )  # fmt: skip
 LAUNCHERS = ("ccache", "sccache", "distcc")
 _COMPILER = re.compile(r"(?:.*-)?(?:gcc|g\+\+|clang|clang\+\+|cc|c\+\+|c99|c11)(?:-\d+(?:\.\d+)*)?(?:\.exe)?")
-_X87 = re.compile(r"(?:i[3-6]86|m68k)-.*")  # targets whose compilers round to more digits unless they are told
+_X87 = re.compile(r"(?:i[3-6]86|m68k)-.*")  # targets whose compilers keep more digits by default
 _FILE = re.compile(r"[^@].*\.(?:c|cc|cpp|cxx|h|o|a|so|s|S|d|i|ii|obj|exe|lib|dll|dylib)")
 
 

@@ -32,7 +32,8 @@ from symrot.certificates.object_code.terms import Outcomes, Terms
 
 __all__ = ["ExecutionPath", "execution_paths", "state_at_call"]
 
-MAX_INSTRUCTIONS, MAX_PATHS = 100_000, 4096  # per path; paths
+MAX_INSTRUCTIONS = 100_000  # on one path
+MAX_PATHS = 4096  # through one function
 CALLEE_SAVED = ("rbx", "rbp", "r12", "r13", "r14", "r15")
 CALLER_SAVED = ("rax", "rcx", "rdx", "rsi", "rdi", "r8", "r9", "r10", "r11")
 POINTERS = ("rdi", "rsi", "rdx", "rcx", "r8", "r9")
