@@ -21,14 +21,14 @@ SLICE = ("quaternion_dcm", "quaternion_of_dcm", "euler_zyx_body_rates", "euler_z
 
 
 def proven(name, text, suffix=""):
-    found = definition(name)
+    kernel = definition(name)
     places = {
         (a.name if a.is_scalar else f"{a.name}[{i}]"): component[0]
-        for a in found.inputs
+        for a in kernel.inputs
         for i, component in enumerate(a.components)
     }
-    formulas = {f"{a.name}[{i}]": formula for a, each in found.results for i, formula in enumerate(each)}
-    return prove_equal(read_kernel(text, f"{name}{suffix}", name), places, formulas, found.named)
+    formulas = {f"{a.name}[{i}]": formula for a, each in kernel.results for i, formula in enumerate(each)}
+    return prove_equal(read_kernel(text, f"{name}{suffix}", name), places, formulas, kernel.named)
 
 
 def text_of(name):

@@ -40,11 +40,11 @@ KERNELS = Path(__file__).parents[2] / "generated" / "c"
     ],
 )
 def test_flags_are_judged_in_their_order(flags, holds):
-    found = classify_flags(flags)
-    assert found.holds == holds and found.accepted == (holds != NOTHING)
-    assert found == classify_flags(flags.split())
+    effect = classify_flags(flags)
+    assert effect.holds == holds and effect.accepted == (holds != NOTHING)
+    assert effect == classify_flags(flags.split())
     if holds == NOTHING:
-        assert found.sentence().startswith("the certificate is void (-")
+        assert effect.sentence().startswith("the certificate is void (-")
 
 
 @pytest.mark.parametrize(
@@ -80,7 +80,7 @@ def test_the_section_of_flags_gives_a_reason_for_each():
 
 
 @pytest.mark.parametrize(
-    ("flags", "code", "said"),
+    ("flags", "code", "sentence"),
     [
         ("gcc -O3 -mavx2 -ffp-contract=off", 0, "the bits of the C text and its error bounds hold"),
         ("gcc -O2 -march=native", 0, "the error bounds hold, not the bits"),
@@ -88,8 +88,8 @@ def test_the_section_of_flags_gives_a_reason_for_each():
         ("gcc -fmagic", 2, "got '-fmagic'"),
     ],
 )
-def test_the_audit_says_what_holds_under_flags(capsys, flags, code, said):
+def test_the_audit_says_what_holds_under_flags(capsys, flags, code, sentence):
     assert main(["audit", str(KERNELS / "torque_spring.cert.json"), "--flags", flags]) == code
-    found = capsys.readouterr()
-    assert said in (found.err if code else found.out)
-    assert found.err.count("\n") == (1 if code else 0)
+    output = capsys.readouterr()
+    assert sentence in (output.err if code else output.out)
+    assert output.err.count("\n") == (1 if code else 0)
