@@ -11,9 +11,9 @@ from typing import Any
 from symrot.certificates.readback.operations import Operations
 from symrot.certificates.readback.readback import read_kernel
 from symrot.certificates.rounding.bounds import bound_outputs, rounding_section
-from symrot.certificates.rounding.bounds_text import region_in_words
+from symrot.certificates.rounding.bounds_text import region_phrases
 from symrot.certificates.rounding.intervals import DIGITS
-from symrot.certificates.rounding.library import Problem, largest_box, problem
+from symrot.certificates.rounding.library import RoundingProblem, largest_box, library_problem
 from symrot.certificates.rounding.region import UNIT_NORM, Region
 from symrot.certificates.rounding.scenes import ANY, SceneInputs, scene_problem
 from symrot.errors import InputError
@@ -30,7 +30,9 @@ EMITTED = (".c", ".h", ".o", ".json")  # suffixes of emitted and compiled files,
 PRECISIONS = {"double": "", "float": "f"}
 
 
-def rounding_problem(kernel: str, ranges: Sequence[str], precision: str) -> tuple[Operations, Problem, dict[str, Any]]:
+def rounding_problem(
+    kernel: str, ranges: Sequence[str], precision: str
+) -> tuple[Operations, RoundingProblem, dict[str, Any]]:
     """Return the operations of a kernel, its rounding problem, and its box of inputs with the user's ranges.
 
     Parameters
@@ -60,7 +62,9 @@ def rounding_problem(kernel: str, ranges: Sequence[str], precision: str) -> tupl
     return operations, kernel_problem, {place: box[place] for place in operations.inputs}
 
 
-def _check_unit(group: Sequence[str], kernel_problem: Problem, box: Mapping[str, tuple[Fraction, Fraction]]) -> None:
+def _check_unit(
+    group: Sequence[str], kernel_problem: RoundingProblem, box: Mapping[str, tuple[Fraction, Fraction]]
+) -> None:
     """Raise InputError if the box contains no unit quaternion: every bound would hold vacuously."""
     ends = [sorted(box[place], key=abs) for place in group]
     least = sum(near * near for (near, far) in ends if near * far > 0)
@@ -76,9 +80,9 @@ def _operations(emitted: Emitted, suffix: str = "") -> Operations:
     return replace(operations, name=f"{emitted.name}{suffix}")
 
 
-def _of_library(kernel: str, precision: str) -> tuple[Operations, Problem, None]:
+def _of_library(kernel: str, precision: str) -> tuple[Operations, RoundingProblem, None]:
     operations = _operations(emit(kernel), PRECISIONS[precision])
-    return operations, problem(definition(kernel), operations), None
+    return operations, library_problem(definition(kernel), operations), None
 
 
 def require_known(kernel: str) -> None:
@@ -91,7 +95,7 @@ def require_known(kernel: str) -> None:
     raise InputError(f"{message} ({hint})" if hint else message)
 
 
-def _of_scene(scene: str, precision: str) -> tuple[Operations, Problem, SceneInputs]:
+def _of_scene(scene: str, precision: str) -> tuple[Operations, RoundingProblem, SceneInputs]:
     require_known(scene)
     if precision != "double":
         raise InputError(f"--precision: expected double for a scene, whose kernel is in double only, got {precision}")
@@ -162,7 +166,7 @@ def _value(end: Any) -> float:
 def _region_lines(section: Mapping[str, Any]) -> list[str]:
     groups = (tuple(section["names"].get(place, place) for place in group) for group in section["unit_groups"])
     region = Region(tuple(groups), float.fromhex(section["clearance"]))
-    return [f"      {each}" for each in region_in_words(region)]
+    return [f"      {each}" for each in region_phrases(region)]
 
 
 def lines(section: Mapping[str, Any]) -> list[str]:
@@ -221,7 +225,7 @@ def target_facts(
     }  # fmt: skip
 
 
-def _free(kernel_problem: Problem, box: Mapping[str, tuple[Fraction, Fraction]]) -> list[str]:
+def _free(kernel_problem: RoundingProblem, box: Mapping[str, tuple[Fraction, Fraction]]) -> list[str]:
     units = {place for group in kernel_problem.region.unit for place in group}
     return [place for place, (low, high) in box.items() if low < high and (low, high) != ANY and place not in units]
 

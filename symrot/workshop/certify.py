@@ -11,7 +11,7 @@ from pathlib import Path
 import symrot
 from symrot.build import cache as build_cache
 from symrot.certificates.audit import LARGEST, audit, operations_of
-from symrot.certificates.certificate import Data, said_of, with_slots
+from symrot.certificates.certificate import Data, proven_statement, with_sections
 from symrot.errors import CertificateError, InputError
 from symrot.files.reading import read_input
 from symrot.scene.file import names_with_kernels
@@ -48,7 +48,7 @@ def _proven_statement(data: Data) -> Data | None:
     key = f"statement about {name} with {json.dumps(bounds)} by {_programs()}"
     stored = build_cache.fetch(key)
     if stored is None:
-        stored = json.dumps(said_of(subject(name, bounds)))
+        stored = json.dumps(proven_statement(subject(name, bounds)))
         build_cache.store(key, stored)
     statement: Data = json.loads(stored)
     return statement
@@ -144,9 +144,9 @@ def flag_lines(flags: str) -> list[str]:
     CertificateError
         For flags that void the certificate.
     """
-    from symrot.certificates.flags import judge
+    from symrot.certificates.flags import classify_flags
 
-    effect = judge(flags)
+    effect = classify_flags(flags)
     if not effect.accepted:
         raise CertificateError(f"{flags}: {effect.sentence()}")
     return [f"{flags}: {effect.sentence()}"]
@@ -213,7 +213,7 @@ def certify(
     if objects:
         progress("comparing object code ..")
         slots["objects"] = object_code.objects_of(texts, f"{json.loads(text)['kernel']}.c", _programs())
-    text = with_slots(text, slots)
+    text = with_sections(text, slots)
     return json.loads(text), write_files(directory, texts | {file: text}) if directory else []
 
 

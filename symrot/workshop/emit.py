@@ -11,7 +11,7 @@ from symrot.planning.plan import Plan, make_plan, switched
 from symrot.scene.scene import Scene, load_scene
 
 if TYPE_CHECKING:
-    from symrot.certificates.certificate import Subject
+    from symrot.certificates.certificate import KernelUnderTest
     from symrot.certificates.rounding.scenes import SceneInputs
 
 __all__ = [
@@ -56,12 +56,12 @@ class Emitted(_Texts):
     @cached_property
     def certificate(self) -> str:
         """The text of the certificate; raises CertificateError where a proof fails."""
-        from symrot.certificates.certificate import certificate_text, with_slots
+        from symrot.certificates.certificate import certificate_text, with_sections
         from symrot.certificates.rounding.bounds_text import library_section
 
         text = certificate_text(subject(self.kernel, self.bounds))
         section = library_section(self.name, self.source) if _is_kernel(self.kernel) else self.bounds
-        return with_slots(text, {"rounding": section}) if isinstance(section, dict) else text
+        return with_sections(text, {"rounding": section}) if isinstance(section, dict) else text
 
 
 def _scene(source: Scene | str | Path) -> Scene:
@@ -143,12 +143,12 @@ def _is_kernel(kernel: Any) -> bool:
     return isinstance(kernel, str) and kernel in kernel_names()
 
 
-def subject(kernel: Scene | str | Path, bounds: Mapping[str, Any] | None = None) -> "Subject":
+def subject(kernel: Scene | str | Path, bounds: Mapping[str, Any] | None = None) -> "KernelUnderTest":
     """Return the subject of a certificate: a kernel of the library or of a scene, with its emitted texts.
 
     ``bounds`` are the rounding bounds that a scene's kernel is emitted with (:func:`emit`).
     """
-    from symrot.certificates.subjects import library_subject, scene_subject
+    from symrot.certificates.kernel_under_test import library_kernel_under_test, scene_kernel_under_test
     from symrot.codegen.printing.c_source import MATH_HEADER
     from symrot.codegen.printing.math_header import math_header
     from symrot.dynamics.equations import equations_of_motion
@@ -160,11 +160,11 @@ def subject(kernel: Scene | str | Path, bounds: Mapping[str, Any] | None = None)
     files |= {MATH_HEADER: math_header()} if f'"{MATH_HEADER}"' in c.source else {}
     files[f"../numpy/{c.name}.py" if is_kernel else f"../../numpy/scenes/{c.name}.py"] = numpy.source
     if is_kernel:
-        return library_subject(definition(kernel), _library_kernel(kernel, "c")[1], files)
+        return library_kernel_under_test(definition(kernel), _library_kernel(kernel, "c")[1], files)
     scene_plan = _formulas(kernel)
     equations = equations_of_motion(scene_plan.structure)
     lowered, description = _scene_rates(scene_plan, equations, "c")
-    return scene_subject(equations, lowered.program, lowered.parameters, description, files)
+    return scene_kernel_under_test(equations, lowered.program, lowered.parameters, description, files)
 
 
 def kernel_names() -> tuple[str, ...]:
@@ -176,22 +176,24 @@ def kernel_names() -> tuple[str, ...]:
 
 def _library_kernel(name: Any, target: str, source: str = "") -> tuple[Any, Any]:
     """Return the program and the description of a library kernel, with rounding bounds if its C source is passed."""
-    from symrot.certificates.rounding.bounds_text import in_words
+    from symrot.certificates.rounding.bounds_text import bounds_sentence
     from symrot.codegen.library_kernels import kernel_description, kernel_program
     from symrot.kernels.library import definition
 
-    return kernel_program(name), kernel_description(definition(name), target, in_words(name, source) if source else "")
+    return kernel_program(name), kernel_description(
+        definition(name), target, bounds_sentence(name, source) if source else ""
+    )
 
 
 def _scene_kernel(
     scene: Scene | str | Path, target: str, bounds: Mapping[str, Any] | None = None
 ) -> tuple[Any, Any]:  # fmt: skip
-    from symrot.certificates.rounding.scenes import contract
+    from symrot.certificates.rounding.scenes import header_lines
     from symrot.codegen.scene_kernels import with_values
     from symrot.dynamics.equations import equations_of_motion
 
     scene_plan = _formulas(scene)
-    contract_lines = contract(scene_inputs(scene), bounds) if bounds and target == "c" else ()
+    contract_lines = header_lines(scene_inputs(scene), bounds) if bounds and target == "c" else ()
     lowered, description = _scene_rates(scene_plan, equations_of_motion(scene_plan.structure), target, contract_lines)
     return with_values(lowered.program, lowered.parameters, scene_plan.constants), description
 

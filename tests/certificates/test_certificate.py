@@ -18,7 +18,7 @@ from mpmath import mp
 
 from symrot.certificates import exact_check, recheck
 from symrot.certificates.audit import audit
-from symrot.certificates.certificate import certificate_text, printed, with_slots
+from symrot.certificates.certificate import certificate_json, certificate_text, with_sections
 from symrot.certificates.laws.laws import prove_law, prove_laws
 from symrot.certificates.readback.header import check_header
 from symrot.cli.main import main
@@ -29,7 +29,7 @@ from symrot.scene.file import names_with_kernels
 from symrot.symbols import constant
 from symrot.workshop import certify as certificates
 from symrot.workshop.emit import emit, subject
-from tests.campaigns.certificates.claims import claims_no_more, same_but_for_bounds
+from tests.campaigns.certificates.claims import is_weaker_or_equal, same_but_for_bounds
 from tests.campaigns.certificates.mutations import Files, corrupted_c, tampered_certificates
 
 SLICE = ("quaternion_dcm", "quaternion_of_dcm", "euler_zyx_body_rates", "euler_zxz_of_quaternion", "mrp_shadow",
@@ -46,7 +46,7 @@ def kernels(tmp_path_factory):
 
 
 def resealed(files, **changes):
-    files.path.write_text(printed(files.data | changes), encoding="utf-8")
+    files.path.write_text(certificate_json(files.data | changes), encoding="utf-8")
 
 
 @pytest.fixture
@@ -74,7 +74,7 @@ def test_a_certificate_holds_and_is_rechecked_without_symrot(kernels, name):
     assert files.accepted() == ["recheck", "exact", "audit"]
     assert emit(name).certificate == files.path.read_text(encoding="utf-8")
     bare = {part: value for part, value in files.data.items() if part != "rounding"}
-    assert certificate_text(files.subject) == printed(bare)
+    assert certificate_text(files.subject) == certificate_json(bare)
     assert ("rounding" in files.data) == (name in kernel_names())
 
 
@@ -102,7 +102,7 @@ def test_every_certificate_holds(name, tmp_path):
     assert Files(tmp_path, subject(name), emit(name).certificate).accepted() == ["recheck", "exact", "audit"]
 
 
-# --- link 1 -----------------------------------------------------------------------------------------------------------
+# --- laws -------------------------------------------------------------------------------------------------------------
 
 
 def test_a_law_that_does_not_follow_is_refused():
@@ -225,7 +225,7 @@ def test_a_file_that_is_no_certificate_is_refused(dcm, content, said):
 def test_wrong_schemas_missing_parts_and_huge_numbers_are_refused(dcm):
     resealed(dcm, schema="symrot.certificate/2")
     refused(dcm, "schema")
-    dcm.path.write_text(printed({k: v for k, v in dcm.data.items() if k != "laws"}), encoding="utf-8")
+    dcm.path.write_text(certificate_json({k: v for k, v in dcm.data.items() if k != "laws"}), encoding="utf-8")
     refused(dcm, "'laws'")
     spec = dcm.data["spec"]
     for text in ("q0**99999999999", "1/0", "9" * 5000, "(" * 3000 + "q0" + ")" * 3000, "__import__('os')", "q0.real"):
@@ -277,16 +277,16 @@ def test_what_claims_the_same(kernels):
     def with_law(**changes):
         return data | {"laws": [law | changes, *laws]}
 
-    assert claims_no_more(data, data | {"title": "of any torque", "laws": data["laws"][:1]})
+    assert is_weaker_or_equal(data, data | {"title": "of any torque", "laws": data["laws"][:1]})
     for true in (f"-({text})", f"7*({text})", f"weight*({text})"):
-        assert claims_no_more(data, with_law(vanishing=[true])), true
+        assert is_weaker_or_equal(data, with_law(vanishing=[true])), true
     place, symbol, formula = spec["formulas"][0]
     for other in (
         with_law(vanishing=[f"{text} + weight"]), with_law(vanishing=["weight"]), with_law(vanishing=[7]),
         data | {"inputs": [["more", "more", ""], *data["inputs"]]}, data | {"files": {}, "laws": [{}]},
         data | {"spec": spec | {"formulas": [[place, symbol, f"2*({formula})"], *spec["formulas"][1:]]}},
     ):  # fmt: skip
-        assert not claims_no_more(data, other)
+        assert not is_weaker_or_equal(data, other)
     assert same_but_for_bounds(data, data, *files.operations)
     assert not same_but_for_bounds(data, data | {"domain": "all"}, *files.operations)
     assert not same_but_for_bounds(data, data | {"rounding": None}, *files.operations)
@@ -301,7 +301,7 @@ def test_arguments_that_a_kernel_does_not_take_are_refused(kernels):
         resealed(files, inputs=[[place, *described], *inputs])
         refused(files, "argument|two inputs|of")
     resealed(files, spec=files.data["spec"] | {"parameters": {"other": 1}})
-    refused(files, "a parameter is no input")
+    refused(files, "the same parameters")
     files.restore()
 
 
@@ -317,11 +317,11 @@ def test_recheck_refuses_a_text_that_rounds_more_than_it_says(name, term, huge, 
     text = f"{files.source[: place.start()]}(({place[0]} + {huge}) - {huge}){files.source[place.end() :]}"
     (files.directory / f"{name}.c").write_text(text, encoding="utf-8")
     hashes = files.data["files"] | {f"{name}.c": sha256(text.encode()).hexdigest()}
-    files.path.write_text(printed(files.data | {"files": hashes}), encoding="utf-8")
+    files.path.write_text(certificate_json(files.data | {"files": hashes}), encoding="utf-8")
     with pytest.raises(ValueError, match=f"{name} is rounded by more than its bounds"):
         recheck.check(files.path)
     bare = {key: value for key, value in files.data.items() if key != "rounding"}
-    files.path.write_text(printed(bare | {"files": hashes}), encoding="utf-8")
+    files.path.write_text(certificate_json(bare | {"files": hashes}), encoding="utf-8")
     assert recheck.check(files.path)  # who says nothing of rounding says nothing wrong
 
 
@@ -435,7 +435,7 @@ EDITS = {  # file, what is edited -> what takes its place, what is said of it
     "header": (".h", "double dangles[3]);", "double dangles[4]);", "double dangles[4]);'", "euler_zyx_body_rates.h is not"),
     "more": (".h", "\n#endif\n", "\n#endif\n#define sin cos\n", "'#define sin cos', but symrot emits no such line", ".h is not"),
     "ends": (".c", "\n", "\r\n", "its line endings differ", "is not what was certified"),
-    "none": (".c", None, None, "expected euler_zyx_body_rates.c beside it", "there is none"),
+    "none": (".c", None, None, "expected its file euler_zyx_body_rates.c in the same folder", "it is not there"),
 }  # fmt: skip
 
 
@@ -466,7 +466,7 @@ def test_an_edited_file_is_refused_with_its_line_and_what_it_computes(edit, tmp_
         (["certify", "quaternion_dc.cert.json"], "did you mean 'quaternion_dcm'?"),
         (["certify", "nowhere/quaternion_dcm.c"], "a readable file of at most 16 MB, got No such file or directory"),
         (["bound", str(KERNELS / "quaternion_dcm.c")], "did you mean 'quaternion_dcm'?"),
-        (["audit", "quaternion_dcm.c"], "its own is quaternion_dcm.cert.json"),
+        (["audit", "quaternion_dcm.c"], "the certificate of this one is quaternion_dcm.cert.json"),
     ],
     ids=lambda value: Path(value[1]).name if isinstance(value, list) else "",
 )
@@ -488,10 +488,10 @@ def test_nothing_is_half_written(tmp_path, capsys):
 def test_bounds_of_other_operations_are_not_kept():
     text = emit("quaternion_dcm").certificate
     found = {"precisions": [{"operations_sha256": "0"}, {"operations_sha256": "1"}]}
-    assert with_slots(text, {"rounding": found, "objects": {"source": 1}}) == text
+    assert with_sections(text, {"rounding": found, "objects": {"source": 1}}) == text
     digests = [each["digest"] for each in json.loads(text)["readback"].values()]
     found = {"precisions": [{"operations_sha256": digest} for digest in digests]}
-    assert json.loads(with_slots(text, {"rounding": found}))["rounding"] == found
+    assert json.loads(with_sections(text, {"rounding": found}))["rounding"] == found
 
 
 def test_certificates_are_the_same_bytes_whatever_the_seed_of_hashes():

@@ -11,7 +11,7 @@ import pytest
 
 from symrot.certificates import exact_check, recheck
 from symrot.certificates.audit import audit
-from symrot.certificates.certificate import printed
+from symrot.certificates.certificate import certificate_json
 from symrot.codegen.printing.math_header import math_header
 from symrot.errors import CertificateError
 from symrot.workshop.emit import emit, subject
@@ -145,7 +145,7 @@ def refused(kernels):
         written.append(files)
         (files.directory / f"{name}.c").write_text(text, encoding="utf-8")
         digests = files.data["files"] | {f"{name}.c": sha256(text.encode()).hexdigest()}
-        files.path.write_text(printed(files.data | {"files": digests} | changes), encoding="utf-8")
+        files.path.write_text(certificate_json(files.data | {"files": digests} | changes), encoding="utf-8")
         with pytest.raises(Exception) as caught:
             recheck.check(files.path)
         said = [str(caught.value)]
@@ -323,7 +323,7 @@ def test_a_header_that_says_more_than_prototypes_is_refused(what, kernels):
     text = text[:start] + text[start:].replace(old, new, 1)
     (files.directory / f"{R}.h").write_text(text, encoding="utf-8")
     digests = files.data["files"] | {f"{R}.h": sha256(text.encode()).hexdigest()}
-    files.path.write_text(printed(files.data | {"files": digests}), encoding="utf-8")
+    files.path.write_text(certificate_json(files.data | {"files": digests}), encoding="utf-8")
     with pytest.raises(ValueError, match=f"{R}.h holds"):
         recheck.check(files.path)
     with pytest.raises(CertificateError):
@@ -336,7 +336,7 @@ def test_another_header_of_functions_is_refused(kernels):
     text = math_header().replace("sin", "cos")
     (files.directory / "symrot_math.h").write_text(text, encoding="utf-8")
     digests = files.data["files"] | {"symrot_math.h": sha256(text.encode()).hexdigest()}
-    files.path.write_text(printed(files.data | {"files": digests}), encoding="utf-8")
+    files.path.write_text(certificate_json(files.data | {"files": digests}), encoding="utf-8")
     with pytest.raises(ValueError, match="laws or functions are others"):
         recheck.check(files.path)
     files.restore()

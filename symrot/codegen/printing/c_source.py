@@ -150,14 +150,14 @@ def _body(
         due = _due(set().union(*(names(results[name]) for name, *_ in argument.components)), waiting)
         lines += [*([""] if due and lines else []), *due, *([""] if due else [])]
         for index, (name, *_) in enumerate(argument.components):
-            place, value = f"{argument.name}[{index_of(index)}]", c_expression(results[name], real, near)
+            target, value = f"{argument.name}[{index_of(index)}]", c_expression(results[name], real, near)
             if late and results[name][0] not in ("symbol", "number"):
                 while name in reserved:
                     name += "_"
                 reserved.add(name)
                 lines += _statement(f"const {real.type} {name}", value, indent)
                 value = name
-            (stores[argument.name] if late else lines).extend(_statement(place, value, indent))
+            (stores[argument.name] if late else lines).extend(_statement(target, value, indent))
     return [*lines, "", *(line for a in outputs for line in stores[a.name])] if late else lines
 
 

@@ -14,7 +14,7 @@ from time import perf_counter
 
 from symrot.certificates.object_code.build import COMPILERS, FLAGS, compile_object, compiler_version
 from symrot.certificates.object_code.comparison import CONTRACTED, DIFFERS, IDENTICAL, NOT_UNDERSTOOD, compare_object
-from symrot.certificates.object_code.disassembly import listing, missing
+from symrot.certificates.object_code.disassembly import read_listing, why_no_objdump
 from symrot.errors import CompilerError, SymrotError
 from tests.campaigns.certificates.object_code_mutants import Mutant, mutants, same_bits
 
@@ -88,7 +88,7 @@ def _outcome(source: Path, text: str, good: Path, mutant: Mutant) -> str:
 
 def _changed(good: Path, mutant: Path) -> str:
     """Return the first instruction that a corrupted file has in another form."""
-    before, after = listing(good).code, listing(mutant).code
+    before, after = read_listing(good).code, read_listing(mutant).code
     for place, instruction in before.items():
         other = after.get(place)
         if other is None or (other.text, other.relocation) != (instruction.text, instruction.relocation):
@@ -105,8 +105,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args(argv)
     sources = [path for path in sorted(options.kernels.glob("*.c")) if path.stem != "symrot_selftest"]
-    if missing() or not sources:
-        print(missing() or f"{options.kernels}: expected kernels in C, there are none")
+    if why_no_objdump() or not sources:
+        print(why_no_objdump() or f"{options.kernels}: expected kernels in C, there are none")
         return 2
     chosen, failed = sources[:: options.every], False
     print(f"{len(chosen)} kernels, one-sample functions of double and float")

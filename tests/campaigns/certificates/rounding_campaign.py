@@ -16,9 +16,9 @@ from math import inf
 from pathlib import Path
 
 from symrot.certificates.readback.operations import Operations
-from symrot.certificates.rounding.bounds import BUDGET, OutputBound, bound_outputs, tasks
+from symrot.certificates.rounding.bounds import BUDGET, OutputBound, bound_outputs, bound_tasks
 from symrot.certificates.rounding.intervals import DIGITS
-from symrot.certificates.rounding.library import operations_of, prepare, problem
+from symrot.certificates.rounding.library import library_problem, operations_of, prepare
 from symrot.errors import InputError
 from symrot.kernels.library import definition, kernel_names
 from tests.campaigns.certificates.rounding_measured import Measured, measure
@@ -112,7 +112,7 @@ def rows(name: str, text: str, points: int, seed: int = 1, budget: int = BUDGET,
 
 
 def _rows(name: str, operations: Operations, points: int, seed: int, budget: int) -> list[Row]:
-    given = problem(definition(name), operations)
+    given = library_problem(definition(name), operations)
     bounds = bound_outputs(operations, given.box, given.region, budget)
     found = compare(operations, bounds, measure(operations, given.box, bounds, given.region, points, seed), name)
     if not all(row.tight for row in found):  # a larger error may only be rare: look for it longer
@@ -127,8 +127,8 @@ def _keys(name: str, text: str) -> dict[tuple[str, str], str]:
     """Return (precision, output) of a kernel -> what its computation has in common with equal ones."""
     found = {}
     for operations in operations_of(name, text):
-        given = problem(definition(name), operations)
-        for output, task in tasks(operations, given.box, given.region).items():
+        given = library_problem(definition(name), operations)
+        for output, task in bound_tasks(operations, given.box, given.region).items():
             found[operations.precision, output] = task.key
     return found
 

@@ -12,7 +12,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from symrot.certificates.readback.intended_constants import meaning
+from symrot.certificates.readback.intended_constants import intended_value
 from symrot.certificates.readback.operations import RELATIONS, Builder, Operations, operands
 from symrot.certificates.rounding.region import Region
 from symrot.errors import CertificateError
@@ -36,7 +36,7 @@ _WIDE_CALLS: dict[str, Callable[..., Any]] = {"sin": np.sin, "cos": np.cos, "ata
 def meant(value: Fraction, precision: str) -> tuple[Fraction, bool]:
     """Return what a constant stands for, and whether times pi; itself where that is not told by the constant."""
     try:
-        found = meaning(value, precision)
+        found = intended_value(value, precision)
     except CertificateError:
         return value, False
     return found.fraction, found.times_pi
