@@ -104,7 +104,7 @@ class _BodyReader:
         scope.written[name, index] = value
 
     def _index(self, cursor: Cursor, scope: _Scope, array: Parameter) -> int:
-        """Read the index of an array and return i: ``[i]`` of a fixed size, else ``[k]``, ``[n + k]``, ``[i*n + k]``."""
+        """Read the index of an array: ``[i]`` of a fixed size, else ``[k]``, ``[n + k]``, ``[i*n + k]``; return i."""
         cursor.expect("[")
         if array.size > 0:
             index = cursor.integer()
