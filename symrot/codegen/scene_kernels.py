@@ -51,7 +51,7 @@ def rates_program(equations: Equations, name: str) -> Lowered:
                  equations.definitions)  # fmt: skip
 
 
-def _quantities(equations: Equations, found: Mapping[str, Expr]) -> Lowered:
+def _quantities(equations: Equations, conserved: Mapping[str, Expr]) -> Lowered:
     outputs: list[tuple[str, str, Expr]] = [
         (f"omega_{i + 1} of t", "rad/s", omega) for i, omega in enumerate(equations.motion.omega_b)
     ]
@@ -63,7 +63,7 @@ def _quantities(equations: Equations, found: Mapping[str, Expr]) -> Lowered:
         outputs += [(f"q{i} of t", "1", q) for i, q in enumerate(equations.motion.quaternion)]
         momentum_s = dcm_of(equations.motion.quaternion) * momentum
         outputs += [(f"momentum_{axis}", "kg m^2/s", value) for axis, value in zip("xyz", momentum_s, strict=True)]
-    outputs += [(name, "", value) for name, value in found.items()]
+    outputs += [(name, "", value) for name, value in conserved.items()]
     outputs += [(f"{mode} of t", "1", value) for mode, value in equations.modes]
     results = Argument("out", "out", tuple((name, unit, "") for name, unit, _ in outputs))
     signature = Signature("quantities", (TIME, _state_argument(equations), results))
@@ -83,8 +83,8 @@ def derive_scene_kernel(
     source = rates_source(rates)
     on_rates(rates.program, source)
     invariants = find_invariants(equations, structure)
-    kept = {f"conserved_{i}": item.value for i, item in enumerate(invariants) if item.kept}
-    quantities = _quantities(equations, kept)
+    conserved_values = {f"conserved_{i}": item.value for i, item in enumerate(invariants) if item.kept}
+    quantities = _quantities(equations, conserved_values)
     conserved = tuple(
         Conserved(item.name, item.unit, f"conserved_{i}" if item.kept else "", item.kept, item.reason)
         for i, item in enumerate(invariants)
@@ -106,10 +106,10 @@ def rates_source(rates: Lowered) -> str:
 def with_values(program: Program, parameters: Parameters, constants: Mapping[str, Fraction]) -> Program:
     """Return the program with the value of each parameter beside its formula, as the emitted head shows them."""
     values = bind(parameters, constants)
-    shown = tuple(
+    described = tuple(
         (name, "", f"{text(formula)} = {value!r}") for (name, formula), value in zip(parameters, values, strict=True)
     )
-    arguments = tuple(replace(a, components=shown) if a.name == "p" else a for a in program.signature.arguments)
+    arguments = tuple(replace(a, components=described) if a.name == "p" else a for a in program.signature.arguments)
     return replace(program, signature=replace(program.signature, arguments=arguments))
 
 

@@ -71,7 +71,8 @@ def problem(found: Definition, operations: Operations) -> Problem:
 
 def operations_of(name: str, text: str) -> tuple[Operations, Operations]:
     """Return the double and the float function of a kernel's C text."""
-    return tuple(read_kernel(text, f"symrot_{name}{suffix}", f"{name}.c") for suffix in ("", "f"))
+    double, single = (read_kernel(text, f"symrot_{name}{suffix}", f"{name}.c") for suffix in ("", "f"))
+    return double, single
 
 
 def _work(task: Task) -> Search:

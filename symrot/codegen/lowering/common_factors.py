@@ -100,14 +100,14 @@ class Share:
 
     @staticmethod
     def _swap_product(node: tuple[Any, ...], pair: tuple[Any, ...], new: int) -> tuple[Any, ...]:
-        wanted = Counter(pair[1])
+        factors = Counter(pair[1])
         parts = []
         for part in node[1:]:
-            held = Counter(part)
-            while all(held[i] >= n for i, n in wanted.items()):
-                held = held - wanted
-                held[new] += 1
-            parts.append(tuple(sorted(held.elements())))
+            rest = Counter(part)
+            while all(rest[i] >= n for i, n in factors.items()):
+                rest = rest - factors
+                rest[new] += 1
+            parts.append(tuple(sorted(rest.elements())))
         return "mul", *parts
 
     @staticmethod

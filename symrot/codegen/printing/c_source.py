@@ -136,9 +136,9 @@ def _body(
     waiting: dict[str, tuple[set[str], list[str]]] = {}  # name -> names that it needs, its statement
     for argument in program.signature.arguments:
         if argument.role == "in" and not argument.is_scalar:
-            place = _index_of_one if argument.name == "p" else index_of
+            own_index = _index_of_one if argument.name == "p" else index_of
             for index, (name, *_) in enumerate(argument.components):
-                statement = f"{indent}const {real.type} {name} = {argument.name}[{place(index)}];"
+                statement = f"{indent}const {real.type} {name} = {argument.name}[{own_index(index)}];"
                 waiting[name] = (set(), [statement])
     angles = [node[1] for node in turning_arguments(program) if node[1] in waiting]
     waiting = {name: waiting[name] for name in (*angles, *waiting)}  # gcc calls sincos where the angle is loaded

@@ -39,7 +39,7 @@ def _calls(program: Program) -> Iterator[tuple[str, tuple[Node, ...]]]:
 
 def turning_arguments(program: Program) -> list[Node]:
     """Return the angles of which a program takes a sine or cosine, itself or in a function of its own, once each."""
-    return list(dict.fromkeys(taken[0] for name, taken in _calls(program) if name in ("sin", "cos", *TURNING)))
+    return list(dict.fromkeys(arguments[0] for name, arguments in _calls(program) if name in ("sin", "cos", *TURNING)))
 
 
 def without_branches(program: Program) -> bool:

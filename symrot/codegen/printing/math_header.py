@@ -147,13 +147,13 @@ def _functions(real: Real) -> list[str]:
         "}",
         "",
     ]
-    for name, relation, found in (
+    for name, relation, comparison in (
         ("less", "<", f"symrot_bits{s}(a - b) >> {top + 1}"),
         ("same", "==", f"(symrot_bits{s}(fabs{s}(a - b)) - 1) >> {top + 1}"),
     ):
         lines += [
             f"/* 1 where a {relation} b, else 0; for finite numbers: by bits, since not all vectors compare */",
-            f"SYMROT_INLINE {bits} symrot_{name}{s}({kind} a, {kind} b) {{ return {found}; }}",
+            f"SYMROT_INLINE {bits} symrot_{name}{s}({kind} a, {kind} b) {{ return {comparison}; }}",
             "",
         ]
     for name, relation, chosen in (

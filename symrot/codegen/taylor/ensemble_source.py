@@ -119,7 +119,7 @@ class _Jet:
                     uses.setdefault(operand, []).append((place, size, sign))
             else:
                 own |= set(s.operands)
-        found: dict[object, list[tuple[int, Convolution, int]]] = {}
+        groups: dict[object, list[tuple[int, Convolution, int]]] = {}
         for i, s in enumerate(self.series):
             if s.rule not in CONVOLUTIONS:
                 continue
@@ -129,8 +129,8 @@ class _Jet:
                 sign = uses[i][0][2]
                 key = (c.square, tuple((place, size, sign * other) for place, size, other in uses[i]))
                 self.shared.add(i)
-            found.setdefault(key, []).append((sign, c, i))
-        for members in sorted(found.values(), key=lambda one: (one[0][1].square, -len(one))):
+            groups.setdefault(key, []).append((sign, c, i))
+        for members in sorted(groups.values(), key=lambda one: (one[0][1].square, -len(one))):
             lead = members[0][0]
             self.slot_of |= {i: (sign * lead, len(self.slots)) for sign, _, i in members}
             self.slots.append(Slot(tuple((sign * lead, c) for sign, c, _ in members)))

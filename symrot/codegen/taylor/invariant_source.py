@@ -93,17 +93,17 @@ def _gradient(tape: Tape, output: int, states: Sequence[str]) -> list[str]:
         for operand, share in zip(op.operands, _shares(op, index, own), strict=True):
             if operand in varying:
                 terms.setdefault(operand, []).append(share)
-    found = {tape.operations[index].value: " + ".join(parts) for index, parts in terms.items()}
-    return lines + [f"gradient[{output}][{i}] = {found.get(name, '0.0')};" for i, name in enumerate(states)]
+    derivatives = {tape.operations[index].value: " + ".join(parts) for index, parts in terms.items()}
+    return lines + [f"gradient[{output}][{i}] = {derivatives.get(name, '0.0')};" for i, name in enumerate(states)]
 
 
 def _varying(tape: Tape, needed: Sequence[int], states: set[str]) -> set[int]:
-    found: set[int] = set()
+    varying: set[int] = set()
     for index in needed:
         op = tape.operations[index]
-        if (op.kind == "symbol" and op.value in states) or found.intersection(op.operands):
-            found.add(index)
-    return found
+        if (op.kind == "symbol" and op.value in states) or varying.intersection(op.operands):
+            varying.add(index)
+    return varying
 
 
 def _shares(op: Operation, index: int, own: str) -> list[str]:

@@ -138,8 +138,8 @@ def _with_bundles(system: Recurrences) -> Recurrences:
                 weights.append(weight if sign > 0 else ("neg", weight))
         return s._replace(operands=tuple(operands), weights=(*weights, s.weights[-1]))
 
-    found = [bundled(s) if s.rule == "sum" and i < len(system.series) else s for i, s in enumerate(series)]
-    return system._replace(series=tuple(found), rates=tuple(map(bundled, system.rates)))
+    series_in_place = [bundled(s) if s.rule == "sum" and i < len(system.series) else s for i, s in enumerate(series)]
+    return system._replace(series=tuple(series_in_place), rates=tuple(map(bundled, system.rates)))
 
 
 class _Placer:
@@ -221,11 +221,14 @@ class _Placer:
 
     def pack(self, items: Sequence[tuple[int, int] | None]) -> Pack:
         """Return the addresses of signed series; a lane of no use takes what costs nothing."""
-        found = [None if item is None else self.address(*item, lane) for lane, item in enumerate(items)]
-        first = next(address for address in found if address is not None)
-        if len({address for address in found if address is not None}) == 1 and len(found) - found.count(None) > 1:
+        addresses = [None if item is None else self.address(*item, lane) for lane, item in enumerate(items)]
+        first = next(address for address in addresses if address is not None)
+        if (
+            len({address for address in addresses if address is not None}) == 1
+            and len(addresses) - addresses.count(None) > 1
+        ):
             return (first,) * LANES
-        return tuple(Address(1, first.row, lane) if a is None else a for lane, a in enumerate(found))
+        return tuple(Address(1, first.row, lane) if a is None else a for lane, a in enumerate(addresses))
 
     def address(self, sign: int, series: int, lane: int) -> Address:
         """Return where a series stands, in that lane if it stands there too."""
