@@ -42,7 +42,7 @@ def _with(node: Node, values: Mapping[str, Node]) -> Node:
 
 
 def kernel_description(kernel: Definition, target: str, errors: str = "") -> Description:
-    """Return what an emitted file says of a kernel; in C also its box and the rounding ``errors`` there, if known."""
+    """Return the head of an emitted file; in C it includes the box and the rounding ``errors`` on it."""
     known = (("Box", _box(kernel.box)), *((("Errors", errors),) if errors else ()))
     return Description(
         title=kernel.title, domain=kernel.domain, derivation=kernel.derivation,
@@ -52,7 +52,7 @@ def kernel_description(kernel: Definition, target: str, errors: str = "") -> Des
 
 
 def _box(box: Box) -> str:
-    """Return the ranges of the inputs on which rounding errors are bounded, equal ones together."""
+    """Return the ranges of the inputs on which rounding errors are bounded; inputs with equal ranges share an entry."""
     names: dict[tuple[str, str], list[str]] = {}
     for name, (low, high) in box.items():
         names.setdefault((str(low), str(high)), []).append(name)

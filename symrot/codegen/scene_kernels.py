@@ -43,7 +43,7 @@ def _state_argument(equations: Equations) -> Argument:
 
 
 def rates_program(equations: Equations, name: str) -> Lowered:
-    """Return the right-hand side ``dy/dt`` of a plan as a program of the given name."""
+    """Return the right-hand side ``dy/dt`` of the equations of motion as a program with this name."""
     per_second = {"rad/s": "rad/s^2", "1": "1/s", "rad": "rad/s"}
     results = tuple((f"d{s}", per_second[_unit(s)], "time derivative of the state") for s in equations.states)
     signature = Signature(name, (TIME, _state_argument(equations), Argument("dy", "out", results)))
@@ -104,7 +104,7 @@ def rates_source(rates: Lowered) -> str:
 
 
 def with_values(program: Program, parameters: Parameters, constants: Mapping[str, Fraction]) -> Program:
-    """Return the program with the value of each parameter beside its formula, as the emitted head shows them."""
+    """Return the program with formula and value of each parameter as its meaning, for the head of the emitted file."""
     values = bind(parameters, constants)
     described = tuple(
         (name, "", f"{text(formula)} = {value!r}") for (name, formula), value in zip(parameters, values, strict=True)
@@ -114,7 +114,7 @@ def with_values(program: Program, parameters: Parameters, constants: Mapping[str
 
 
 def scene_description(title: str, name: str, target: str, bounds: tuple[tuple[str, str], ...] = ()) -> Description:
-    """Return what an emitted file says of a scene's own kernel; in C also its ``bounds``, if known: heading, text."""
+    """Return the head of the file of a scene's kernel; in C it includes ``bounds``, pairs of heading and text."""
     return Description(
         title=f"equations of motion of the scene {name!r} ({title})",
         domain="all states of finite size; a quaternion is of unit norm, and its rate keeps the norm",

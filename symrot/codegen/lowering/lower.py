@@ -143,7 +143,7 @@ def _lowered(
     signature: Signature, outputs: Sequence[tuple[str, Expr]], definitions: Sequence[tuple[Symbol, Expr]],
     parameter_argument: str, flat: bool,
 ) -> Lowered:  # fmt: skip
-    """Return the program with sums as they stand, whose parts may be shared, or with ``flat`` ones."""
+    """Return the program of the expressions; with ``flat``, nested sums are merged before parts are shared."""
     inputs = [name for a in signature.arguments if a.role == "in" for name, *_ in a.components]
     held = {symbol for _, expr in [*outputs, *definitions] for symbol in expr.free_symbols}
     defined = [symbol for symbol, _ in definitions]

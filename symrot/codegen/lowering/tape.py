@@ -24,7 +24,7 @@ class Operation(NamedTuple):
 
 
 class Tape(NamedTuple):
-    """Operations in an order in which they can be computed, and where the outputs stand."""
+    """Operations in an order of computation, and the index of the operation of each output."""
 
     operations: tuple[Operation, ...]
     outputs: tuple[int, ...]

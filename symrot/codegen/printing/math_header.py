@@ -109,7 +109,7 @@ def _wrapped(head: str, formula: str) -> list[str]:
 
 
 def _reduction(real: Real) -> list[str]:
-    """Return the statements from x to the rest ``high + low``, its square t and the number of quarter turns."""
+    """Return the statements that reduce x: remainder ``high + low``, its square t, number of quarter rotations."""
     parts = [real.literal(part) for part in quarter_turn_parts(real.precision)]
     digits = _DIGITS[real.precision]
     lines = [

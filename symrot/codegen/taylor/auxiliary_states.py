@@ -41,7 +41,7 @@ class _Term(NamedTuple):
 
 
 def with_companions(system: Recurrences) -> Recurrences:
-    """Return a system with companions in the place of what holds the attitude alone, or the system as it is.
+    """Return a system in which expressions of the attitude alone are replaced by auxiliary states, if there are any.
 
     Companions are states beyond those of the program: ``seeds`` of the result has a formula for coefficient 0 of each,
     in the states and t, and ``rates`` their rates.
@@ -101,7 +101,7 @@ class _Closure:
         return {((self.variable(kind, what), 1),): Fraction(1)}
 
     def constant(self, node: Node) -> Polynomial:
-        """Return a constant formula; what is no polynomial is one of a new variable."""
+        """Return a constant formula as a polynomial; a subformula that is not a polynomial becomes a new variable."""
         if node[0] == "number":
             return {(): node[1]} if node[1] else {}
         if node[0] not in ("neg", "*", "+", "-"):
@@ -241,7 +241,7 @@ class _Closure:
         return result
 
     def seek(self, i: int) -> None:
-        """Replace what holds the attitude alone in a series and in all it is made of."""
+        """Replace expressions of the attitude alone in a series and in its operands."""
         s = self.series[i]
         if i in self.replaced or s.rule not in ("sum", "product"):
             return

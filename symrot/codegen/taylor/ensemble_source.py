@@ -146,7 +146,7 @@ class _Jet:
         return f"x[{self.state[series]}][{n}]" if series in self.state else f"u{series}[{n}]"
 
     def weight(self, node: Node) -> str:
-        """Return a positive constant: a number as it stands, what holds parameters from its place in each lane."""
+        """Return a positive constant as C: a literal, or for a formula of parameters an element of a table."""
         if not names(node) and node[0] == "number":
             return f"V_ALL({c_expression(node)})"
         return f"c[{self.constants.setdefault(node, len(self.constants))}]"
@@ -313,7 +313,7 @@ class _Jet:
         return [line for group in self._groups() for line in self._loop(group)]
 
     def _groups(self) -> list[list[int]]:
-        """Return the slots of each loop: those that share factors together, as far as registers go."""
+        """Return the slots of each loop; slots with common factors share a loop while registers suffice."""
         left = list(range(len(self.slots)))
         groups: list[list[int]] = []
         while left:

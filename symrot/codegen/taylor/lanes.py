@@ -104,7 +104,7 @@ def cost(layout: Layout) -> int:
 
 
 def _with_bundles(system: Recurrences) -> Recurrences:
-    """Give products that always stand together in several sums a sum of their own, computed once."""
+    """Collect products that occur together in several sums into one sum, which is computed once."""
     series = list(system.series)
     sums = [(i, s) for i, s in enumerate(series) if s.rule == "sum"]
     sums += [(-1 - i, rate) for i, rate in enumerate(system.rates)]
@@ -169,7 +169,7 @@ class _Placer:
         self.rows.append(row._replace(lanes=lanes))
 
     def _inlined(self, most_uses: int) -> set[int]:
-        """Return the products that stand in so few sums and nowhere else: they need no coefficients of their own."""
+        """Return the products that occur only in a few sums: they are expanded there, without stored coefficients."""
         count: dict[int, int] = {}
         for s in (*self.series, *self.system.rates):
             for operand in s.operands:
@@ -178,7 +178,7 @@ class _Placer:
         return {operand for operand, uses in count.items() if uses <= most_uses}
 
     def level(self, i: int) -> int:
-        """Return in which round of one order a series can be computed: the states are there before the first."""
+        """Return the round of an order in which a series can be computed; states are known before the first."""
         if i not in self.levels:
             s = self.series[i]
             older = {"driven": (1,), "primitive": (1,), "clock": (0,)}.get(s.rule, ())  # used below coefficient n alone
@@ -212,7 +212,7 @@ class _Placer:
         return Layout(self.series, tuple(self.rows), tuple(rates), tuple(self.columns), own, self.system.states, seeds)
 
     def _shape(self, i: int) -> tuple[int, ...]:
-        """Return what series are sorted by within a level: pairs first, then sums with many products."""
+        """Return the sorting key of a series within a level: pairs first, then sums with many products."""
         s = self.series[i]
         products = sum(operand in self.inlined for operand in s.operands)
         return (s.function == "exp", -products)
@@ -231,7 +231,7 @@ class _Placer:
         return tuple(Address(1, first.row, lane) if a is None else a for lane, a in enumerate(addresses))
 
     def address(self, sign: int, series: int, lane: int) -> Address:
-        """Return where a series stands, in that lane if it stands there too."""
+        """Return the address of a series, in the preferred lane if a copy is there."""
         first = self.place[series]
         return Address(sign, first.row, lane if self.rows[first.row].lanes[lane] == series else first.lane)
 
@@ -332,7 +332,7 @@ class _Placer:
             yield self.column(picked, "both", needed)
 
     def _shared(self, lanes: list[list[tuple[int, int, int]]]) -> int | None:
-        """Return a series that stands in a product of every lane, the first one, if there are several lanes."""
+        """Return the first series that is a factor in every lane, or None; a single lane has no such series."""
         if len(lanes) < 2:
             return None
         common = set.intersection(*({u for _, *pair in lane for u in pair} for lane in lanes))

@@ -215,7 +215,7 @@ def _is_shifted(form: _Form) -> bool:
 
 
 def _terms(node: Node, parts: list[tuple[Node, ...] | None]) -> tuple[Node, ...] | None:
-    """Return the terms of a polynomial of t from those of its operands, or None if it is none."""
+    """Return the coefficients of a polynomial in t from those of its operands; None if it is no polynomial."""
     if any(part is None for part in parts):
         return None
     kind, polynomials = node[0], [part for part in parts if part is not None]
