@@ -325,6 +325,23 @@ def test_recheck_refuses_a_text_that_rounds_more_than_it_says(name, term, huge, 
     assert recheck.check(files.path)  # who says nothing of rounding says nothing wrong
 
 
+def test_recheck_refuses_functions_without_the_prefix_of_symrot(tmp_path):
+    """A kernel that is consistent under other names is no kernel of symrot."""
+    name = "quaternion_dcm"
+    files = Files(tmp_path, subject(name), emit(name).certificate)
+    texts = {
+        file: (files.directory / file).read_text(encoding="utf-8").replace(f"symrot_{name}", name)
+        for file in (f"{name}.c", f"{name}.h")
+    }
+    for file, text in texts.items():
+        (files.directory / file).write_text(text, encoding="utf-8")
+    hashes = files.data["files"] | {file: sha256(text.encode()).hexdigest() for file, text in texts.items()}
+    readback = {function.removeprefix("symrot_"): each for function, each in files.data["readback"].items()}
+    files.path.write_text(printed(files.data | {"files": hashes, "readback": readback}), encoding="utf-8")
+    with pytest.raises(ValueError, match="another name or type: expected symrot_quaternion_dcm"):
+        recheck.check(files.path)
+
+
 def test_recheck_computes_as_c_does_in_float():
     """Sums and products of floats, each rounded: 2^24 + 1 is no float."""
     floats, doubles = recheck.Machine(recheck.c_float), recheck.Machine(recheck.c_double)
