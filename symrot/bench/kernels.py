@@ -131,7 +131,7 @@ def _drivers(signature: Signature, batch: bool) -> str:
     ])  # fmt: skip
 
 
-_REPEAT_ONE = """void repeat_one(size_t repeats, size_t n, double **a)
+_REPEAT_ONE = """void symrot_repeat_one(size_t repeats, size_t n, double **a)
 {{
     for (size_t r = 0; r < repeats; ++r)
         for (size_t k = 0; k < n; ++k) {{
@@ -140,7 +140,7 @@ _REPEAT_ONE = """void repeat_one(size_t repeats, size_t n, double **a)
         }}
 }}
 """
-_REPEAT_BATCH = """void repeat_batch(size_t repeats, size_t n, double **a)
+_REPEAT_BATCH = """void symrot_repeat_batch(size_t repeats, size_t n, double **a)
 {{
     for (size_t r = 0; r < repeats; ++r) {{
         {call};
@@ -175,7 +175,7 @@ def _heyoka_drivers(signature: Signature) -> str:
         "typedef void (*of_one)(double *, const double *, const double *, const double *);",
         "typedef void (*of_batch)(double *, const double *, const double *, const double *, size_t);",
         "static of_one one;", "static of_batch neighbour, neighbours;",
-        "void take(of_one a, of_batch b, of_batch c)", "{", "    one = a, neighbour = b, neighbours = c;", "}",
+        "void symrot_take(of_one a, of_batch b, of_batch c)", "{", "    one = a, neighbour = b, neighbours = c;", "}",
         "static void batch(size_t n, const double *in, double *out)", "{", "    size_t k = 0;",
         f"    for (; k + {LANES} <= n; k += {LANES})", "        neighbours(out + k, in + k, 0, 0, n);",
         "    for (; k < n; ++k)", "        neighbour(out + k, in + k, 0, 0, n);", "}",
@@ -219,7 +219,7 @@ def _runs(name: str, loaded: ctypes.CDLL, shapes: Sequence[str], many: int) -> d
     runs = {}
     for shape in shapes:
         count = many if shape == "many" else CACHED
-        function = loaded.repeat_one if shape == "one" else loaded.repeat_batch
+        function = loaded.symrot_repeat_one if shape == "one" else loaded.symrot_repeat_batch
         function.argtypes = (ctypes.c_size_t, ctypes.c_size_t, ctypes.c_void_p)
         if count:
             addresses = [_addresses(name, shape, count, place) for place in range(PLACES[shape])]
@@ -280,7 +280,7 @@ def contest(name: str, many: int = MANY) -> tuple[list[Contestant], list[str]]:
         missing.append("CasADi")
     try:
         code = heyoka_code(name)
-        add("heyoka", Counter(), *_in_c(name, _heyoka_drivers(signature), many, prepare=lambda c: c.take(*code)))
+        add("heyoka", Counter(), *_in_c(name, _heyoka_drivers(signature), many, prepare=lambda c: c.symrot_take(*code)))
     except ImportError:
         missing.append("heyoka")
     contestants.append(Contestant(FLOOR, Counter(), _in_c(name, _moving(signature), many, SHAPES[1:])[0]))

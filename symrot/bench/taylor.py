@@ -217,7 +217,7 @@ def _heyoka(problem: _Problem, tolerance: float, settings: dict[str, bool]) -> T
 
 def _by_hand(library_: Any, method: str, problem: _Problem, steps: int) -> TimedRun:
     """Return a run of a handwritten loop."""
-    function = getattr(library_, method)
+    function = getattr(library_, f"symrot_{method}")
     real = ctypes.c_double
     function.argtypes, function.restype = (real, real, ctypes.c_long, ctypes.c_void_p, ctypes.c_void_p), None
     start, p = np.array(problem.y0), np.array(problem.p or [0.0])

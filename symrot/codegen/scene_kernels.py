@@ -43,7 +43,7 @@ def _state_argument(equations: Equations) -> Argument:
 
 
 def rates_program(equations: Equations, name: str) -> Lowered:
-    """Return the right-hand side ``dy/dt`` of a plan as a program of the given name."""
+    """Return the right-hand side ``dy/dt`` of the equations of motion as a program with this name."""
     per_second = {"rad/s": "rad/s^2", "1": "1/s", "rad": "rad/s"}
     results = tuple((f"d{s}", per_second[_unit(s)], "time derivative of the state") for s in equations.states)
     signature = Signature(name, (TIME, _state_argument(equations), Argument("dy", "out", results)))
@@ -51,7 +51,7 @@ def rates_program(equations: Equations, name: str) -> Lowered:
                  equations.definitions)  # fmt: skip
 
 
-def _quantities(equations: Equations, found: Mapping[str, Expr]) -> Lowered:
+def _quantities(equations: Equations, conserved: Mapping[str, Expr]) -> Lowered:
     outputs: list[tuple[str, str, Expr]] = [
         (f"omega_{i + 1} of t", "rad/s", omega) for i, omega in enumerate(equations.motion.omega_b)
     ]
@@ -63,7 +63,7 @@ def _quantities(equations: Equations, found: Mapping[str, Expr]) -> Lowered:
         outputs += [(f"q{i} of t", "1", q) for i, q in enumerate(equations.motion.quaternion)]
         momentum_s = dcm_of(equations.motion.quaternion) * momentum
         outputs += [(f"momentum_{axis}", "kg m^2/s", value) for axis, value in zip("xyz", momentum_s, strict=True)]
-    outputs += [(name, "", value) for name, value in found.items()]
+    outputs += [(name, "", value) for name, value in conserved.items()]
     outputs += [(f"{mode} of t", "1", value) for mode, value in equations.modes]
     results = Argument("out", "out", tuple((name, unit, "") for name, unit, _ in outputs))
     signature = Signature("quantities", (TIME, _state_argument(equations), results))
@@ -83,8 +83,8 @@ def derive_scene_kernel(
     source = rates_source(rates)
     on_rates(rates.program, source)
     invariants = find_invariants(equations, structure)
-    kept = {f"conserved_{i}": item.value for i, item in enumerate(invariants) if item.kept}
-    quantities = _quantities(equations, kept)
+    conserved_values = {f"conserved_{i}": item.value for i, item in enumerate(invariants) if item.kept}
+    quantities = _quantities(equations, conserved_values)
     conserved = tuple(
         Conserved(item.name, item.unit, f"conserved_{i}" if item.kept else "", item.kept, item.reason)
         for i, item in enumerate(invariants)
@@ -104,17 +104,17 @@ def rates_source(rates: Lowered) -> str:
 
 
 def with_values(program: Program, parameters: Parameters, constants: Mapping[str, Fraction]) -> Program:
-    """Return the program with the value of each parameter beside its formula, as the emitted head shows them."""
+    """Return the program with formula and value of each parameter as its meaning, for the head of the emitted file."""
     values = bind(parameters, constants)
-    shown = tuple(
+    described = tuple(
         (name, "", f"{text(formula)} = {value!r}") for (name, formula), value in zip(parameters, values, strict=True)
     )
-    arguments = tuple(replace(a, components=shown) if a.name == "p" else a for a in program.signature.arguments)
+    arguments = tuple(replace(a, components=described) if a.name == "p" else a for a in program.signature.arguments)
     return replace(program, signature=replace(program.signature, arguments=arguments))
 
 
 def scene_description(title: str, name: str, target: str, bounds: tuple[tuple[str, str], ...] = ()) -> Description:
-    """Return what an emitted file says of a scene's own kernel; in C also its ``bounds``, if known: heading, text."""
+    """Return the head of the file of a scene's kernel; in C it includes ``bounds``, pairs of heading and text."""
     return Description(
         title=f"equations of motion of the scene {name!r} ({title})",
         domain="all states of finite size; a quaternion is of unit norm, and its rate keeps the norm",

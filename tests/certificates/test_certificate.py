@@ -325,14 +325,35 @@ def test_recheck_refuses_a_text_that_rounds_more_than_it_says(name, term, huge, 
     assert recheck.check(files.path)  # who says nothing of rounding says nothing wrong
 
 
+def test_recheck_refuses_functions_without_the_prefix_of_symrot(tmp_path):
+    """A kernel that is consistent under other names is no kernel of symrot."""
+    name = "quaternion_dcm"
+    files = Files(tmp_path, subject(name), emit(name).certificate)
+    texts = {
+        file: (files.directory / file).read_text(encoding="utf-8").replace(f"symrot_{name}", name)
+        for file in (f"{name}.c", f"{name}.h")
+    }
+    for file, text in texts.items():
+        (files.directory / file).write_text(text, encoding="utf-8")
+    hashes = files.data["files"] | {file: sha256(text.encode()).hexdigest() for file, text in texts.items()}
+    readback = {function.removeprefix("symrot_"): each for function, each in files.data["readback"].items()}
+    files.path.write_text(printed(files.data | {"files": hashes, "readback": readback}), encoding="utf-8")
+    with pytest.raises(ValueError, match="another name or type: expected symrot_quaternion_dcm"):
+        recheck.check(files.path)
+
+
 def test_recheck_computes_as_c_does_in_float():
     """Sums and products of floats, each rounded: 2^24 + 1 is no float."""
-    floats = recheck.machine("f", recheck.c_float)
-    large, one = floats["at_"]("16777216.0f"), floats["at_"]("1.0f")
-    assert (large + one) - large == 0 != (recheck.machine("", recheck.c_double)["at_"]("16777216.0") + 1.0) - large
-    assert one / 3 == recheck.c_float(1 / 3).value != 1 / 3
-    assert -large + large * one == 0 == floats["fabsf"](-one) - 1
-    assert floats["sinf"](one) == recheck.c_float(math.sin(1)).value
+    floats, doubles = recheck.Machine(recheck.c_float), recheck.Machine(recheck.c_double)
+    for machine, lost in ((floats, 1.0), (doubles, 0.0)):
+        total = machine.operate("+", 16777216.0, 1.0)
+        assert machine.operate("-", total, 16777216.0) == 1.0 - lost
+    assert floats.operate("/", 1.0, 3.0) == recheck.c_float(1 / 3).value != 1 / 3 == doubles.operate("/", 1.0, 3.0)
+    assert (
+        floats.apply("sin", [1.0]) == recheck.c_float(math.sin(1)).value != doubles.apply("sin", [1.0]) == math.sin(1)
+    )
+    assert floats.apply("symrot_atan2", [1.0, -2.0]) == recheck.c_float(math.atan2(1, -2)).value
+    assert floats.apply("fabs", [floats.negate(1.5)]) == 1.5 and math.isnan(floats.operate("/", 1.0, 0.0))
 
 
 def test_bounds_are_those_of_their_box(kernels):
@@ -523,19 +544,24 @@ def test_recheck_evaluates_functions_to_what_mpmath_finds(name, kernels):
     }  # fmt: skip
     oracle = own.get(name) or getattr(mp, name)
     with localcontext(Context(prec=90)), mp.workdps(110):
-        names = recheck.point([], [], list(dict(defined).items()))
+        numbers, functions = recheck.Decimals(), recheck.defined_functions(dict(defined).items())
         scale = 30
         for x, y in ((Decimal("0.7301"), Decimal("-0.21")), (Decimal("0.013"), Decimal("0.9"))):
             arguments = [x * scale, y][: 2 if name in ("atan2", "arc_ratio") else name != "pi"]
-            found = names[name](*arguments) if arguments else names[name]
-            wanted = oracle(*(mp.mpf(str(each)) for each in arguments))
-            assert abs(mp.mpf(str(found)) / wanted - 1) < mp.mpf(10) ** -80
+            if name in functions:
+                value = functions[name].call(numbers, arguments)
+            else:
+                value = numbers.apply(name, arguments) if arguments else recheck.Names(numbers)[name]
+            expected = oracle(*(mp.mpf(str(each)) for each in arguments))
+            assert abs(mp.mpf(str(value)) / expected - 1) < mp.mpf(10) ** -80
 
 
 def test_a_rotation_that_recheck_draws_is_one():
     with localcontext(Context(prec=90)):
         names = [f"R_{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3)]
-        rows = [*map(recheck.point(names, [], []).get, names)]
+        values = recheck.Names(recheck.Decimals())
+        recheck.draw_given(names, values)
+        rows = [*map(values.get, names)]
         a, b, c = (rows[start : start + 3] for start in (0, 3, 6))
         products = [sum(x * y for x, y in zip(p, q, strict=True)) for p in (a, b, c) for q in (a, b, c)]
         assert all(abs(each - (k % 4 == 0)) < Decimal("1e-85") for k, each in enumerate(products))

@@ -328,7 +328,7 @@ def _fixed_steps(
         f"#define N {len(general.y0)}",
         *(file.read_text(encoding="utf-8") for file in files),
     ]
-    function = getattr(ctypes.CDLL(str(cache.build(longer("\n".join(parts)), "long_double"))), name)
+    function = getattr(ctypes.CDLL(str(cache.build(longer("\n".join(parts)), "long_double"))), f"symrot_{name}")
     real = ctypes.c_longdouble
     function.argtypes, function.restype = (real, real, ctypes.c_long, ctypes.c_void_p, ctypes.c_void_p), None
     p = _long(_exact_parameters(general.kernel.rate_parameters, general.plan).values())

@@ -138,7 +138,7 @@ def _rk4(normalised: bool) -> Callable[[Track, Floats], Trajectory | None]:
             return None
         text = text_by_hand("by_hand.c")
         source = f"{motion.kernel.source}\n#define N {len(motion.plan.states)}\n{text}"
-        function = ctypes.CDLL(str(cache.build(source, "by_hand"))).rk4
+        function = ctypes.CDLL(str(cache.build(source, "by_hand"))).symrot_rk4
         real, pointer = ctypes.c_double, ctypes.c_void_p
         function.argtypes, function.restype = (real, real, ctypes.c_long, ctypes.c_int, pointer, pointer), None
         y, p = np.array(motion.plan.initial_state), np.array(motion.rate_parameters or [0.0])

@@ -136,14 +136,16 @@ def lower(
         For a function or a power that kernels do not hold.
     """
     ways = [_lowered(signature, outputs, definitions, parameter_argument, flat) for flat in (False, True)]
-    return min(ways, key=lambda way: way.program.operations().total())
+    lowered, anonymous = min(ways, key=lambda way: way[0].program.operations().total())
+    numbers = {} if parameter_argument == "p" else _numbers(lowered.parameters)
+    return replace(lowered, program=with_names(lowered.program, anonymous, numbers))
 
 
 def _lowered(
     signature: Signature, outputs: Sequence[tuple[str, Expr]], definitions: Sequence[tuple[Symbol, Expr]],
     parameter_argument: str, flat: bool,
-) -> Lowered:  # fmt: skip
-    """Return the program with sums as they stand, whose parts may be shared, or with ``flat`` ones."""
+) -> tuple[Lowered, list[str]]:  # fmt: skip
+    """Return the program and its temporaries without a name; ``flat`` merges nested sums before parts are shared."""
     inputs = [name for a in signature.arguments if a.role == "in" for name, *_ in a.components]
     held = {symbol for _, expr in [*outputs, *definitions] for symbol in expr.free_symbols}
     defined = [symbol for symbol, _ in definitions]
@@ -163,8 +165,7 @@ def _lowered(
     formulas = [node if sign > 0 else negative(node) for (sign, _), node in zip(signed, formulas, strict=True)]
     targets = [name for name, _ in outputs]
     lowered = _numbered(signature, gather.hoisted, writer.temporaries, targets, formulas, parameter_argument)
-    numbers = {} if parameter_argument == "p" else _numbers(lowered.parameters)
-    return replace(lowered, program=with_names(lowered.program, writer.anonymous, numbers))
+    return lowered, writer.anonymous
 
 
 def _numbers(parameters: Iterable[tuple[str, Node]]) -> dict[str, Node]:

@@ -136,9 +136,9 @@ def _body(
     waiting: dict[str, tuple[set[str], list[str]]] = {}  # name -> names that it needs, its statement
     for argument in program.signature.arguments:
         if argument.role == "in" and not argument.is_scalar:
-            place = _index_of_one if argument.name == "p" else index_of
+            own_index = _index_of_one if argument.name == "p" else index_of
             for index, (name, *_) in enumerate(argument.components):
-                statement = f"{indent}const {real.type} {name} = {argument.name}[{place(index)}];"
+                statement = f"{indent}const {real.type} {name} = {argument.name}[{own_index(index)}];"
                 waiting[name] = (set(), [statement])
     angles = [node[1] for node in turning_arguments(program) if node[1] in waiting]
     waiting = {name: waiting[name] for name in (*angles, *waiting)}  # gcc calls sincos where the angle is loaded
@@ -185,7 +185,7 @@ def _reserved(program: Program, real: Real) -> set[str]:
 
 
 def _due(needed: set[str], waiting: dict[str, tuple[set[str], list[str]]]) -> list[str]:
-    """Return the statements that some names need, in their order, and take them off the list."""
+    """Remove the statements that some names need from the waiting list and return them in order."""
     for name, (of, _) in reversed(waiting.items()):
         if name in needed:
             needed = needed | of
@@ -226,7 +226,7 @@ def c_function(program: Program, qualifier: str = "", real: Real = DOUBLE) -> st
 
 
 def _own_function(name: str, real: Real) -> list[str]:
-    """Return a function that kernels call beyond those of the mathematical library."""
+    """Return the definition of a function that kernels call and <math.h> does not have."""
     parameters, temporaries, (relation, left, right, then, other) = own_function(name, real.precision)
     arguments = ", ".join(f"{real.type} {parameter}" for parameter in parameters)
     lines = [_head(real.functions[name], arguments, "static inline ", real.type), "{"]
@@ -259,7 +259,7 @@ def _batch_arguments(program: Program, real: Real) -> str:
 
 
 def _batch(program: Program, real: Real, near: bool) -> list[str]:
-    """Return the function that computes n samples, those of a block with angles out of range a second time."""
+    """Return the function that computes n samples; a block with an angle out of range is computed again by <math.h>."""
     head = [
         _head(f"{c_name(program.signature.name, real)}_batch", _batch_arguments(program, real)),
         "{",
@@ -320,7 +320,7 @@ def _split(program: Program) -> list[Program]:
 
 
 def _part(program: Program, output: Argument) -> Program:
-    """Return what computes one output argument alone."""
+    """Return the part of a program that computes one output argument."""
     own = {name for name, *_ in output.components}
     outputs = tuple((name, node) for name, node in program.outputs if name in own)
     needed = set().union(*(names(node) for _, node in outputs))
@@ -334,7 +334,7 @@ def _part(program: Program, output: Argument) -> Program:
 
 
 def _streams(program: Program) -> int:
-    """Return how many arrays a loop over samples walks along."""
+    """Return the number of arrays that a loop over samples reads or writes."""
     used = _used(program)
     moved = [a for a in program.signature.arguments if a.name != "p"]
     return sum(a.role == "out" or name in used for a in moved for name, *_ in a.components)
@@ -367,7 +367,7 @@ def _loop(
 
 
 def _with_names(program: Program, names: dict[str, str]) -> Program:
-    """Return the program with some inputs called differently."""
+    """Return the program with some inputs renamed."""
     signature = program.signature
     arguments = tuple(
         replace(a, components=tuple((names.get(c[0], c[0]), *c[1:]) for c in a.components)) for a in signature.arguments
