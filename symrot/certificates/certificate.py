@@ -205,14 +205,14 @@ def _law(proof: LawProof) -> Data:
 def _case(proof: CaseProof) -> Data:
     return {
         "case": [list(choice) for choice in proof.case],
-        "steps": _plain(proof.steps),
+        "steps": _as_lists(proof.steps),
         "relations": list(proof.relations),
-        "entries": [[entry.factor, _plain(entry.cofactors)] for entry in proof.entries],
+        "entries": [[entry.factor, _as_lists(entry.cofactors)] for entry in proof.entries],
     }
 
 
-def _plain(value: Any) -> Any:
-    return [_plain(each) for each in value] if isinstance(value, tuple) else value
+def _as_lists(value: Any) -> Any:
+    return [_as_lists(each) for each in value] if isinstance(value, tuple) else value
 
 
 def _readback(kernel: KernelUnderTest, suffix: str, real: str) -> Data:

@@ -138,11 +138,11 @@ def _object(
         "flags_hold": judgement.holds,
         "sha256": digest,
         "accepted": judgement.accepted and all(item.accepted for item in verdicts),
-        "functions": [_plain(item) for item in verdicts],
+        "functions": [_verdict_to_json(item) for item in verdicts],
     }
 
 
-def _plain(verdict: ObjectVerdict) -> dict[str, Any]:
+def _verdict_to_json(verdict: ObjectVerdict) -> dict[str, Any]:
     return {
         "name": verdict.function, "verdict": verdict.verdict, "output": verdict.output, "reason": verdict.reason,
         "cases": verdict.cases, "instructions": verdict.instructions,

@@ -20,7 +20,7 @@ from symrot.certificates.object_code.disassembly import Listing, read_listing
 from symrot.certificates.object_code.machine import ExecutionPath, execution_paths, state_at_call
 from symrot.certificates.object_code.state import ArrayArgument, CallContext, NotUnderstood
 from symrot.certificates.object_code.terms import ANY, RELATION, Known, Outcomes, Pair, Terms, number_from_bits
-from symrot.certificates.readback.c_functions import Function, functions_of
+from symrot.certificates.readback.c_functions import CFunction, functions_of
 from symrot.certificates.readback.operations import Operations, operands
 from symrot.certificates.readback.readback import read_kernel
 from symrot.errors import CertificateError
@@ -103,7 +103,7 @@ def compare_object(
     return tuple(compare_function(read_kernel(text, name, where), functions_in_text[name], listing) for name in names)
 
 
-def one_sample_functions(functions: dict[str, Function]) -> tuple[str, ...]:
+def one_sample_functions(functions: dict[str, CFunction]) -> tuple[str, ...]:
     """Return the names of the functions that compute one sample."""
     return tuple(
         name
@@ -112,7 +112,7 @@ def one_sample_functions(functions: dict[str, Function]) -> tuple[str, ...]:
     )
 
 
-def compare_function(text: Operations, function: Function, listing: Listing) -> ObjectVerdict:
+def compare_function(text: Operations, function: CFunction, listing: Listing) -> ObjectVerdict:
     """Compare the operations of a C function with the machine code of the same name."""
     start = listing.function(function.name)
     masked = any(
@@ -128,7 +128,9 @@ def compare_function(text: Operations, function: Function, listing: Listing) -> 
     return min(verdicts, key=lambda item: order.index(item.verdict))
 
 
-def _compare(text: Operations, function: Function, listing: Listing, start: tuple[str, int], top: int) -> ObjectVerdict:
+def _compare(
+    text: Operations, function: CFunction, listing: Listing, start: tuple[str, int], top: int
+) -> ObjectVerdict:
     """Compare a function with its machine code, for one place of the return address on the stack."""
     width, terms = WIDTH[text.precision], Terms()
     expected = _terms_from_operations(text, terms, width)

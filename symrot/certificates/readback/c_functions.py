@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from symrot.errors import CertificateError
 
-__all__ = ["Cursor", "Function", "Parameter", "Token", "functions_of"]
+__all__ = ["CFunction", "Cursor", "Parameter", "Token", "functions_of"]
 
 _TOKEN = re.compile(
     r"(?P<space>\s+)|(?P<number>(?:0[xX][0-9a-fA-F]+\.?[0-9a-fA-F]*[pP][+-]?\d+|(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)f?)"
@@ -39,7 +39,7 @@ class Parameter:
 
 
 @dataclass(frozen=True)
-class Function:
+class CFunction:
     """A C function: its signature, and its body as tokens that are parsed only when the function is needed."""
 
     name: str
@@ -131,7 +131,7 @@ class Cursor:
         return tuple(self.tokens[start : self.index - 1])
 
 
-def functions_of(text: str, where: str = "kernel") -> dict[str, Function]:
+def functions_of(text: str, where: str = "kernel") -> dict[str, CFunction]:
     """Return the functions that a C file defines, by name; prototypes are skipped.
 
     Raises
@@ -152,7 +152,7 @@ def functions_of(text: str, where: str = "kernel") -> dict[str, Function]:
     return functions
 
 
-def _function(cursor: Cursor) -> Function | None:
+def _function(cursor: Cursor) -> CFunction | None:
     """Read a function definition; return None for a prototype."""
     while cursor.peek() in ("static", "inline"):
         cursor.next()
@@ -172,7 +172,7 @@ def _function(cursor: Cursor) -> Function | None:
     if cursor.peek() == ";":
         cursor.next()
         return None
-    return Function(name, returns, tuple(parameters), cursor.block(), line)
+    return CFunction(name, returns, tuple(parameters), cursor.block(), line)
 
 
 def _parameter(cursor: Cursor) -> Parameter:

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-__all__ = ["BINARY", "RELATIONS", "UNARY", "Builder", "Node", "Operations", "operands"]
+__all__ = ["BINARY", "RELATIONS", "UNARY", "GraphBuilder", "Node", "Operations", "operands"]
 
 Node = tuple[Any, ...]
 
@@ -81,21 +81,22 @@ class Operations:
         """
         known: list[Any] = []
         for node in self.nodes:
-            known.append(_computed(node, known, values, functions, number))
+            known.append(_node_value(node, known, values, functions, number))
         return {place: known[index] for place, index in self.outputs}
 
     def to_json(self) -> dict[str, Any]:
         """Return the operations as data for JSON, with constants as exact text."""
         return {
             "name": self.name, "precision": self.precision, "inputs": list(self.inputs),
-            "nodes": [_plain(node) for node in self.nodes], "outputs": [list(item) for item in self.outputs],
+            "nodes": [_node_to_json(node) for node in self.nodes], "outputs": [list(item) for item in self.outputs],
         }  # fmt: skip
 
     @classmethod
     def from_json(cls, data: Mapping[str, Any]) -> "Operations":
         """Return the operations from the data that :meth:`to_json` returned."""
         return cls(
-            data["name"], data["precision"], tuple(data["inputs"]), tuple(_node(node) for node in data["nodes"]),
+            data["name"], data["precision"], tuple(data["inputs"]),
+            tuple(_node_from_json(node) for node in data["nodes"]),
             tuple((place, index) for place, index in data["outputs"]),
         )  # fmt: skip
 
@@ -110,7 +111,7 @@ class Operations:
         return hashlib.sha256(json.dumps(data, sort_keys=True, separators=(",", ":")).encode()).hexdigest()
 
 
-def _computed(
+def _node_value(
     node: Node, known: Sequence[Any], values: Mapping[str, Any],
     functions: Mapping[str, Callable[..., Any]], number: Callable[[Fraction], Any],
 ) -> Any:  # fmt: skip
@@ -140,19 +141,19 @@ _ARITHMETIC: dict[str, Callable[..., Any]] = {
 }
 
 
-def _plain(node: Node) -> list[Any]:
+def _node_to_json(node: Node) -> list[Any]:
     if node[0] == "const":
         return ["const", str(node[1])]
     return [node[0], node[1], list(node[2])] if node[0] == "call" else list(node)
 
 
-def _node(data: Sequence[Any]) -> Node:
+def _node_from_json(data: Sequence[Any]) -> Node:
     if data[0] == "const":
         return ("const", Fraction(data[1]))
     return ("call", data[1], tuple(data[2])) if data[0] == "call" else tuple(data)
 
 
-class Builder:
+class GraphBuilder:
     """Collects nodes, storing equal ones once, and makes :class:`Operations` of the nodes that the outputs need."""
 
     def __init__(self) -> None:

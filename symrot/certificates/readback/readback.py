@@ -11,8 +11,8 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from struct import pack, unpack
 
-from symrot.certificates.readback.c_functions import Cursor, Function, Parameter, Token, functions_of
-from symrot.certificates.readback.operations import RELATIONS, Builder, Operations
+from symrot.certificates.readback.c_functions import CFunction, Cursor, Parameter, Token, functions_of
+from symrot.certificates.readback.operations import RELATIONS, GraphBuilder, Operations
 from symrot.errors import CertificateError
 
 __all__ = ["LIBRARY", "read_batch", "read_kernel"]
@@ -45,9 +45,9 @@ class _Scope:
 class _BodyReader:
     """Reads the body of one function into a graph of operations; functions of the same file are inlined."""
 
-    def __init__(self, functions: Mapping[str, Function], where: str, real: str, batch: bool = False) -> None:
+    def __init__(self, functions: Mapping[str, CFunction], where: str, real: str, batch: bool = False) -> None:
         self.functions, self.where, self.real, self.batch = functions, where, real, batch
-        self.builder = Builder()
+        self.builder = GraphBuilder()
         self.inputs: dict[str, int] = {}  # place -> its node
         self.calls: list[str] = []
         self.depth = 0
@@ -229,7 +229,7 @@ class _BodyReader:
             raise cursor.fail("a function of <math.h> that kernels use", repr(name))
         return self.builder.add("call", bare, tuple(arguments))
 
-    def _inlined(self, cursor: Cursor, function: Function, arguments: list[int]) -> int:
+    def _inlined(self, cursor: Cursor, function: CFunction, arguments: list[int]) -> int:
         """Read the body of a function of the same file with these arguments; return the node of its result."""
         parameters = function.parameters
         if function.returns != self.real or any(p.size or p.type != self.real for p in parameters):
@@ -259,14 +259,14 @@ def _nearest_float(digits: str, value: float) -> float:
     return min(ties, key=lambda item: unpack("I", pack("f", item))[0] & 1)
 
 
-def _defined(functions: Mapping[str, Function], name: str, where: str) -> Function:
+def _defined(functions: Mapping[str, CFunction], name: str, where: str) -> CFunction:
     """Return the function of a name, or raise CertificateError."""
     if name not in functions:
         raise CertificateError(f"{where}: expected a definition of {name}, got {', '.join(functions) or 'no function'}")
     return functions[name]
 
 
-def _real_of(function: Function, where: str) -> str:
+def _real_of(function: CFunction, where: str) -> str:
     """Return the type of all numbers of a kernel, double or float."""
     types = {p.type for p in function.parameters} - {"size_t"}
     if function.returns != "void" or len(types) != 1:
@@ -418,7 +418,7 @@ def _blocks(cursor: Cursor, reader: _BodyReader, scope: _Scope) -> None:
 
 
 def _finished(
-    reader: _BodyReader, scope: _Scope, function: Function, places: list[tuple[str, int]], where: str
+    reader: _BodyReader, scope: _Scope, function: CFunction, places: list[tuple[str, int]], where: str
 ) -> Operations:
     """Return the operations that were read; raise CertificateError if an output is not assigned."""
     missing = [f"{name}[{index}]" for name, index in places if (name, index) not in scope.written]

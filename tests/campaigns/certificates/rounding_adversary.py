@@ -57,8 +57,8 @@ class Field:
         part = rng.random((len(self.places), count))
         ends = rng.random(part.shape) < rng.choice([0.0, 0.5, 0.9], size=count)
         part = np.where(ends, np.round(part) + (0.5 - np.round(part)) * 2.0 ** -rng.integers(4, 50, part.shape), part)
-        found, inside = self.inside(low + (high - low) * part)
-        return np.asarray(found[:, inside])
+        points, inside = self.inside(low + (high - low) * part)
+        return np.asarray(points[:, inside])
 
     def near(self, points: Points, rng: np.random.Generator) -> tuple[Points, NDArray[np.bool_]]:
         """Return a point near each, and which of them are in the region."""
@@ -72,15 +72,15 @@ class Field:
         step = np.where(rng.random(shape[1]) < LAST_BITS, bits, far)
         return self.inside(np.clip(at + step * (rng.random(shape) < MOVED / len(self.places)), low, high))
 
-    def inside(self, found: NDArray[np.float64]) -> tuple[Points, NDArray[np.bool_]]:
+    def inside(self, points: NDArray[np.float64]) -> tuple[Points, NDArray[np.bool_]]:
         """Return points rounded to the precision, brought to the unit spheres of the region, and which are in it."""
         low, high = self.ends
         groups = [[self.places.index(place) for place in group] for group in self.region.unit]
         for rows in groups:
-            square = (found[rows] ** 2).sum(axis=0)
+            square = (points[rows] ** 2).sum(axis=0)
             apart = (np.abs(square - 1) > UNIT_NORM / 2) & (square > 0)  # nearer ones keep their last bits
-            found[rows] /= np.where(apart, np.sqrt(square), 1.0)
-        rounded = found.astype(self.kind).astype(np.float64)
+            points[rows] /= np.where(apart, np.sqrt(square), 1.0)
+        rounded = points.astype(self.kind).astype(np.float64)
         inside: NDArray[np.bool_] = np.asarray(((rounded >= low) & (rounded <= high)).all(axis=0))
         for rows in groups:
             inside = inside & (np.abs((rounded[rows] ** 2).sum(axis=0) - 1) < 0.9 * UNIT_NORM)
@@ -95,8 +95,8 @@ def pointwise(graph: OutputGraph, field: Field, libm_ulp: float) -> Errors:
         at = points[rows].astype(np.float64)
         decided = np.full((len(graph.conditions), at.shape[1]), -1, np.int8)
         with np.errstate(all="ignore"):
-            found = evaluate(graph, np.stack([at, at]), decided, field.region, libm_ulp).bound
-        return np.where(np.isfinite(found), found, -1.0)
+            errors = evaluate(graph, np.stack([at, at]), decided, field.region, libm_ulp).bound
+        return np.where(np.isfinite(errors), errors, -1.0)
 
     return bounds
 
@@ -131,11 +131,11 @@ def climb(errors_of: Errors, field: Field, start: Points, rounds: int, rng: np.r
             points[:, order[RESTARTS // 2 :]] = points[:, order[: RESTARTS // 2]]
             errors[order[RESTARTS // 2 :]] = errors[order[: RESTARTS // 2]]
         near, inside = field.near(np.repeat(points, CANDIDATES_PER_STEP, axis=1), rng)
-        found = np.where(inside, errors_of(near), -1.0).reshape(RESTARTS, CANDIDATES_PER_STEP)
-        best = found.argmax(axis=1)
-        better = found.max(axis=1) > errors
+        trial_errors = np.where(inside, errors_of(near), -1.0).reshape(RESTARTS, CANDIDATES_PER_STEP)
+        best = trial_errors.argmax(axis=1)
+        better = trial_errors.max(axis=1) > errors
         points[:, better] = near[:, (np.arange(RESTARTS) * CANDIDATES_PER_STEP + best)[better]]
-        errors[better] = found.max(axis=1)[better]
+        errors[better] = trial_errors.max(axis=1)[better]
     return np.asarray(points[:, top(errors)])
 
 

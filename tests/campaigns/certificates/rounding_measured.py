@@ -83,7 +83,7 @@ def measure(
     scanned = field.points(points // 2, rng)
     errors = scan(operations, region, scanned)
     rounds = max(points // (2 * len(bounds) * RESTARTS * CANDIDATES_PER_STEP), LEAST_ROUNDS)
-    found = []
+    measurements = []
     for each in bounds:
         best = scanned[:, top(errors[each.output])]
         middle = {place: float(sum(box[place]) / 2) for place in places} | dict(each.at)
@@ -93,8 +93,10 @@ def measure(
         own = behind(operations, each.output)
         climbed = _climbed(own, field, start, rounds, rng)
         every = distinct([climbed[:, :CONFIRMED], best[:, :CONFIRMED]])
-        found.append(_confirm(own, each, every, scanned.shape[1] + (rounds + 1) * RESTARTS * CANDIDATES_PER_STEP))
-    return tuple(found)
+        measurements.append(
+            _confirm(own, each, every, scanned.shape[1] + (rounds + 1) * RESTARTS * CANDIDATES_PER_STEP)
+        )
+    return tuple(measurements)
 
 
 def _coarse(operations: Operations, field: Field, output: str, points: Points, rng: np.random.Generator) -> Points:
@@ -125,8 +127,8 @@ def _confirm(operations: Operations, each: OutputBound, points: Points, used: in
                 error = abs(error - 2 * mpmath.pi * mpmath.nint(error / (2 * mpmath.pi)))
             if error > best:
                 best, at = error, points[:, column]
-    shown = tuple((place, float(x)) for place, x in zip(operations.inputs, at, strict=True))
-    return Measured(each.output, float(best), shown, used)
+    point = tuple((place, float(x)) for place, x in zip(operations.inputs, at, strict=True))
+    return Measured(each.output, float(best), point, used)
 
 
 def _confirmed(operations: Operations, computed: Sequence[Any], column: int, root: int, point: Any) -> Any:
