@@ -6,12 +6,14 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-from symrot.checker.claim.claims import Claim, Refusal, claim_of_text, read_entries, shown_relation
+from symrot.checker.claim.claims import Claim, Refusal, claim_of_text, read_entries, relation_text
 from symrot.checker.claim.values import decide_value
-from symrot.checker.decide.decision import Decision, Problem, decide_problem, shown
+from symrot.checker.decide.decision import Equation, decide_equation
 from symrot.checker.units.check import check_dimensions, dimensions_of_formulas
 from symrot.checker.verdict import Diagnosis, Verdict
 from symrot.errors import InputError
+from symrot.exact.decision import Decision
+from symrot.exact.printing import as_text
 
 __all__ = ["RefusedClaims", "check", "check_claim", "check_file", "check_readings", "verdicts_of_file"]
 
@@ -84,8 +86,8 @@ def _checked(left: Any, right: Any, assume: Sequence[Any], units: Mapping[str, s
     if right is None:
         raise InputError("expected two sides, or one text 'left == right'")
     start = perf_counter()
-    decision = decide_problem(Problem(left, right, tuple(assume)))
-    verdict = _verdict(decision, f"{shown(left)} == {shown(right)}", start)
+    decision = decide_equation(Equation(left, right, tuple(assume)))
+    verdict = _verdict(decision, f"{as_text(left)} == {as_text(right)}", start)
     return replace(verdict, dimension=dimensions_of_formulas(left, right, units))
 
 
@@ -143,8 +145,8 @@ def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict 
     decision, verdict = _decide(claim)
     if not verdict:
         for relation in claim.alternatives:
-            source = shown_relation(relation)
-            other = replace(claim, relation=relation, alternatives=(), sources={**claim.sources, "claim": source})
+            source = relation_text(relation)
+            other = claim.with_relation(relation, alternatives=(), sources={**claim.sources, "claim": source})
             _, found = _decide(other)
             if found:
                 return verdict, found
@@ -158,14 +160,14 @@ def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict 
 def _decide(claim: Claim) -> tuple[Decision, Verdict]:
     start = perf_counter()
     try:
-        decision = decide_value(claim) if claim.relation is None else decide_problem(claim.problem())
+        decision = decide_value(claim) if claim.relation is None else decide_equation(claim.equation)
     except InputError as reason:
         if not claim.id or claim.id in str(reason):
             raise
         raise InputError(f"{claim.id}: {reason}") from None
     verdict = _verdict(decision, claim.text, start)
     if claim.relation is not None:
-        hypotheses = [relation[1:] for relation in claim.given]
+        hypotheses = [relation[1:] for relation in claim.hypotheses]
         found = check_dimensions(claim.relation[1:], claim.define, hypotheses, claim.units)
         verdict = replace(verdict, dimension=found)
     return decision, replace(verdict, id=claim.id, where=claim.where, seconds=perf_counter() - start)
@@ -186,24 +188,23 @@ def _diagnosed(claim: Claim, decision: Decision, verdict: Verdict) -> Verdict:
 def _domain(claim: Claim) -> Diagnosis:
     """Return the remark that a true claim holds only where one side is defined, when the other is so everywhere."""
     assert claim.relation is not None
-    sides = [replace(claim, relation=("==", side, side)) for side in claim.relation[1:]]
-    left, right = (decide_problem(side.problem()).conditions for side in sides)
+    sides = [claim.with_relation(("==", side, side)) for side in claim.relation[1:]]
+    left, right = (decide_equation(side.equation).conditions for side in sides)
     if bool(left) == bool(right):
         return Diagnosis("none", "")
     narrow, wide = ("left", "right") if left else ("right", "left")
-    where = ", ".join(left or right)
+    where = ", ".join(map(as_text, left or right))
     text = f"it holds only where it is defined: the {narrow} side needs {where}, the {wide} side needs nothing"
     return Diagnosis("domain", text)
 
 
-def _verdict(decision: Any, text: str, start: float) -> Verdict:
+def _verdict(decision: Decision, text: str, start: float) -> Verdict:
     return Verdict(
         verdict=decision.verdict,
-        conditions=decision.conditions,
+        conditions=tuple(map(as_text, decision.conditions)),
         requires=tuple(requirement.text for requirement in decision.requires),
         counterexample=decision.counterexample,
         reason=decision.reason,
-        notes=decision.notes,
         text=text,
         seconds=perf_counter() - start,
     )

@@ -3,22 +3,9 @@
 from dataclasses import dataclass, field
 from typing import Any
 
+from symrot.exact.evidence import Counterexample
+
 __all__ = ["Counterexample", "Diagnosis", "Dimensions", "Repair", "Verdict"]
-
-
-@dataclass(frozen=True)
-class Counterexample:
-    """A point, with exact values as text, where the two sides differ; ``entry`` is (row, column) from 1, or None."""
-
-    values: dict[str, str]
-    lhs: str
-    rhs: str
-    entry: tuple[int, int] | None = None
-
-    def __str__(self) -> str:
-        point = ", ".join(f"{name} = {value}" for name, value in self.values.items())
-        place = f"entry {self.entry}: " if self.entry else ""
-        return f"{place}{self.lhs} against {self.rhs}" + (f" at {point}" if point else "")
 
 
 @dataclass(frozen=True)
@@ -122,15 +109,15 @@ class Verdict:
 
     def to_json(self) -> dict[str, Any]:
         """Return the verdict as JSON data."""
-        shown = self.counterexample
+        witness = self.counterexample
         return {
             "id": self.id,
             "verdict": self.verdict,
             "entry": list(self.entry) if self.entry else None,
             "conditions": list(self.conditions),
-            "counterexample": shown and {
-                "values": shown.values, "lhs": shown.lhs, "rhs": shown.rhs,
-                "entry": list(shown.entry) if shown.entry else None,
+            "counterexample": witness and {
+                "values": witness.values, "lhs": witness.lhs, "rhs": witness.rhs,
+                "entry": list(witness.entry) if witness.entry else None,
             },
             "diagnosis": {"code": self.diagnosis.code, "text": self.diagnosis.text},
             "repairs": [

@@ -7,7 +7,6 @@ residual happens to vanish.
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import reduce
 
 import sympy
@@ -15,11 +14,12 @@ from sympy import Abs, Add, Expr, Mul, Pow
 from sympy.core.function import AppliedUndef
 from sympy.polys.rings import PolyElement
 
-from symrot.checker.claim.printed import shown
 from symrot.exact.decide import normal_form
+from symrot.exact.evidence import Requirement
+from symrot.exact.printing import as_text
 from symrot.exact.ring.ring import FormulaRing
 
-__all__ = ["Requirement", "branch_requirements", "requirements", "surely_nonnegative"]
+__all__ = ["branch_requirements", "requirements", "surely_nonnegative"]
 
 MOMENT = re.compile(r"[ABC]|[IJ]_?([xyz1-3]|([xyz1-3])\2|p|perp|par|parallel|t|s|a)?", re.ASCII)
 PRODUCT_OF_INERTIA = re.compile(r"[IJP]_?(xy|yx|xz|zx|yz|zy|12|21|13|31|23|32)", re.ASCII)
@@ -31,16 +31,6 @@ MOST_TERMS, LARGEST_DEGREE = 400, 24
 
 MOST_TERMS_OF_SQUARE = 40
 """Of a sum that is still factored to see whether it is a square."""
-
-
-@dataclass(frozen=True)
-class Requirement:
-    """A condition as text, its code, and the expressions that are zero, or not negative, under it."""
-
-    code: str
-    text: str
-    zeros: tuple[Expr, ...] = ()
-    signs: tuple[Expr, ...] = ()
 
 
 def requirements(
@@ -178,7 +168,7 @@ def branch_requirements(ring: FormulaRing, numerators: Sequence[PolyElement]) ->
                 break
             value = normal_form(-without.as_expr(*ring.generators) / rest.as_expr(*ring.generators), ring.hypotheses)
             if not surely_nonnegative(value):
-                signs[f"{shown(value)} >= 0"] = value
+                signs[f"{as_text(value)} >= 0"] = value
         else:
             stated = tuple(signs[text] for text in sorted(signs))
             return [Requirement("sign_branch", " and ".join(sorted(signs)), signs=stated)] if signs else []

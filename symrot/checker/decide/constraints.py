@@ -39,7 +39,7 @@ class Constraints:
     free : frozenset of int
         Generators that can have any values which all this allows.
     complete : bool
-        Whether ``zeros`` say all that is known: False where a hypothesis speaks of something that is not free.
+        Whether ``zeros`` say all that is known: False where a hypothesis is_nontrivial of something that is not free.
     real : bool
         Whether all of this is about real numbers.
     """
@@ -58,7 +58,7 @@ class Constraints:
 
     @cached_property
     def involved(self) -> tuple[int, ...]:
-        """The free generators that some constraint speaks of, in order."""
+        """The free generators that some constraint is_nontrivial of, in order."""
         return tuple(sorted(self.free & occurring([*self.zeros, *self.nonzero, *self.products])))
 
 

@@ -20,7 +20,7 @@ from symrot.checker.decide.constraints import Constraints, distinct_factors, occ
 from symrot.exact.ring.groebner import groebner_basis
 from symrot.exact.ring.ratio import TooLarge
 
-__all__ = ["Emptiness", "vanishes_on", "why_empty"]
+__all__ = ["Infeasibility", "infeasibility_proof", "vanishes_on"]
 
 MOST_CASES = 40
 MOST_ROUNDS = 6
@@ -35,21 +35,21 @@ class _Undecided(Exception):
 
 
 @dataclass(frozen=True)
-class Emptiness:
+class Infeasibility:
     """Why there is no point: the polynomial that cannot vanish, or None where 1 = 0 follows."""
 
     reason: str
     polynomial: PolyElement | None = None
 
 
-def why_empty(constraints: Constraints) -> Emptiness | None:
+def infeasibility_proof(constraints: Constraints) -> Infeasibility | None:
     """Return why no real point obeys the constraints, proven; None if no proof was found."""
     if not constraints.real:
         return None
     zeros = list(constraints.zeros)
     for poly in constraints.nonzero:
         if not poly:
-            return Emptiness("what is divided by is zero wherever they hold")
+            return Infeasibility("what is divided by is zero wherever they hold")
     ring = constraints.ring
     nonzero = [poly for poly in constraints.nonzero if not poly.is_ground]
     if nonzero:
@@ -65,7 +65,7 @@ def why_empty(constraints: Constraints) -> Emptiness | None:
 
 def vanishes_on(constraints: Constraints, formula: PolyElement) -> bool:
     """Return whether a polynomial of the same ring is proven to vanish at all real points of the constraints."""
-    return why_empty(replace(constraints, nonzero=(*constraints.nonzero, formula))) is not None
+    return infeasibility_proof(replace(constraints, nonzero=(*constraints.nonzero, formula))) is not None
 
 
 def _with_one_more(constraints: Constraints) -> tuple[PolyRing, Constraints]:
@@ -85,7 +85,7 @@ class _Prover:
         self.signed = constraints.positive | constraints.negative
         self.forbidden = {poly.monic() for poly in constraints.nonzero if poly and not poly.is_ground}
 
-    def impossible(self, zeros: Sequence[PolyElement], rounds: int = MOST_ROUNDS) -> Emptiness:
+    def impossible(self, zeros: Sequence[PolyElement], rounds: int = MOST_ROUNDS) -> Infeasibility:
         """Return why polynomials cannot vanish together; raises when no reason is found."""
         self.cases += 1
         if self.cases > MOST_CASES or rounds == 0:
@@ -94,21 +94,22 @@ class _Prover:
         for number, poly in enumerate(zeros):
             factors = self.factors(poly)
             if not factors and poly:
-                return Emptiness(*self.why(poly))
+                return Infeasibility(*self.why(poly))
             if len(factors) > 1:
                 rest = [*simple, *zeros[number + 1 :]]
-                found = [self.impossible([factor, *rest], rounds) for factor in factors]
-                return found[0] if len({item.reason for item in found}) == 1 else Emptiness("every case is impossible")
+                cases = [self.impossible([factor, *rest], rounds) for factor in factors]
+                same = len({case.reason for case in cases}) == 1
+                return cases[0] if same else Infeasibility("every case is impossible")
             simple.extend(self.parts(factors[0]) if factors else ())
         for poly in simple:
             if self.keeps_its_sign(poly, simple):
-                return Emptiness(*self.why(poly))
+                return Infeasibility(*self.why(poly))
         basis = groebner_basis(simple, self.ring, MOST_PRODUCTS, self.spent)
         if any(poly.is_ground for poly in basis):
-            return Emptiness("they contradict each other")
+            return Infeasibility("they contradict each other")
         for poly in basis:
             if self.keeps_its_sign(poly, simple):
-                return Emptiness(*self.why(poly))
+                return Infeasibility(*self.why(poly))
         if {poly.monic() for poly in simple} == set(basis) and all(self.parts(p) == [p] for p in basis):
             raise _Undecided
         return self.impossible(basis, rounds - 1)

@@ -153,7 +153,7 @@ class _Drawing:
         raise _DeadEnd
 
     def completed(self) -> RealPoint:
-        """Give values to what nothing speaks of any more, then to the unknowns that were solved for."""
+        """Give values to what nothing is_nontrivial of any more, then to the unknowns that were solved for."""
         later = {place for place, _, _ in self.solved}
         for place in sorted(self.constraints.free - later - self.values.keys()):
             self.values[place] = self.field.convert(self.drawn(place), QQ)

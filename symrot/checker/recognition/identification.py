@@ -14,15 +14,16 @@ from sympy import Expr, Function, ImmutableMatrix, Rational, Symbol
 from sympy.matrices import MatrixBase
 
 from symrot.checker.claim.claims import Claim, claim_of_text, named_formula
-from symrot.checker.claim.interpreter import Meaning, time
+from symrot.checker.claim.interpreter import Interpreter, time
 from symrot.checker.claim.reader import complaint, read_expression
 from symrot.checker.claim.tree import walk
-from symrot.checker.decide.decision import shown
 from symrot.checker.latex.reader import read_latex_formula
 from symrot.checker.recognition.fingerprint import PRIME, Outside, Print, Values, fingerprint, values_at
 from symrot.checker.recognition.known_formulas import Known, by_fingerprint
 from symrot.errors import InputError
-from symrot.exact.decide import decide, flatten
+from symrot.exact.decide import decide
+from symrot.exact.decision import flatten
+from symrot.exact.printing import as_text
 from symrot.exact.ring.ratio import TooLarge
 
 __all__ = ["Identification", "identified", "identify", "named_parts"]
@@ -115,11 +116,11 @@ def _value(formula: Any) -> Any:
         raise InputError(f"expected a formula as text or a SymPy value to identify, got {type(formula).__name__}")
     latex = "\\" in formula or "$" in formula
     if "=" in formula and (named := named_formula(claim_of_text(formula))) is not None:
-        return Meaning(implied=True).read(named[1], formula)
+        return Interpreter(implied=True).read(named[1], formula)
     if not latex and "=" in formula:
         raise complaint(formula, "", formula.index("="), "one formula without '=' to identify")
     text = read_latex_formula(formula) if latex else formula
-    return Meaning(implied=True).read(read_expression(text), text)
+    return Interpreter(implied=True).read(read_expression(text), text)
 
 
 def named_parts(claim: Claim) -> tuple[str, ...]:
@@ -133,16 +134,17 @@ def named_parts(claim: Claim) -> tuple[str, ...]:
 
 
 def _parts(claim: Claim) -> Iterator[tuple[str, Any]]:
-    meaning = claim.meaning()
+    """Yield the sides of a claim and the definitions that it uses, each with a word for its place."""
     assert claim.relation is not None
     sides = claim.relation[1:]
-    for place, side in zip(("the left side", "the right side"), sides, strict=True):
+    values = (claim.equation.left, claim.equation.right)
+    for place, side, value in zip(("the left side", "the right side"), sides, values, strict=True):
         if side.kind != "name":
-            yield place, meaning.read(side, claim.sources.get("claim", ""), claim.label("claim"))
+            yield place, value
     used = {node.value for side in sides for _, node in walk(side) if node.kind == "name"}
     for name, _ in claim.define:
         if name in used:
-            yield name, meaning.values[name]
+            yield name, claim.definitions.values[name]
 
 
 def identified(value: Any, steps: bool = True) -> Iterator[Identification]:
@@ -203,8 +205,8 @@ def _turned(entries: Sequence[Expr], shape: tuple[int, int] | None) -> Iterator[
 def _known_value(text: str) -> tuple[tuple[Expr, ...], Print]:
     tree = read_expression(text)
     names = {str(node.value) for _, node in walk(tree) if node.kind == "name" and node.value != "pi"}
-    meaning = Meaning(values={name: Symbol(name, real=True) for name in names}, implied=True)
-    entries, _ = flatten(meaning.read(tree, text))
+    interpreter = Interpreter(values={name: Symbol(name, real=True) for name in names}, implied=True)
+    entries, _ = flatten(interpreter.read(tree, text))
     return tuple(entries), fingerprint(entries)
 
 
@@ -222,11 +224,10 @@ def _matched(known: Known, own: Print, entries: Sequence[Expr], view: View) -> I
                 continue
         except (InputError, TooLarge):
             continue
-        renamed = {
-            shown(mine): shown(other) for mine, other in pairing.items() if not _alike(shown(mine), shown(other))
-        }
-        said = [part for part in (view.how, _said(factor)) if part]
-        return Identification(known.name, " and ".join(said), dict(sorted(renamed.items())), known.source)
+        names = [(as_text(mine), as_text(other)) for mine, other in pairing.items()]
+        renaming = {mine: other for mine, other in names if not _alike(mine, other)}
+        changes = [part for part in (view.how, _factor_text(factor)) if part]
+        return Identification(known.name, " and ".join(changes), dict(sorted(renaming.items())), known.source)
     return None
 
 
@@ -235,7 +236,7 @@ def _alike(mine: str, other: str) -> bool:
     return other in (mine, f"{mine}(t)") or (mine.startswith("d") and other == f"diff({mine[1:]}(t), t)")
 
 
-def _said(factor: Rational) -> str:
+def _factor_text(factor: Rational) -> str:
     return {1: "", -1: "with the other sign"}.get(factor, f"{factor} times")
 
 
@@ -251,8 +252,8 @@ def _pairings(theirs: Print, own: Print, order: Sequence[int]) -> Iterator[dict[
         return
     choices = []
     for row, atoms in groups.items():
-        names = {shown(atom) for atom in atoms}
-        ordered = sorted(mine[row], key=lambda atom: (shown(atom) not in names, shown(atom)))
+        names = {as_text(atom) for atom in atoms}
+        ordered = sorted(mine[row], key=lambda atom: (as_text(atom) not in names, as_text(atom)))
         choices.append([(atoms, chosen) for chosen in _nearest(atoms, ordered)])
     for chosen in product(*choices):
         yield {a: b for atoms, others in chosen for a, b in zip(atoms, others, strict=True)}
@@ -261,7 +262,7 @@ def _pairings(theirs: Print, own: Print, order: Sequence[int]) -> Iterator[dict[
 def _nearest(atoms: Sequence[Expr], others: Sequence[Expr]) -> list[tuple[Expr, ...]]:
     """Return the orders of some symbols, those with the most equal names first."""
     orders = list(islice(permutations(others), MOST_TRIES))
-    orders.sort(key=lambda order: sum(shown(a) != shown(b) for a, b in zip(atoms, order, strict=True)))
+    orders.sort(key=lambda order: sum(as_text(a) != as_text(b) for a, b in zip(atoms, order, strict=True)))
     return orders
 
 

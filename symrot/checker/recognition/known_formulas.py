@@ -13,13 +13,13 @@ from typing import Any
 from sympy import Expr, ImmutableMatrix, Matrix, diag
 
 from symrot import catalogue, symbols
-from symrot.checker.decide.decision import shown
 from symrot.checker.recognition.fingerprint import Outside, fingerprint
 from symrot.conventions import SEQUENCES
 from symrot.dynamics.equations import euler_equations
 from symrot.dynamics.structure import FieldPattern, FieldTorque, Pattern
 from symrot.dynamics.torques import Motion, torque_law
-from symrot.exact.decide import flatten
+from symrot.exact.decision import flatten
+from symrot.exact.printing import as_text
 from symrot.inertia import tensor
 from symrot.inertia.shapes import SHAPES
 from symrot.inertia.solids import solid
@@ -230,7 +230,7 @@ def _kept(formulas: Iterator[Named], least: int, longest: int) -> Iterator[tuple
         entries, shape = flatten(value)
         if sum(entry.count_ops() for entry in entries) > longest // 3:
             continue
-        text = " ".join(shown(ImmutableMatrix(value) if shape else value).split())
+        text = " ".join(as_text(ImmutableMatrix(value) if shape else value).split())
         try:
             found = fingerprint(entries)
         except Outside:

@@ -16,7 +16,7 @@ from symrot.checker.claim.scope import is_matrix
 from symrot.checker.claim.tree import Node, text, walk
 from symrot.checker.recognition.identification import Identification, identified
 from symrot.checker.repair.edits import TEXTS, single_edits
-from symrot.checker.repair.filter import Sieve
+from symrot.checker.repair.filter import NumericFilter
 from symrot.errors import InputError
 
 __all__ = ["nearby"]
@@ -71,7 +71,7 @@ def _edits(claim: Claim, formula: Node) -> Iterator[tuple[str, Node]]:
     """Yield (code, tree) of the single edits of a formula, the nearest first."""
     if sum(1 for _ in walk(formula)) > MOST_NODES:
         return
-    sieve = Sieve(claim)
+    sieve = NumericFilter(claim)
     edits = single_edits(formula, sieve.names, sieve.functions, sieve.is_matrix, sieve.moving)
     for edit in islice(sorted(edits, key=lambda edit: edit.cost), MOST_EDITS):
         yield edit.code, edit.tree
@@ -80,7 +80,7 @@ def _edits(claim: Claim, formula: Node) -> Iterator[tuple[str, Node]]:
 def _known(claim: Claim, name: str, tree: Node) -> list[Identification]:
     """Return what symrot derives that is a formula, fewest renamed first, then by place: first for ``omega_x``."""
     try:
-        value = claim.meaning().read(tree)
+        value = claim.interpreter().read(tree)
     except InputError:
         return []
     if not is_matrix(value) and len(value.atoms(Function, Symbol) - {time}) < LEAST_SYMBOLS:

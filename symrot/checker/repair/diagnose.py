@@ -11,16 +11,17 @@ from itertools import combinations, islice
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.reader import read_relation
 from symrot.checker.claim.tree import Node
-from symrot.checker.decide.decision import Decision, decide_problem
+from symrot.checker.decide.decision import decide_equation
 from symrot.checker.repair.canonical_form import settled
 from symrot.checker.repair.edits import TEXTS, Edit, neat, single_edits
 from symrot.checker.repair.entries import by_entries, merged
-from symrot.checker.repair.filter import Change, Found, Sieve
+from symrot.checker.repair.filter import Change, Found, NumericFilter
 from symrot.checker.repair.insertions import lacking_matrix, lacking_term, renamed
-from symrot.checker.repair.points import Meaningless
+from symrot.checker.repair.points import UndefinedValue
 from symrot.checker.repair.solve_for_piece import solved
 from symrot.checker.verdict import Diagnosis, Repair
 from symrot.errors import InputError
+from symrot.exact.decision import Decision
 
 __all__ = ["diagnose"]
 
@@ -62,7 +63,7 @@ def diagnose(claim: Claim, decision: Decision) -> tuple[Diagnosis, tuple[Repair,
 
 class _Search:
     def __init__(self, claim: Claim, decision: Decision) -> None:
-        self.sieve = Sieve(claim)
+        self.sieve = NumericFilter(claim)
         self.conditional = bool(decision.requires)  # what it lacks is the condition, then, not a term
         self.products = decision.products
         self.seen: set[tuple[float, ...]] = set()
@@ -161,7 +162,7 @@ class _Search:
                 continue
             try:
                 values = self.sieve.fingerprint(changes)
-            except Meaningless:
+            except UndefinedValue:
                 continue
             shown = tuple(_neat(change) if code == "factor" else change for change in changes)
             if self.idle(code, shown):
@@ -174,7 +175,7 @@ class _Search:
             offered = self.sieve.text(shown)
             try:
                 read_relation(offered.partition(" with ")[0])  # it may have outgrown the reader
-                decision = decide_problem(self.sieve.edited(shown).problem())
+                decision = decide_equation(self.sieve.edited(shown).equation)
             except InputError:
                 continue
             self.products += decision.products

@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 
 __all__ = [
-    "Dual", "Meaningless", "absolute", "arctangent", "as_dual", "cosine", "exponential", "inverse", "logarithm",
+    "Dual", "UndefinedValue", "absolute", "arctangent", "as_dual", "cosine", "exponential", "inverse", "logarithm",
     "minus", "plain", "power", "sine", "square_root",
 ]  # fmt: skip
 
 
-class Meaningless(ValueError):
+class UndefinedValue(ValueError):
     """A tree without a value at a point: shapes that do not fit, a root of a negative number, an unknown name."""
 
 
@@ -119,7 +119,7 @@ def logarithm(x: Any) -> Any:
 
 
 def power(x: Any, exponent: float) -> Any:
-    """Return x to a rational power; ``Meaningless`` for a fractional power of a negative number."""
+    """Return x to a rational power; ``UndefinedValue`` for a fractional power of a negative number."""
     if exponent == int(exponent) and abs(exponent) <= 64:
         whole = int(exponent)
         result: Any = 1.0
@@ -129,5 +129,5 @@ def power(x: Any, exponent: float) -> Any:
     if isinstance(x, Dual):
         return Dual(power(x.value, exponent), exponent * power(x.value, exponent - 1) * x.slope)
     if np.any(x < 0):
-        raise Meaningless("a fractional power of a negative number")
+        raise UndefinedValue("a fractional power of a negative number")
     return x**exponent

@@ -5,8 +5,8 @@ from itertools import combinations
 
 from symrot.checker.claim.tree import Node, Path, replaced
 from symrot.checker.repair.edits import Edit, single_edits
-from symrot.checker.repair.filter import Change, Found, Sieve, at, cells_of
-from symrot.checker.repair.points import Meaningless, agree, entries_of
+from symrot.checker.repair.filter import Change, Found, NumericFilter, at, matrix_entries
+from symrot.checker.repair.points import UndefinedValue, agree, entries_of
 
 __all__ = ["always", "by_entries", "merged"]
 
@@ -14,15 +14,15 @@ MOST_PAIRS_OF = 60
 """Cheapest edits of an entry that are tried in pairs."""
 
 
-def by_entries(sieve: Sieve) -> list[Found]:
+def by_entries(sieve: NumericFilter) -> list[Found]:
     """Return the repair of a matrix written out: each wrong entry by its own edit."""
     found: list[Found] = []
     for place, other in (("right", sieve.left), ("left", sieve.right)):
         tree = sieve.tree_at(place)
-        cells = cells_of(tree)
+        cells = matrix_entries(tree)
         try:
             values = [entries_of(point.value(other)) for point in sieve.points]
-        except Meaningless:
+        except UndefinedValue:
             continue
         if not cells or any(len(value) <= max(cells) for value in values):
             continue
@@ -47,14 +47,14 @@ def by_entries(sieve: Sieve) -> list[Found]:
     return found
 
 
-def _entry_edit(sieve: Sieve, cell: Node, targets: Sequence[float]) -> Edit | None:
+def _entry_edit(sieve: NumericFilter, cell: Node, targets: Sequence[float]) -> Edit | None:
     """Return the cheapest edit that gives an entry its values; code ``none`` if it has them."""
 
     def fits(tree: Node) -> bool:
         try:
             values = [point.value(tree) for point in sieve.points]
             return all(agree(value, target) == [True] for value, target in zip(values, targets, strict=True))
-        except Meaningless:
+        except UndefinedValue:
             return False
 
     if fits(cell):

@@ -14,9 +14,9 @@ from symrot.checker.claim.tree import Node, Path, text, walk
 from symrot.checker.latex.cursor import TIME
 from symrot.checker.latex.matrices import MATRIX_CALLS
 from symrot.checker.repair.edits import Edit
-from symrot.checker.repair.points import Meaningless, Point, agree, entries_of, points
+from symrot.checker.repair.points import Point, UndefinedValue, agree, entries_of, points
 
-__all__ = ["SIDES", "Change", "Found", "Sieve", "at", "cells_of", "speaks"]
+__all__ = ["SIDES", "Change", "Found", "NumericFilter", "at", "is_nontrivial", "matrix_entries"]
 
 MOST_PIECES = 500_000
 """Pieces of trees that the search may evaluate: some seconds."""
@@ -40,7 +40,7 @@ Found = tuple[float, str, tuple[Change, ...]]
 """Cost, code, and the changes that make a repair."""
 
 
-class Sieve:
+class NumericFilter:
     """A claim at points that obey its hypotheses, and what becomes of its sides when trees are changed."""
 
     def __init__(self, claim: Claim) -> None:
@@ -49,18 +49,17 @@ class Sieve:
         _, self.left, self.right = claim.relation
         self.definitions = dict(claim.define)
         trees = [self.left, self.right, *self.definitions.values()]
-        meaning = claim.meaning()
-        claim.problem()
         kept = frozenset(id(node) for tree in trees for _, node in walk(tree))
         found = _named(trees)
         self.functions = sorted({*claim.functions, *(name for name, called in found if called)})
         loose = {name for name, called in found if not called and claim.implied and name != "pi"}
         self.symbols = sorted({*claim.symbols, *loose, "t"} - {*self.functions})
-        hypotheses = [relation[1:] for relation in claim.given if relation[0] == "=="]
+        hypotheses = [relation[1:] for relation in claim.hypotheses if relation[0] == "=="]
         narrow = any(node.value in ("asin", "acos") for tree in trees for _, node in walk(tree))
         most = 0.9 if narrow else 1.7
         self.points = points(self.symbols, self.functions, self.definitions, hypotheses, kept, most=most)
-        self.matrix_names = {name for name, value in meaning.values.items() if getattr(value, "is_Matrix", False)}
+        values = claim.definitions.values
+        self.matrix_names = {name for name, value in values.items() if getattr(value, "is_Matrix", False)}
         self.moving = any(node.kind == "call" and node.value == "diff" for tree in trees for _, node in walk(tree))
         self.used = self._used_definitions()
         self.dependent: dict[str, set[int | str]] = {}
@@ -101,17 +100,19 @@ class Sieve:
         return node.kind not in ("index", "list", "number") and any(map(self.is_matrix, node.args))
 
     def sensible(self, place: str, tree: Node) -> bool:
-        """Return whether an edited side still speaks of something, and a definition does not refer to itself."""
+        """Return whether an edited side still is_nontrivial of something, and a definition does not refer to itself."""
         if place in SIDES:
-            return speaks(tree) or not speaks(self.tree_at(place))
+            return is_nontrivial(tree) or not is_nontrivial(self.tree_at(place))
         order = list(self.definitions)
         later = set(order[order.index(place) :])
-        return speaks(tree) and not any(node.kind == "name" and node.value in later for _, node in walk(tree))
+        return is_nontrivial(tree) and not any(node.kind == "name" and node.value in later for _, node in walk(tree))
 
     def edited(self, changes: Sequence[Change]) -> Claim:
         """Return the claim with its trees changed."""
         trees = {change.place: change.edit.tree for change in changes}
         relation = ("==", trees.get("left", self.left), trees.get("right", self.right))
+        if not trees.keys() & self.definitions.keys():
+            return self.claim.with_relation(relation)
         define = tuple((name, trees.get(name, tree)) for name, tree in self.claim.define)
         return replace(self.claim, relation=relation, define=define)
 
@@ -132,14 +133,14 @@ class Sieve:
         for point in self.points:
             try:
                 same = agree(*self.sides(point, ()))
-            except Meaningless:
+            except UndefinedValue:
                 continue
             wrong |= {place for place, held in enumerate(same or ()) if not held}
         return wrong
 
     def open_paths(self, place: str, tree: Node) -> "Open":
         """Return which pieces one edit may change: of entries that are written out, only one that alone is wrong."""
-        cells = cells_of(tree) if place in SIDES else {}
+        cells = matrix_entries(tree) if place in SIDES else {}
         alone = [cells[number] for number in self.wrong if number in cells] if len(self.wrong) == 1 else []
         return Open(tuple(cells.values()), tuple(alone))
 
@@ -194,25 +195,25 @@ class Sieve:
             try:
                 left, right = self.sides(point, changes)
                 same = agree(left, right)
-            except Meaningless:
+            except UndefinedValue:
                 return False
             if same is None or not all(same):
                 return False
-        return any(entries_of(left)) or not (speaks(self.left) and speaks(self.right))
+        return any(entries_of(left)) or not (is_nontrivial(self.left) and is_nontrivial(self.right))
 
     def differences(self, point: Point, changes: Sequence[Change]) -> list[float]:
         """Return left minus right entry by entry.
 
         Raises
         ------
-        Meaningless
+        UndefinedValue
             Where a side has no value, or the shapes differ.
         """
         left, right = (entries_of(value) for value in self.sides(point, changes))
         size = max(len(left), len(right))
         left, right = (side * size if side == [0.0] else side for side in (left, right))
         if len(left) != len(right):
-            raise Meaningless("sides of two shapes")
+            raise UndefinedValue("sides of two shapes")
         return [a - b for a, b in zip(left, right, strict=True)]
 
     def fingerprint(self, changes: Sequence[Change]) -> tuple[float, ...]:
@@ -246,7 +247,7 @@ def _named(trees: Sequence[Node]) -> set[tuple[str, bool]]:
     return {(name, called) for name, called in found if name not in BUILT_IN}
 
 
-def speaks(tree: Node) -> bool:
+def is_nontrivial(tree: Node) -> bool:
     """Return whether a tree holds a symbol or is a matrix: a bare number says nothing."""
     return any(node.kind in ("name", "call") and node.value != "pi" for _, node in walk(tree))
 
@@ -260,7 +261,7 @@ def at(tree: Node, path: Sequence[int]) -> Node | None:
     return tree
 
 
-def cells_of(tree: Node) -> dict[int, Path]:
+def matrix_entries(tree: Node) -> dict[int, Path]:
     """Return the paths of the entries of a matrix that is written out, by their number row by row."""
     if tree.kind == "call" and tree.value == "diag":
         return {place * (len(tree.args) + 1): (place,) for place in range(len(tree.args))}

@@ -7,13 +7,13 @@ from sympy import Add, Expr, Integer, factor
 
 from symrot.checker.claim.reader import read_expression
 from symrot.checker.claim.tree import Node, Path, number, product, replaced, sum_of, text, walk
-from symrot.checker.decide.decision import shown
 from symrot.checker.repair.edits import Edit
 from symrot.checker.repair.entries import always
-from symrot.checker.repair.filter import SIDES, Change, Found, Sieve, at, cells_of, pieces, speaks
+from symrot.checker.repair.filter import SIDES, Change, Found, NumericFilter, at, is_nontrivial, matrix_entries, pieces
 from symrot.errors import InputError
-from symrot.exact.decide import flatten
+from symrot.exact.decision import flatten
 from symrot.exact.inverse_sums import vanishes
+from symrot.exact.printing import as_text
 from symrot.exact.ring.ratio import TooLarge
 from symrot.exact.ring.ring import FormulaRing, as_zero
 
@@ -32,28 +32,28 @@ MOST_TERMS_READ, MOST_ROOTS_READ = 1000, 12
 """Of a difference of the sides that is still brought to its shortest form to see whether it is one term."""
 
 
-def lacking_term(sieve: Sieve) -> Iterator[Found]:
+def lacking_term(sieve: NumericFilter) -> Iterator[Found]:
     """Yield the claim with the one term that it lacks, read off the exact difference of its sides."""
-    problem = sieve.claim.problem()
-    (lefts, shape), (rights, other) = flatten(problem.left), flatten(problem.right)
+    equation = sieve.claim.equation
+    (lefts, shape), (rights, other) = flatten(equation.left), flatten(equation.right)
     if shape != other:
         return
     try:
-        residuals = [_short_form(a - b, problem.hypotheses) for a, b in zip(lefts, rights, strict=True)]
+        residuals = [_short_form(a - b, equation.hypotheses) for a, b in zip(lefts, rights, strict=True)]
     except (TooLarge, InputError):
         return
     lacking = {n: residual for n, residual in enumerate(residuals) if residual != 0}
     for place, sign in (("right", 1), ("left", -1)):
         tree = sieve.tree_at(place)
-        cells = {0: ()} if shape is None else cells_of(tree)
-        if not speaks(tree) or tree.kind == "name" or not lacking.keys() <= cells.keys():
+        cells = {0: ()} if shape is None else matrix_entries(tree)
+        if not is_nontrivial(tree) or tree.kind == "name" or not lacking.keys() <= cells.keys():
             continue
         yield from _whole(sieve, place, {cells[n]: sign * residual for n, residual in lacking.items()})
     for place, sign in (("right", 1), ("left", -1)):
-        cells = {0: ()} if shape is None else cells_of(sieve.tree_at(place))
+        cells = {0: ()} if shape is None else matrix_entries(sieve.tree_at(place))
         if len(lacking) == 1 and lacking.keys() <= cells.keys():
             ((number_of, residual),) = lacking.items()
-            yield from _inside(sieve, place, cells[number_of], sign * residual, problem.hypotheses)
+            yield from _inside(sieve, place, cells[number_of], sign * residual, equation.hypotheses)
 
 
 def _short_form(formula: Expr, hypotheses: Sequence[Any]) -> Expr:
@@ -65,7 +65,7 @@ def _short_form(formula: Expr, hypotheses: Sequence[Any]) -> Expr:
     return Integer(0) if vanishes(ring, residual) else ring.expression(ring.ratio(formula))
 
 
-def _whole(sieve: Sieve, place: str, lacking: Mapping[Path, Any]) -> Iterator[Found]:
+def _whole(sieve: NumericFilter, place: str, lacking: Mapping[Path, Any]) -> Iterator[Found]:
     """Yield a side with what each of its entries lacks, where that is one term."""
     made = sieve.tree_at(place)
     for path, residual in lacking.items():
@@ -79,16 +79,16 @@ def _whole(sieve: Sieve, place: str, lacking: Mapping[Path, Any]) -> Iterator[Fo
     yield cost, "missing_term", (Change(place, Edit("missing_term", cost, (), made)),)
 
 
-def _inside(sieve: Sieve, place: str, cell: Path, residual: Any, hypotheses: Sequence[Any]) -> Iterator[Found]:
+def _inside(sieve: NumericFilter, place: str, cell: Path, residual: Any, hypotheses: Sequence[Any]) -> Iterator[Found]:
     """Yield a side with the one term that a bracket in it lacks: ``a (b + m)`` for ``a b``."""
-    meaning = sieve.claim.meaning()
+    interpreter = sieve.claim.interpreter()
     tree = sieve.tree_at(place)
     whole = at(tree, cell)
     assert whole is not None
     most = MOST_BRACKETS if sum(1 for _ in walk(whole)) < LARGE else MOST_BRACKETS_OF_LARGE
     brackets = sorted(_linear_pieces(whole), key=lambda found: found[1].kind != "sum")
     for path, piece in [found for found in brackets if found[0]][:most]:
-        ends = [meaning.read(replaced(whole, path, always(number(value)))) for value in (0, 1)]
+        ends = [interpreter.read(replaced(whole, path, always(number(value)))) for value in (0, 1)]
         try:
             term = _term(_short_form(residual / (ends[1] - ends[0]), hypotheses), whole)
         except (TooLarge, InputError):
@@ -98,14 +98,14 @@ def _inside(sieve: Sieve, place: str, cell: Path, residual: Any, hypotheses: Seq
             yield 1.8, "missing_term", (Change(place, Edit("missing_term", 1.8, path, made)),)
 
 
-def lacking_matrix(sieve: Sieve) -> Iterator[Found]:
+def lacking_matrix(sieve: NumericFilter) -> Iterator[Found]:
     """Yield a tree with one matrix multiplied by another one that occurs, from the left or the right."""
     named = [Node("name", name) for name in sorted(sieve.matrix_names)]
     factors = [*named, *(Node("transpose", None, (by,)) for by in named)]
     for place in SIDES:
         tree = sieve.tree_at(place)
         for path, piece in pieces(tree):
-            for by in factors if sieve.is_matrix(piece) and speaks(tree) else ():
+            for by in factors if sieve.is_matrix(piece) and is_nontrivial(tree) else ():
                 for both in ([by, piece], [piece, by]):
                     made = replaced(tree, path, always(product(both)))
                     change = Change(place, Edit("factor", 1.4 + 0.05 * len(path), path, made))
@@ -113,7 +113,7 @@ def lacking_matrix(sieve: Sieve) -> Iterator[Found]:
                         yield change.cost, "factor", (change,)
 
 
-def renamed(sieve: Sieve) -> Iterator[Found]:
+def renamed(sieve: NumericFilter) -> Iterator[Found]:
     """Yield the claim with one name of a definition in the place of another."""
     used = [name for name in sieve.definitions if name not in sieve.symbols]
     for place in SIDES:
@@ -137,12 +137,12 @@ def _term(residual: Any, piece: Node | None) -> Node | None:
         return None
     if above.is_Add:
         residual = factor(residual) if len(above.args) <= MOST_TERMS else above
-    letters = len(shown(residual))
+    letters = len(as_text(residual))
     if residual.is_Add or letters > MOST_LETTERS:
         return None
     if residual.has(Add) and piece != number(0) and (piece is None or letters > len(text(piece)) // 2):
         return None
-    return read_expression(shown(residual))
+    return read_expression(as_text(residual))
 
 
 def _linear_pieces(tree: Node, path: Path = ()) -> Iterator[tuple[Path, Node]]:

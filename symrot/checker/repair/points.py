@@ -16,7 +16,7 @@ import numpy as np
 from symrot.checker.claim.tree import Node
 from symrot.checker.repair.dual import (
     Dual,
-    Meaningless,
+    UndefinedValue,
     absolute,
     arctangent,
     cosine,
@@ -49,7 +49,7 @@ from symrot.checker.repair.rows import (
     turning,
 )
 
-__all__ = ["Meaningless", "Point", "agree", "entries_of", "points"]
+__all__ = ["Point", "UndefinedValue", "agree", "entries_of", "points"]
 
 DERIVATIVES = 6
 """Derivatives of each function of time that a point holds, the value included."""
@@ -85,13 +85,13 @@ class Point:
 
         Raises
         ------
-        Meaningless
+        UndefinedValue
             Where there is no value.
         """
         try:
             return self._value(node)
         except (ZeroDivisionError, OverflowError, TypeError, ValueError, IndexError, KeyError) as reason:
-            raise Meaningless(str(reason)) from None
+            raise UndefinedValue(str(reason)) from None
 
     def _value(self, node: Node) -> Any:
         key = id(node)
@@ -117,11 +117,11 @@ class Point:
         name = inner.value
         key = (name, order)
         if self.weight > HEAVIEST:
-            raise Meaningless("derivatives of too high an order")
+            raise UndefinedValue("derivatives of too high an order")
         if key not in self.lifted:
             in_time = name == "t" and not order
             if not in_time and name not in self.symbols and name not in self.functions:
-                raise Meaningless("a variable to differentiate by")
+                raise UndefinedValue("a variable to differentiate by")
             self.lifted[key] = Point(
                 {s: Dual(v, float(s == name)) for s, v in self.symbols.items()},
                 {
@@ -147,7 +147,7 @@ def _name(point: Point, node: Node) -> Any:
         return point.known[name]
     if name == "pi":
         return math.pi
-    raise Meaningless(name)
+    raise UndefinedValue(name)
 
 
 def _sum(point: Point, node: Node) -> Any:
@@ -186,7 +186,7 @@ def _list(point: Point, node: Node) -> Any:
     rows = [point._value(member) for member in node.args]
     if all(isinstance(row, list) for row in rows):
         if len({len(row) for row in rows}) > 1:
-            raise Meaningless("rows of unequal length")
+            raise UndefinedValue("rows of unequal length")
         return tuple(map(tuple, rows))
     if node.value == ("(", ")"):
         return column(rows)
@@ -341,7 +341,7 @@ def _settled(point: Point, hypotheses: Sequence[tuple[Node, Node]]) -> Point | N
                     change = plus(lifted.value(left), mapped(minus, lifted.value(right)))
                     columns.append(entries_of(mapped(lambda x: x.slope if isinstance(x, Dual) else 0.0, change)))
                 slopes += list(zip(*columns, strict=True))
-        except Meaningless:
+        except UndefinedValue:
             return None
         if max(map(abs, residuals)) < 1e-14:
             return point

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from symrot.checker.repair.dual import Meaningless, cosine, inverse, plain, sine
+from symrot.checker.repair.dual import UndefinedValue, cosine, inverse, plain, sine
 
 __all__ = [
     "Rows", "agree", "column", "determinant", "dot", "entries_of", "hamilton", "inverted", "is_matrix", "mapped",
@@ -38,9 +38,9 @@ def mapped(function: Callable[[Any], Any], value: Any) -> Any:
 
 
 def plus(left: Any, right: Any) -> Any:
-    """Return the sum; ``Meaningless`` for shapes that differ."""
+    """Return the sum; ``UndefinedValue`` for shapes that differ."""
     if shape_of(left) != shape_of(right):
-        raise Meaningless("shapes in a sum")
+        raise UndefinedValue("shapes in a sum")
     if is_matrix(left):
         return tuple(tuple(a + b for a, b in zip(x, y, strict=True)) for x, y in zip(left, right, strict=True))
     return left + right
@@ -53,7 +53,7 @@ def times(left: Any, right: Any) -> Any:
     if not is_matrix(right):
         return mapped(lambda entry: entry * right, left)
     if len(left[0]) != len(right):
-        raise Meaningless("shapes in a product")
+        raise UndefinedValue("shapes in a product")
     columns = tuple(zip(*right, strict=True))
     return tuple(tuple(dot(row, column) for column in columns) for row in left)
 
@@ -72,10 +72,10 @@ def transposed(value: Any) -> Rows:
 
 
 def needed(value: Any, shape: tuple[int | None, int | None] = (None, None)) -> Rows:
-    """Return a matrix; ``Meaningless`` if it is none, or of another shape."""
+    """Return a matrix; ``UndefinedValue`` if it is none, or of another shape."""
     found = shape_of(value)
     if found is None or any(want not in (None, got) for want, got in zip(shape, found, strict=True)):
-        raise Meaningless("a matrix of another shape")
+        raise UndefinedValue("a matrix of another shape")
     rows: Rows = value
     return rows
 
@@ -83,7 +83,7 @@ def needed(value: Any, shape: tuple[int | None, int | None] = (None, None)) -> R
 def determinant(rows: Rows) -> Any:
     """Return the determinant of a matrix of at most 6 rows, by minors."""
     if len(rows) != len(rows[0]) or len(rows) > 6:
-        raise Meaningless("a determinant")
+        raise UndefinedValue("a determinant")
     if len(rows) == 1:
         return rows[0][0]
     total: Any = 0.0

@@ -14,8 +14,8 @@ from itertools import combinations_with_replacement
 from symrot.checker.claim.tree import Node, Path, negated, number, product, replaced, sum_of, walk
 from symrot.checker.latex.cursor import TIME
 from symrot.checker.repair.edits import OPPOSITE, Edit, neat, neighbours
-from symrot.checker.repair.filter import SIDES, Change, Found, Sieve, speaks
-from symrot.checker.repair.points import Meaningless, Point, entries_of
+from symrot.checker.repair.filter import SIDES, Change, Found, NumericFilter, is_nontrivial
+from symrot.checker.repair.points import Point, UndefinedValue, entries_of
 
 __all__ = ["solved"]
 
@@ -57,7 +57,7 @@ class Entry:
 class Vocabulary:
     """Short products of the symbols, functions, sines and cosines of a claim, and its own terms, by their values."""
 
-    def __init__(self, sieve: Sieve) -> None:
+    def __init__(self, sieve: NumericFilter) -> None:
         self.sieve = sieve
         trees = [sieve.tree_at(place) for place in sieve.places]
         written = [node for tree in trees for _, node in walk(tree) if node.kind != "number"]
@@ -111,7 +111,7 @@ class Vocabulary:
         """Return the values of a scalar at the points, None where it has none."""
         try:
             found = [point.value(node) for point in self.sieve.points]
-        except Meaningless:
+        except UndefinedValue:
             return None
         return tuple(found) if all(isinstance(value, float) and value for value in found) else None
 
@@ -161,9 +161,9 @@ def _rational(values: Sequence[float], largest: int = LARGEST_RATIO) -> Fraction
 # -- what a piece would have to be ------------------------------------------------------------------------------------
 
 
-def solved(sieve: Sieve) -> list[Found]:
+def solved(sieve: NumericFilter) -> list[Found]:
     """Return repairs in which one piece has become something that makes the claim hold, the nearest first."""
-    if len(sieve.points) < 2 or not (speaks(sieve.left) or speaks(sieve.right)):
+    if len(sieve.points) < 2 or not (is_nontrivial(sieve.left) or is_nontrivial(sieve.right)):
         return []  # of a bare number nobody can say what it should have been
     vocabulary = Vocabulary(sieve)
     found: list[Found] = []
@@ -187,7 +187,7 @@ def solved(sieve: Sieve) -> list[Found]:
     return [item for item in sorted(found, key=lambda item: item[0]) if _means(sieve, item[2][0])]
 
 
-def _means(sieve: Sieve, change: Change) -> bool:
+def _means(sieve: NumericFilter, change: Change) -> bool:
     """Return whether a change says something: it holds, and neither a side nor a definition has become zero."""
     if not sieve.sensible(change.place, change.edit.tree):
         return False
@@ -195,7 +195,7 @@ def _means(sieve: Sieve, change: Change) -> bool:
         point = sieve.points[0]
         try:
             was, now = (any(entries_of(point.value(tree))) for tree in (sieve.tree_at(change.place), change.edit.tree))
-        except Meaningless:
+        except UndefinedValue:
             return False
         if was and not now:
             return False
@@ -213,7 +213,7 @@ def _pieces(tree: Node, path: Path = (), term: bool = False) -> Iterator[tuple[P
             yield from _pieces(child, (*path, place), tree.kind == "sum")
 
 
-def _found(sieve: Sieve, place: str, path: Path, made: Node, edit: tuple[str, float]) -> Found:
+def _found(sieve: NumericFilter, place: str, path: Path, made: Node, edit: tuple[str, float]) -> Found:
     code, cost = edit
     tree = _joined(replaced(sieve.tree_at(place), path, lambda _: made))
     change = Change(place, Edit(code, cost + 0.01 * len(path), path, neat(tree) if code == "factor" else tree))
@@ -230,7 +230,7 @@ def _joined(node: Node) -> Node:
     return node if args == node.args else Node(node.kind, node.value, args, node.span)
 
 
-def _needed(sieve: Sieve, place: str, path: Path, made: Node, start: Values) -> Values | None:
+def _needed(sieve: NumericFilter, place: str, path: Path, made: Node, start: Values) -> Values | None:
     """Return the values that the hole in a piece needs at the points; None where there are none."""
     tree = replaced(sieve.tree_at(place), path, lambda _: made)
     if place not in SIDES and not sieve.sensible(place, tree):
@@ -245,7 +245,7 @@ def _needed(sieve: Sieve, place: str, path: Path, made: Node, start: Values) -> 
     return tuple(found)
 
 
-def _root(sieve: Sieve, point: Point, change: Sequence[Change], start: float) -> float | None:
+def _root(sieve: NumericFilter, point: Point, change: Sequence[Change], start: float) -> float | None:
     """Return the value of the hole that makes both sides equal: exact at once where they are linear in it."""
 
     def differences(value: float) -> list[float]:
@@ -271,7 +271,7 @@ def _root(sieve: Sieve, point: Point, change: Sequence[Change], start: float) ->
                 return None
             if abs(after[steepest]) <= 1e-12 * (1 + size):
                 return None  # this entry holds, another one does not
-    except (Meaningless, ZeroDivisionError, OverflowError):
+    except (UndefinedValue, ZeroDivisionError, OverflowError):
         return None
     finally:
         point.symbols.pop(HOLE.value, None)
@@ -283,7 +283,7 @@ Reading = tuple[Node, tuple[str, float]]
 
 
 def _readings(
-    sieve: Sieve, vocabulary: Vocabulary, piece: Node, values: Values, needed: Values, term: bool, outer: bool
+    sieve: NumericFilter, vocabulary: Vocabulary, piece: Node, values: Values, needed: Values, term: bool, outer: bool
 ) -> Iterator[Reading]:
     """Yield what a piece may become, given the values it has and the values it needs."""
     if all(abs(b) <= CLOSE * abs(a) for a, b in zip(values, needed, strict=True)):
@@ -313,7 +313,7 @@ def _readings(
     lacking = tuple(b - a for a, b in zip(values, needed, strict=True))
     if _is_there(vocabulary, piece, lacking):
         return
-    if not term and piece.kind != "neg" and not (plain and not speaks(piece)):
+    if not term and piece.kind != "neg" and not (plain and not is_nontrivial(piece)):
         for entry, ratio in vocabulary.find(lacking):
             if not entry.factors and ratio not in ONES:
                 continue
@@ -331,7 +331,7 @@ def _is_there(vocabulary: Vocabulary, piece: Node, lacking: Values) -> bool:
     return False
 
 
-def _exchanged(sieve: Sieve, piece: Node, other: Node) -> tuple[str, float]:
+def _exchanged(sieve: NumericFilter, piece: Node, other: Node) -> tuple[str, float]:
     if piece.kind == other.kind == "call" and OPPOSITE.get(piece.value) == other.value and piece.args == other.args:
         return "sin_cos_swap", 1.0
     near = piece.kind == other.kind == "name" and other.value in neighbours(piece.value, sieve.names)
@@ -366,7 +366,7 @@ def _scaled(term: Node, ratio: Fraction) -> Node:
 # -- matrices ---------------------------------------------------------------------------------------------------------
 
 
-def _of_matrix(sieve: Sieve, vocabulary: Vocabulary, place: str, path: Path, piece: Node) -> Iterator[Found]:
+def _of_matrix(sieve: NumericFilter, vocabulary: Vocabulary, place: str, path: Path, piece: Node) -> Iterator[Found]:
     """Yield a matrix with a scalar factor, or with another matrix added to it."""
     if piece.kind == "call" and piece.value == "Matrix" and path:
         return
@@ -388,7 +388,7 @@ def _of_matrix(sieve: Sieve, vocabulary: Vocabulary, place: str, path: Path, pie
             break
 
 
-def _matrices(sieve: Sieve, piece: Node) -> list[Node]:
+def _matrices(sieve: NumericFilter, piece: Node) -> list[Node]:
     """Return matrices of the shape of a piece made of what occurs: pieces, their transposes, products of two names."""
     shape = _shape(sieve, piece)
     written = [node for place in sieve.places for _, node in walk(sieve.tree_at(place)) if sieve.is_matrix(node)]
@@ -405,9 +405,9 @@ def _matrices(sieve: Sieve, piece: Node) -> list[Node]:
     return found
 
 
-def _shape(sieve: Sieve, node: Node) -> tuple[int, int] | None:
+def _shape(sieve: NumericFilter, node: Node) -> tuple[int, int] | None:
     try:
         value = sieve.points[0].value(node)
-    except Meaningless:
+    except UndefinedValue:
         return None
     return (len(value), len(value[0])) if isinstance(value, tuple) and any(entries_of(value)) else None

@@ -10,12 +10,12 @@ from typing import Any
 
 from symrot.checker.claim.reader import read_expression
 from symrot.checker.claim.tree import Node, walk
-from symrot.checker.decide.decision import shown
 from symrot.checker.units.functions import CALLS
-from symrot.checker.units.inference import Unreadable, Walker, angles_of
+from symrot.checker.units.inference import UnitInference, Unreadable, angles_of
 from symrot.checker.units.units import read_unit
 from symrot.checker.verdict import Dimensions
 from symrot.errors import InputError
+from symrot.exact.printing import as_text
 from symrot.symbols import UNIT
 
 __all__ = ["check_dimensions", "dimensions_of_formulas"]
@@ -54,7 +54,7 @@ def check_dimensions(
     trees = [*sides, *(tree for _, tree in define), *(side for pair in given for side in pair)]
     names = {str(node.value) for tree in trees for _, node in walk(tree) if node.kind in ("name", "call")}
     own = {name: read_unit(unit, f"units: {name}") for name, unit in (units or {}).items()}
-    walker = Walker(own, CALLS, names, {name for tree in trees for name in angles_of(tree)})
+    walker = UnitInference(own, CALLS, names, {name for tree in trees for name in angles_of(tree)})
     try:
         for name, tree in define:
             walker.define(name, tree)
@@ -76,7 +76,7 @@ def dimensions_of_formulas(left: Any, right: Any, units: Mapping[str, str] | Non
     symbols = {symbol for side in (left, right) for symbol in getattr(side, "free_symbols", ())}
     own = {symbol.name: UNIT[symbol] for symbol in symbols if UNIT.get(symbol)} | dict(units or {})
     try:
-        sides = read_expression(shown(left)), read_expression(shown(right))
+        sides = read_expression(as_text(left)), read_expression(as_text(right))
     except InputError:
         return Dimensions("unknown")
     return check_dimensions(sides, units=own)

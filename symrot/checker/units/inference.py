@@ -7,9 +7,18 @@ from functools import reduce
 from typing import Any
 
 from symrot.checker.claim.tree import Node, text, walk
-from symrot.checker.units.units import NOTHING, Dimension, UnitSystem, customary, raised, read_unit, shown_unit, times
+from symrot.checker.units.units import (
+    NOTHING,
+    Dimension,
+    UnitSystem,
+    conventional_unit,
+    raised,
+    read_unit,
+    times,
+    unit_text,
+)
 
-__all__ = ["ZERO", "Rows", "Unreadable", "Value", "Walker", "angles_of", "number_of", "shape_of", "shown_piece"]
+__all__ = ["ZERO", "Rows", "UnitInference", "Unreadable", "Value", "angles_of", "number_of", "piece_text", "shape_of"]
 
 LONGEST_SHOWN = 60
 LARGEST_DETERMINANT = 4
@@ -28,11 +37,11 @@ class Unreadable(Exception):
 
 
 @dataclass
-class Walker:
+class UnitInference:
     """Follows units through trees; ``calls`` says what functions do."""
 
     units: dict[str, Dimension]
-    calls: Mapping[str, Callable[["Walker", Node], Value]]
+    calls: Mapping[str, Callable[["UnitInference", Node], Value]]
     names: set[str]
     angles: set[str]
     system: UnitSystem = field(default_factory=UnitSystem)
@@ -78,7 +87,7 @@ class Walker:
         for name in sorted(self.names & self.system.solved.keys()):
             unit = self.system.reduced({name: Fraction(1)})
             if all(base.startswith("[") for base in unit):
-                found[name] = shown_unit(unit)
+                found[name] = unit_text(unit)
         return found
 
     # -- units of names ---------------------------------------------------------------------------------------------
@@ -94,7 +103,7 @@ class Walker:
             return self.units[name]
         quaternion = {f"{name[:-1]}{n}" for n in range(4)}
         plain = name in self.angles or (name[:-1] in ("q", "q_") and quaternion <= self.names)
-        unit = "1" if plain else customary(name) if len(name) > 1 or self.physical() else None
+        unit = "1" if plain else conventional_unit(name) if len(name) > 1 or self.physical() else None
         if unit is None:
             return {name: Fraction(1)}
         self.known = True
@@ -105,7 +114,8 @@ class Walker:
 
     def physical(self) -> bool:
         """Return whether letters such as m and t are quantities here: units are given, or longer names have one."""
-        return bool(self.units) or any(len(name) > 1 and customary(name) not in (None, "rad") for name in self.names)
+        units = (conventional_unit(name) for name in self.names if len(name) > 1)
+        return bool(self.units) or any(unit not in (None, "rad") for unit in units)
 
     def values_of(self, rows: Rows, node: Node) -> Rows:
         """Return the dimensions of a matrix of numbers: of none for unit vectors, else whatever they stand for."""
@@ -127,7 +137,7 @@ class Walker:
         return first
 
     def said(self, dimension: Dimension) -> str:
-        unit = shown_unit(self.system.reduced(dimension))
+        unit = unit_text(self.system.reduced(dimension))
         return "dimensionless" if unit == "1" else unit
 
     def same_matrices(self, first: Value, second: Value, words: str) -> Value:
@@ -265,7 +275,7 @@ def _is_unit(tree: Node) -> bool:
     )
 
 
-def shown_piece(node: Node) -> str:
+def piece_text(node: Node) -> str:
     shown = text(node)
     return shown if len(shown) <= LONGEST_SHOWN else shown[: LONGEST_SHOWN - 2] + ".."
 
@@ -288,40 +298,40 @@ def number_of(node: Node) -> Fraction | None:
 # -- the kinds of node ------------------------------------------------------------------------------------------------
 
 
-def _number(walker: Walker, node: Node) -> Value:
+def _number(walker: UnitInference, node: Node) -> Value:
     return NOTHING if node.value else ZERO
 
 
-def _name(walker: Walker, node: Node) -> Value:
+def _name(walker: UnitInference, node: Node) -> Value:
     if node.value in walker.values:
         return walker.values[node.value]
     return NOTHING if node.value == "pi" else walker.unit_of(node.value)
 
 
-def _sum(walker: Walker, node: Node) -> Value:
-    return walker.total([walker.value(term) for term in node.args], f"the sum {shown_piece(node)}")
+def _sum(walker: UnitInference, node: Node) -> Value:
+    return walker.total([walker.value(term) for term in node.args], f"the sum {piece_text(node)}")
 
 
-def _product(walker: Walker, node: Node) -> Value:
+def _product(walker: UnitInference, node: Node) -> Value:
     return reduce(walker.times, [walker.value(factor) for factor in node.args])
 
 
-def _inverse(walker: Walker, node: Node) -> Value:
+def _inverse(walker: UnitInference, node: Node) -> Value:
     below = walker.value(node.args[0])
     if below is ZERO:
         raise Unreadable
     return walker.power(below, Fraction(-1))
 
 
-def _power(walker: Walker, node: Node) -> Value:
+def _power(walker: UnitInference, node: Node) -> Value:
     base, exponent = walker.value(node.args[0]), number_of(node.args[1])
     if exponent is not None:
         return walker.power(base, exponent) if exponent else NOTHING
-    walker.plain(walker.value(node.args[1]), f"the exponent {shown_piece(node.args[1])} is {{0}} instead of a number")
-    return walker.plain(base, f"{shown_piece(node.args[0])}, under a symbolic exponent, is {{0}} instead of a number")
+    walker.plain(walker.value(node.args[1]), f"the exponent {piece_text(node.args[1])} is {{0}} instead of a number")
+    return walker.plain(base, f"{piece_text(node.args[0])}, under a symbolic exponent, is {{0}} instead of a number")
 
 
-def _index(walker: Walker, node: Node) -> Value:
+def _index(walker: UnitInference, node: Node) -> Value:
     rows = walker.matrix(node.args[0])
     places = [number_of(index) for index in node.args[1:]]
     if len(places) == 1:
@@ -335,11 +345,11 @@ def _index(walker: Walker, node: Node) -> Value:
     return entry
 
 
-def _list(walker: Walker, node: Node) -> Any:
+def _list(walker: UnitInference, node: Node) -> Any:
     return [walker.value(member) for member in node.args]
 
 
-def _call(walker: Walker, node: Node) -> Value:
+def _call(walker: UnitInference, node: Node) -> Value:
     if node.value in walker.calls:
         return walker.calls[node.value](walker, node)
     if node.args and all(argument.kind == "name" for argument in node.args):
@@ -347,7 +357,7 @@ def _call(walker: Walker, node: Node) -> Value:
     raise Unreadable
 
 
-_VALUE: dict[str, Callable[[Walker, Node], Any]] = {
+_VALUE: dict[str, Callable[[UnitInference, Node], Any]] = {
     "number": _number, "name": _name, "sum": _sum, "product": _product, "inv": _inverse, "power": _power,
     "neg": lambda walker, node: walker.value(node.args[0]), "index": _index, "list": _list, "call": _call,
     "transpose": lambda walker, node: tuple(zip(*walker.matrix(node.args[0]), strict=True)),

@@ -11,7 +11,9 @@ from fractions import Fraction
 
 from symrot.errors import InputError
 
-__all__ = ["NOTHING", "Dimension", "UnitSystem", "customary", "over", "raised", "read_unit", "shown_unit", "times"]
+__all__ = [
+    "NOTHING", "Dimension", "UnitSystem", "conventional_unit", "over", "raised", "read_unit", "times", "unit_text",
+]  # fmt: skip
 
 Dimension = Mapping[str, Fraction]
 """Exponents that are not zero: of bases, written ``"[m]"``, and of symbols of unknown unit, by name."""
@@ -71,7 +73,7 @@ def over(first: Dimension, second: Dimension) -> Dimension:
     return times(first, raised(second, Fraction(-1)))
 
 
-def customary(name: str) -> str | None:
+def conventional_unit(name: str) -> str | None:
     """Return the unit that books give a quantity of this name, or None where they differ."""
     return next((unit for pattern, unit in CUSTOM if re.fullmatch(pattern, name)), None)
 
@@ -107,7 +109,7 @@ def read_unit(text: str, where: str = "") -> Dimension:
     return found
 
 
-def shown_unit(dimension: Dimension) -> str:
+def unit_text(dimension: Dimension) -> str:
     """Return a dimension as text: ``kg m^2/s^2``; ``1`` for none; an unknown unit as ``[x]``."""
     order = [*(f"[{base}]" for base in BASES), *sorted(dimension)]
     names = [name for name in dict.fromkeys(order) if name in dimension]

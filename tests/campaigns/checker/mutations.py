@@ -9,7 +9,7 @@ from fractions import Fraction
 from random import Random
 
 from symrot import symbols
-from symrot.checker.claim.claims import Claim, shown_relation
+from symrot.checker.claim.claims import Claim, relation_text
 from symrot.checker.claim.tree import Node, Path, negated, number, product, replaced, sum_of, walk
 
 __all__ = ["MUTATIONS", "mutated", "places"]
@@ -237,7 +237,7 @@ def mutated(claim: Claim, code: str, source: Random, is_matrix: IsMatrix, among:
         define=define,
         symbols=(*claim.symbols, *sorted(used - known)),
         functions=(*claim.functions, *sorted(called - known)),
-        sources={**claim.sources, "claim": shown_relation(relation)},
+        sources={**claim.sources, "claim": relation_text(relation)},
     )
 
 
