@@ -19,7 +19,7 @@ __all__ = ["RefusedClaims", "check", "check_claim", "check_file", "check_reading
 
 
 class RefusedClaims(InputError):
-    """Claims of a file that cannot be read; ``verdicts`` holds those on all claims, ``"refused"`` on the bad ones."""
+    """Raised for a file with unreadable claims; ``verdicts`` are those on all its claims, ``"refused"`` on these."""
 
     def __init__(self, verdicts: Sequence[Verdict]) -> None:
         self.verdicts = list(verdicts)
@@ -48,22 +48,22 @@ def check(
         Hypotheses: texts ``"a == b"``, ``"x > 0"``, ``"x != 0"`` for a text; equations, or expressions that are zero,
         for SymPy.
     units : mapping of str to str, optional
-        Units by the name of a symbol, ``{"x": "m"}``; others are those of custom (``I1``, ``omega_1``, ``g``, ``t``,
-        ``phi``), of the symbols of symrot, or inferred. They bear on ``.dimension`` alone.
+        Units by the name of a symbol, ``{"x": "m"}``. Other names have conventional units (``I1``, ``omega_1``, ``g``,
+        ``t``, ``phi``), those of the symbols of symrot, or inferred ones. Only ``.dimension`` depends on units.
     repair : bool
-        Whether to look for what went wrong with a claim that is not true, and for true formulas near it.
+        Whether to diagnose a claim that is not true and to look for true formulas near it.
 
     Returns
     -------
     Verdict
-        ``.verdict`` is ``"true"``, ``"false"``, ``"conditional"`` or ``"undecided"``; ``.dimension`` says beside it
-        whether the units fit.
+        ``.verdict`` is ``"true"``, ``"false"``, ``"conditional"`` or ``"undecided"``; ``.dimension`` says whether the
+        units fit.
 
     Raises
     ------
     InputError
-        For text that is not understood (with its position), undefined names, shapes that do not fit, and divisions by
-        what is zero everywhere. Nothing is evaluated as Python.
+        For text that cannot be read (with its position), undefined names, shapes that do not fit, and divisors that
+        are zero everywhere. Text is never evaluated as Python.
 
     Examples
     --------
@@ -97,21 +97,21 @@ def check_file(path: str | Path, *, repair: bool = True) -> list[Verdict]:
     Raises
     ------
     InputError
-        For a file that cannot be read as claims.
+        For a file that is not a file of claims.
     RefusedClaims
-        Where some claims are refused, after all others were decided; names the file and the first such claim, and has
-        the verdicts as ``.verdicts``.
+        If some claims are refused, after all others were decided. The message names the file and the first such claim;
+        ``.verdicts`` are the verdicts on all claims.
     """
-    found = list(verdicts_of_file(path, repair))
-    if any(verdict.verdict == "refused" for verdict in found):
-        raise RefusedClaims(found)
-    return found
+    verdicts = list(verdicts_of_file(path, repair))
+    if any(verdict.verdict == "refused" for verdict in verdicts):
+        raise RefusedClaims(verdicts)
+    return verdicts
 
 
 def verdicts_of_file(
     path: str | Path, repair: bool = True, progress: Callable[[str], None] = lambda text: None
 ) -> Iterator[Verdict]:
-    """Yield the verdicts on the claims of a file; on a claim that cannot be read it is ``"refused"``, with a reason."""
+    """Yield the verdicts on the claims of a file; ``"refused"``, with the reason, on a claim that cannot be read."""
     for entry in read_entries(path):
         if isinstance(entry, Refusal):
             yield Verdict("refused", reason=entry.reason, id=entry.id, where=entry.where, text=entry.text)
@@ -125,7 +125,7 @@ def verdicts_of_file(
 
 
 def check_claim(claim: Claim, repair: bool = True) -> Verdict:
-    """Return the verdict on a claim that has been read: on its first reading, or on another one that is true."""
+    """Return the verdict on a claim: on its first reading, or on another reading if only that one is true."""
     try:
         verdict, other = check_readings(claim, repair)
     except RecursionError:
@@ -137,9 +137,9 @@ def check_claim(claim: Claim, repair: bool = True) -> Verdict:
 
 
 def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict | None]:
-    """Return the verdict on a claim as it is read first, and that on the first alternative that is true, if any.
+    """Return the verdict on the first reading of a claim, and the verdict on the first other one that is true, or None.
 
-    What went wrong is looked for where no reading is true.
+    A claim of which no reading is true is diagnosed.
     """
     start = perf_counter()
     decision, verdict = _decide(claim)
@@ -147,9 +147,9 @@ def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict 
         for relation in claim.alternatives:
             source = relation_text(relation)
             other = claim.with_relation(relation, alternatives=(), sources={**claim.sources, "claim": source})
-            _, found = _decide(other)
-            if found:
-                return verdict, found
+            _, other_verdict = _decide(other)
+            if other_verdict:
+                return verdict, other_verdict
     if repair and claim.relation is not None and decision.verdict in ("false", "conditional"):
         verdict = _diagnosed(claim, decision, verdict)
     elif repair and claim.relation is not None and verdict and verdict.conditions:
@@ -168,8 +168,8 @@ def _decide(claim: Claim) -> tuple[Decision, Verdict]:
     verdict = _verdict(decision, claim.text, start)
     if claim.relation is not None:
         hypotheses = [relation[1:] for relation in claim.hypotheses]
-        found = check_dimensions(claim.relation[1:], claim.define, hypotheses, claim.units)
-        verdict = replace(verdict, dimension=found)
+        dimensions = check_dimensions(claim.relation[1:], claim.define, hypotheses, claim.units)
+        verdict = replace(verdict, dimension=dimensions)
     return decision, replace(verdict, id=claim.id, where=claim.where, seconds=perf_counter() - start)
 
 
@@ -186,7 +186,7 @@ def _diagnosed(claim: Claim, decision: Decision, verdict: Verdict) -> Verdict:
 
 
 def _domain(claim: Claim) -> Diagnosis:
-    """Return the remark that a true claim holds only where one side is defined, when the other is so everywhere."""
+    """Return the remark that one side of a true claim is not defined everywhere, while the other side is."""
     assert claim.relation is not None
     sides = [claim.with_relation(("==", side, side)) for side in claim.relation[1:]]
     left, right = (decide_equation(side.equation).conditions for side in sides)

@@ -4,7 +4,7 @@ import pytest
 
 import symrot
 from symrot.checker.claim.reader import read_expression, read_relation
-from symrot.checker.repair.edits import TEXTS
+from symrot.checker.repair.edits import FAULT_DESCRIPTIONS
 from symrot.checker.repair.points import Point, UndefinedValue, agree, points
 from symrot.errors import InputError
 
@@ -53,7 +53,7 @@ def test_every_repair_is_true_when_it_is_checked_again(claim):
     assert [r.cost for r in repairs] == sorted(r.cost for r in repairs)
     for repair in repairs:
         assert repair.proven
-        assert repair.code in TEXTS
+        assert repair.code in FAULT_DESCRIPTIONS
         assert symrot.check(repair.text).verdict == "true"
 
 

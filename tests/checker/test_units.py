@@ -10,7 +10,15 @@ import symrot
 from symrot import catalogue, symbols
 from symrot.checker.claim.claims import read_claims
 from symrot.checker.units.check import dimensions_of_formulas
-from symrot.checker.units.units import CUSTOM, UnitSystem, conventional_unit, raised, read_unit, times, unit_text
+from symrot.checker.units.units import (
+    CONVENTIONAL_UNITS,
+    UnitSystem,
+    conventional_unit,
+    raised,
+    read_unit,
+    times,
+    unit_text,
+)
 from symrot.cli.main import main
 from symrot.errors import InputError
 from symrot.textbook import DOCUMENTS, document
@@ -19,7 +27,7 @@ LETTERS = {"t": "s", "m": "kg", "g": "m/s^2"}
 
 
 def physical(claim):
-    """The unit of the first of these letters in a claim, which makes the others what they are by custom."""
+    """The unit of the first of these letters in a claim, which makes the others have their conventional units."""
     return {letter: LETTERS[letter] for letter in re.findall(r"\b[tmg]\b", claim)[:1]}
 
 
@@ -57,7 +65,7 @@ def test_custom_agrees_with_the_symbols_of_symrot():
     shared = [name for name in own if conventional_unit(name)]
     assert len(shared) > 25
     assert all(read_unit(own[name]) == read_unit(conventional_unit(name)) for name in shared)
-    assert all(read_unit(unit) is not None for _, unit in CUSTOM)
+    assert all(read_unit(unit) is not None for _, unit in CONVENTIONAL_UNITS)
 
 
 def test_equations_between_units_are_solved_over_the_rationals():
@@ -88,7 +96,7 @@ def test_units_explain_a_false_formula():
     assert verdict.diagnosis.code == "dimension"
     assert verdict.dimension.text == (
         "on the right side term 1 of the sum I1*omega_1*theta + F is kg m^2/s, term 2 is kg m^2/s^2"
-        " (by custom m in kg, g in m/s^2, I1 in kg m^2, omega_1 in rad/s)"
+        " (assuming m in kg, g in m/s^2, I1 in kg m^2, omega_1 in rad/s)"
     )
     assert verdict.to_json()["dimension"]["status"] == "inconsistent"
     assert f"units: {verdict.dimension.text}" in str(verdict)

@@ -30,12 +30,12 @@ UNKNOWN_HERE = (
     "ln", "arcsin", "arccos", "arctan", "acot", "E", "I", "Rational", "nan", "NaN", "NAN", "inf", "Inf", "INF", "oo",
     "zoo", "infinity", "Infinity",
 )  # fmt: skip
-"""Names that become no symbol or function of the user's own by mere use: a reader takes them for something else."""
+"""Names that never become symbols or functions of the user by mere use, since most readers know them as others."""
 
 
 @dataclass
 class Interpreter(Scope):
-    """The names of one claim, and the evaluation of its trees."""
+    """The names of one claim, with the evaluation of trees in them."""
 
     def read(self, node: Node, source: str = "", where: str = "") -> Any:
         """Return the value of a tree: Expr or ImmutableMatrix.
@@ -43,7 +43,7 @@ class Interpreter(Scope):
         Raises
         ------
         InputError
-            For a piece without interpreter, with its position in ``source``.
+            For a piece without a value, with its position in ``source``.
         """
         self.source, self.where = source or self.source, where or self.where
         value = self.evaluate(node)
@@ -81,8 +81,8 @@ def _name(interpreter: Interpreter, node: Node) -> Any:
         raise interpreter.fail(node, f"a name that is declared ({_nearest(name, interpreter)}) instead of {name!r}")
     if name in UNKNOWN_HERE:
         raise interpreter.fail(node, f"a symbol of another name, since {name!r} means something else to most readers,")
-    made = interpreter.values[name] = time if name == "t" else Symbol(name, real=True)
-    return made
+    symbol = interpreter.values[name] = time if name == "t" else Symbol(name, real=True)
+    return symbol
 
 
 def _nearest(name: str, interpreter: Interpreter) -> str:
@@ -103,8 +103,8 @@ def _sum(interpreter: Interpreter, node: Node) -> Any:
             total = total + value
         return total
     first = described(values[0])
-    other, found = next((n, described(value)) for n, value in enumerate(values) if described(value) != first)
-    raise interpreter.fail(node.args[other], f"{first}, as the first term of the sum is, instead of {found}")
+    other, actual = next((n, described(value)) for n, value in enumerate(values) if described(value) != first)
+    raise interpreter.fail(node.args[other], f"{first}, as the first term of the sum is, instead of {actual}")
 
 
 def _product(interpreter: Interpreter, node: Node) -> Any:
@@ -154,7 +154,7 @@ def _power(interpreter: Interpreter, node: Node) -> Any:
         interpreter.divide_by(base, node.args[0])
     if base.is_Rational and abs(exponent.p) * max(int(base.p).bit_length(), int(base.q).bit_length()) > MOST_BITS:
         raise interpreter.fail(node, f"a number of at most {MOST_BITS} bits")
-    if exponent.q > 1:  # of odd index too: the principal value is real for what is not negative only
+    if exponent.q > 1:  # of odd index too: the principal value of a negative number is not real
         interpreter.take_root(base, node.args[0])
     return base**exponent
 
@@ -186,8 +186,8 @@ def _call(interpreter: Interpreter, node: Node) -> Any:
     if name in BUILT_IN:
         least, most, function = BUILT_IN[name]
         if not least <= len(arguments) <= most:
-            wanted = str(least) if least == most else f"{least} to {most}" if most < 99 else f"at least {least}"
-            raise interpreter.fail(node, f"{wanted} argument(s) of {name} instead of {len(arguments)}")
+            count = str(least) if least == most else f"{least} to {most}" if most < 99 else f"at least {least}"
+            raise interpreter.fail(node, f"{count} argument(s) of {name} instead of {len(arguments)}")
         return function(interpreter, node)
     if name in interpreter.values:
         raise interpreter.fail(node, f"an operator between {name} and '(', since {name} is no function,")

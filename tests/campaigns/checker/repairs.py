@@ -19,7 +19,7 @@ from symrot.checker.claim.reader import read_expression, read_relation
 from symrot.checker.claim.tree import Node
 from symrot.checker.decide.decision import Decision, decide_equation
 from symrot.checker.latex.matrices import MATRIX_CALLS
-from symrot.checker.repair.canonical_form import settled
+from symrot.checker.repair.canonical_form import canonical
 from symrot.checker.repair.diagnose import diagnose
 from symrot.checker.verdict import Repair
 from symrot.errors import InputError
@@ -156,7 +156,7 @@ def _written(claim: Claim) -> tuple[Node, ...]:
     """Return the trees of a claim, up to the order of terms and of scalar factors."""
     assert claim.relation is not None
     is_matrix = matrix_test(claim)
-    return tuple(settled(tree, is_matrix) for tree in (*claim.relation[1:], *(tree for _, tree in claim.define)))
+    return tuple(canonical(tree, is_matrix) for tree in (*claim.relation[1:], *(tree for _, tree in claim.define)))
 
 
 def _same(original: Claim, found: Claim) -> bool:
