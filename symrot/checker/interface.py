@@ -81,7 +81,7 @@ def _checked(left: Any, right: Any, assume: Sequence[Any], units: Mapping[str, s
         if right is not None:
             raise InputError("expected the whole claim 'left == right' as one text, got two arguments")
         if isinstance(assume, str) or not all(isinstance(hypothesis, str) for hypothesis in assume):
-            raise InputError("assume: expected a list of texts like 'a == b' beside a claim as text")
+            raise InputError("assume: expected a list of texts like 'a == b' with a claim as text")
         return check_claim(claim_of_text(left, assume, units or {}), repair)
     if right is None:
         raise InputError("expected two sides, or one text 'left == right'")
@@ -175,13 +175,13 @@ def _decide(claim: Claim) -> tuple[Decision, Verdict]:
 
 def _diagnosed(claim: Claim, decision: Decision, verdict: Verdict) -> Verdict:
     from symrot.checker.recognition.identification import named_parts
-    from symrot.checker.recognition.nearest import nearby
+    from symrot.checker.recognition.nearest import nearest_known
     from symrot.checker.repair.diagnose import diagnose
 
     diagnosis, repairs = diagnose(claim, decision)
     if diagnosis.code == "none" and verdict.dimension.status == "inconsistent":
         diagnosis = Diagnosis("dimension", f"the units do not fit: {verdict.dimension.text}")
-    notes = (*verdict.notes, *named_parts(claim), *nearby(claim))
+    notes = (*verdict.notes, *named_parts(claim), *nearest_known(claim))
     return replace(verdict, diagnosis=diagnosis, repairs=repairs, notes=notes)
 
 

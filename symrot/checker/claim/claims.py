@@ -282,7 +282,7 @@ def read_claims(path: str | Path) -> list[Claim]:
     Raises
     ------
     InputError
-        Naming the file, the claim, the key, and what is expected there.
+        Naming the file, the claim, the key, and the expected value.
     """
     entries = read_entries(path)
     for entry in entries:
@@ -365,9 +365,11 @@ def _claim(entry: dict[str, Any], number: int, label: str) -> Claim:
         raise InputError(f"{place}: expected exactly one of claim, latex and value, got {', '.join(kinds) or 'none'}")
     if kinds == ["value"]:
         if "printed_value" not in entry:
-            raise InputError(f"{place}: expected printed_value beside value, the key is missing")
+            raise InputError(f"{place}: expected printed_value together with value, the key is missing")
         if others:
-            raise InputError(f"{place}: alternatives: expected other readings of a claim, got them beside a value")
+            raise InputError(
+                f"{place}: alternatives: expected other readings of a claim, got them together with a value"
+            )
         sources["value"] = entry["value"]
         value = read_expression(entry["value"], f"{place}: value")
         return replace(claim, value=value, printed=entry["printed_value"])

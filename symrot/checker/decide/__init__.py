@@ -1,1 +1,1 @@
-"""The decision on a claim: hypotheses, the constraints that they are, conditions, and real points."""
+"""The decision on a claim: its stages, with hypotheses, conditions and real points."""

@@ -1,7 +1,7 @@
 """Conditions under which a false claim is true: a unit norm, equal moments, no products of inertia, the sign of a root.
 
-A condition is a common factor of all residuals. The claim is true where that factor vanishes, which proves it. Only
-conditions that people state count, since every false claim is "true" where its residual happens to vanish.
+A condition is a common factor of all residuals: where it vanishes, the claim is true. Only conditions that textbooks
+state count, since every false claim is "true" where its residual happens to vanish.
 """
 
 import re
@@ -34,7 +34,7 @@ MOST_TERMS_OF_SQUARE = 40
 def requirements(
     ring: FormulaRing, numerators: Sequence[PolyElement], sides: Sequence[tuple[Expr, Expr]], entries: int
 ) -> list[Requirement]:
-    """Return the conditions that people state and any one of which makes all residuals vanish.
+    """Return the conditions, of the kinds that textbooks state, each of which makes all residuals vanish.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ def _associated(first: PolyElement, second: PolyElement) -> bool:
 
 
 def _classified(ring: FormulaRing, factor: PolyElement) -> Requirement | None:
-    """Return the condition ``factor = 0`` if people state it, else None."""
+    """Return the condition ``factor = 0`` if it is of a kind that textbooks state, else None."""
     places = [n for n, degree in enumerate(factor.degrees()) if degree > 0]
     leaves = {number: leaf for leaf, number in ring.symbols.items()}
     if not all(n in leaves and (leaves[n].is_Symbol or isinstance(leaves[n], AppliedUndef)) for n in places):

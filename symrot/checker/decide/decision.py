@@ -120,7 +120,7 @@ def _decide(equation: Equation) -> Decision:
     try:
         decision = first_decision(case, STAGES)
         if decision.verdict == "true" and not relations and any(side.has(atan2) for side in case.sides):
-            decision = _off_the_cut(decision, case)
+            decision = _conditional_at_branch_cut(decision, case)
         return replace(decision, products=ring.ratios.products)
     except TooLarge as reason:
         try:
@@ -168,7 +168,7 @@ class _ClaimCase(Case):
         return self.counterexample is None and (bool(self.ring.hypotheses) or self.branches is None)
 
     def within_domain(self, search: Search) -> Search:
-        """Return a search without the points outside the domain that the text has and the formulas have lost."""
+        """Return a search that drops points outside the domain of the text, which SymPy may have cancelled."""
 
         def searched(
             ring: FormulaRing, left: Expr, right: Expr, entry: tuple[int, int] | None
@@ -180,7 +180,7 @@ class _ClaimCase(Case):
         return searched if self.ring.domain else search
 
     def conditions_of(self, rings: Sequence[FormulaRing]) -> tuple[Any, ...]:
-        """Return the conditions by their text, less those that assumptions on symbols or hypotheses grant."""
+        """Return the conditions in the order of their texts, without those that assumptions or hypotheses grant."""
         ring, granted = self.ring, self.nonzero_factors
         forms = [*domain.divisors(ring, granted), *(pair for other in rings for pair in domain.divisors(other))]
         free = set(domain.divisors(ring)) - set(domain.divisors(ring, granted))
@@ -198,7 +198,7 @@ class _ClaimCase(Case):
         rings = (self.ring, *self.rings)
         divided = [Need(source, "!= 0") for ring in rings for source, _ in domain.divisors(ring)]
         divided += [Need(formula, ">= 0") for ring in rings for formula in domain.split_radicands(ring)]
-        if self.assumed.known([need for need in divided if need not in self.assumed.needs]):
+        if self.assumed.point_is_known([need for need in divided if need not in self.assumed.needs]):
             return Decision("true", self.conditions)
         hypotheses = " and the hypotheses hold" if self.ring.hypotheses else ""
         reason = f"it follows, but no point is known at which both sides are real numbers{hypotheses}"
@@ -209,7 +209,7 @@ class _ClaimCase(Case):
         signs = [Need(value, ">= 0") for value in (*requirement.signs, *domain.split_radicands(self.ring))]
         if not self.assumed.consistent_with(requirement.zeros):
             return False
-        return self.assumed.known([*needs_of(requirement.signs), *signs], requirement.zeros)
+        return self.assumed.point_is_known([*needs_of(requirement.signs), *signs], requirement.zeros)
 
 
 # -- the stages -------------------------------------------------------------------------------------------------------
@@ -268,7 +268,7 @@ def distant_witness(case: _ClaimCase) -> None:
 
 
 def condition(case: _ClaimCase) -> Decision | None:
-    """Decide a case that is true under a condition that people leave unstated."""
+    """Decide a case that is true under a condition that authors often leave out."""
     sides = [(case.lefts[place], case.rights[place]) for place in case.unproven]
     needed = requirements(case.ring, case.numerators, sides, len(case.lefts))
     needed = [requirement for requirement in needed if case.can_hold(requirement)]
@@ -284,7 +284,7 @@ def condition(case: _ClaimCase) -> Decision | None:
 
 
 def leave_open(case: _ClaimCase) -> Decision:
-    """Say what stands in the way of a decision."""
+    """Leave the case undecided, with the reason."""
     return Decision("undecided", case.conditions, reason=_obstacle(case.ring))
 
 
@@ -297,7 +297,7 @@ STAGES = (
 # -- the branch cut of atan2 ------------------------------------------------------------------------------------------
 
 
-def _off_the_cut(decision: Decision, case: _ClaimCase) -> Decision:
+def _conditional_at_branch_cut(decision: Decision, case: _ClaimCase) -> Decision:
     """Return a decision that is conditional if the sides differ at a point that its conditions exclude.
 
     All functions but atan2 are continuous where they are defined: sides that are equal where no divisor of the proof
@@ -428,7 +428,7 @@ def _branches(
 
 
 def _obstacle(ring: FormulaRing) -> str:
-    """Return the sentence that says what stands in the way of a decision."""
+    """Return the reason why no decision was reached."""
     if ring.outside_scope:
         terms = ", ".join(as_text(term) for term in ring.outside_scope[:3])
         return f"too little is known here about {terms}, and no point was found where the sides provably differ"

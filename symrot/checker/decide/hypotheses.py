@@ -65,7 +65,7 @@ class Hypotheses:
         return constraints_of(self.ring)
 
     @cached_property
-    def matter(self) -> bool:
+    def present(self) -> bool:
         """Whether there are any hypotheses, or symbols with a sign."""
         signs = self.constraints
         return bool(self.ring.hypotheses or signs.positive or signs.negative or signs.nonnegative or signs.whole)
@@ -75,7 +75,7 @@ class Hypotheses:
         return real_points(self.constraints)
 
     def points(self, attempts: int = ATTEMPTS) -> Iterator[RealPoint]:
-        """Yield those of the first points drawn that obey all constraints; each point is drawn once."""
+        """Yield the points among the first ``attempts`` that obey all constraints; each point is drawn once."""
         number = 0
         while number < attempts:
             if number == len(self._drawn):
@@ -87,7 +87,7 @@ class Hypotheses:
 
     # -- a point of the domain ----------------------------------------------------------------------------------------
 
-    def known(self, further: Sequence[Need] = (), zeros: Sequence[Expr] = ()) -> bool:
+    def point_is_known(self, further: Sequence[Need] = (), zeros: Sequence[Expr] = ()) -> bool:
         """Return whether a real point is known at which all needs and hypotheses hold.
 
         Parameters
@@ -176,7 +176,7 @@ class Hypotheses:
 
     @cached_property
     def _infeasibility(self) -> Infeasibility | None:
-        return infeasibility_proof(self.constraints) if self.matter or self.ring.roots else None
+        return infeasibility_proof(self.constraints) if self.present or self.ring.roots else None
 
     def refuse_if_empty(self) -> None:
         """Raise InputError if there is provably no real point where the hypotheses hold and the sides are defined."""
@@ -196,11 +196,11 @@ class Hypotheses:
     def entails(self, numerators: Iterable[PolyElement]) -> bool:
         """Return whether polynomials provably vanish at all real points of the constraints."""
         target = self.constraints.ring
-        return self.matter and all(vanishes_on(self.constraints, poly.set_ring(target)) for poly in numerators)
+        return self.present and all(vanishes_on(self.constraints, poly.set_ring(target)) for poly in numerators)
 
     def consistent_with(self, zeros: Sequence[Expr]) -> bool:
         """Return whether formulas may vanish together under the hypotheses: False if that is provably impossible."""
-        if not self.matter or not zeros:
+        if not self.present or not zeros:
             return True
         target = self.constraints.ring
         added = [self.ring.ratio(zero).numerator.set_ring(target) for zero in zeros]
@@ -229,7 +229,7 @@ class Hypotheses:
         self, ring: FormulaRing, left: Expr, right: Expr, entry: tuple[int, int] | None, attempts: int = ATTEMPTS
     ) -> Counterexample | None:
         """Return an exact point that obeys the constraints and where two sides differ, or None."""
-        if not self.matter or not self.constraints.real or not self.constraints.complete:
+        if not self.present or not self.constraints.real or not self.constraints.complete:
             return None
         residual = ring.difference(left, right).numerator.set_ring(self.constraints.ring)
         parts = [part for side in (left, right) for part in self._parts(side)]  # terms of both sides may cancel

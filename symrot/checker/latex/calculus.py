@@ -96,7 +96,7 @@ class CalculusPart(NamesPart):
         return bool(length) and (token.kind == "letter" or token.text[1:] in GREEK)
 
     def derivative_fraction(self, token: Token) -> Node | None:
-        """Read ``\\frac{d^n X}{d x^n}`` or ``\\frac{d}{dx} X``; None if the fraction is another one."""
+        """Read ``\\frac{d^n X}{d x^n}`` or ``\\frac{d}{dx} X``; None for any other fraction."""
         start = self.index
         if not self.take("{") or not self.is_d():
             self.index = start

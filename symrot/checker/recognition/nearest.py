@@ -19,7 +19,7 @@ from symrot.checker.repair.edits import FAULT_DESCRIPTIONS, single_edits
 from symrot.checker.repair.filter import NumericFilter
 from symrot.errors import InputError
 
-__all__ = ["nearby"]
+__all__ = ["nearest_known"]
 
 MOST_EDITS = 400
 MOST_NODES = 400
@@ -38,7 +38,7 @@ Candidate = tuple[str, Node, list[Identification]]
 """The code of an edit, the formula after it, and the identifications of that formula."""
 
 
-def nearby(claim: Claim) -> tuple[str, ...]:
+def nearest_known(claim: Claim) -> tuple[str, ...]:
     """Return a note on a claim that only names a formula: which formula it is, or which one is nearest to it."""
     named = named_formula(claim)
     if named is None:

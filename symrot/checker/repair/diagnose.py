@@ -153,7 +153,7 @@ class _Search:
             if not self.numeric.affordable():
                 return
 
-    def idle(self, code: str, changes: Sequence[Change]) -> bool:
+    def makes_sides_identical(self, code: str, changes: Sequence[Change]) -> bool:
         """Return whether an edit made the two sides the same text, so that nothing of the claim is left."""
         relation = self.numeric.edited(changes).relation
         assert relation is not None
@@ -174,7 +174,7 @@ class _Search:
             except UndefinedValue:
                 continue
             candidate = Candidate(cost, code, tuple(map(_tidied, changes)) if code == "factor" else changes)
-            if self.idle(code, candidate.changes):
+            if self.makes_sides_identical(code, candidate.changes):
                 continue
             if values in self.seen:
                 self.alike.append(candidate)

@@ -16,17 +16,17 @@ __all__ = ["COST", "FAULT_DESCRIPTIONS", "OPPOSITE", "Edit", "neighbours", "norm
 FAULT_DESCRIPTIONS = {
     "none": "",
     "frame_body_space": "the body frame and the space frame are exchanged",
-    "active_passive_transpose": "a rotation stands for its inverse: active for passive, or a transpose",
+    "active_passive_transpose": "a rotation is used in place of its inverse: active for passive, or a transpose",
     "quaternion_product_order": "the factors of a quaternion product are exchanged",
     "quaternion_storage_order": "the components of a quaternion are stored in another order",
     "sign_of_term": "a term has the wrong sign",
     "overall_sign": "a whole side has the wrong sign",
     "commutator_order": "the factors of a matrix product are exchanged",
     "factor": "a factor is wrong, missing or too many",
-    "half_angle": "an angle stands where half of it belongs",
-    "double_half_angle": "an angle stands where twice of it belongs",
+    "half_angle": "an angle is used in place of its half",
+    "double_half_angle": "an angle is used in place of its double",
     "sin_cos_swap": "sine and cosine are exchanged",
-    "wrong_symbol": "a symbol stands where another one belongs",
+    "wrong_symbol": "a symbol is used in place of another one",
     "missing_term": "a term is missing",
     "extra_term": "there is a term too many",
     "inertia_product_sign": "the products of inertia have the other sign",
@@ -61,7 +61,7 @@ COST = {
     "solved_sign": 0.85, "solved_factor_2": 1.16, "solved_rational_factor": 1.3, "solved_number": 1.25,
     "solved_factor": 1.22, "solved_factor_of_number": 0.5, "solved_term_of_sum": 1.5, "solved_term": 1.65,
     "solved_swap": 1.0, "solved_neighbour": 1.0, "solved_symbol": 1.2, "solved_matrix_term": 0.04,
-    # growth with the size of what is added, and with the depth of the piece
+    # growth with the size of the inserted formula, and with the depth of the piece
     "per_piece_added": 0.02, "rational_in_front": 0.04, "per_level": 0.01, "per_level_of_matrix": 0.05,
 }  # fmt: skip
 """Costs of edits, by code or by kind of edit: the order in which repairs are tried and offered."""

@@ -142,11 +142,11 @@ class NumericFilter:
             wrong |= {place for place, equal in enumerate(agreement or ()) if not equal}
         return wrong
 
-    def open_paths(self, place: str, tree: Node) -> "Open":
+    def open_paths(self, place: str, tree: Node) -> "OpenEntries":
         """Return which pieces a single edit may change; in a written-out matrix, only a wrong entry that is alone."""
         cells = matrix_entries(tree) if place in SIDES else {}
         alone = [cells[number] for number in self.wrong if number in cells] if len(self.wrong) == 1 else []
-        return Open(tuple(cells.values()), tuple(alone))
+        return OpenEntries(tuple(cells.values()), tuple(alone))
 
     # -- values -----------------------------------------------------------------------------------------------------
 
@@ -227,7 +227,7 @@ class NumericFilter:
 
 
 @dataclass(frozen=True)
-class Open:
+class OpenEntries:
     """The entries of a matrix that is written out, and those among them that a single edit may change."""
 
     cells: tuple[Path, ...]
