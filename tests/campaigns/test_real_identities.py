@@ -15,7 +15,7 @@ from symrot.exact.evidence import Counterexample
 from tests.campaigns.checker import real_identities as module
 from tests.campaigns.checker import run as campaign_run
 from tests.campaigns.checker.identities import campaign, main
-from tests.campaigns.checker.judge_real import (
+from tests.campaigns.checker.oracle_real import (
     Edge,
     Large,
     NoValue,
