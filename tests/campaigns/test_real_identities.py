@@ -216,7 +216,7 @@ def test_a_formula_of_large_numbers_has_none(formula):
 def test_a_number_that_only_seems_zero_has_no_root():
     """cosh(exp(-exp(x))) is larger than 1 by less than 60 digits show."""
     claim = "acos(cosh(asin(exp(-exp(x))))) == 3"
-    assert fault(claim, "the sides are no real numbers: -1 >= 0 does not hold", Random(1)) == ""
+    assert fault(claim, "the sides are not real numbers: -1 >= 0 does not hold", Random(1)) == ""
 
 
 # -- runs -------------------------------------------------------------------------------------------------------------

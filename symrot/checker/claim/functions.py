@@ -45,7 +45,7 @@ def _of_scalar(function: Callable[[Expr], Expr], below: Callable[[Expr], Expr] |
             scope.divide_by(below(value), node)
         made = function(value)
         if value.is_number and not made.is_Rational and enclosure(made) is None:
-            raise scope.fail(node, "a number whose digits can be computed instead of a tower of functions")
+            raise scope.fail(node, "a number whose digits can be computed instead of deeply nested functions")
         return made
 
     return call
@@ -256,7 +256,7 @@ def _integrate(scope: Scope, node: Node) -> Expr:
         try:
             total, divisors = definite_integral(total, variable, lower, upper)
         except InputError as reason:
-            raise scope.fail(place, f"an integral that can be found here ({reason})") from None
+            raise scope.fail(place, f"an integral that symrot can compute ({reason})") from None
         scope.divisors.extend(Divisor(value, place) for value in divisors)
     return total
 

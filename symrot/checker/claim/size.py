@@ -19,7 +19,7 @@ MOST_PIECES = 200_000
 """The most symbols, numbers and operations of a value; those that occur twice are counted twice."""
 
 MOST_DIFFERENTIATED = 3_000
-"""The most of them in a formula that is differentiated."""
+"""The most symbols, numbers and operations of a formula that is differentiated."""
 
 MOST_PRODUCTS = 2_000
 """The most products of entries in a determinant; a full 6 x 6 matrix has 720, a full 7 x 7 matrix 5040."""

@@ -101,7 +101,7 @@ def decide_equation(equation: Equation) -> Decision:
         return Decision("undecided", reason="the formulas are nested too deeply to be read")
     except (TypeError, AttributeError) as reason:
         if is_unordered(reason):
-            return Decision("undecided", reason="it cannot be told which of two numbers in it is larger")
+            return Decision("undecided", reason="two numbers in it are too close to tell which is larger")
         raise
 
 
@@ -201,7 +201,7 @@ class _ClaimCase(Case):
         if self.assumed.point_is_known([need for need in divided if need not in self.assumed.needs]):
             return Decision("true", self.conditions)
         hypotheses = " and the hypotheses hold" if self.ring.hypotheses else ""
-        reason = f"it follows, but no point is known at which both sides are real numbers{hypotheses}"
+        reason = f"the sides are equal, but no point is known at which both are real numbers{hypotheses}"
         return Decision("undecided", self.conditions, reason=reason)
 
     def can_hold(self, requirement: Requirement) -> bool:
@@ -350,7 +350,7 @@ def _needs(case: _ClaimCase) -> list[Need]:
     equation = case.equation
     hypotheses = [as_zero(relation) for relation in equation.hypotheses]
     stated = [Need(divisor, "!= 0") for divisor in (*equation.divisors, *equation.nonzero)]
-    divided = {*equation.divisors, *equation.nonzero}  # the argument of a logarithm is noted as both
+    divided = {*equation.divisors, *equation.nonzero}  # the argument of a logarithm is recorded as both
     stated += [Need(radicand, "> 0" if radicand in divided else ">= 0") for radicand in equation.radicands]
     return [*needs_of([*case.sides, *hypotheses, *(need.formula for need in stated)]), *stated]
 
@@ -437,4 +437,4 @@ def _obstacle(ring: FormulaRing) -> str:
         return f"the sides agree or differ with the sign of {roots}, and no point was found where they provably differ"
     if ring.hypotheses:
         return f"none of {ATTEMPTS} points drawn obeys the hypotheses and shows a difference; no proof was found either"
-    return "no rational point was found at which the sides differ, since an angle is tied to other symbols"
+    return "no rational point was found at which the sides differ, since an angle depends on other symbols"

@@ -124,7 +124,9 @@ class Hypotheses:
             except InputError:
                 continue
             if reduced.is_Rational and fails_everywhere(Need(reduced, need.sign)):
-                raise InputError(f"the hypotheses exclude that the sides are real numbers: {_need_text(need)}")
+                raise InputError(
+                    f"under the hypotheses the sides are not real numbers: {_need_text(need)} does not hold"
+                )
 
     def refuse_if_nowhere(self) -> None:
         """Raise InputError if the range of a formula shows that the sides are real numbers nowhere."""
@@ -149,7 +151,7 @@ class Hypotheses:
         zero = 0 in interval and is_zero(need.formula)
         fails = (interval.b < 0 and need.sign != "!= 0") or (zero and need.sign != ">= 0")
         if fails:
-            raise InputError(f"the sides are no real numbers: {_need_text(need)} does not hold")
+            raise InputError(f"the sides are not real numbers: {_need_text(need)} does not hold")
         return zero or holds(need, {})
 
     def _drawn_point(self, needs: Sequence[Need], attempts: int) -> bool:

@@ -43,7 +43,7 @@ second, one of norm 64 six seconds.
 
 
 class _DeadEnd(Exception):
-    """The choices made so far lead to no point."""
+    """Raised if the choices so far lead to no point."""
 
 
 @dataclass(frozen=True)
@@ -324,7 +324,7 @@ def _as_rational(value: Any, field: Any) -> Any:
 
 
 def _eliminated(poly: PolyElement, place: int, above: PolyElement, below: PolyElement) -> PolyElement:
-    """Return a polynomial with ``above/below`` put in for a generator, times a power of ``below``."""
+    """Return a polynomial in which ``above/below`` replaces a generator, times a power of ``below``."""
     degree = poly.degrees()[place]
     if not degree:
         return poly

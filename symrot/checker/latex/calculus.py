@@ -109,7 +109,7 @@ class CalculusPart(NamesPart):
             self.index = start
             return None
         if "d" in self.names:
-            raise self.fail("another name for the symbol d, which differentiates here", token)
+            raise self.fail("another name for the symbol d, since d means a derivative here", token)
         self.next()
         variables: list[Node] = []
         while not self.at("}"):
@@ -120,7 +120,7 @@ class CalculusPart(NamesPart):
             variables += [variable] * self.order()
         self.expect("}")
         if len(variables) != order:
-            raise self.fail(f"a derivative of order {order} above and below", token)
+            raise self.fail(f"a derivative of order {order} both above and below the line", token)
         if operand is None:
             operand = self.factor()
             if self.starts_factor() or self.at("/"):

@@ -30,7 +30,7 @@ class NamesPart(Cursor):
             if self.take("'"):
                 primes += 1
             elif subscript:
-                raise self.fail("one subscript")
+                raise self.fail("only one subscript")
             else:
                 self.next()
                 subscript = self.subscript()

@@ -187,7 +187,7 @@ class _Reader(MatricesPart):
             return Node("call", "skew", (node,))
         self.index = start
         if [self.peek(n).text for n in range(2)] == ["{", "("] and self.peek(3).text == ")":
-            raise self.fail("a power without brackets of its own")
+            raise self.fail("a power like x^2 instead of x^{(2)}")
         exponent = self.argument()
         if exponent == number(2) and self.is_column(node):
             return Node("call", "dot", (node, node))

@@ -103,7 +103,7 @@ def _power(base: int, exponent: Rational) -> int:
 
 
 def _mixed(value: int) -> int:
-    """Return the parameter of the circle point of an angle; no polynomial in a formula takes this value by design."""
+    """Return the parameter of the circle point of an angle, scrambled to be unrelated to other values of a formula."""
     return pow(value + 1_000_003, 65_537, PRIME)
 
 

@@ -19,7 +19,7 @@ from symrot.checker.repair.points import Point, UndefinedValue, agree, entries_o
 __all__ = ["SIDES", "Candidate", "Change", "NumericFilter", "at", "is_nontrivial", "matrix_entries"]
 
 MOST_PIECES = 500_000
-"""Pieces of trees that the search may evaluate: some seconds."""
+"""The most pieces of trees that the search may evaluate, which takes some seconds."""
 
 SIDES = ("right", "left")
 
@@ -192,7 +192,7 @@ class NumericFilter:
         return dependents
 
     def holds(self, changes: Sequence[Change]) -> bool:
-        """Return whether an edited claim is true at the points, unless it is true because both sides became zero."""
+        """Return whether an edited claim is true at the points, and not only because both sides became zero."""
         if not self.affordable():
             return False
         for point in self.points:

@@ -20,7 +20,7 @@ from symrot.checker.repair.points import Point, UndefinedValue, entries_of
 __all__ = ["solutions"]
 
 ONES = (1, -1)
-"""Numbers that people forget in a sum."""
+"""Numbers that are easily forgotten in a sum."""
 
 HOLE = Node("name", "?")
 """The unknown piece, under a name that no text can contain."""
