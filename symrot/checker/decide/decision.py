@@ -8,6 +8,7 @@ use the hypotheses (:mod:`symrot.checker.decide.hypotheses`) and look for a cond
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from functools import cached_property
 from itertools import product
 from typing import Any
 
@@ -142,8 +143,6 @@ class _ClaimCase(Case):
     equation : Equation
     nonzero_factors : set of int
         Numbers of the factors in the ring that hypotheses state to be nonzero.
-    hypotheses : Hypotheses or None
-        The hypotheses, from stage ``domain_of_text`` on.
     numerators : list of PolyElement
         The reduced numerators of the unproven entries.
     branches : list of Requirement or None
@@ -152,15 +151,13 @@ class _ClaimCase(Case):
 
     equation: Equation = field(kw_only=True)
     nonzero_factors: set[int] = field(default_factory=set)
-    hypotheses: Hypotheses | None = None
     numerators: list[PolyElement] = field(default_factory=list)
     branches: list[Requirement] | None = None
 
-    @property
-    def assumed(self) -> Hypotheses:
-        """The hypotheses."""
-        assert self.hypotheses is not None
-        return self.hypotheses
+    @cached_property
+    def hypotheses(self) -> Hypotheses:
+        """The hypotheses, with the needs of the sides; their constraints include the divisors read until first use."""
+        return Hypotheses(self.ring, _needs(self))
 
     @property
     def lacks_evidence(self) -> bool:
@@ -198,7 +195,7 @@ class _ClaimCase(Case):
         rings = (self.ring, *self.rings)
         divided = [Need(source, "!= 0") for ring in rings for source, _ in domain.divisors(ring)]
         divided += [Need(formula, ">= 0") for ring in rings for formula in domain.split_radicands(ring)]
-        if self.assumed.point_is_known([need for need in divided if need not in self.assumed.needs]):
+        if self.hypotheses.point_is_known([need for need in divided if need not in self.hypotheses.needs]):
             return Decision("true", self.conditions)
         hypotheses = " and the hypotheses hold" if self.ring.hypotheses else ""
         reason = f"the sides are equal, but no point is known at which both are real numbers{hypotheses}"
@@ -207,9 +204,9 @@ class _ClaimCase(Case):
     def can_hold(self, requirement: Requirement) -> bool:
         """Return whether a point is known at which a requirement holds and the sides are real numbers."""
         signs = [Need(value, ">= 0") for value in (*requirement.signs, *domain.split_radicands(self.ring))]
-        if not self.assumed.consistent_with(requirement.zeros):
+        if not self.hypotheses.consistent_with(requirement.zeros):
             return False
-        return self.assumed.point_is_known([*needs_of(requirement.signs), *signs], requirement.zeros)
+        return self.hypotheses.point_is_known([*needs_of(requirement.signs), *signs], requirement.zeros)
 
 
 # -- the stages -------------------------------------------------------------------------------------------------------
@@ -226,16 +223,16 @@ def domain_of_text(case: _ClaimCase) -> None:
     """Add the divisors of the text to the ring; refuse a claim whose sides are real numbers nowhere."""
     for divisor in case.equation.divisors:
         case.ring.ratios.invert(case.ring.ratio(divisor), divisor)
-    case.hypotheses = Hypotheses(case.ring, _needs(case))
     case.hypotheses.refuse_if_nowhere()
 
 
 def nearby_witness(case: _ClaimCase) -> None:
     """Look for a counterexample among rational points, and then among the first points that obey the hypotheses."""
-    ring, assumed = case.ring, case.assumed
+    ring, hypotheses = case.ring, case.hypotheses
     case.numerators = [ring.reduce(case.residuals[place].numerator) for place in case.unproven]
-    search = case.within_domain(assumed.near_witness) if ring.hypotheses else assumed.checked(closed_form_witness)
-    case.counterexample = case.search(rational_witness, search)
+    closed_form = hypotheses.checked(closed_form_witness)
+    nearest = case.within_domain(hypotheses.near_witness) if ring.hypotheses else closed_form
+    case.counterexample = case.search(rational_witness, nearest)
 
 
 def branch(case: _ClaimCase) -> Decision | None:
@@ -253,17 +250,17 @@ def entail(case: _ClaimCase) -> Decision | None:
     """Decide a case that follows from the hypotheses at all real points; refuse hypotheses that hold nowhere."""
     if not case.lacks_evidence:
         return None
-    if case.assumed.entails(case.numerators):
+    if case.hypotheses.entails(case.numerators):
         return case.confirmed()
-    case.assumed.refuse_if_empty()
+    case.hypotheses.refuse_if_empty()
     return None
 
 
 def distant_witness(case: _ClaimCase) -> None:
     """Look for a counterexample among all points that obey the hypotheses."""
     if case.lacks_evidence:
-        searches = [case.within_domain(case.assumed.witness)]
-        searches += [case.assumed.checked(closed_form_witness)] if case.ring.hypotheses else []
+        searches = [case.within_domain(case.hypotheses.witness)]
+        searches += [case.hypotheses.checked(closed_form_witness)] if case.ring.hypotheses else []
         case.counterexample = case.search(*searches)
 
 
