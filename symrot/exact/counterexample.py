@@ -19,13 +19,14 @@ from sympy.polys.rings import PolyElement
 
 from symrot.errors import InputError
 from symrot.exact.angles.angles import base_angle
+from symrot.exact.evidence import Counterexample
 from symrot.exact.floats import NoValue, float_at
 from symrot.exact.intervals import enclosure, is_nonnegative_at, surely_nonnegative_number
 from symrot.exact.ring.ratio import Ratio, TooLarge
 from symrot.exact.ring.ring import FormulaRing
 from symrot.exact.size import pieces
 
-__all__ = ["Counterexample", "closed_form_witness", "rational_witness"]
+__all__ = ["closed_form_witness", "rational_witness"]
 
 ATTEMPTS = 60
 """Random points tried: a nonzero polynomial of degree d vanishes at one with a chance of about d/40."""
@@ -48,25 +49,6 @@ _TRIANGLES = [Rational(n, d) for n, d in ((3, 5), (-4, 5), (3, 4), (-4, 3), (1, 
 
 _TURNS = [Rational(n, d) * pi for n, d in ((1, 1), (-1, 1), (2, 1), (1, 2), (-1, 2), (3, 1), (1, 3), (3, 2), (-2, 3))]
 """Values of angles at which sines and cosines are simple."""
-
-
-@dataclass(frozen=True)
-class Counterexample:
-    """A point where the two sides differ.
-
-    ``values`` pairs what is given with its exact value; ``entry`` is the place in a matrix, (row, column) from 1, or
-    None; ``lhs`` and ``rhs`` are exact numbers.
-    """
-
-    values: tuple[tuple[Expr, Expr], ...]
-    entry: tuple[int, int] | None
-    lhs: Expr
-    rhs: Expr
-
-    def __str__(self) -> str:
-        place = f", entry {self.entry}" if self.entry else ""
-        point = ", ".join(f"{name} = {value}" for name, value in self.values)
-        return f"at {point}{place}: {self.lhs} against {self.rhs}" if point else f"{self.lhs} against {self.rhs}{place}"
 
 
 @dataclass(frozen=True)

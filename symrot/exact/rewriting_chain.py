@@ -13,7 +13,7 @@ from sympy import Expr, Integer, Mul, cos, sin
 from sympy.polys.rings import PolyElement
 
 from symrot.exact.angles.angles import base_angle
-from symrot.exact.decide import flatten
+from symrot.exact.decision import flatten
 from symrot.exact.functions import TRIGONOMETRIC
 from symrot.exact.ring.ratio import Ratio
 from symrot.exact.ring.relations import Rule

@@ -337,7 +337,7 @@ def test_recheck_refuses_functions_without_the_prefix_of_symrot(tmp_path):
         (files.directory / file).write_text(text, encoding="utf-8")
     hashes = files.data["files"] | {file: sha256(text.encode()).hexdigest() for file, text in texts.items()}
     readback = {function.removeprefix("symrot_"): each for function, each in files.data["readback"].items()}
-    files.path.write_text(printed(files.data | {"files": hashes, "readback": readback}), encoding="utf-8")
+    files.path.write_text(certificate_json(files.data | {"files": hashes, "readback": readback}), encoding="utf-8")
     with pytest.raises(ValueError, match="another name or type: expected symrot_quaternion_dcm"):
         recheck.check(files.path)
 
