@@ -145,7 +145,7 @@ def _row(propagate: Propagator, rounds: int) -> _Row:
     (omega, quaternion), times = _start(scene), np.linspace(0.0, float(scene.span.stop), SAMPLES)
     propagate(times, omega=omega, quaternion=quaternion)
     initial = read_start(scene, omega, quaternion)
-    motion = propagate.motion_from(initial)
+    motion: Any = propagate.motion_from(initial)
     parts = motion.exact if motion.choice.method == "exact" else motion.stepping
     motion.follow(times, True)
     fresh = [motion.from_start(initial) for _ in range(2 * rounds)]

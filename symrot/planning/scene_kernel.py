@@ -62,6 +62,11 @@ class SceneKernel:
             }
         )
 
+    def without_invariants(self, reason: str) -> "SceneKernel":
+        """Return the kernel with nothing conserved, for the given reason."""
+        lost = [[*item[:3], False, reason] for item in self.data["conserved"]]
+        return SceneKernel({**self.data, "conserved": lost})
+
     @cached_property
     def rates(self) -> Program:
         """``dy/dt`` of the states."""

@@ -15,7 +15,7 @@ from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from time import perf_counter
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -28,9 +28,9 @@ from symrot.kinematics import conversions
 from symrot.planning.plan import Plan
 from symrot.planning.scene_kernel import SceneKernel, bind
 from symrot.propagation import time_shift as epoch
-from symrot.propagation.compiled_models import ATTITUDE_SCALE, RATE_SCALE, has_formulas, kernel_key
+from symrot.propagation.compiled_models import ATTITUDE_SCALE, RATE_SCALE, has_formulas, kernel_key, scene_kernel
 from symrot.propagation.method import Choice
-from symrot.propagation.motion import Motion
+from symrot.propagation.motion import Motion, Setup
 from symrot.propagation.propagator import Propagator
 from symrot.propagation.steppers import dop853, taylor
 from symrot.propagation.steppers.smoothness import roughness
@@ -96,10 +96,12 @@ class _Block(NamedTuple):
     states: Callable[[Floats], Floats]
 
 
+@final
 class EulerMotion(Motion):
-    """The motion of a scene with Euler angles in place of the quaternion."""
+    """The motion of a scene with Euler angles in place of the quaternion.
 
-    movable = False  # angles start anew on the way, each time at a time of the scene
+    It keeps the clock of the scene: angles start again on the way, each time at a time of the scene.
+    """
 
     def __init__(self, plan: Plan, method: str, tolerance: float, sequence: str, switching: bool) -> None:
         structure = plan.structure if plan.structure.planar is None else plan.structure.unreduced()
@@ -110,9 +112,9 @@ class EulerMotion(Motion):
         if method == "auto":
             method = "dop853" if roughness(plan) else "taylor"
         other = f", {partner(sequence)} near its gimbal lock" if switching else ", without switching"
-        self.plan, self.tolerance, self.library = plan, tolerance, None
-        self.choice = Choice(method, f"the state is the Euler angles {sequence}{other}")
-        self.start = float(plan.scene.span.start)
+        choice = Choice(method, f"the state is the Euler angles {sequence}{other}")
+        start = float(plan.scene.span.start)
+        super().__init__(Setup(plan, choice, tolerance, start, lambda: scene_kernel(plan)), plan)
         self.sequence, self.switching = sequence, switching
         self._kernels: dict[str, _Kernel] = {}
         self._count = [0, 0, 0, 0]  # accepted, rejected, evaluations, switches
@@ -227,7 +229,7 @@ class EulerMotion(Motion):
 
         return states
 
-    def integrate(self, times: Floats, rise: bool = False) -> tuple[Floats, Stats]:
+    def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
         """Return omega and quaternion at the times, shape (n, N), and what it cost."""
         began = perf_counter()
         self._count = [0, 0, 0, 0]

@@ -14,7 +14,7 @@ from symrot.formula import exact_numbers as number
 from symrot.planning.plan import Plan, make_plan, structure_key
 from symrot.planning.scene_kernel import SceneKernel
 from symrot.propagation.method import choose_method
-from symrot.propagation.motion import Motion
+from symrot.propagation.motion import ClosedFormMotion, Motion, RestartableMotion, make_motion
 from symrot.propagation.real_array import real_array
 from symrot.propagation.steppers.cut_off import Samples
 from symrot.propagation.steppers.stepping import Stats, rising
@@ -38,13 +38,13 @@ class Propagator:
     def __init__(self, scene: Scene, method: str, tolerance: float) -> None:
         self.scene, self.tolerance, self._method = scene, tolerance, method
         self._motion = self._prepare(self._planned())
-        self._by_structure = {structure_key(scene, scene.initial): self._motion}
+        self._by_structure = {structure_key(scene, scene.initial): self._motion}  # the first start of each
 
     def _planned(self, initial: Initial | None = None) -> Plan:
         return make_plan(self.scene, initial)
 
     def _prepare(self, plan: Plan) -> Motion:
-        return Motion(plan, choose_method(plan, self._method), self.tolerance)
+        return make_motion(plan, choose_method(plan, self._method), self.tolerance)
 
     def motion_from(self, initial: Initial) -> Motion:
         """Return the motion from another initial state.
@@ -52,14 +52,14 @@ class Propagator:
         The first start of each structure is planned and prepared as a new scene would be. The others take over all but
         the numbers of the start.
         """
-        if not vars(type(self._motion)).get("restarts"):
+        if not isinstance(self._motion, RestartableMotion):
             return self._prepare(self._planned(initial))
         key = structure_key(self.scene, initial)
         first = self._by_structure.get(key)
-        if first is None:
-            first = self._by_structure[key] = self._prepare(self._planned(initial))
-            return first
-        return first.from_start(initial)
+        if isinstance(first, RestartableMotion):
+            return first.from_start(initial)
+        motion = self._by_structure[key] = self._prepare(self._planned(initial))
+        return motion
 
     @property
     def plan(self) -> Plan:
@@ -84,7 +84,7 @@ class Propagator:
     def prepare(self) -> None:
         """Do now what otherwise waits for the first use: derive what an exact motion keeps while its form compiles."""
         self._motion.kernel  # noqa: B018
-        if self.method == "exact":
+        if isinstance(self._motion, ClosedFormMotion):
             self._motion.exact  # noqa: B018
 
     @cached_property
@@ -123,7 +123,7 @@ class Propagator:
             If the motion cannot be followed to the last time; its ``trajectory`` holds the samples before.
         """
         times = self.sample_times if t is None else _times(t)
-        rise = _in_order(times)
+        in_order = _in_order(times)
         motion = self._motion
         if omega is not None or quaternion is not None:
             motion = self.motion_from(read_start(self.scene, omega, quaternion))
@@ -135,7 +135,7 @@ class Propagator:
 
                 found = follow(motion, times, read_events(events))
                 return Trajectory(motion, found.t, found.states, motion.choice.method, found.stats, message, found)
-            states, stats = motion.follow(times, rise)
+            states, stats = motion.follow(times, in_order)
         except (PropagationError, KeyboardInterrupt) as error:
             raise self._cut_off(error, motion, times, began) from None
         return Trajectory(motion, times, states, motion.choice.method, stats, message)

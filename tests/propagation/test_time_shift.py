@@ -3,6 +3,7 @@
 import math
 import subprocess
 import sys
+from dataclasses import replace
 from fractions import Fraction
 
 import mpmath
@@ -17,6 +18,7 @@ from symrot.formula.program import Argument, Program, Signature
 from symrot.formula.tree import evaluate, parse
 from symrot.planning.scene_kernel import EXACT_FUNCTIONS, bind
 from symrot.propagation import time_shift as epoch
+from symrot.propagation.motion import SteppedMotion, on_clock
 from symrot.propagation.propagate import propagator
 from symrot.propagation.steppers import dop853
 from symrot.propagation.steppers.stepping import MAX_STEPS
@@ -123,7 +125,9 @@ def test_a_start_far_away_costs_no_digit(case, t0):
 def test_the_clock_of_the_scene_would_cost_them():
     """The check above sees the fault that it is there for."""
     found = propagator(scene(AXIS, CASES["axis"][1], 10**9), "dop853")
-    found._motion.movable = False
+    motion = found._motion
+    shared = replace(motion._shared, setup=replace(motion.setup, allows_time_shift=False))
+    found._motion = SteppedMotion(shared, motion.plan)
     with mpmath.workdps(40):
         expected = axis_reference(10**9)
     trajectory = found(10**9 + np.array(TAU))
@@ -267,7 +271,7 @@ def test_the_clock_is_moved_where_no_time_is_rounded(start):
 
 def test_without_time_in_the_torque_nothing_is_compiled_anew():
     found = propagator(scene(GENERAL, ["omega_1/9", "0", "q1/7"], 10**9), "taylor")._motion
-    far_away = found.on_clock(np.array([1e9, 1e9 + 2]))
+    far_away = on_clock(found, np.array([1e9, 1e9 + 2]))
     assert far_away is not found and far_away.library == found.library
 
 

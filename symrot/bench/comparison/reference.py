@@ -49,7 +49,7 @@ from symrot.planning.scene_kernel import EXACT_FUNCTIONS, Parameters
 from symrot.propagation.compiled_models import error_blocks, formula_deviations
 from symrot.propagation.enclosures.step_limit import Deviations, longest_followed
 from symrot.propagation.method import Choice
-from symrot.propagation.motion import Motion
+from symrot.propagation.motion import stepped_motion
 from symrot.propagation.propagate import propagator
 from symrot.propagation.steppers.cut_off import CutOff
 from symrot.propagation.steppers.smoothness import roughness
@@ -300,7 +300,7 @@ def _grid(problem: Problem) -> list[float]:
     both agree on a wrong result. Steps between two times of the grid are shortened like all others, so that the grid
     decides only where steps are short.
     """
-    motion = Motion(problem.plan, Choice("dop853", ""), GRID_TOLERANCE)
+    motion = stepped_motion(problem.plan, Choice("dop853", ""), GRID_TOLERANCE)
     if formula_deviations(problem.plan, problem.kernel) is None:
         return []
     task, grid = motion.stepping.again(), []

@@ -18,7 +18,7 @@ from symrot.bench.comparison.exact_path import ExactPath
 from symrot.build import cache
 from symrot.closed_form.registry import exact_form
 from symrot.planning.plan import make_plan
-from symrot.propagation.motion import Motion
+from symrot.propagation.motion import Motion, SteppedMotion
 from symrot.propagation.propagate import propagator
 from symrot.propagation.steppers.smoothness import roughness
 from symrot.propagation.steppers.stepping import Stats
@@ -105,7 +105,7 @@ def _exact(track: Track, times: Floats) -> Trajectory | None:
 
 def _taylor(project: bool) -> Callable[[Track, Floats], Trajectory | None]:
     def run(track: Track, times: Floats) -> Trajectory | None:
-        if track.motion.choice.method != "taylor":
+        if not isinstance(track.motion, SteppedMotion) or track.motion.choice.method != "taylor":
             return None
         task = track.motion.stepping.again()
         if not project:

@@ -13,7 +13,7 @@ from symrot.planning.scene_kernel import bind
 from symrot.propagation.compiled_models import error_blocks
 from symrot.propagation.events.events import Event, Found, event_library_source, search, stepped, timed, uses_attitude
 from symrot.propagation.events.polynomials import Piece, fitted, fitted_pieces
-from symrot.propagation.motion import Motion, MotionInParts
+from symrot.propagation.motion import Motion, MotionInParts, SciPyMotion, SteppedInC, on_clock
 from symrot.propagation.steppers.cut_off import CutOff
 from symrot.propagation.steppers.stepping import Stats, Switching, both_sides, stats_of
 
@@ -80,7 +80,7 @@ def follow(motion: Motion, times: Floats, events: Sequence[Event]) -> Eventful:
     if not plan.states:
         raise InputError(f"events: expected a motion with states that change, got the scene {plan.scene.name!r}")
     quantities = motion.kernel.quantities
-    motion = motion if timed(quantities, events) else motion.on_clock(times)
+    motion = motion if timed(quantities, events) else on_clock(motion, times)
     zero, asked = motion.epoch, times.copy()
     times = times - zero if zero else times
     source = event_library_source(quantities, events, plan.states, *error_blocks(plan))
@@ -90,7 +90,10 @@ def follow(motion: Motion, times: Floats, events: Sequence[Event]) -> Eventful:
     counts, ended, switchings = np.zeros(3, dtype=int), False, list[Switching]()
     for part in both_sides(times, motion.start):
         end = float(times[part[-1]])
-        side = _side(motion, end)
+        try:
+            side = _side(motion, end)
+        except CutOff as early:
+            raise (early.later(zero) if zero else early) from None
         listed, stop = search(path, events, p, side.pieces, motion.start) if end != motion.start else ([], None)
         if side.broken and stop is None:
             error = side.broken[0]
@@ -137,13 +140,13 @@ def _joined(
 
 def _side(motion: Motion, end: float) -> _Side:
     """Return the motion from its start to an end."""
-    method, plan = motion.choice.method.partition(":")[0], motion.plan
+    plan = motion.plan
     start, y0 = motion.start, np.array(plan.initial_state, dtype=np.float64)
     broken: list[PropagationError] = []
     if isinstance(motion, MotionInParts):
         pieces, path = motion.parts(end, broken)
         return _Side((piece for piece in pieces), path, broken, lambda: path.stats[:3], path.stats.switchings)
-    if method in ("taylor", "dop853"):
+    if isinstance(motion, SteppedInC):
         task = motion.stepping.again()
         rows: list[Floats] = []
 
@@ -154,7 +157,7 @@ def _side(motion: Motion, end: float) -> _Side:
 
         return _Side(stepped(task, end, broken, rows), states, broken, lambda: _cost(task))
     blocks = error_blocks(plan)
-    if method == "scipy":
+    if isinstance(motion, SciPyMotion):
         from symrot.propagation.steppers import fallback
 
         recording = fallback.record(

@@ -10,15 +10,16 @@ Source: A. F. Filippov, Differential Equations with Discontinuous Righthand Side
 """
 
 from time import perf_counter
-from typing import Any
+from typing import Any, final
 
 import numpy as np
 
 from symrot.errors import PropagationError
 from symrot.planning.plan import Plan, make_plan
+from symrot.propagation.compiled_models import scene_kernel
 from symrot.propagation.events.polynomials import Piece
 from symrot.propagation.method import Choice, choose_method
-from symrot.propagation.motion import Motion, MotionInParts
+from symrot.propagation.motion import Motion, MotionInParts, Setup
 from symrot.propagation.propagator import Propagator
 from symrot.propagation.steppers.cut_off import CutOff, add_samples
 from symrot.propagation.steppers.stepping import Floats, Recording, Stats, Switching, both_sides, stats_of
@@ -41,18 +42,17 @@ class SwitchedPropagator(Propagator):
         return SwitchedMotion(plan, choose_method(plan, self._method), self.tolerance)
 
 
+@final
 class SwitchedMotion(MotionInParts):
-    """A motion under torques with switches."""
-
-    movable = False  # each regime has a clock of its own
+    """A motion under torques with switches; each regime between them has a clock of its own."""
 
     def __init__(self, plan: Plan, choice: Choice, tolerance: float) -> None:
-        self.plan, self.choice, self.tolerance, self.library = plan, choice, tolerance, None
-        self.start = float(plan.scene.span.start)
+        start = float(plan.scene.span.start)
+        super().__init__(Setup(plan, choice, tolerance, start, lambda: scene_kernel(plan)), plan)
         self.system = SwitchedSystem(plan, choice, tolerance)
         self.system.regime(frozenset(), self.system.initial_modes())
 
-    def integrate(self, times: Floats, rise: bool = False) -> tuple[Floats, Stats]:
+    def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
         """Return the states at the times, shape (n, N), and what it cost."""
         began, states = perf_counter(), np.empty((len(times), len(self.plan.states)))
         cost, done = np.zeros(3, dtype=np.int64), np.empty(0, dtype=np.intp)

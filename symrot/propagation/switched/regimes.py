@@ -15,7 +15,7 @@ from symrot.planning.scene_kernel import Parameters
 from symrot.propagation.binding import folded, two_doubles, value_of
 from symrot.propagation.compiled_models import error_blocks
 from symrot.propagation.events.events import Event, guard_library_source
-from symrot.propagation.motion import Motion
+from symrot.propagation.motion import SciPyMotion, SteppedMotion
 from symrot.propagation.switched.instant import Instant
 from symrot.propagation.time_shift import Following
 
@@ -43,7 +43,7 @@ class Regime:
         self,
         constants: Mapping[str, Fraction],
         all_switches: Sequence[Switch],
-        motion: Motion,
+        motion: SteppedMotion | SciPyMotion,
         held: frozenset[str],
         switches: Sequence[Switch],
     ) -> None:

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Generator
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,7 +22,7 @@ from symrot.propagation.steppers.stepping import Floats
 from symrot.propagation.switched.instant import Instant
 from symrot.propagation.switched.regimes import Guard, Modes, Regime
 from symrot.propagation.switched.run_state import CHATTER, RunState
-from symrot.propagation.switched.smooth_pieces import SOURCES
+from symrot.propagation.switched.smooth_pieces import smooth_pieces
 from symrot.propagation.switched.system import SwitchedSystem
 
 __all__ = ["Chunk", "SwitchedRun"]
@@ -122,15 +122,12 @@ class SwitchedRun(RunState):
                 modes = self.system.beside_start(mode, sign)
                 regime = self.system.regime(self.held, modes)
                 rates, values = regime.bound(modes, self.zero)
-                piece, _ = next(self._source(regime, rates).pieces())
+                piece, _ = next(smooth_pieces(self, regime, rates).pieces())
                 signs, _ = signs_at_ends(regime.path, [guard.formula for guard in regime.guards], values, piece)
                 leaving += all(s > 0 for s, guard in zip(signs, regime.guards, strict=True) if guard.mode == mode)
             if leaving == 2:
                 way = "past" if self.side < 0.0 else "future"
                 raise CutOff(self.t, f"the motion starts on {self._name(mode)} and has more than one {way}", self.end)
-
-    def _source(self, regime: Regime, rates: list[float]) -> Any:
-        return SOURCES[self.motion.choice.method.partition(":")[0]](self, regime, rates)
 
     def _segment(self, regime: Regime, consume: Consumer) -> Guard | None:
         """Follow one smooth part; return the guard that ended it, or None at the end of the motion."""
@@ -141,7 +138,7 @@ class SwitchedRun(RunState):
         events = [
             event if on else event._replace(terminal=False) for event, on in zip(regime.events, active, strict=True)
         ]
-        source = self._source(regime, rates)
+        source = smooth_pieces(self, regime, rates)
         start, passed = self.t, [self.t]
         violated: list[Guard] = []
 

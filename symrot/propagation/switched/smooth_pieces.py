@@ -8,6 +8,7 @@ import numpy as np
 
 from symrot.propagation.compiled_models import error_blocks
 from symrot.propagation.events.polynomials import Piece, fitted, rows_of
+from symrot.propagation.motion import SciPyMotion, SteppedMotion
 from symrot.propagation.steppers import dop853, taylor
 from symrot.propagation.steppers.cut_off import CutOff, why_hopeless
 from symrot.propagation.steppers.stepping import Floats
@@ -15,7 +16,7 @@ from symrot.propagation.switched.instant import Instant
 from symrot.propagation.switched.regimes import Regime
 from symrot.propagation.switched.run_state import RunState
 
-__all__ = ["SOURCES"]
+__all__ = ["SciPyPieces", "SteppedPieces", "smooth_pieces"]
 
 ROOM = 4  # steps in the first piece after a switch; twice as many in each piece after it
 WINDOWS, FEWEST = 64, 8  # pieces of the span that SciPy follows at a time, at first and later
@@ -29,9 +30,7 @@ OVERHEAD = 200  # evaluations: how long a window takes beside them
 class SteppedPieces:
     """Pieces of a motion by a stepper in C."""
 
-    def __init__(self, run: RunState, regime: Regime, rates: list[float]) -> None:
-        motion = regime.motion
-        assert motion.library is not None
+    def __init__(self, run: RunState, regime: Regime, motion: SteppedMotion, rates: list[float]) -> None:
         if not np.isfinite(run.y).all():
             raise CutOff(run.t, "its states are not finite there", run.end)
         stepping = taylor if motion.choice.method == "taylor" else dop853
@@ -70,9 +69,9 @@ class SteppedPieces:
 class SciPyPieces:
     """Pieces of a motion by SciPy: a window of time after the other."""
 
-    def __init__(self, run: RunState, regime: Regime, rates: list[float]) -> None:
-        self.run, self.motion, self.rates, self.counts = run, regime.motion, rates, np.zeros(3, dtype=np.int64)
-        self.clock = run.clock(regime, self.motion.rates)
+    def __init__(self, run: RunState, regime: Regime, motion: SciPyMotion, rates: list[float]) -> None:
+        self.run, self.motion, self.rates, self.counts = run, motion, rates, np.zeros(3, dtype=np.int64)
+        self.clock = run.clock(regime, motion.rates)
 
     def pieces(self) -> Iterator[tuple[Piece, Callable[[Floats], Floats]]]:
         from symrot.propagation.steppers import fallback
@@ -141,4 +140,9 @@ class SciPyPieces:
         return self.counts
 
 
-SOURCES: dict[str, Any] = {"taylor": SteppedPieces, "dop853": SteppedPieces, "scipy": SciPyPieces}
+def smooth_pieces(run: RunState, regime: Regime, rates: list[float]) -> SteppedPieces | SciPyPieces:
+    """Return the pieces of a motion from where a run is now, with the parameters of the rates of its regime."""
+    motion = regime.motion
+    if isinstance(motion, SteppedMotion):
+        return SteppedPieces(run, regime, motion, rates)
+    return SciPyPieces(run, regime, motion, rates)
