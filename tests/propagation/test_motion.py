@@ -52,7 +52,8 @@ def test_other_hierarchies_are_seen(fault):
         @abstractmethod
         def follow(self): ...
 
-        def integrate(self): ...
+        def integrate(self):
+            return self.follow()
 
     @final
     class Sound(Base):

@@ -275,6 +275,14 @@ def test_without_time_in_the_torque_nothing_is_compiled_anew():
     assert far_away is not found and far_away.library == found.library
 
 
+@pytest.mark.parametrize("method", ["scipy", "taylor"])
+def test_a_motion_with_events_that_breaks_off_names_the_time_of_the_scene(method):
+    """The root has no value after 5 s on the motion's own clock, which nobody sees."""
+    broken = propagator(scene(GENERAL, ["sqrt(1000000005 - t)", "0", "0"], 10**9), method)
+    with pytest.raises(PropagationError, match=r"beyond t = 100000000[45]\.\d+ s"):
+        broken(10**9 + np.array([0.0, 9.0]), events=["omega_1 == 1e9"])
+
+
 def test_a_motion_that_was_derived_before_needs_no_sympy_far_away():
     given = (AXIS, CASES["axis"][1], 10**9)
     propagator(scene(*given))()
