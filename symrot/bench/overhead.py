@@ -18,7 +18,7 @@ from symrot.errors import InputError
 from symrot.propagation.motion import ClosedFormMotion, SteppedMotion
 from symrot.propagation.propagate import propagator
 from symrot.propagation.propagator import Propagator
-from symrot.propagation.steppers.stepping import DONE, Stretch
+from symrot.propagation.steppers.stepping import DONE, Segment
 
 __all__ = ["main", "measure"]
 
@@ -34,7 +34,7 @@ def _bare_stepper(propagate: Propagator, times: "np.ndarray[tuple[int], np.dtype
     stepper, end = task.stepper, float(times[-1])
     ready = stepper.new_run.from_buffer_copy(task._ready)
     ready.pace, ready.stop = (end - task.t0) * task.pace, end
-    stepper.enter(ready, Stretch(task.t0, end, task.t0, end), task.allowed)
+    stepper.enter(ready, Segment(task.t0, end, task.t0, end), task.allowed)
     run = stepper.new_run()
     states = np.empty((len(times), stepper.states))
     size, place, source = ctypes.sizeof(run), ctypes.addressof(run), ctypes.addressof(ready)

@@ -165,7 +165,9 @@ class Plan:
         return found
 
 
-def make_plan(scene: Scene, initial: Initial | None = None, driven: bool = False, switched: bool = False) -> Plan:
+def make_plan(
+    scene: Scene, initial: Initial | None = None, external_torque: bool = False, switched: bool = False
+) -> Plan:
     """Return the plan of a scene, perhaps with another initial state.
 
     Parameters
@@ -174,7 +176,7 @@ def make_plan(scene: Scene, initial: Initial | None = None, driven: bool = False
         The problem.
     initial : Initial, optional
         Instead of the scene's own.
-    driven : bool
+    external_torque : bool
         Whether a torque acts too that is no formula: nothing is left out that it could change.
     switched : bool
         Whether the plan may have modes, which whoever follows it changes where a switch is passed.
@@ -183,9 +185,9 @@ def make_plan(scene: Scene, initial: Initial | None = None, driven: bool = False
     ------
     InputError
         If a torque has switches (step, sign, min, ..) and ``switched`` is false: there are no equations that hold all
-        along. If the scene has a table of samples and ``driven`` is false: it is no formula to derive a kernel from.
+        along. If the scene has a table of samples and ``external_torque`` is false: a kernel is derived from formulas.
     """
-    if scene.table is not None and not driven:
+    if scene.table is not None and not external_torque:
         raise InputError(
             f"{scene.name}: expected torques that are formulas, got one of kind table: samples have no equations to "
             "emit, certify, vary or compare; symrot run and symrot.propagator follow them"
@@ -199,7 +201,7 @@ def make_plan(scene: Scene, initial: Initial | None = None, driven: bool = False
         )
     structure = general_structure(scene, switched)
     rows = []
-    for item, rule in _RULES_WHEN_DRIVEN if driven else RULES:
+    for item, rule in _RULES_UNDER_EXTERNAL_TORQUE if external_torque else RULES:
         outcome = rule(scene, structure)
         structure = outcome.structure
         rows.append(outcome._replace(item=item))
@@ -579,14 +581,14 @@ def _whole_motion(scene: Scene, structure: Structure) -> RuleOutcome:
     return RuleOutcome(structure, False, why)
 
 
-def _terms_when_driven(scene: Scene, structure: Structure) -> RuleOutcome:
+def _terms_under_external_torque(scene: Scene, structure: Structure) -> RuleOutcome:
     if not scene.torques:
         return RuleOutcome(structure, False, "the torque that is no formula acts alone")
     return _special_constants(scene, structure)
 
 
-_RULES_WHEN_DRIVEN: tuple[tuple[str, Callable[[Scene, Structure], RuleOutcome]], ...] = (
+_RULES_UNDER_EXTERNAL_TORQUE: tuple[tuple[str, Callable[[Scene, Structure], RuleOutcome]], ...] = (
     *RULES[:2],
-    ("torque terms", _terms_when_driven),
+    ("torque terms", _terms_under_external_torque),
     ("attitude", _whole_motion),
 )

@@ -33,8 +33,8 @@ from symrot.propagation.method import Choice
 from symrot.propagation.motion import Motion, Setup
 from symrot.propagation.propagator import Propagator
 from symrot.propagation.steppers import dop853, taylor
-from symrot.propagation.steppers.smoothness import roughness
-from symrot.propagation.steppers.stepping import Stats, Task, both_sides
+from symrot.propagation.steppers.smoothness import non_smooth_torque
+from symrot.propagation.steppers.stepping import Integration, Stats, split_at
 from symrot.propagation.trajectory import Trajectory
 from symrot.scene.scene import Scene
 
@@ -110,7 +110,7 @@ class EulerMotion(Motion):
             if name in plan.constants:
                 raise InputError(f"state: expected a scene without a constant {name!r}, which is the name of an angle")
         if method == "auto":
-            method = "dop853" if roughness(plan) else "taylor"
+            method = "dop853" if non_smooth_torque(plan) else "taylor"
         other = f", {partner(sequence)} near its gimbal lock" if switching else ", without switching"
         choice = Choice(method, f"the state is the Euler angles {sequence}{other}")
         start = float(plan.scene.span.start)
@@ -165,10 +165,14 @@ class EulerMotion(Motion):
 
         return epoch.clock(moving, self.plan.constants, make=self._library_of)
 
-    def _task(self, sequence: str, t: float, state: Floats) -> Task:
+    def _integration(self, sequence: str, t: float, state: Floats) -> Integration:
         kernel = self._kernel_of(sequence)
         start = kernel.library, kernel.parameters, state, t, self.tolerance
-        return taylor.task(*start) if self.choice.method == "taylor" else dop853.task(*start, clock=kernel.clock)
+        return (
+            taylor.integration(*start)
+            if self.choice.method == "taylor"
+            else dop853.integration(*start, clock=kernel.clock)
+        )
 
     def _blocks(self, end: float) -> Iterator[_Block]:
         """Yield the motion from its start to an end, piece by piece; what it costs is added to the counts."""
@@ -180,7 +184,7 @@ class EulerMotion(Motion):
                 sequence = partner(sequence)
                 self._count[3] += 1
                 angles = angles_of(whole[count:], sequence)
-            task = self._task(sequence, t, np.concatenate([whole[:count], angles]))
+            task = self._integration(sequence, t, np.concatenate([whole[:count], angles]))
             for first, last, rows in self._steps(task, sequence, end):
                 block = _Block(first, last, self._states_of(task, sequence, rows))
                 yield block
@@ -219,7 +223,7 @@ class EulerMotion(Motion):
         hint = f"the Euler angles {sequence} are the state, which fail at gimbal lock"
         return PropagationError(f"{error} ({hint}{'' if self.switching else '; switching=True goes around it'})")
 
-    def _states_of(self, task: Task, sequence: str, rows: Floats) -> Callable[[Floats], Floats]:
+    def _states_of(self, task: Integration, sequence: str, rows: Floats) -> Callable[[Floats], Floats]:
         count = self._moving
 
         def states(times: Floats) -> Floats:
@@ -235,7 +239,7 @@ class EulerMotion(Motion):
         self._count = [0, 0, 0, 0]
         states = np.empty((len(times), len(self.plan.states)))
         states[times == self.start] = self.plan.initial_state
-        for part in both_sides(times, self.start):
+        for part in split_at(times, self.start):
             asked = np.abs(times[part] - self.start)
             for block in self._blocks(float(times[part[-1]])):
                 low, high = abs(block.first - self.start), abs(block.last - self.start)

@@ -23,15 +23,15 @@ from symrot.errors import InputError, PropagationError
 from symrot.formula import exact_numbers as number
 from symrot.planning.plan import Plan, make_plan
 from symrot.propagation.compiled_models import enclosure_text, error_blocks, has_formulas, scene_kernel
-from symrot.propagation.method import DRIVEN
+from symrot.propagation.method import EXTERNAL_TORQUE
 from symrot.propagation.motion import Motion, RestartableMotion, Setup, SteppedInC
 from symrot.propagation.propagator import Propagator
 from symrot.propagation.real_array import real_array
 from symrot.propagation.steppers import dop853
-from symrot.propagation.steppers.stepping import MAX_STEPS, Recording, Stats, Task
+from symrot.propagation.steppers.stepping import MAX_STEPS, Integration, Recording, Stats
 from symrot.scene.scene import Initial, Scene
 
-__all__ = ["DrivenPropagator"]
+__all__ = ["ExternallyDrivenPropagator"]
 
 Floats = NDArray[np.float64]
 Result = TypeVar("Result")
@@ -304,7 +304,7 @@ def external_setup(
     addresses = _bits(_address(pointer)), _bits(user)
     kernel = scene_alone.without_invariants("changed by the torque that is no formula")
     warnings = () if source.samples or math.isfinite(max_step) else (UNKNOWN,)
-    setup = Setup(plan, DRIVEN, tolerance, float(plan.scene.span.start), lambda: kernel, warnings=warnings)
+    setup = Setup(plan, EXTERNAL_TORQUE, tolerance, float(plan.scene.span.start), lambda: kernel, warnings=warnings)
     return ExternalSetup(
         setup,
         path,
@@ -328,10 +328,10 @@ class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
         return ExternallyDrivenMotion(self._shared, self.setup.plan.from_start(initial))
 
     @cached_property
-    def stepping(self) -> Task:
+    def stepping(self) -> Integration:
         """The motion as the stepper follows it, to each switching time and on from there."""
         shared = self._shared
-        return dop853.task(
+        return dop853.integration(
             shared.library, [*self.rate_parameters, *shared.torque_parameters], self.plan.initial_state, self.start,
             self.tolerance, max_step=shared.longest_step, max_steps=shared.source.most_steps, breaks=shared.breaks,
         )  # fmt: skip
@@ -351,14 +351,14 @@ class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
         """Return the states at the times, shape (n, N), and what it cost."""
         low, high = (float(times.min()), float(times.max())) if len(times) else (self.start, self.start)
-        return self._guarded(low, high, lambda: self.stepping.again().sample(times))
+        return self._guarded(low, high, lambda: self.stepping.restarted().sample(times))
 
     def dense(self, span: tuple[float, float]) -> Recording:
         """Return the states as a function of time."""
-        return self._guarded(*span, lambda: self.stepping.again().record(span))
+        return self._guarded(*span, lambda: self.stepping.restarted().record(span))
 
 
-class DrivenPropagator(Propagator):
+class ExternallyDrivenPropagator(Propagator):
     """Propagates a scene under one more torque; made by :func:`symrot.propagator` with ``torque``."""
 
     def __init__(
@@ -376,7 +376,7 @@ class DrivenPropagator(Propagator):
         super().__init__(scene, "dop853", tolerance)
 
     def _planned(self, initial: Initial | None = None) -> Plan:
-        return make_plan(self.scene, initial, driven=True)
+        return make_plan(self.scene, initial, external_torque=True)
 
     def _prepare(self, plan: Plan) -> Motion:
         shared = external_setup(plan, self.tolerance, self._source, self._in_space, self._switching, self._max_step)

@@ -6,9 +6,9 @@ from symrot.build import cache as library
 from symrot.closed_form.registry import FORMS, Form, exact_form
 from symrot.errors import CompilerError, InputError
 from symrot.planning.plan import Plan
-from symrot.propagation.steppers.smoothness import roughness
+from symrot.propagation.steppers.smoothness import non_smooth_torque
 
-__all__ = ["DRIVEN", "METHODS", "Choice", "choose_method"]
+__all__ = ["EXTERNAL_TORQUE", "METHODS", "Choice", "choose_method"]
 
 METHODS = {
     "auto": "the first of the table that fits",
@@ -37,13 +37,13 @@ def _automatic(plan: Plan) -> Choice:
         return Choice("exact", form.name, form)
     if no_compiler := library.missing():
         return Choice("scipy", no_compiler)
-    if rough := roughness(plan):
+    if rough := non_smooth_torque(plan):
         return Choice("dop853", f"{rough}, and a C compiler is there")
     between = " between its switches" if plan.switches else ""
     return Choice("taylor", f"the torque is smooth{between}, and a C compiler is there")
 
 
-DRIVEN = Choice("dop853", "a torque that is no formula has no Taylor series")
+EXTERNAL_TORQUE = Choice("dop853", "a torque that is no formula has no Taylor series")
 """The method for such a torque, and why."""
 
 
@@ -60,7 +60,7 @@ def choose_method(plan: Plan, method: str = "auto") -> Choice:
     if plan.scene.table is not None:
         if method not in ("auto", "dop853"):
             raise InputError(f"method: expected 'auto' or 'dop853' for a torque that is no formula, got {method!r}")
-        return DRIVEN
+        return EXTERNAL_TORQUE
     if method == "auto":
         return _automatic(plan)
     if method == "exact":

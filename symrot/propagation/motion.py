@@ -27,9 +27,9 @@ from symrot.propagation.compiled_models import compiled, error_blocks, formula_d
 from symrot.propagation.events.polynomials import Piece
 from symrot.propagation.method import Choice
 from symrot.propagation.steppers import dop853, taylor
-from symrot.propagation.steppers.cut_off import CutOff
 from symrot.propagation.steppers.dop853 import Stats
-from symrot.propagation.steppers.stepping import NOT_FINITE_SENTENCE, Recording, Task
+from symrot.propagation.steppers.integration_stopped import IntegrationStopped
+from symrot.propagation.steppers.stepping import NOT_FINITE_SENTENCE, Integration, Recording
 from symrot.scene.scene import Initial
 
 if TYPE_CHECKING:
@@ -135,11 +135,11 @@ class Setup:
     def shifted(self) -> tuple[Plan, SceneKernel]:
         """Return plan and kernel on a clock that can be moved."""
         is_shifted = self.plan.structure.clock is not None
-        return (self.plan, self.kernel) if is_shifted else time_shift.moved(self.plan, self.kernel)
+        return (self.plan, self.kernel) if is_shifted else time_shift.time_shifted(self.plan, self.kernel)
 
     def on_own_clock(self) -> "Setup":
         """Return the setup on a clock that shows 0 at the start, see :mod:`symrot.propagation.time_shift`."""
-        plan, kernel = time_shift.moved(self.plan, self.kernel)
+        plan, kernel = time_shift.time_shifted(self.plan, self.kernel)
         return replace(self, plan=plan, start=0.0, epoch=self.start, load_kernel=lambda: kernel)
 
 
@@ -152,7 +152,7 @@ class SteppedSetup:
     library: Path
 
     @cached_property
-    def integration(self) -> Task:
+    def integration(self) -> Integration:
         """The motion from the start of the setup's plan: checked once."""
         plan = self.setup.plan
         parameters = self.setup.rate_binding(plan)
@@ -160,11 +160,13 @@ class SteppedSetup:
             parameters = [*parameters, *self.setup.quantity_binding(plan)]
         return self.integration_from(plan, parameters)
 
-    def integration_from(self, plan: Plan, parameters: list[float], clock: dop853.Clock | None = None) -> Task:
+    def integration_from(self, plan: Plan, parameters: list[float], clock: dop853.Clock | None = None) -> Integration:
         """Return the motion from the start of a plan, with its parameters and the clock of its rates if that moves."""
         setup = self.setup
         start = (self.library, parameters, plan.initial_state, setup.start, setup.tolerance)
-        return taylor.task(*start) if setup.choice.method == "taylor" else dop853.task(*start, clock=clock)
+        return (
+            taylor.integration(*start) if setup.choice.method == "taylor" else dop853.integration(*start, clock=clock)
+        )
 
     @cached_property
     def on_own_clock(self) -> "SteppedSetup":
@@ -258,7 +260,7 @@ class Motion(ABC):
         try:
             return self.setup.rate_binding(self.plan)
         except OverflowError:
-            raise CutOff(self.start, NOT_FINITE_SENTENCE) from None
+            raise IntegrationStopped(self.start, NOT_FINITE_SENTENCE) from None
 
     @cached_property
     def _quantity_values(self) -> dict[str, float]:
@@ -316,7 +318,7 @@ class Motion(ABC):
         zero = motion.epoch
         try:
             states = motion.dense((span[0] - zero, span[1] - zero))
-        except CutOff as error:
+        except IntegrationStopped as error:
             raise (error.later(zero) if zero else error) from None
         names = [f"omega_{i} of t" for i in (1, 2, 3)]
         names += [f"q{i} of t" for i in range(4)] if with_attitude else []
@@ -346,7 +348,7 @@ class SteppedInC(ABC):
 
     @property
     @abstractmethod
-    def stepping(self) -> Task:
+    def stepping(self) -> Integration:
         """The motion as its stepper follows it: checked once, followed as often as needed."""
 
 
@@ -369,14 +371,14 @@ class ShiftableMotion(RestartableMotion):
         motion = self.on_own_clock
         try:
             return motion.steps(times - motion.epoch, in_order)
-        except CutOff as error:
+        except IntegrationStopped as error:
             raise error.later(motion.epoch) from None
 
     def _shifts(self, times: Floats) -> bool:
         """Return whether another clock suits such times better."""
         if not (self.start and self.setup.allows_time_shift and len(times)):
             return False
-        return time_shift.far(self.start, float(times.min()), float(times.max()))
+        return time_shift.starts_far(self.start, float(times.min()), float(times.max()))
 
 
 def on_clock(motion: Motion, times: Floats) -> Motion:
@@ -476,7 +478,7 @@ class SteppedMotion(ShiftableMotion, SteppedInC):
         return [*self.rate_parameters, *self.setup.quantity_binding(self.plan)]
 
     @cached_property
-    def stepping(self) -> Task:
+    def stepping(self) -> Integration:
         """The motion as its stepper follows it."""
         parameters = self.taylor_parameters if self.choice.method == "taylor" else self.rate_parameters
         if self.setup.moves_clock:  # whose epochs are those of this start
@@ -486,11 +488,11 @@ class SteppedMotion(ShiftableMotion, SteppedInC):
 
     def steps(self, times: Floats, in_order: bool) -> tuple[Floats, Stats]:
         """Return the states at times on the clock of the motion, shape (n, N), and what they cost."""
-        return self.stepping.once(times, in_order)
+        return self.stepping.sample_sorted(times, in_order)
 
     def dense(self, span: tuple[float, float]) -> Recording:
         """Return the states as a function of time."""
-        recording = self.stepping.again().record(span)
+        recording = self.stepping.restarted().record(span)
         recording.epoch = self.epoch
         return recording
 

@@ -101,9 +101,9 @@ def propagator(
         raise InputError(
             f"torque: expected none beside formulas that jump or bend (abs, sign, ..), got {number.show(torque)}"
         )
-    from symrot.propagation.external_torque import DrivenPropagator
+    from symrot.propagation.external_torque import ExternallyDrivenPropagator
 
-    return DrivenPropagator(scene, aim, torque, switching_times, torque_frame, _longest_step(max_step))
+    return ExternallyDrivenPropagator(scene, aim, torque, switching_times, torque_frame, _longest_step(max_step))
 
 
 def _longest_step(max_step: float) -> float:

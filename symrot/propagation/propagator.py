@@ -16,8 +16,8 @@ from symrot.planning.scene_kernel import SceneKernel
 from symrot.propagation.method import choose_method
 from symrot.propagation.motion import ClosedFormMotion, Motion, RestartableMotion, make_motion
 from symrot.propagation.real_array import real_array
-from symrot.propagation.steppers.cut_off import Samples
-from symrot.propagation.steppers.stepping import Stats, rising
+from symrot.propagation.steppers.integration_stopped import Samples
+from symrot.propagation.steppers.stepping import Stats, is_sorted
 from symrot.propagation.trajectory import Trajectory
 from symrot.scene.scene import Initial, Scene
 
@@ -130,17 +130,17 @@ class Propagator:
         message, began = f"{motion.choice.method}: {motion.choice.reason}", perf_counter()
         try:
             if events is not None:
-                from symrot.propagation.events.eventful import follow
+                from symrot.propagation.events.event_result import integrate_with_events
                 from symrot.propagation.events.events import read_events
 
-                found = follow(motion, times, read_events(events))
-                return Trajectory(motion, found.t, found.states, motion.choice.method, found.stats, message, found)
+                result = integrate_with_events(motion, times, read_events(events))
+                return Trajectory(motion, result.t, result.states, motion.choice.method, result.stats, message, result)
             states, stats = motion.follow(times, in_order)
         except (PropagationError, KeyboardInterrupt) as error:
-            raise self._cut_off(error, motion, times, began) from None
+            raise self._with_samples(error, motion, times, began) from None
         return Trajectory(motion, times, states, motion.choice.method, stats, message)
 
-    def _cut_off(self, error: BaseException, motion: Motion, times: Floats, began: float) -> BaseException:
+    def _with_samples(self, error: BaseException, motion: Motion, times: Floats, began: float) -> BaseException:
         """Return what ends a motion early, with the trajectory of the samples before."""
         samples: Samples | None = getattr(error, "samples", None)
         ended: BaseException = error
@@ -167,7 +167,7 @@ def _in_order(times: Floats) -> bool:
     """Return whether times never fall; refuse those that are not finite: of times in order, the ends tell."""
     if not len(times):
         return True
-    if isfinite(times.item(0)) and isfinite(times.item(-1)) and rising(times):
+    if isfinite(times.item(0)) and isfinite(times.item(-1)) and is_sorted(times):
         return True
     if not np.isfinite(times).all():
         raise InputError(f"t: expected finite times in s, got {times[~np.isfinite(times)][0]}")

@@ -26,19 +26,19 @@ from symrot.formula.tree import Node, children, evaluate, names
 from symrot.planning.plan import Plan
 from symrot.planning.scene_kernel import EPOCH, EXACT_FUNCTIONS, Parameters, SceneKernel
 from symrot.propagation.compiled_models import kernel_key, motion_library
-from symrot.propagation.steppers.cut_off import CutOff
+from symrot.propagation.steppers.integration_stopped import IntegrationStopped
 from symrot.propagation.steppers.stepping import NOT_FINITE_SENTENCE
 
-__all__ = ["Following", "clock", "compiled", "far", "moved", "moved_parameters"]
+__all__ = ["ShiftedParameters", "clock", "compiled", "starts_far", "time_shifted"]
 
 
-def far(start: float, low: float, high: float) -> bool:
+def starts_far(start: float, low: float, high: float) -> bool:
     """Return whether a motion starts so far from t = 0 that its clock is moved, for times from low to high, s."""
     nearest, farthest = sorted((0.5 * start, 2.0 * start))
     return start != 0.0 and nearest <= low and high <= farthest  # time - start is exact there (Sterbenz)
 
 
-def moved(plan: Plan, kernel: SceneKernel) -> tuple[Plan, SceneKernel]:
+def time_shifted(plan: Plan, kernel: SceneKernel) -> tuple[Plan, SceneKernel]:
     """Return a plan and its kernel for a clock that shows 0 at an epoch; the same where no time stands in the rates."""
     if not kernel.rates.uses("t"):
         return plan, kernel
@@ -53,12 +53,7 @@ def moved(plan: Plan, kernel: SceneKernel) -> tuple[Plan, SceneKernel]:
     return plan, kernel
 
 
-def moved_parameters(kernel: SceneKernel, constants: Mapping[str, Fraction], epoch: float) -> list[float]:
-    """Return the parameters of moved rates for the constants of a scene: exact arithmetic, one rounding each."""
-    return Following(kernel.rate_parameters, constants).parameters(Fraction(epoch))
-
-
-class Following:
+class ShiftedParameters:
     """The parameters of formulas with a moved clock, for one epoch after another.
 
     What does not depend on the epoch is computed once.
@@ -66,7 +61,7 @@ class Following:
     Parameters
     ----------
     parameters : pairs of name and formula
-        Such as those of the rates of a kernel that :func:`moved` returns.
+        Such as those of the rates of a kernel that :func:`time_shifted` returns.
     constants : mapping
         Of the scene.
     start : float
@@ -92,7 +87,7 @@ class Following:
                 for node, line in zip(self._formulas, self._lines, strict=True)
             ]
         except OverflowError:
-            raise CutOff(float(epoch), NOT_FINITE_SENTENCE) from None
+            raise IntegrationStopped(float(epoch), NOT_FINITE_SENTENCE) from None
 
 
 def _line(node: Node) -> tuple[int, int, int] | None:
@@ -139,16 +134,16 @@ def clock(
     start: float = 0.0,
     make: Callable[[Plan, SceneKernel], Any] = compiled,
 ) -> Callable[[float], tuple[Any, list[float]]]:
-    """Return the clock of what ``moving`` returns as :func:`moved` does, once it is first moved.
+    """Return the clock of what ``moving`` returns as :func:`time_shifted` does, once it is first moved.
 
-    ``constants`` and ``start`` are those of :class:`Following`; ``make`` returns what the stepper calls: the library of
-    DOP853, or a function of Python.
+    ``constants`` and ``start`` are arguments of :class:`ShiftedParameters`. ``make`` returns what the stepper calls:
+    the library of DOP853, or a function of Python.
     """
 
     @cache
-    def following() -> tuple[Any, Following]:
+    def following() -> tuple[Any, ShiftedParameters]:
         plan, kernel = moving()
-        return make(plan, kernel), Following(kernel.rate_parameters, constants, start)
+        return make(plan, kernel), ShiftedParameters(kernel.rate_parameters, constants, start)
 
     return lambda since: (following()[0], following()[1].parameters(since))
 

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from symrot.errors import InputError
 from symrot.kinematics import conversions
-from symrot.propagation.events.eventful import Eventful
+from symrot.propagation.events.event_result import EventResult
 from symrot.propagation.motion import Motion
 from symrot.propagation.steppers.dop853 import Stats
 
@@ -63,7 +63,7 @@ class Trajectory:
         method: str,
         stats: Stats,
         message: str,
-        events: Eventful | None = None,
+        events: EventResult | None = None,
     ) -> None:
         self._motion, self._found = motion, states
         self.t, self.method, self.stats, self.message = t, method, stats, message

@@ -24,7 +24,7 @@ from symrot.planning.scene_kernel import bind
 from symrot.propagation.compiled_models import error_blocks, scene_kernel
 from symrot.propagation.enclosures.step_limit import FUNCTIONS, Deviations, Disc, deviations_of, longest_followed
 from symrot.propagation.enclosures.step_limit import _product as product
-from symrot.propagation.steppers import cut_off, dop853, stepping, taylor
+from symrot.propagation.steppers import dop853, integration_stopped, stepping, taylor
 from symrot.scene.scene import Scene
 from tests.needs import needs_compiler
 
@@ -342,7 +342,7 @@ def test_a_function_without_series_is_not_enclosed():
 @pytest.mark.parametrize("method", ["taylor", "dop853"])
 def test_a_hopeless_motion_is_given_up_with_its_samples(method, monkeypatch):
     monkeypatch.setattr(stepping, "PATIENCE", 2000)
-    monkeypatch.setattr(cut_off, "HOPELESS", 1e-3)
+    monkeypatch.setattr(integration_stopped, "HOPELESS", 1e-3)
     times = np.linspace(0, 20, 81)
     with pytest.raises(PropagationError, match=r"beyond t = \d.* more than the limit of 100000000") as caught:
         symrot.propagator(scene("exp(t**3)", (0, 0, 1)), method)(times)

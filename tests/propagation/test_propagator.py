@@ -456,8 +456,10 @@ def test_the_closed_form_of_a_motion_is_looked_up_once(monkeypatch):
 
 
 def test_the_smoothness_of_a_torque_is_looked_up_once(monkeypatch):
-    asked, roughness = [], choosing.roughness
-    monkeypatch.setattr(choosing, "roughness", lambda plan: asked.append(plan.scene.name) or roughness(plan))
+    asked, non_smooth_torque = [], choosing.non_smooth_torque
+    monkeypatch.setattr(
+        choosing, "non_smooth_torque", lambda plan: asked.append(plan.scene.name) or non_smooth_torque(plan)
+    )
     body, torque = {"principal": [1, 2, 3]}, {"kind": "damping", "quadratic": "1/10"}
     content = {"schema": 1, "title": "drag", "body": body, "torque": [torque], "initial": {"omega": [1, 1, 1]}}
     rough = propagator(Scene.from_dict({**content, "span": {"t": [0, 1]}}, "drag"))

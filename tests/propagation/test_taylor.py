@@ -26,7 +26,7 @@ from symrot.planning.scene_kernel import bind
 from symrot.propagation.compiled_models import error_blocks, scene_kernel
 from symrot.propagation.propagate import propagator
 from symrot.propagation.steppers import dop853, taylor
-from symrot.propagation.steppers.stepping import Task
+from symrot.propagation.steppers.stepping import Integration
 from symrot.scene.scene import Scene, load_scene
 from tests.codegen.test_recurrences import FUNCTION_SYSTEMS, START, SYSTEMS, program
 from tests.reference.tops import MOTIONS, TIMES, error, parameters, state
@@ -417,7 +417,7 @@ def test_flags_that_kill_the_carry_are_noticed():
 
 def test_the_carry_is_alive():
     """S28: after many steps it holds what rounding took."""
-    task = Task(taylor._stepper, body(), parameters("asymmetric"), MOTIONS["asymmetric"][2], 0.0, 1e-12)
+    task = Integration(taylor._stepper, body(), parameters("asymmetric"), MOTIONS["asymmetric"][2], 0.0, 1e-12)
     run = next(task.runs(500.0))
     task.advance(run, None, 0, None, None, 0)
     sizes = [abs(carry) for carry in run.carry]

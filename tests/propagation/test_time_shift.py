@@ -22,7 +22,7 @@ from symrot.propagation.motion import SteppedMotion, on_clock
 from symrot.propagation.propagate import propagator
 from symrot.propagation.steppers import dop853
 from symrot.propagation.steppers.stepping import MAX_STEPS
-from symrot.propagation.time_shift import far
+from symrot.propagation.time_shift import starts_far
 from symrot.scene.scene import Scene
 
 STARTS = (0, 10**6, 10**9, 10**12, -(10**9))
@@ -172,8 +172,8 @@ def test_one_time_for_all_steps_would_lose_phases(monkeypatch):
 def test_parameters_follow_the_epoch_exactly():
     """What was found once and what is found anew make what all found anew makes."""
     found = propagator(scene(GENERAL, GENERAL_TORQUE, 10**6), "dop853")._motion
-    plan, kernel = epoch.moved(found.plan, found.kernel)
-    following = epoch.Following(kernel.rate_parameters, plan.constants, 0.1)
+    plan, kernel = epoch.time_shifted(found.plan, found.kernel)
+    following = epoch.ShiftedParameters(kernel.rate_parameters, plan.constants, 0.1)
     for since in (0.0, 1 / 3, -(10**9)):
         values = {**plan.constants, "epoch": Fraction(0.1) + Fraction(since)}
         assert following.parameters(since) == bind(kernel.rate_parameters, values)
@@ -264,9 +264,9 @@ def test_whole_turns_are_taken_away_exactly():
 @pytest.mark.parametrize("start", [1e9 + 0.3, -7.1, 1e15, 3e-300])
 def test_the_clock_is_moved_where_no_time_is_rounded(start):
     times = start * np.random.default_rng(4).uniform(0.5, 2.0, 200)
-    assert far(start, times.min(), times.max())
+    assert starts_far(start, times.min(), times.max())
     assert all(Fraction(t) - Fraction(start) == Fraction(t - start) for t in times.tolist())
-    assert not far(start, min(-start, start), abs(start)) and not far(0.0, 0.0, 1.0)
+    assert not starts_far(start, min(-start, start), abs(start)) and not starts_far(0.0, 0.0, 1.0)
 
 
 def test_without_time_in_the_torque_nothing_is_compiled_anew():

@@ -48,7 +48,7 @@ class Stepped:
         self.start = [float(value) for value in plan.initial_state]
 
     def task(self, tolerance=1e-15, every=0, **more):
-        found = taylor.task(self.path, self.p, self.start, 0.0, tolerance, **more)
+        found = taylor.integration(self.path, self.p, self.start, 0.0, tolerance, **more)
         found.fields["every"] = every
         return found
 
@@ -99,7 +99,7 @@ def s24(long):
     path, plain = problem.taylor_library(), problem.taylor_library(project=False)
 
     def ratio(library_, p, tail, least):
-        task = taylor.task(library_, p, problem.y0, 0.0, 1e-12)
+        task = taylor.integration(library_, p, problem.y0, 0.0, 1e-12)
         task.allowed, task.pace = tail, 1e-300
         return problem.error(task.sample([200.0])[0][0], exact) / least
 

@@ -26,12 +26,14 @@ from symrot.propagation.steppers.stepping import (
     PAUSED,
     UNDERFLOW,
     Floats,
+    Integration,
     PathLike,
     Recording,
+    Run,
+    Segment,
     Stats,
     Stepper,
-    Stretch,
-    Task,
+    Window,
     check_tolerance,
 )
 
@@ -166,7 +168,7 @@ def integrate(
     PropagationError
         If the motion cannot be followed to the end; the sentence says how far it came.
     """
-    return task(library, p, y0, t0, tolerance, max_step, max_steps, breaks).sample(times)
+    return integration(library, p, y0, t0, tolerance, max_step, max_steps, breaks).sample(times)
 
 
 def record(
@@ -186,10 +188,10 @@ def record(
     The same steps are taken as by :func:`integrate` to the ends of the span, so the two agree where they overlap. One
     step takes 8 N + 2 numbers of memory.
     """
-    return task(library, p, y0, t0, tolerance, max_step, max_steps, breaks).record(span)
+    return integration(library, p, y0, t0, tolerance, max_step, max_steps, breaks).record(span)
 
 
-def task(
+def integration(
     library: PathLike,
     p: ArrayLike,
     y0: ArrayLike,
@@ -199,30 +201,34 @@ def task(
     max_steps: int = MAX_STEPS,
     breaks: Sequence[float] = (),
     clock: Clock | None = None,
-) -> Task:
+) -> Integration:
     """Return a motion to follow; arguments as :func:`integrate`, and the clock of its kernel if it can be moved."""
-    found = _Clocked if clock else Task
-    task = found(_stepper, library, p, y0, t0, tolerance, max_step, max_steps, breaks)
-    if isinstance(task, _Clocked):
-        task.clock = clock
-    return task
+    if clock is None:
+        return Integration(_stepper, library, p, y0, t0, tolerance, max_step, max_steps, breaks)
+    return _Clocked(clock, _stepper, library, p, y0, t0, tolerance, max_step, max_steps, breaks)
 
 
-class _Clocked(Task):
+class _Clocked(Integration):
     """A motion whose kernel counts its time from an epoch that follows it."""
 
-    clock: Any
+    def __init__(self, clock: Clock, *arguments: Any) -> None:
+        super().__init__(*arguments)
+        self._clock = clock
 
-    def hand(self, run: Any) -> tuple[Callable[..., Any], Any, int]:
+    def step_function(self, run: Run) -> tuple[Callable[..., Any], Any, int]:
         """Return what steps a run further, after moving the clock where it shows too much."""
         tried = self.stepper.tried(run)
-        if not hasattr(run, "moved"):
-            run.held, run.moved, run.far = (self.stepper.run, self.p), -WINDOW if run.t else 0, FAR
-        if tried - run.moved >= WINDOW or abs(run.t - run.epoch) > FAR * abs(run.h) > 0.0:
-            path, p = self.clock(run.t)
+        window = run.window
+        if window is None:
+            window = Window(self.stepper.run, self.p, -WINDOW if run.t else 0)
+            run.far = FAR
+        if tried - window.since >= WINDOW or abs(run.t - run.epoch) > FAR * abs(run.h) > 0.0:
+            path, p = self._clock(run.t)
             stepper = _stepper(str(path))
-            run.held, run.moved, run.epoch = (stepper.run, stepper.new_parameters(*p)), max(tried, 0), run.t
-        return *run.held, WINDOW - (tried - run.moved)
+            window = Window(stepper.run, stepper.new_parameters(*p), max(tried, 0))
+            run.epoch = run.t
+        run.window = window
+        return window.step, window.parameters, WINDOW - (tried - window.since)
 
 
 class _Stepper(Stepper):
@@ -243,17 +249,16 @@ class _Stepper(Stepper):
     def row_length(self) -> int:
         return 2 + TERMS * self.states
 
-    def enter(self, run: Any, stretch: Stretch, allowed: float) -> None:
-        run.h, run.first, run.last, run.tolerance = 0.0, stretch.first, stretch.last, allowed
+    def enter(self, run: Run, segment: Segment, allowed: float) -> None:
+        run.h, run.first, run.last, run.tolerance = 0.0, segment.first, segment.last, allowed
         run.proven, run.reach = 0.0, MIDDLE_REACH
 
     @staticmethod
-    def tried(run: Any) -> int:
-        found: int = run.accepted + run.rejected
-        return found
+    def tried(run: Run) -> int:
+        return run.accepted + run.rejected
 
     @staticmethod
-    def cost(run: Any) -> tuple[int, int, int]:
+    def cost(run: Run) -> tuple[int, int, int]:
         return run.accepted, run.rejected, run.evaluations
 
 

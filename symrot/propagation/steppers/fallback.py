@@ -22,20 +22,20 @@ from symrot.closed_form.arithmetic.double_double import two_sum
 from symrot.errors import InputError
 from symrot.propagation import progress
 from symrot.propagation.enclosures.step_limit import Deviations, longest_followed
-from symrot.propagation.steppers.cut_off import CutOff, add_samples, why_hopeless, why_stuck
+from symrot.propagation.steppers.integration_stopped import IntegrationStopped, add_samples, why_hopeless, why_stuck
 from symrot.propagation.steppers.stepping import (
     NOT_FINITE_SENTENCE,
     Floats,
     Recording,
+    Segment,
     Stats,
-    Stretch,
-    both_sides,
     check_longest_step,
     check_tolerance,
-    stretches,
+    segments,
+    split_at,
 )
 
-__all__ = ["METHODS", "FallbackRecording", "Whole", "integrate", "method_name", "record"]
+__all__ = ["METHODS", "FallbackRecording", "WholeMotion", "integrate", "method_name", "record"]
 
 Rhs = Callable[[float, Floats, Floats], ArrayLike]
 Clock = Callable[[float], tuple[Rhs, Sequence[float]]]
@@ -43,7 +43,7 @@ Clock = Callable[[float], tuple[Rhs, Sequence[float]]]
 Piece = tuple[float, float, Any]  # from, to, SciPy's solution between
 
 
-class Whole(NamedTuple):
+class WholeMotion(NamedTuple):
     """The motion of which a part is followed: its two ends, s, and the evaluations spent on it before."""
 
     start: float
@@ -128,13 +128,13 @@ def integrate(
     if times.ndim != 1 or not np.isfinite(times).all():
         raise InputError(f"sample times are a sequence of finite numbers, got {times!r}")
     limits = breaks, max_step, max_steps, deviations, clock
-    task = _Task(rhs, p, y0, t0, tolerance, method, blocks, scales, *limits)
+    task = _Integration(rhs, p, y0, t0, tolerance, method, blocks, scales, *limits)
     states = np.empty((len(times), len(task.y0)))
     done = np.empty(0, dtype=np.intp)
-    for part in both_sides(times, task.t0):
+    for part in split_at(times, task.t0):
         try:
             states[part] = task.follow(times[part])
-        except (CutOff, KeyboardInterrupt) as error:
+        except (IntegrationStopped, KeyboardInterrupt) as error:
             inside, own = task.partial(times[part])
             add_samples(error, part[inside], own, task.stats()[:3])
             add_samples(error, done, states[done])
@@ -159,7 +159,7 @@ def record(
     max_steps: int = MAX_EVALUATIONS,
     deviations: Deviations | None = None,
     clock: Clock | None = None,
-    whole: Whole | None = None,
+    whole: WholeMotion | None = None,
 ) -> "FallbackRecording":
     """Return the motion over ``span`` as a function of time; see :func:`symrot.propagation.steppers.dop853.record`.
 
@@ -167,13 +167,13 @@ def record(
     was. Of a part of a motion, ``max_steps`` is that of the ``whole``.
     """
     limits = breaks, max_step, max_steps, deviations, clock
-    task = _Task(rhs, p, y0, t0, tolerance, method, blocks, scales, *limits, whole)
+    task = _Integration(rhs, p, y0, t0, tolerance, method, blocks, scales, *limits, whole)
     low, high = min(*span, task.t0), max(*span, task.t0)
     finished: list[Piece] = []
     try:
         for end in (low, high):
             finished += task.solutions(end)
-    except (CutOff, KeyboardInterrupt) as error:
+    except (IntegrationStopped, KeyboardInterrupt) as error:
         finished += task.pieces if task.final else []
         if finished:
             reached = [time for low, high, _ in finished for time in (low, high)]
@@ -185,12 +185,12 @@ def record(
 class FallbackRecording(Recording):
     """A motion that SciPy has followed; see :class:`symrot.propagation.steppers.stepping.Recording`."""
 
-    def __init__(self, task: "_Task", pieces: list[Piece], low: float, high: float) -> None:
+    def __init__(self, task: "_Integration", pieces: list[Piece], low: float, high: float) -> None:
         self._pieces = pieces
         super().__init__(task.t0, task.y0, (low, high), task.stats())
 
     def edges(self, start: float, end: float) -> list[Floats]:
-        """Return the ends of SciPy's steps from a start to an end, one array for each stretch, in that order."""
+        """Return the ends of SciPy's steps from a start to an end, one array for each segment, in that order."""
         side = 1.0 if end >= start else -1.0
         chosen = [
             np.sort(np.asarray(solution.ts, dtype=np.float64) * side) * side
@@ -222,7 +222,7 @@ class _Moved:
         return found
 
 
-class _Task:
+class _Integration:
     """One motion to follow with SciPy."""
 
     def __init__(
@@ -240,7 +240,7 @@ class _Task:
         max_steps: int,
         deviations: Deviations | None,
         clock: Clock | None,
-        whole: Whole | None = None,
+        whole: WholeMotion | None = None,
     ) -> None:
         self.began = perf_counter()
         self.method = method_name(method)
@@ -266,7 +266,7 @@ class _Task:
         with np.errstate(all="ignore"):  # the sentence says it
             first = self._derivative(self.t0, self.y0)
         if not np.isfinite(first).all():
-            raise CutOff(self.t0, NOT_FINITE_SENTENCE)
+            raise IntegrationStopped(self.t0, NOT_FINITE_SENTENCE)
 
     @property
     def work(self) -> int:
@@ -294,7 +294,7 @@ class _Task:
         return inside, states
 
     def solutions(self, end: float) -> list[Piece]:
-        """Return (low, high, solution) for each stretch between switching times, from t0 to the end.
+        """Return (low, high, solution) for each segment between switching times, from t0 to the end.
 
         Where the coarse pass is cut off, the motion is followed as far as that came, so that its samples are not lost.
         """
@@ -306,10 +306,10 @@ class _Task:
             SLACK * PILOT_TOLERANCE * (scale if scale > 0.0 else max(float(np.linalg.norm(self.y0[block])), slowest))
             for block, scale in self.blocks
         ]
-        early: CutOff | None = None
+        early: IntegrationStopped | None = None
         try:
-            self._stretches(end, PILOT_TOLERANCE, np.full(len(self.y0), PILOT_TOLERANCE), bars)
-        except CutOff as error:
+            self._segments(end, PILOT_TOLERANCE, np.full(len(self.y0), PILOT_TOLERANCE), bars)
+        except IntegrationStopped as error:
             if not self.pieces or self._spent >= self.max_evaluations:
                 raise
             early, end = error, float(self.pieces[-1][2].ts[-1])
@@ -327,27 +327,27 @@ class _Task:
             allowed[block] = share * max(size, slowest) / math.sqrt(len(self.y0))
         self.final = True
         try:
-            pieces = self._stretches(end, SMALLEST_RTOL, allowed, bars)
-        except CutOff as error:
-            raise error if early is None else CutOff(error.t, error.reason, early.stop) from None
+            pieces = self._segments(end, SMALLEST_RTOL, allowed, bars)
+        except IntegrationStopped as error:
+            raise error if early is None else IntegrationStopped(error.t, error.reason, early.stop) from None
         if early is not None:
             raise early
         return pieces
 
-    def _stretches(self, end: float, rtol: float, atol: Floats, bars: list[float]) -> list[Piece]:
+    def _segments(self, end: float, rtol: float, atol: Floats, bars: list[float]) -> list[Piece]:
         y, self.pieces, self.mark, self.goal = self.y0, [], (self.work, self.t0), end
         self.epoch, (self.rhs, self.p) = 0.0, self.unmoved
-        for stretch in stretches(self.t0, end, self.breaks):
+        for segment in segments(self.t0, end, self.breaks):
             with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-                self._follow_stretch(stretch, y, rtol, atol, bars)
-            y = self.pieces[-1][2](stretch.stop)
+                self._follow_segment(segment, y, rtol, atol, bars)
+            y = self.pieces[-1][2](segment.stop)
         return self.pieces
 
-    def _follow_stretch(self, stretch: Stretch, y: Floats, rtol: float, atol: Floats, bars: list[float]) -> None:
-        """Add SciPy's solution over a stretch to the pieces, as far as it comes; no step longer than is proven."""
+    def _follow_segment(self, segment: Segment, y: Floats, rtol: float, atol: Floats, bars: list[float]) -> None:
+        """Add SciPy's solution over a segment to the pieces, as far as it comes; no step longer than is proven."""
         import scipy.integrate
 
-        earliest, latest = min(stretch.first, stretch.last), max(stretch.first, stretch.last)
+        earliest, latest = min(segment.first, segment.last), max(segment.first, segment.last)
         new_solver: Any = getattr(scipy.integrate, self.method)
 
         def begin(t: float, y: Floats, longest: float) -> Any:
@@ -356,12 +356,12 @@ class _Task:
             def rate(t: float, y: Floats) -> Floats:
                 return self._derivative(min(max(t, low), high), y)
 
-            return new_solver(rate, t, y, stretch.stop - self.epoch, rtol=rtol, atol=atol, max_step=longest)
+            return new_solver(rate, t, y, segment.stop - self.epoch, rtol=rtol, atol=atol, max_step=longest)
 
-        times: list[float] = [stretch.start]
+        times: list[float] = [segment.start]
         interpolants: list[Any] = []
         try:
-            self._steps(begin, y, stretch, bars, times, interpolants)
+            self._steps(begin, y, segment, bars, times, interpolants)
         finally:
             if interpolants:
                 lagging = self.method in ("BDF", "LSODA")  # their steps hold the end that they begin at
@@ -370,33 +370,33 @@ class _Task:
                 self.pieces.append((min(times[0], times[-1]), max(times[0], times[-1]), solution))
 
     def _steps(
-        self, begin: Any, y: Floats, stretch: Stretch, bars: list[float], times: list[float], interpolants: list[Any]
+        self, begin: Any, y: Floats, segment: Segment, bars: list[float], times: list[float], interpolants: list[Any]
     ) -> None:
         longest, idle = self.max_step, 0
-        solver = begin(stretch.start - self.epoch, y, longest)
+        solver = begin(segment.start - self.epoch, y, longest)
         while solver.status == "running":
-            start, end = (self.whole.start, self.whole.end) if self.whole else (self.t0, stretch.stop)
+            start, end = (self.whole.start, self.whole.end) if self.whole else (self.t0, segment.stop)
             shown, y = float(solver.t), solver.y.copy()  # what the present clock shows
             before = self.epoch + shown
             progress.report(before if self.final else self.t0, start, end if self.whole else self.goal)
-            self._judge_pace(before, end if self.final else stretch.stop)  # a coarse pass is no part of the whole
+            self._judge_pace(before, end if self.final else segment.stop)  # a coarse pass is no part of the whole
             broken = self.broken
             try:
                 message = solver.step()
             except ValueError:  # of linear algebra, for numbers that are not finite
-                longest = 0.5 * min(float(solver.h_abs), abs(stretch.stop - before), longest)
+                longest = 0.5 * min(float(solver.h_abs), abs(segment.stop - before), longest)
                 if longest <= 4.0 * math.ulp(before):
-                    raise CutOff(before, NOT_FINITE_SENTENCE, end) from None
+                    raise IntegrationStopped(before, NOT_FINITE_SENTENCE, end) from None
                 solver = begin(shown, y, longest)
                 continue
             step = float(solver.t) - shown
             if self.broken > broken and not np.isfinite(self._derivative(float(solver.t), solver.y)).all():
                 if abs(step) <= 4.0 * math.ulp(before):
-                    raise CutOff(before, NOT_FINITE_SENTENCE, end)
+                    raise IntegrationStopped(before, NOT_FINITE_SENTENCE, end)
                 longest = 0.5 * abs(step)  # LSODA goes on where the rates have no value
                 solver = begin(shown, y, longest)
                 continue
-            after = stretch.stop if solver.status == "finished" else self.epoch + float(solver.t)
+            after = segment.stop if solver.status == "finished" else self.epoch + float(solver.t)
             moves = solver.status != "failed" and step * solver.direction > 0.0  # LSODA may say so when it could not
             if self.clock is not None and abs(shown) > FAR * abs(step) and abs(shown) > math.ulp(before):
                 shown = self._move_clock(self.clock, shown)
@@ -404,14 +404,14 @@ class _Task:
                 continue
             idle = idle + 1 if after == before else 0
             if message == solver.TOO_SMALL_STEP or (solver.status != "failed" and not moves) or idle > MAX_IDLE:
-                raise CutOff(before, why_stuck(STUCK, before, start, end), end)
+                raise IntegrationStopped(before, why_stuck(STUCK, before, start, end), end)
             if solver.status == "failed" or not np.isfinite(solver.y).all():
-                raise CutOff(after, message or NOT_FINITE_SENTENCE, end)
+                raise IntegrationStopped(after, message or NOT_FINITE_SENTENCE, end)
             dense = solver.dense_output()
             proven = step if self.deviations is None else self._proven(before, y, dense, shown, step, bars)
             if proven != step:
                 if abs(proven) <= 4.0 * math.ulp(before):
-                    raise CutOff(before, why_stuck(STUCK, before, start, end), end)
+                    raise IntegrationStopped(before, why_stuck(STUCK, before, start, end), end)
                 longest = abs(proven)
                 solver = begin(shown, y, longest)
                 continue
@@ -440,10 +440,10 @@ class _Task:
         if spent >= PATIENCE:
             reason = why_hopeless(spent, abs(t - self.mark[1]), abs(stop - t), self.max_evaluations)
             if reason:
-                raise CutOff(t, reason, stop)
+                raise IntegrationStopped(t, reason, stop)
             self.mark = (work, t)
         if self._spent > self.max_evaluations:
-            raise CutOff(t, f"{self.max_evaluations} evaluations were not enough", stop)
+            raise IntegrationStopped(t, f"{self.max_evaluations} evaluations were not enough", stop)
 
     @property
     def _spent(self) -> int:
@@ -459,12 +459,12 @@ class _Task:
     def _derivative(self, t: float, y: Floats) -> Floats:
         self.evaluations += 1
         if self.evaluations > self.max_evaluations:
-            raise CutOff(self.epoch + float(t), f"{self.max_evaluations} evaluations were not enough")
+            raise IntegrationStopped(self.epoch + float(t), f"{self.max_evaluations} evaluations were not enough")
         dy = np.asarray(self.rhs(t, y, self.p), dtype=np.float64)
         if dy.shape != self.y0.shape:
             raise InputError(f"the right-hand side returns {len(self.y0)} numbers, got an array of shape {dy.shape}")
         if not math.isfinite(dy.sum()):
             self.broken += 1
             if self.broken > MAX_BROKEN:
-                raise CutOff(self.epoch + float(t), NOT_FINITE_SENTENCE)
+                raise IntegrationStopped(self.epoch + float(t), NOT_FINITE_SENTENCE)
         return dy

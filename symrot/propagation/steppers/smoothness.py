@@ -9,7 +9,7 @@ from symrot.dynamics.structure import FormulaTorque, Pattern, TorqueStructure
 from symrot.formula import tree as expression
 from symrot.planning.plan import Plan
 
-__all__ = ["roughness"]
+__all__ = ["non_smooth_torque"]
 
 CHANGING = frozenset({"t", *(f"omega_{i}" for i in (1, 2, 3)), *(f"q{i}" for i in range(4))})
 BRANCHING = frozenset({"abs", "sqrt", "asin", "acos", "atan2"})  # not smooth somewhere on their domain
@@ -35,6 +35,6 @@ def _of_torque(torque: TorqueStructure) -> str:
     return ""
 
 
-def roughness(plan: Plan) -> str:
+def non_smooth_torque(plan: Plan) -> str:
     """Return an empty text, or the sentence that says which torque of a plan is not smooth."""
     return next(filter(None, map(_of_torque, plan.structure.torques)), "")

@@ -11,7 +11,7 @@ import ctypes
 import math
 from collections.abc import Sequence
 from functools import cache
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -27,12 +27,13 @@ from symrot.propagation.steppers.stepping import (
     PAUSED,
     UNDERFLOW,
     Floats,
+    Integration,
     PathLike,
     Recording,
+    Run,
+    Segment,
     Stats,
     Stepper,
-    Stretch,
-    Task,
     check_tolerance,
 )
 
@@ -172,7 +173,7 @@ def integrate(
     stats : Stats
         ``evaluations`` counts jets: all coefficients of one step.
     """
-    return task(library, p, y0, t0, tolerance, max_step, max_steps, project).sample(times)
+    return integration(library, p, y0, t0, tolerance, max_step, max_steps, project).sample(times)
 
 
 def record(
@@ -191,10 +192,10 @@ def record(
 
     One step takes 21 N + 4 numbers of memory.
     """
-    return task(library, p, y0, t0, tolerance, max_step, max_steps, project).record(span)
+    return integration(library, p, y0, t0, tolerance, max_step, max_steps, project).record(span)
 
 
-def task(
+def integration(
     library: PathLike,
     p: ArrayLike,
     y0: ArrayLike,
@@ -203,11 +204,11 @@ def task(
     max_step: float = math.inf,
     max_steps: int = MAX_STEPS,
     project: bool = True,
-) -> Task:
+) -> Integration:
     """Return a motion to follow; arguments as :func:`integrate`."""
-    found = Task(_stepper, library, p, y0, t0, tolerance, max_step, max_steps)
-    found.fields["every"] = PROJECTED_EVERY if project else 0
-    return found
+    motion = Integration(_stepper, library, p, y0, t0, tolerance, max_step, max_steps)
+    motion.fields["every"] = PROJECTED_EVERY if project else 0
+    return motion
 
 
 class _Stepper(Stepper):
@@ -236,24 +237,23 @@ class _Stepper(Stepper):
     def row_length(self) -> int:
         return 4 + (self.order + 1) * self.states
 
-    def enter(self, run: Any, stretch: Stretch, allowed: float) -> None:
+    def enter(self, run: Run, segment: Segment, allowed: float) -> None:
         run.unit, run.proven, run.tail, run.reach = 0.0, 0.0, allowed, MIDDLE_REACH
 
     @staticmethod
-    def tried(run: Any) -> int:
-        found: int = run.accepted
-        return found
+    def tried(run: Run) -> int:
+        return run.accepted
 
     @staticmethod
-    def cost(run: Any) -> tuple[int, int, int]:
+    def cost(run: Run) -> tuple[int, int, int]:
         return run.accepted, run.jets - run.accepted, run.jets
 
     def jet(self, t: float, y: ArrayLike, p: ArrayLike, unit: float = 1.0) -> Floats:
         """Return the Taylor coefficients of the states at t, shape (order + 1, N), in powers of ``unit``."""
         state, values = np.array(y, dtype=np.float64), np.array(p, dtype=np.float64)
-        found = np.empty((self.order + 1, self.states))
-        self._jet(t, state.ctypes.data, values.ctypes.data, unit, self.order, found.ctypes.data)
-        return found
+        coefficients = np.empty((self.order + 1, self.states))
+        self._jet(t, state.ctypes.data, values.ctypes.data, unit, self.order, coefficients.ctypes.data)
+        return coefficients
 
 
 _stepper = cache(_Stepper)

@@ -21,8 +21,8 @@ from symrot.propagation.events.polynomials import Piece
 from symrot.propagation.method import Choice, choose_method
 from symrot.propagation.motion import Motion, MotionInParts, Setup
 from symrot.propagation.propagator import Propagator
-from symrot.propagation.steppers.cut_off import CutOff, add_samples
-from symrot.propagation.steppers.stepping import Floats, Recording, Stats, Switching, both_sides, stats_of
+from symrot.propagation.steppers.integration_stopped import IntegrationStopped, add_samples
+from symrot.propagation.steppers.stepping import Floats, Recording, Stats, Switching, split_at, stats_of
 from symrot.propagation.switched.run import Chunk, SwitchedRun
 from symrot.propagation.switched.system import SwitchedSystem
 from symrot.scene.scene import Initial
@@ -57,7 +57,7 @@ class SwitchedMotion(MotionInParts):
         began, states = perf_counter(), np.empty((len(times), len(self.plan.states)))
         cost, done = np.zeros(3, dtype=np.int64), np.empty(0, dtype=np.intp)
         changes: dict[tuple[float, str], str] = {}
-        for part in both_sides(times, self.start):
+        for part in split_at(times, self.start):
             sorted_times = times[part]
             count = int((sorted_times == self.start).sum())
             states[part[:count]] = self.plan.initial_state
@@ -74,7 +74,7 @@ class SwitchedMotion(MotionInParts):
 
             try:
                 run.follow(sample)
-            except (CutOff, KeyboardInterrupt) as error:
+            except (IntegrationStopped, KeyboardInterrupt) as error:
                 numbers = np.concatenate([done, part[:count]])
                 add_samples(error, numbers, states[numbers], cost + run.cost)
                 raise
@@ -89,7 +89,7 @@ class SwitchedMotion(MotionInParts):
         run = SwitchedRun(self, self.system, end)
         try:
             run.follow(chunks.append)
-        except CutOff as error:
+        except IntegrationStopped as error:
             broken.append(error)
         stats = stats_of(run.cost, 0.0, _switchings(run.changes))
         states = SwitchedRecording(self.start, self.plan.initial_state, (self.start, end), stats, chunks)

@@ -17,7 +17,7 @@ from symrot.propagation.compiled_models import error_blocks
 from symrot.propagation.events.events import Event, guard_library_source
 from symrot.propagation.motion import SciPyMotion, SteppedMotion
 from symrot.propagation.switched.instant import Instant
-from symrot.propagation.time_shift import Following
+from symrot.propagation.time_shift import ShiftedParameters
 
 __all__ = ["Guard", "Modes", "Regime"]
 
@@ -31,6 +31,18 @@ class Guard(NamedTuple):
     formula: str
     change: int  # 0: to the opposite sign; 1, -1: to that side, or by that much
     where: Conditions
+
+
+class RegimeParameters(NamedTuple):
+    """The parameters of a regime under some modes, for one clock after another.
+
+    ``invariants`` are pairs of doubles that no clock changes; only Taylor steps take them.
+    """
+
+    rates: ShiftedParameters
+    guards: ShiftedParameters
+    quantities: ShiftedParameters
+    invariants: list[float]
 
 
 class Regime:
@@ -72,7 +84,7 @@ class Regime:
             program, [rename(node, columns) for node in nodes], self.plan.states, *error_blocks(self.plan)
         )
         self.path = library.build(source, "events")
-        self._following: dict[tuple[int, ...], tuple[Following, Following, Following, list[float]]] = {}
+        self._parameters: dict[tuple[int, ...], RegimeParameters] = {}
         self._active: dict[tuple[int, ...], list[bool]] = {}
         self._bound: dict[tuple[tuple[int, ...], Instant | None], tuple[list[float], list[float]]] = {}
 
@@ -88,48 +100,43 @@ class Regime:
             yield Guard(mode, guard, -1, where)
             yield Guard(mode, f"1 - ({guard})", 1, where)
 
-    def _follow(self, modes: Modes) -> tuple[Following, Following, Following, list[float]]:
-        """Return the parameters of rates, guards and quantities for one clock after another, and those of invariants.
-
-        The last are pairs of doubles, for Taylor steps; under other modes some of them have no value.
-        """
+    def _parameters_under(self, modes: Modes) -> RegimeParameters:
+        """Return the parameters under some modes; parameters of invariants have no value under all modes."""
         key = tuple(modes.values())
-        if key not in self._following:
+        if key not in self._parameters:
             values = {name: Fraction(value) for name, value in modes.items()}
-            rates, guards, quantities = self._with_constants
             taylor = self.motion.choice.method == "taylor"
             invariants = self.motion.kernel.quantity_parameters if taylor else ()
             constants = {**self.constants, **values}
             ratios = [value_of(node, constants).as_integer_ratio() for _, node in invariants]
             pairs = [part for ratio in ratios for part in two_doubles(*ratio)]
-            following = Following(rates, values), Following(guards, values), Following(quantities, values)
-            self._following[key] = *following, pairs
-        return self._following[key]
+            rates, guards, quantities = (ShiftedParameters(each, values) for each in self._with_constants)
+            self._parameters[key] = RegimeParameters(rates, guards, quantities, pairs)
+        return self._parameters[key]
 
     def values(self, modes: Modes, zero: Instant) -> dict[str, float]:
         """Return what the names in :attr:`formulas` stand for on a clock that shows 0 at an instant."""
-        numbers = self._follow(modes)[1].parameters(zero.exact)
+        numbers = self._parameters_under(modes).guards.parameters(zero.exact)
         return {name: number for (name, _), number in zip(self.parameters, numbers, strict=True)} | {
             name: float(mode) for name, mode in modes.items()
         }
 
     def bound(self, modes: Modes, zero: Instant) -> tuple[list[float], list[float]]:
         """Return the parameters of the stepper's library and of the guards', on a clock that shows 0 at an instant."""
-        following, guards, quantities, pairs = self._follow(modes)
-        fixed = following.fixed and guards.fixed and quantities.fixed
+        rates, guards, quantities, invariants = self._parameters_under(modes)
+        fixed = rates.fixed and guards.fixed and quantities.fixed
         place = tuple(modes.values()), None if fixed else zero
         if place not in self._bound:
             if place[1] is not None:
                 self._bound = {key: value for key, value in self._bound.items() if key[1] in (None, zero)}
-            rates, values = following.parameters(zero.exact), self.values(modes, zero)
-            rates += pairs
-            self._bound[place] = rates, [*quantities.parameters(zero.exact), *(values[name] for name in self.more)]
+            numbers, values = [*rates.parameters(zero.exact), *invariants], self.values(modes, zero)
+            self._bound[place] = numbers, [*quantities.parameters(zero.exact), *(values[name] for name in self.more)]
         return self._bound[place]
 
     def rates_since(self, modes: Modes, zero: Instant) -> Callable[[float], list[float]] | None:
         """Return the parameters of the rates as a function of an epoch, s, on a clock that shows 0 at an instant."""
-        following = self._follow(modes)[0]
-        return None if following.fixed else lambda since: following.parameters(zero.exact + Fraction(since))
+        rates = self._parameters_under(modes).rates
+        return None if rates.fixed else lambda since: rates.parameters(zero.exact + Fraction(since))
 
     @cached_property
     def _with_constants(self) -> tuple[Parameters, Parameters, Parameters]:

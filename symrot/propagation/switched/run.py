@@ -17,7 +17,7 @@ from symrot.propagation.compiled_models import error_blocks
 from symrot.propagation.events.events import search, signs_at_ends
 from symrot.propagation.events.polynomials import Piece
 from symrot.propagation.motion import Motion
-from symrot.propagation.steppers.cut_off import CutOff
+from symrot.propagation.steppers.integration_stopped import IntegrationStopped
 from symrot.propagation.steppers.stepping import Floats
 from symrot.propagation.switched.instant import Instant
 from symrot.propagation.switched.regimes import Guard, Modes, Regime
@@ -94,7 +94,7 @@ class SwitchedRun(RunState):
                         raise self.interrupt
                     if guard is not None:
                         self._switch(regime, guard)
-            except CutOff as error:
+            except IntegrationStopped as error:
                 raise error.later(self.zero.high) from None
 
     @property
@@ -127,7 +127,9 @@ class SwitchedRun(RunState):
                 leaving += all(s > 0 for s, guard in zip(signs, regime.guards, strict=True) if guard.mode == mode)
             if leaving == 2:
                 way = "past" if self.side < 0.0 else "future"
-                raise CutOff(self.t, f"the motion starts on {self._name(mode)} and has more than one {way}", self.end)
+                raise IntegrationStopped(
+                    self.t, f"the motion starts on {self._name(mode)} and has more than one {way}", self.end
+                )
 
     def _segment(self, regime: Regime, consume: Consumer) -> Guard | None:
         """Follow one smooth part; return the guard that ended it, or None at the end of the motion."""
@@ -164,7 +166,7 @@ class SwitchedRun(RunState):
         watching = watched()
         try:
             found, stop = search(regime.path, events, values, watching, start)
-        except CutOff as error:
+        except IntegrationStopped as error:
             at = passed[-1]
             y = current[0][1](np.array([at]))[0] if current else self.y
             hop = self._hop(regime, active, rates, at, y, error)
@@ -207,7 +209,7 @@ class SwitchedRun(RunState):
         self.flipped, self.order, self.left, self.released, self.hopped = {}, [], set(), set(), False
 
     def _hop(
-        self, regime: Regime, active: list[bool], rates: list[float], t: float, y: Floats, error: CutOff
+        self, regime: Regime, active: list[bool], rates: list[float], t: float, y: Floats, error: IntegrationStopped
     ) -> tuple[Piece, Callable[[Floats], Floats], Guard | None] | None:
         """Return a straight piece on from where a stepper is stuck, and the guard that it crosses; or None.
 
@@ -335,7 +337,7 @@ class SwitchedRun(RunState):
         if changed:
             self.settled += 1
             if self.settled > MOST_SWITCHES:
-                raise CutOff(self.t, "its switches settle endlessly", self.end)
+                raise IntegrationStopped(self.t, "its switches settle endlessly", self.end)
         self.modes = settled
         return changed
 
@@ -367,12 +369,12 @@ class SwitchedRun(RunState):
             again = 0
         self.order.append(mode)
         if len(self.order) > MOST_AT_ONCE:
-            raise CutOff(self.t, f"the switch {self._name(mode)} leaves no way to go on", self.end)
+            raise IntegrationStopped(self.t, f"the switch {self._name(mode)} leaves no way to go on", self.end)
         if again == 0:
             self._count()
         self.flipped[mode] = again + 1
         if again > 2 and kind == "sign":
-            raise CutOff(self.t, f"the switch {self._name(mode)} leaves no way to go on", self.end)
+            raise IntegrationStopped(self.t, f"the switch {self._name(mode)} leaves no way to go on", self.end)
         self.changes[self.now, self._name(mode)] = "released" if mode in self.held else "passed"
         asleep = self._asleep()
         if mode in self.held:
@@ -388,7 +390,9 @@ class SwitchedRun(RunState):
             far = abs(above) > 1  # it jumped over some whole numbers
             self.modes[mode] += above if far else guard.change
             if (mode, self.modes[mode]) in self.left:
-                raise CutOff(self.t, f"the motion would slide along the jump of {self._name(mode)}", self.end)
+                raise IntegrationStopped(
+                    self.t, f"the motion would slide along the jump of {self._name(mode)}", self.end
+                )
         for other in asleep - self._asleep():
             self._wake(other)
 
@@ -415,7 +419,7 @@ class SwitchedRun(RunState):
 
     def _hold(self, regime: Regime, mode: str) -> None:
         if self.side < 0.0:
-            raise CutOff(self.t, "a motion that slides along a switch has more than one past", self.end)
+            raise IntegrationStopped(self.t, "a motion that slides along a switch has more than one past", self.end)
         mode = self.system.twins[mode][0]
         self.held |= {mode}
         self.changes[self.now, self._name(mode)] = "held"
@@ -425,7 +429,7 @@ class SwitchedRun(RunState):
         try:
             self.system.regime(self.held, self.modes)
         except InputError:
-            raise CutOff(
+            raise IntegrationStopped(
                 self.t, f"the motion would slide along {self._name(mode)}, in no single way", self.end
             ) from None
 
@@ -436,7 +440,7 @@ class SwitchedRun(RunState):
         near = len(self.recent) == CHATTER and way <= CHATTERING * self.span
         if near or self.switches > MOST_SWITCHES:
             within = f"{CHATTER} within {way:.1e} s" if near else f"more than {MOST_SWITCHES}"
-            raise CutOff(self.t, f"its switches follow one another endlessly ({within})", self.end)
+            raise IntegrationStopped(self.t, f"its switches follow one another endlessly ({within})", self.end)
 
     def _name(self, mode: str) -> str:
         return str(self.by_name[mode].label)

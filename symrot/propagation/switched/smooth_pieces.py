@@ -10,7 +10,7 @@ from symrot.propagation.compiled_models import error_blocks
 from symrot.propagation.events.polynomials import Piece, fitted, rows_of
 from symrot.propagation.motion import SciPyMotion, SteppedMotion
 from symrot.propagation.steppers import dop853, taylor
-from symrot.propagation.steppers.cut_off import CutOff, why_hopeless
+from symrot.propagation.steppers.integration_stopped import IntegrationStopped, why_hopeless
 from symrot.propagation.steppers.stepping import Floats
 from symrot.propagation.switched.instant import Instant
 from symrot.propagation.switched.regimes import Regime
@@ -32,38 +32,40 @@ class SteppedPieces:
 
     def __init__(self, run: RunState, regime: Regime, motion: SteppedMotion, rates: list[float]) -> None:
         if not np.isfinite(run.y).all():
-            raise CutOff(run.t, "its states are not finite there", run.end)
-        stepping = taylor if motion.choice.method == "taylor" else dop853
-        moved = run.clock(regime, motion.library) if stepping is dop853 else None
-        options = {"clock": moved} if moved else {}
-        self.task = stepping.task(motion.library, rates, run.y, run.t, motion.tolerance, **options)
-        self.task.way, self.end = run.span, run.end
+            raise IntegrationStopped(run.t, "its states are not finite there", run.end)
+        start = (motion.library, rates, run.y, run.t, motion.tolerance)
+        if motion.choice.method == "taylor":
+            self.integration = taylor.integration(*start)
+        else:
+            self.integration = dop853.integration(*start, clock=run.clock(regime, motion.library))
+        self.integration.way, self.end = run.span, run.end
 
     def pieces(self) -> Iterator[tuple[Piece, Callable[[Floats], Floats]]]:
-        task, room = self.task, ROOM
-        for run in task.runs(self.end):
+        integration, room = self.integration, ROOM
+        for run in integration.runs(self.end):
             while run.t != run.stop:
-                rows = np.empty((room, task.stepper.row))
+                rows = np.empty((room, integration.stepper.row))
                 try:
-                    task.advance(run, None, 0, None, rows.ctypes.data, room)
-                except CutOff as error:
-                    stuck: CutOff | None = error
+                    integration.advance(run, None, 0, None, rows.ctypes.data, room)
+                except IntegrationStopped as error:
+                    stuck: IntegrationStopped | None = error
                 else:
                     stuck = None
                 rows = rows[: run.recorded]
                 if len(rows):
 
                     def states(times: Floats, rows: Floats = rows) -> Floats:
-                        inside: Floats = task.stepper.dense(rows, times)
+                        inside: Floats = integration.stepper.dense(rows, times)
                         return inside
 
-                    yield Piece(np.append(rows[:, 0], run.t), rows_of(task.stepper, rows)), states
+                    yield Piece(np.append(rows[:, 0], run.t), rows_of(integration.stepper, rows)), states
                 if stuck is not None:
                     raise stuck
-                room = min(2 * room, task.stepper.rows_per_call)
+                room = min(2 * room, integration.stepper.rows_per_call)
 
     def cost(self) -> Any:
-        return np.array([self.task.accepted, self.task.rejected, self.task.evaluations])
+        integration = self.integration
+        return np.array([integration.accepted, integration.rejected, integration.evaluations])
 
 
 class SciPyPieces:
@@ -84,14 +86,14 @@ class SciPyPieces:
             stop = run.end if abs(run.end - t) <= 1.01 * length else t + side * length
             share = max(abs(stop - t) / run.span, 1e-3)
             self._judge_pace(t)
-            options["whole"] = fallback.Whole(run.start, run.end, run.spent)
-            ended: CutOff | KeyboardInterrupt | None = None
+            options["whole"] = fallback.WholeMotion(run.start, run.end, run.spent)
+            ended: IntegrationStopped | KeyboardInterrupt | None = None
             recording: Any
             try:
                 recording = fallback.record(
                     self.motion.rates, self.rates, y, t, (t, stop), run.motion.tolerance * share, **options
                 )
-            except (CutOff, KeyboardInterrupt) as error:
+            except (IntegrationStopped, KeyboardInterrupt) as error:
                 before: fallback.FallbackRecording | None = getattr(error, "recording", None)
                 if before is None:
                     raise
@@ -131,10 +133,10 @@ class SciPyPieces:
             way = abs(t - run.start)
             reason = why_hopeless(spent, way - run.mark[1], abs(run.end - t), MAX_EVALUATIONS)
             if reason:
-                raise CutOff(t, reason, run.end)
+                raise IntegrationStopped(t, reason, run.end)
             run.mark = (run.spent, way)
         if run.spent > MAX_EVALUATIONS:
-            raise CutOff(t, f"{MAX_EVALUATIONS} evaluations were not enough", run.end)
+            raise IntegrationStopped(t, f"{MAX_EVALUATIONS} evaluations were not enough", run.end)
 
     def cost(self) -> Any:
         return self.counts

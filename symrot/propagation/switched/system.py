@@ -15,7 +15,7 @@ from symrot.formula.tree import evaluate, names, parse, rename, text
 from symrot.planning.plan import Plan
 from symrot.propagation.method import Choice
 from symrot.propagation.motion import on_own_clock
-from symrot.propagation.steppers.cut_off import CutOff
+from symrot.propagation.steppers.integration_stopped import IntegrationStopped
 from symrot.propagation.switched.regimes import Modes, Regime
 
 __all__ = ["SwitchedSystem"]
@@ -97,7 +97,7 @@ class SwitchedSystem:
             try:
                 guard = float(evaluate(chosen(switch.guard, modes), values, FLOAT_FUNCTIONS, float))
             except (ArithmeticError, ValueError):
-                raise CutOff(self.start, f"{switch.label} has no value there") from None
+                raise IntegrationStopped(self.start, f"{switch.label} has no value there") from None
             modes[switch.mode] = math.floor(guard) if switch.kind == "floor" else -1 if guard < 0.0 else 1
             if guard == 0.0 and switch.mode in self.settled:
                 modes[switch.mode] = 0 if switch.kind == "floor" else switch.at_zero

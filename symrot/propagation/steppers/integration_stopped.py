@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from symrot.errors import PropagationError
 
-__all__ = ["CutOff", "Samples", "add_samples", "why_hopeless", "why_stuck"]
+__all__ = ["IntegrationStopped", "Samples", "add_samples", "why_hopeless", "why_stuck"]
 
 HOPELESS = 3.0  # times the limit: a motion is given up that needs so many more steps at its pace
 MANY_TICKS = 2**20  # of the clock between two ends: with fewer, it is the clock that ends short steps
@@ -17,7 +17,7 @@ MANY_TICKS = 2**20  # of the clock between two ends: with fewer, it is the clock
 Floats = NDArray[np.float64]
 
 
-class CutOff(PropagationError):
+class IntegrationStopped(PropagationError):
     """A motion that ends at t, s, on the way to ``stop``."""
 
     def __init__(self, t: float, reason: str, stop: float | None = None) -> None:
@@ -27,9 +27,9 @@ class CutOff(PropagationError):
         self.samples: Samples | None = None  # those before t
         self.recording: Any = None  # the motion before t, where one was being recorded
 
-    def later(self, epoch: float) -> "CutOff":
+    def later(self, epoch: float) -> "IntegrationStopped":
         """Return the error for a clock that shows ``epoch`` where this one shows 0."""
-        later = CutOff(self.t + epoch, self.reason, None if self.stop is None else self.stop + epoch)
+        later = IntegrationStopped(self.t + epoch, self.reason, None if self.stop is None else self.stop + epoch)
         later.samples = self.samples
         return later
 

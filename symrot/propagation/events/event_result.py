@@ -14,10 +14,10 @@ from symrot.propagation.compiled_models import error_blocks
 from symrot.propagation.events.events import Event, Found, event_library_source, search, stepped, timed, uses_attitude
 from symrot.propagation.events.polynomials import Piece, fitted, fitted_pieces
 from symrot.propagation.motion import Motion, MotionInParts, SciPyMotion, SteppedInC, on_clock
-from symrot.propagation.steppers.cut_off import CutOff
-from symrot.propagation.steppers.stepping import Stats, Switching, both_sides, stats_of
+from symrot.propagation.steppers.integration_stopped import IntegrationStopped
+from symrot.propagation.steppers.stepping import Stats, Switching, split_at, stats_of
 
-__all__ = ["Eventful", "follow"]
+__all__ = ["EventResult", "integrate_with_events"]
 
 Floats = NDArray[np.float64]
 
@@ -25,7 +25,7 @@ TURN_PER_PIECE = 2.0  # rad: how far a motion without steps rotates in the first
 SAMPLES_OF_RATE = 257  # by which the largest rate of such a motion is judged
 
 
-class Eventful(NamedTuple):
+class EventResult(NamedTuple):
     """A motion with events.
 
     Attributes
@@ -59,7 +59,7 @@ class _Side(NamedTuple):
     switchings: tuple[Switching, ...] = ()
 
 
-def follow(motion: Motion, times: Floats, events: Sequence[Event]) -> Eventful:
+def integrate_with_events(motion: Motion, times: Floats, events: Sequence[Event]) -> EventResult:
     """Return a motion at its sample times with the events on the way from the start to the first and last of them.
 
     Raises
@@ -88,16 +88,16 @@ def follow(motion: Motion, times: Floats, events: Sequence[Event]) -> Eventful:
     states, kept = np.empty((len(times), len(plan.states))), np.zeros(len(times), dtype=bool)
     found: list[tuple[Found, Floats]] = []
     counts, ended, switchings = np.zeros(3, dtype=int), False, list[Switching]()
-    for part in both_sides(times, motion.start):
+    for part in split_at(times, motion.start):
         end = float(times[part[-1]])
         try:
             side = _side(motion, end)
-        except CutOff as early:
+        except IntegrationStopped as early:
             raise (early.later(zero) if zero else early) from None
         listed, stop = search(path, events, p, side.pieces, motion.start) if end != motion.start else ([], None)
         if side.broken and stop is None:
             error = side.broken[0]
-            raise error.later(zero) if isinstance(error, CutOff) else error
+            raise error.later(zero) if isinstance(error, IntegrationStopped) else error
         ended |= stop is not None
         inside = part if stop is None else part[np.abs(times[part] - motion.start) <= abs(stop - motion.start)]
         kept[inside] = True
@@ -113,7 +113,7 @@ def follow(motion: Motion, times: Floats, events: Sequence[Event]) -> Eventful:
         switchings += [each for each in side.switchings if abs(each.t - motion.start) <= reached]
     found.sort(key=lambda each: each[0].t)
     own = [[each for each in found if each[0].event == number] for number in range(len(events))]
-    return Eventful(
+    return EventResult(
         asked[kept],
         states[kept],
         stats_of(counts, perf_counter() - began, switchings),
@@ -147,7 +147,7 @@ def _side(motion: Motion, end: float) -> _Side:
         pieces, path = motion.parts(end, broken)
         return _Side((piece for piece in pieces), path, broken, lambda: path.stats[:3], path.stats.switchings)
     if isinstance(motion, SteppedInC):
-        task = motion.stepping.again()
+        task = motion.stepping.restarted()
         rows: list[Floats] = []
 
         def states(times: Floats) -> Floats:
