@@ -160,9 +160,9 @@ class Plan:
     def _shared(self) -> dict[str, Any]:
         """What plans from other starts take over, by name."""
         names = ("structure", "rows", "scene_constants", "states", "_places", "_start_places")
-        found: dict[str, Any] = {name: getattr(self, name) for name in names}
-        found["_shared"] = found
-        return found
+        attributes: dict[str, Any] = {name: getattr(self, name) for name in names}
+        attributes["_shared"] = attributes
+        return attributes
 
 
 def make_plan(
@@ -261,9 +261,9 @@ def general_structure(scene: Scene, switched: bool = False) -> Structure:
 def _general_torque(number: int, torque: Torque, known: set[str], switched: bool) -> TorqueStructure:
     """Return the structure of one torque, its constants free; their names are added to those ``known``."""
     if torque.kind == "expression":
-        found = _formula_torque(torque, switched)
-        prefix = _prefix(number, list(found.parameters), known)
-        return found._replace(prefix=prefix)
+        general = _formula_torque(torque, switched)
+        prefix = _prefix(number, list(general.parameters), known)
+        return general._replace(prefix=prefix)
     fields: list[tuple[str, FieldPattern]] = [
         (name, (FREE,) * len(value) if isinstance(value, tuple) else FREE)
         for name, value in torque.values.items()
@@ -325,14 +325,14 @@ def _scene_constants(scene: Scene, structure: Structure) -> dict[str, Fraction]:
     else:
         places = MOMENTS | PRODUCTS
         constants = {name: inertia[places[name][0]][places[name][1]] for name in pattern.entries}
-    for torque, given in zip(structure.torques, scene.torques, strict=True):
+    for torque, scene_torque in zip(structure.torques, scene.torques, strict=True):
         prefix = torque.prefix
         if isinstance(torque, FormulaTorque):
-            constants |= {f"{prefix}{name}": value for name, value in given.values["parameters"].items()}
+            constants |= {f"{prefix}{name}": value for name, value in scene_torque.values["parameters"].items()}
             constants |= {f"{prefix}{switch.mode}": Fraction(1) for switch in torque.switches}
             continue
         for name, field in torque.fields:
-            value = given.values[name]
+            value = scene_torque.values[name]
             if isinstance(field, Pattern):
                 constants |= {f"{prefix}{name}": value} if field is FREE else {}
                 continue
@@ -374,14 +374,14 @@ def _special_constants(scene: Scene, structure: Structure) -> RuleOutcome:
     torques: list[TorqueStructure] = []
     special: dict[Pattern, list[str]] = {ZERO: [], ONE: [], MINUS_ONE: [], FREE: []}
     silent: list[str] = []
-    for torque, given in zip(structure.torques, scene.torques, strict=True):
+    for torque, scene_torque in zip(structure.torques, scene.torques, strict=True):
         if isinstance(torque, FormulaTorque):
             torques.append(torque)
-            silent += _silent(torque, given)
+            silent += _silent(torque, scene_torque)
             continue
         fields: list[tuple[str, FieldPattern]] = []
         for name, general in torque.fields:
-            value, unit = given.values[name], name in UNIT_FIELDS
+            value, unit = scene_torque.values[name], name in UNIT_FIELDS
             many = isinstance(general, tuple)
             marks = tuple([_pattern(entry, unit) for entry in (value if many else (value,))])
             fields.append((name, marks if many else marks[0]))
@@ -396,9 +396,9 @@ def _special_constants(scene: Scene, structure: Structure) -> RuleOutcome:
     return RuleOutcome(replace(structure, torques=tuple(torques)), bool(reasons), why)
 
 
-def _silent(torque: FormulaTorque, given: Torque) -> list[str]:
+def _silent(torque: FormulaTorque, scene_torque: Torque) -> list[str]:
     """Return in words the axes about which formulas give no torque."""
-    axes = [str(i + 1) for i, formula in enumerate(given.values["torque"]) if _is_zero(formula)]
+    axes = [str(i + 1) for i, formula in enumerate(scene_torque.values["torque"]) if _is_zero(formula)]
     if not axes:
         return []
     listed = f"axis {axes[0]}" if len(axes) == 1 else f"axes {', '.join(axes[:-1])} and {axes[-1]}"
@@ -440,7 +440,7 @@ def _only_along(vector: tuple[Pattern, ...], axis: int) -> bool:
     return all(vector[i] is ZERO for i in range(3) if i != axis)
 
 
-def _torque_along(torque: TorqueStructure, axis: int, scene: Scene, given: Torque) -> bool:
+def _torque_along(torque: TorqueStructure, axis: int, scene: Scene, scene_torque: Torque) -> bool:
     """Whether the torque keeps to a body axis while the body turns about that axis only."""
     if isinstance(torque, FormulaTorque):
         return False
@@ -449,9 +449,9 @@ def _torque_along(torque: TorqueStructure, axis: int, scene: Scene, given: Torqu
     if torque.kind == "rotor":
         return _only_along(torque.vector("angular_momentum"), axis)
     if torque.kind == "constant_space":
-        return _lies_along(given.values["torque"], axis, scene)
+        return _lies_along(scene_torque.values["torque"], axis, scene)
     if torque.kind == "gravity":  # a pendulum: level axis, centre of mass beside it
-        level = _small_components(given.values["direction"], scene.initial)[axis]
+        level = _small_components(scene_torque.values["direction"], scene.initial)[axis]
         return level and torque.vector("center_of_mass")[axis] is ZERO
     return torque.kind == "damping"
 
@@ -508,7 +508,9 @@ def _one_axis(scene: Scene, structure: Structure) -> RuleOutcome:
     turning = [i for i in range(3) if omega_b[i] != 0]
     axes = turning if len(turning) == 1 else [] if turning else [0, 1, 2]
     pairs = list(zip(structure.torques, scene.torques, strict=True))
-    along = [axis for axis in axes if all(_torque_along(torque, axis, scene, given) for torque, given in pairs)]
+    along = [
+        axis for axis in axes if all(_torque_along(torque, axis, scene, scene_torque) for torque, scene_torque in pairs)
+    ]
     if not along:
         why = "the body does not turn about one principal axis only"
         if axes and any(structure.formula_torques):

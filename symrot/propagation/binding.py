@@ -66,12 +66,12 @@ class Binding:
 
     def __call__(self, plan: Plan) -> list[float]:
         """Return the numbers for a plan of the structure: exact arithmetic, one rounding each."""
-        found = self._numbers.copy()
+        numbers = self._numbers.copy()
         if self._moving:
             constants = plan.start_constants
             for place, moving in self._moving:
-                found[place] = self._rounded(*moving.ratio(constants))
-        return found
+                numbers[place] = self._rounded(*moving.ratio(constants))
+        return numbers
 
 
 class _Moving:

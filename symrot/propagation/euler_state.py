@@ -27,7 +27,7 @@ from symrot.errors import InputError, PropagationError
 from symrot.kinematics import conversions
 from symrot.planning.plan import Plan
 from symrot.planning.scene_kernel import SceneKernel, bind
-from symrot.propagation import time_shift as epoch
+from symrot.propagation import time_shift
 from symrot.propagation.compiled_models import ATTITUDE_SCALE, RATE_SCALE, has_formulas, kernel_key, scene_kernel
 from symrot.propagation.method import Choice
 from symrot.propagation.motion import Motion, Setup
@@ -64,8 +64,8 @@ def regularity(sequence: str, angles: ArrayLike) -> Floats:
     """Return ``|det B|``, from 0 at gimbal lock to 1, of angles of shape (..., 3)."""
     axes, _ = parse_sequence(sequence)
     middle = np.asarray(angles, dtype=np.float64)[..., 1]
-    found: Floats = np.abs(np.sin(middle) if axes[0] == axes[2] else np.cos(middle))
-    return found
+    determinant: Floats = np.abs(np.sin(middle) if axes[0] == axes[2] else np.cos(middle))
+    return determinant
 
 
 def angles_of(quaternion: Floats, sequence: str) -> Floats:
@@ -163,7 +163,7 @@ class EulerMotion(Motion):
 
             return self.plan, from_epoch(kernel)
 
-        return epoch.clock(moving, self.plan.constants, make=self._library_of)
+        return time_shift.clock(moving, self.plan.constants, make=self._library_of)
 
     def _integration(self, sequence: str, t: float, state: Floats) -> Integration:
         kernel = self._kernel_of(sequence)
@@ -184,52 +184,52 @@ class EulerMotion(Motion):
                 sequence = partner(sequence)
                 self._count[3] += 1
                 angles = angles_of(whole[count:], sequence)
-            task = self._integration(sequence, t, np.concatenate([whole[:count], angles]))
-            for first, last, rows in self._steps(task, sequence, end):
-                block = _Block(first, last, self._states_of(task, sequence, rows))
+            integration = self._integration(sequence, t, np.concatenate([whole[:count], angles]))
+            for first, last, rows in self._steps(integration, sequence, end):
+                block = _Block(first, last, self._states_of(integration, sequence, rows))
                 yield block
                 t = last
             if t != end:
                 whole = block.states(np.array([t]))[0]
 
-    def _steps(self, task: Any, sequence: str, end: float) -> Iterator[tuple[float, float, Floats]]:
-        """Yield the recorded steps of a task, up to the end or to where the sequence is to be changed."""
+    def _steps(self, integration: Integration, sequence: str, end: float) -> Iterator[tuple[float, float, Floats]]:
+        """Yield the recorded steps of an integration, up to the end or to where the sequence is to be changed."""
         count, broken = self._moving, None
         try:
-            with closing(task.runs(end)) as runs:
+            with closing(integration.runs(end)) as runs:
                 run = next(runs)
-                run.pace = abs(end - self.start) * task.pace  # one allowance for the whole motion
+                run.pace = abs(end - self.start) * integration.pace  # one allowance for the whole motion
                 while run.t != run.stop:
-                    first, rows = run.t, np.empty((ROWS, task.stepper.row))
+                    first, rows = run.t, np.empty((ROWS, integration.stepper.row))
                     try:
-                        task.advance(run, None, 0, None, rows.ctypes.data, ROWS)
+                        integration.advance(run, None, 0, None, rows.ctypes.data, ROWS)
                     except PropagationError as error:
                         broken = error
                     rows = rows[: run.recorded]
                     ends = np.append(rows[1:, 0], run.t) if len(rows) else np.empty(0)
                     if self.switching and len(rows):
-                        near = regularity(sequence, task.stepper.dense(rows, ends)[:, count:]) < SWITCH
+                        near = regularity(sequence, integration.stepper.dense(rows, ends)[:, count:]) < SWITCH
                         if near.any():
                             place = int(np.argmax(near))
                             yield first, float(ends[place]), rows[: place + 1]
                             return
                     if broken is not None:
-                        raise self._said(broken, sequence)
+                        raise self._with_hint(broken, sequence)
                     yield first, float(run.t), rows
         finally:
-            self._count[:3] = (a + b for a, b in zip(self._count, task.stats()[:3], strict=False))
+            self._count[:3] = (a + b for a, b in zip(self._count, integration.stats()[:3], strict=False))
 
-    def _said(self, error: PropagationError, sequence: str) -> PropagationError:
+    def _with_hint(self, error: PropagationError, sequence: str) -> PropagationError:
         hint = f"the Euler angles {sequence} are the state, which fail at gimbal lock"
         return PropagationError(f"{error} ({hint}{'' if self.switching else '; switching=True goes around it'})")
 
-    def _states_of(self, task: Integration, sequence: str, rows: Floats) -> Callable[[Floats], Floats]:
+    def _states_of(self, integration: Integration, sequence: str, rows: Floats) -> Callable[[Floats], Floats]:
         count = self._moving
 
         def states(times: Floats) -> Floats:
-            found = task.stepper.dense(rows, times)
-            quaternion = conversions.euler_to_quaternion(found[:, count:], sequence)
-            return np.hstack([found[:, :count], quaternion])
+            stepped = integration.stepper.dense(rows, times)
+            quaternion = conversions.euler_to_quaternion(stepped[:, count:], sequence)
+            return np.hstack([stepped[:, :count], quaternion])
 
         return states
 
@@ -240,10 +240,10 @@ class EulerMotion(Motion):
         states = np.empty((len(times), len(self.plan.states)))
         states[times == self.start] = self.plan.initial_state
         for part in split_at(times, self.start):
-            asked = np.abs(times[part] - self.start)
+            distances = np.abs(times[part] - self.start)
             for block in self._blocks(float(times[part[-1]])):
                 low, high = abs(block.first - self.start), abs(block.last - self.start)
-                inside = part[np.searchsorted(asked, low, "right") : np.searchsorted(asked, high, "right")]
+                inside = part[np.searchsorted(distances, low, "right") : np.searchsorted(distances, high, "right")]
                 if len(inside):
                     states[inside] = block.states(times[inside])
         accepted, rejected, evaluations, switches = self._count

@@ -18,15 +18,15 @@ def invariant_source(kernel: SceneKernel, states: Sequence[str]) -> str:
     """Return what :func:`symrot.propagation.steppers.taylor.translation_unit` takes as ``invariants``."""
     from symrot.codegen.taylor.invariant_source import invariant_definitions
 
-    kept = [item.output for item in kernel.conserved if item.kept]
-    return invariant_definitions(kernel.quantities, kept, states, [name for name, _ in kernel.quantity_parameters])
+    outputs = [item.output for item in kernel.conserved if item.kept]
+    return invariant_definitions(kernel.quantities, outputs, states, [name for name, _ in kernel.quantity_parameters])
 
 
 def invariant_parameters(kernel: SceneKernel, plan: Plan) -> list[float]:
     """Return the parameters of the invariants: for each its double, and what rounding to it left out."""
     values = {"pi": number.PI, **plan.constants}
-    found: list[float] = []
+    pairs: list[float] = []
     for _, node in kernel.quantity_parameters:
         exact = Fraction(evaluate(node, values, EXACT_FUNCTIONS))
-        found += [float(exact), float(exact - Fraction(float(exact)))]
-    return found
+        pairs += [float(exact), float(exact - Fraction(float(exact)))]
+    return pairs

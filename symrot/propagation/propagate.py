@@ -117,10 +117,10 @@ def _tolerance(tolerance: float) -> float:
     from symrot.scene.scene import TOLERANCES
 
     low, high = TOLERANCES
-    found = float(number.read(tolerance, "tolerance"))
-    if not float(low) <= found <= float(high):  # as doubles: 0.01 is above 1/100
+    value = float(number.read(tolerance, "tolerance"))
+    if not float(low) <= value <= float(high):  # as doubles: 0.01 is above 1/100
         raise InputError(f"tolerance: expected a number from {float(low):g} to {float(high):g}, got {tolerance}")
-    return found
+    return value
 
 
 def propagate(

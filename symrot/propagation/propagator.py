@@ -176,10 +176,10 @@ def _in_order(times: Floats) -> bool:
 
 def _vector(values: ArrayLike, size: int, name: str, unit: str) -> list[float]:
     array = real_array(values, name, f"{size} numbers in {unit}")
-    found: list[float] = array.tolist()
-    if array.shape != (size,) or not all(map(isfinite, found)):
-        raise InputError(f"{name}: expected {size} finite numbers in {unit}, got {number.show(found)}")
-    return found
+    numbers: list[float] = array.tolist()
+    if array.shape != (size,) or not all(map(isfinite, numbers)):
+        raise InputError(f"{name}: expected {size} finite numbers in {unit}, got {number.show(numbers)}")
+    return numbers
 
 
 def _exact(value: float, name: str) -> Fraction:
@@ -189,9 +189,9 @@ def _exact(value: float, name: str) -> Fraction:
 
 def _lowest(top: int, bottom: int) -> Fraction:
     """Return a fraction in lowest terms, whose greatest common divisor need not be sought."""
-    found: Any = object.__new__(Fraction)
-    found._numerator, found._denominator = top, bottom  # as Fraction._from_coprime_ints of Python 3.12 does
-    return found  # type: ignore[no-any-return]
+    fraction: Any = object.__new__(Fraction)
+    fraction._numerator, fraction._denominator = top, bottom  # as Fraction._from_coprime_ints of Python 3.12 does
+    return fraction  # type: ignore[no-any-return]
 
 
 def _unit(q: list[float]) -> tuple[Fraction, ...]:
@@ -207,16 +207,16 @@ def _unit(q: list[float]) -> tuple[Fraction, ...]:
     if norm * norm == square:
         return number.unit(q)
     shift = max(0, _UNIT_BITS - square.bit_length() // 2)
-    norm, found = isqrt(square << 2 * shift), []
+    norm, components = isqrt(square << 2 * shift), []
     length = _UNIT_BITS + norm.bit_length()
     for x in tops:
         bits = length - x.bit_length()
         if bits > shift and x:
             # odd, so that nothing cancels: the last of some 322 bits may be either
-            found.append(_lowest((x << bits) // norm | 1, 1 << bits - shift))
+            components.append(_lowest((x << bits) // norm | 1, 1 << bits - shift))
         else:
-            found.append(Fraction((x << bits) // norm >> bits - shift if x else 0))
-    return tuple(found)
+            components.append(Fraction((x << bits) // norm >> bits - shift if x else 0))
+    return tuple(components)
 
 
 def read_start(scene: Scene, omega: ArrayLike | None, quaternion: ArrayLike | None) -> Initial:

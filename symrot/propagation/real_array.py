@@ -41,14 +41,14 @@ def real_array(values: Any, place: str, expected: str, ndmin: int = 0) -> NDArra
         fractions are), and what is no array.
     """
     try:
-        given = np.asarray(values)
-        kind = given.dtype.kind
-        if kind in "iuf" or (kind == "O" and all(map(_is_number, given.ravel()))):
-            return np.array(given, dtype=np.float64, ndmin=ndmin)
+        array = np.asarray(values)
+        kind = array.dtype.kind
+        if kind in "iuf" or (kind == "O" and all(map(_is_number, array.ravel()))):
+            return np.array(array, dtype=np.float64, ndmin=ndmin)
     except (TypeError, ValueError, OverflowError):
         raise InputError(f"{place}: expected {expected}, got {number.show(values)}") from None
     advice = ADVICE.get(kind, "write numbers").format(place)
-    raise InputError(f"{place}: expected {expected}, got an array of type {given.dtype}; {advice}")
+    raise InputError(f"{place}: expected {expected}, got an array of type {array.dtype}; {advice}")
 
 
 def _is_number(item: Any) -> bool:

@@ -65,7 +65,7 @@ class Trajectory:
         message: str,
         events: EventResult | None = None,
     ) -> None:
-        self._motion, self._found = motion, states
+        self._motion, self._parts = motion, states
         self.t, self.method, self.stats, self.message = t, method, stats, message
         self.t_events = events and events.t_events
         self.y_events = events and events.y_events
@@ -103,7 +103,7 @@ class Trajectory:
     @cached_property
     def _states(self) -> Floats:
         """The integrated states, shape (n, N); those of an exact motion are put side by side when asked for."""
-        return np.concatenate(self._found, axis=1) if isinstance(self._found, tuple) else self._found
+        return np.concatenate(self._parts, axis=1) if isinstance(self._parts, tuple) else self._parts
 
     @property
     def y(self) -> Floats:
@@ -129,16 +129,17 @@ class Trajectory:
     @cached_property
     def omega(self) -> Floats:
         """Angular velocity, body components, rad/s, shape (n, 3)."""
-        if isinstance(self._found, tuple):
-            return self._found[0].copy()
+        if isinstance(self._parts, tuple):
+            return self._parts[0].copy()
         return self._evaluate("omega_1 of t", "omega_2 of t", "omega_3 of t")
 
     @cached_property
     def quaternion(self) -> Floats:
         """Attitude, unit, scalar first, body to space, shape (n, 4)."""
         self._need_attitude()
-        found = self._found[1] if isinstance(self._found, tuple) else self._evaluate(*(f"q{i} of t" for i in range(4)))
-        return conversions.normalize(found)
+        if isinstance(self._parts, tuple):
+            return conversions.normalize(self._parts[1])
+        return conversions.normalize(self._evaluate(*(f"q{i} of t" for i in range(4))))
 
     @cached_property
     def dcm(self) -> Floats:
@@ -210,16 +211,18 @@ class Trajectory:
     @cached_property
     def invariants(self) -> list[Invariant]:
         """The conserved quantities of the scene along this trajectory, each proven when the kernel was derived."""
-        found = []
-        kept = [item for item in self._motion.kernel.conserved if item.kept]
-        for item in kept:
+        invariants = []
+        conserved = [item for item in self._motion.kernel.conserved if item.kept]
+        for item in conserved:
             values = self._evaluate(item.output)[:, 0]
-            found.append(self._invariant(item.name, item.unit, item.reason, values, self._scale(item.name, values)))
+            invariants.append(
+                self._invariant(item.name, item.unit, item.reason, values, self._scale(item.name, values))
+            )
         if "q0" in self.states:
             first = self.states.index("q0")
             norm = np.sqrt(np.einsum("ni,ni->n", self._states[:, first:], self._states[:, first:]))
-            found.append(self._invariant("quaternion norm", "1", "rotations keep lengths", norm, 1.0))
-        return found
+            invariants.append(self._invariant("quaternion norm", "1", "rotations keep lengths", norm, 1.0))
+        return invariants
 
     def _invariant(self, name: str, unit: str, reason: str, values: Floats, scale: float) -> Invariant:
         start = self._motion.initial_quantity(name)

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Generator, Sequence
 from time import perf_counter
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,11 +11,19 @@ from symrot.build import cache as library
 from symrot.errors import InputError, PropagationError
 from symrot.planning.scene_kernel import bind
 from symrot.propagation.compiled_models import error_blocks
-from symrot.propagation.events.events import Event, Found, event_library_source, search, stepped, timed, uses_attitude
+from symrot.propagation.events.events import (
+    Event,
+    EventZero,
+    event_library_source,
+    search,
+    stepped,
+    timed,
+    uses_attitude,
+)
 from symrot.propagation.events.polynomials import Piece, fitted, fitted_pieces
 from symrot.propagation.motion import Motion, MotionInParts, SciPyMotion, SteppedInC, on_clock
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
-from symrot.propagation.steppers.stepping import Stats, Switching, split_at, stats_of
+from symrot.propagation.steppers.stepping import Integration, Stats, Switching, split_at, stats_of
 
 __all__ = ["EventResult", "integrate_with_events"]
 
@@ -81,12 +89,15 @@ def integrate_with_events(motion: Motion, times: Floats, events: Sequence[Event]
         raise InputError(f"events: expected a motion with states that change, got the scene {plan.scene.name!r}")
     quantities = motion.kernel.quantities
     motion = motion if timed(quantities, events) else on_clock(motion, times)
-    zero, asked = motion.epoch, times.copy()
+    zero, sample_times = motion.epoch, times.copy()
     times = times - zero if zero else times
     source = event_library_source(quantities, events, plan.states, *error_blocks(plan))
     path, p = library.build(source, "events"), bind(motion.kernel.quantity_parameters, plan.constants)
-    states, kept = np.empty((len(times), len(plan.states))), np.zeros(len(times), dtype=bool)
-    found: list[tuple[Found, Floats]] = []
+    states, known = (
+        np.empty((len(times), len(plan.states))),
+        np.zeros(len(times), dtype=bool),
+    )  # before a terminal event
+    zeros: list[tuple[EventZero, Floats]] = []
     counts, ended, switchings = np.zeros(3, dtype=int), False, list[Switching]()
     for part in split_at(times, motion.start):
         end = float(times[part[-1]])
@@ -100,22 +111,22 @@ def integrate_with_events(motion: Motion, times: Floats, events: Sequence[Event]
             raise error.later(zero) if isinstance(error, IntegrationStopped) else error
         ended |= stop is not None
         inside = part if stop is None else part[np.abs(times[part] - motion.start) <= abs(stop - motion.start)]
-        kept[inside] = True
+        known[inside] = True
         states[inside] = side.states(times[inside])
         rows = side.states(np.array([each.t for each in listed]))
         if stop is not None and times[inside[-1:]].tolist() != [stop]:
             last = part[len(inside)]  # the first sample beyond becomes the one at the event
-            kept[last], asked[last], states[last] = True, stop + zero, rows[-1]
-        found = _joined(found, list(zip(listed, rows, strict=True)), motion.start)
+            known[last], sample_times[last], states[last] = True, stop + zero, rows[-1]
+        zeros = _joined(zeros, list(zip(listed, rows, strict=True)), motion.start)
         side.pieces.close()
         counts += side.cost()
         reached = abs((end if stop is None else stop) - motion.start)
         switchings += [each for each in side.switchings if abs(each.t - motion.start) <= reached]
-    found.sort(key=lambda each: each[0].t)
-    own = [[each for each in found if each[0].event == number] for number in range(len(events))]
+    zeros.sort(key=lambda each: each[0].t)
+    own = [[each for each in zeros if each[0].event == number] for number in range(len(events))]
     return EventResult(
-        asked[kept],
-        states[kept],
+        sample_times[known],
+        states[known],
         stats_of(counts, perf_counter() - began, switchings),
         [np.array([each.t + zero for each, _ in group]) for group in own],
         [np.array([row for _, row in group]).reshape(-1, len(plan.states)) for group in own],
@@ -125,8 +136,8 @@ def integrate_with_events(motion: Motion, times: Floats, events: Sequence[Event]
 
 
 def _joined(
-    before: list[tuple[Found, Floats]], after: list[tuple[Found, Floats]], t0: float
-) -> list[tuple[Found, Floats]]:
+    before: list[tuple[EventZero, Floats]], after: list[tuple[EventZero, Floats]], t0: float
+) -> list[tuple[EventZero, Floats]]:
     """Put the two sides of a motion together: a zero at the start is one, a touch if both sides leave it alike."""
     at_start = {each.event: each for each, _ in before if each.t == t0}
     joined = [
@@ -147,15 +158,16 @@ def _side(motion: Motion, end: float) -> _Side:
         pieces, path = motion.parts(end, broken)
         return _Side((piece for piece in pieces), path, broken, lambda: path.stats[:3], path.stats.switchings)
     if isinstance(motion, SteppedInC):
-        task = motion.stepping.restarted()
+        integration = motion.stepping.restarted()
         rows: list[Floats] = []
 
         def states(times: Floats) -> Floats:
-            found = task.stepper.dense(np.concatenate(rows), times) if rows else np.empty((len(times), len(y0)))
-            found[times == start] = y0
-            return found
+            dense = integration.stepper.dense
+            values = dense(np.concatenate(rows), times) if rows else np.empty((len(times), len(y0)))
+            values[times == start] = y0
+            return values
 
-        return _Side(stepped(task, end, broken, rows), states, broken, lambda: _cost(task))
+        return _Side(stepped(integration, end, broken, rows), states, broken, lambda: _cost(integration))
     blocks = error_blocks(plan)
     if isinstance(motion, SciPyMotion):
         from symrot.propagation.steppers import fallback
@@ -178,5 +190,5 @@ def _side(motion: Motion, end: float) -> _Side:
     return _Side(fitted_pieces(anywhere, start, end, longest, *blocks), anywhere, broken, lambda: (0, 0, 0))
 
 
-def _cost(task: Any) -> tuple[int, int, int]:
-    return task.accepted, task.rejected, task.evaluations
+def _cost(integration: Integration) -> tuple[int, int, int]:
+    return integration.accepted, integration.rejected, integration.evaluations

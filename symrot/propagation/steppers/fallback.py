@@ -211,15 +211,15 @@ def _evaluate(pieces: list[Piece], times: Floats, states: Floats) -> None:
             states[chosen] = solution(times[chosen]).T
 
 
-class _Moved:
+class _ShiftedSolution:
     """SciPy's solution over a step on a clock that shows 0 at an epoch, as a function of time on the first clock."""
 
     def __init__(self, solution: Any, epoch: float) -> None:
         self._solution, self._epoch = solution, epoch
 
     def __call__(self, t: Floats) -> Floats:
-        found: Floats = self._solution(t - self._epoch)
-        return found
+        states: Floats = self._solution(t - self._epoch)
+        return states
 
 
 class _Integration:
@@ -247,7 +247,7 @@ class _Integration:
         self.rhs, self.p, self.clock, self.epoch = rhs, np.array(p, dtype=np.float64), clock, 0.0
         self.unmoved = self.rhs, self.p
         self.y0, self.t0 = np.array(y0, dtype=np.float64), float(t0)
-        if self.y0.ndim != 1 or not all(np.isfinite(given).all() for given in (self.t0, self.y0, self.p)):
+        if self.y0.ndim != 1 or not all(np.isfinite(values).all() for values in (self.t0, self.y0, self.p)):
             raise InputError(f"initial time, state and parameters are finite numbers, got {t0!r}, {y0!r}, {p!r}")
         check_tolerance(tolerance)
         check_longest_step(max_step)
@@ -278,10 +278,10 @@ class _Integration:
 
     def follow(self, times: Floats) -> Floats:
         """Return the states at times sorted away from t0, all on one side of it."""
-        found = np.empty((len(times), len(self.y0)))
-        _evaluate(self.solutions(float(times[-1])), times, found)
-        found[times == self.t0] = self.y0
-        return found
+        states = np.empty((len(times), len(self.y0)))
+        _evaluate(self.solutions(float(times[-1])), times, states)
+        states[times == self.t0] = self.y0
+        return states
 
     def partial(self, times: Floats) -> tuple[NDArray[np.intp], Floats]:
         """Return numbers and states of the times, sorted away from t0, that lie before the motion was cut off."""
@@ -376,8 +376,8 @@ class _Integration:
         solver = begin(segment.start - self.epoch, y, longest)
         while solver.status == "running":
             start, end = (self.whole.start, self.whole.end) if self.whole else (self.t0, segment.stop)
-            shown, y = float(solver.t), solver.y.copy()  # what the present clock shows
-            before = self.epoch + shown
+            now, y = float(solver.t), solver.y.copy()  # what the present clock shows
+            before = self.epoch + now
             progress.report(before if self.final else self.t0, start, end if self.whole else self.goal)
             self._judge_pace(before, end if self.final else segment.stop)  # a coarse pass is no part of the whole
             broken = self.broken
@@ -387,20 +387,20 @@ class _Integration:
                 longest = 0.5 * min(float(solver.h_abs), abs(segment.stop - before), longest)
                 if longest <= 4.0 * math.ulp(before):
                     raise IntegrationStopped(before, NOT_FINITE_SENTENCE, end) from None
-                solver = begin(shown, y, longest)
+                solver = begin(now, y, longest)
                 continue
-            step = float(solver.t) - shown
+            step = float(solver.t) - now
             if self.broken > broken and not np.isfinite(self._derivative(float(solver.t), solver.y)).all():
                 if abs(step) <= 4.0 * math.ulp(before):
                     raise IntegrationStopped(before, NOT_FINITE_SENTENCE, end)
                 longest = 0.5 * abs(step)  # LSODA goes on where the rates have no value
-                solver = begin(shown, y, longest)
+                solver = begin(now, y, longest)
                 continue
             after = segment.stop if solver.status == "finished" else self.epoch + float(solver.t)
             moves = solver.status != "failed" and step * solver.direction > 0.0  # LSODA may say so when it could not
-            if self.clock is not None and abs(shown) > FAR * abs(step) and abs(shown) > math.ulp(before):
-                shown = self._move_clock(self.clock, shown)
-                solver = begin(shown, y, longest)
+            if self.clock is not None and abs(now) > FAR * abs(step) and abs(now) > math.ulp(before):
+                now = self._move_clock(self.clock, now)
+                solver = begin(now, y, longest)
                 continue
             idle = idle + 1 if after == before else 0
             if message == solver.TOO_SMALL_STEP or (solver.status != "failed" and not moves) or idle > MAX_IDLE:
@@ -408,17 +408,17 @@ class _Integration:
             if solver.status == "failed" or not np.isfinite(solver.y).all():
                 raise IntegrationStopped(after, message or NOT_FINITE_SENTENCE, end)
             dense = solver.dense_output()
-            proven = step if self.deviations is None else self._proven(before, y, dense, shown, step, bars)
+            proven = step if self.deviations is None else self._proven(before, y, dense, now, step, bars)
             if proven != step:
                 if abs(proven) <= 4.0 * math.ulp(before):
                     raise IntegrationStopped(before, why_stuck(STUCK, before, start, end), end)
                 longest = abs(proven)
-                solver = begin(shown, y, longest)
+                solver = begin(now, y, longest)
                 continue
             self.steps += 1
             if after != before:
                 times.append(after)
-                interpolants.append(_Moved(dense, self.epoch) if self.epoch else dense)
+                interpolants.append(_ShiftedSolution(dense, self.epoch) if self.epoch else dense)
             if longest < self.max_step and abs(step) > HELD * longest and solver.status == "running":
                 longest = min(REGAIN * longest, self.max_step)
                 if self.method == "LSODA":
@@ -426,9 +426,9 @@ class _Integration:
                 else:  # the others read it before every step
                     solver.max_step = longest
 
-    def _move_clock(self, clock: Clock, shown: float) -> float:
+    def _move_clock(self, clock: Clock, now: float) -> float:
         """Have the clock show about 0 where it now shows another time, and return what it shows instead, exactly."""
-        self.epoch, rest = two_sum(self.epoch, shown)
+        self.epoch, rest = two_sum(self.epoch, now)
         self.rhs, p = clock(self.epoch)
         self.p = np.array(p, dtype=np.float64)
         return float(rest)
@@ -449,10 +449,10 @@ class _Integration:
     def _spent(self) -> int:
         return self.work + (self.whole.spent if self.whole else 0)
 
-    def _proven(self, t: float, y: Floats, dense: Any, shown: float, step: float, bars: list[float]) -> float:
-        """Return the longest part of a step, from ``shown`` on the present clock, that is proven to miss nothing."""
+    def _proven(self, t: float, y: Floats, dense: Any, now: float, step: float, bars: list[float]) -> float:
+        """Return the longest part of a step, from ``now`` on the present clock, that is proven to miss nothing."""
         assert self.deviations is not None
-        path = np.abs(_FIT @ (dense(shown + _NODES * step).T - y)).T.tolist()
+        path = np.abs(_FIT @ (dense(now + _NODES * step).T - y)).T.tolist()
         edges = [0, *(block.stop for block, _ in self.blocks)]
         return longest_followed(self.deviations, t, y.tolist(), path, step, bars, edges, FIT_ORDER)
 

@@ -9,7 +9,7 @@ import ctypes
 import math
 import os
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from functools import cached_property
 from itertools import pairwise
 from operator import le
@@ -517,7 +517,7 @@ class Integration:
                     raise IntegrationStopped(run.t, reason, run.stop)
         return pieces
 
-    def runs(self, end: float) -> Iterator[Run]:
+    def runs(self, end: float) -> Generator[Run, None, None]:
         """Yield the C side's run, set up for each segment between switching times, and count what it cost."""
         stepper, self.goal = self.stepper, end
         pace = (self.way or abs(end - self.t0)) * self.pace

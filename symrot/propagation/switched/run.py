@@ -165,7 +165,7 @@ class SwitchedRun(RunState):
         current: list[tuple[Piece, Callable[[Floats], Floats]]] = []
         watching = watched()
         try:
-            found, stop = search(regime.path, events, values, watching, start)
+            zeros, stop = search(regime.path, events, values, watching, start)
         except IntegrationStopped as error:
             at = passed[-1]
             y = current[0][1](np.array([at]))[0] if current else self.y
@@ -190,7 +190,7 @@ class SwitchedRun(RunState):
             self.t = self.end if current else self.t  # a mode was settled: once more from here
             return None
         piece, states = current[0]
-        ended = next(each.event for each in reversed(found) if each.t == stop and active[each.event])
+        ended = next(each.event for each in reversed(zeros) if each.t == stop and active[each.event])
         guard = regime.guards[ended]
         instant = self._at(stop) if stop == self.end else self._located(regime, guard, stop)
         if abs(stop) > abs(passed[-1]):

@@ -84,7 +84,7 @@ class SwitchedSystem:
         """Return the modes on one side of a guard that is zero at the start: those with it in their guards follow."""
         return self._modes_at_start({mode: sign})[0]
 
-    def _modes_at_start(self, given: Modes) -> tuple[Modes, set[str]]:
+    def _modes_at_start(self, chosen_modes: Modes) -> tuple[Modes, set[str]]:
         start, modes, undecided = self.plan.scene.initial, Modes(), set[str]()
         values: dict[str, float] = {name: float(value) for name, value in self.constants.items()}
         values |= {"t": self.start, **{f"omega_{i + 1}": float(value) for i, value in enumerate(start.omega_b)}}
@@ -101,7 +101,7 @@ class SwitchedSystem:
             modes[switch.mode] = math.floor(guard) if switch.kind == "floor" else -1 if guard < 0.0 else 1
             if guard == 0.0 and switch.mode in self.settled:
                 modes[switch.mode] = 0 if switch.kind == "floor" else switch.at_zero
-            modes[switch.mode] = given.get(switch.mode, modes[switch.mode])
+            modes[switch.mode] = chosen_modes.get(switch.mode, modes[switch.mode])
             values[switch.mode] = float(modes[switch.mode])
             if guard == 0.0 and switch.kind == "sign" and names(switch.guard) & STATES:
                 undecided.add(switch.mode)
