@@ -263,8 +263,7 @@ def _ensemble(scene: Scene, n: int, random: np.random.Generator) -> Iterator[tup
     varied = {"principal": moments * (1 + SPREAD * random.random((n, 1)))}
     for name, field, entry in VARIED:
         if scene.torques and field in scene.torques[0].values:
-            value: Any = scene.torques[0].values[field]
-            varied[name] = float(value if entry is None else value[entry]) * (1 + SPREAD * random.random(n))
+            varied[name] = float(scene.torques[0].constant(field, entry)) * (1 + SPREAD * random.random(n))
     yield "and " + ", ".join(varied), {**variations, "parameters": varied}
 
 

@@ -222,7 +222,7 @@ def structure_key(scene: Scene, initial: Initial) -> Hashable:
         return turning
     pattern = tuple([_pattern(q, unit=True) for q in initial.quaternion])
     fixed = [torque for torque in scene.torques if torque.kind in DIRECTED]
-    lying = tuple([_small_components(torque.values[DIRECTED[torque.kind]], initial) for torque in fixed])
+    lying = tuple([_small_components(torque.vector(DIRECTED[torque.kind]), initial) for torque in fixed])
     return turning, pattern, lying
 
 
@@ -234,8 +234,7 @@ def switched(scene: Scene) -> bool:
     return any(
         has_switches(expression.parse(formula, switching=True))
         for torque in scene.torques
-        if torque.kind == "expression"
-        for formula in torque.values["torque"]
+        for formula in torque.formulas
     )
 
 
@@ -244,8 +243,7 @@ def _switching_function(scene: Scene) -> str:
     calls = {
         name
         for torque in scene.torques
-        if torque.kind == "expression"
-        for formula in torque.values["torque"]
+        for formula in torque.formulas
         for name in expression.operations(expression.parse(formula, switching=True))
     }
     return min(calls & set(expression.SWITCHING), default="")
@@ -260,14 +258,12 @@ def general_structure(scene: Scene, switched: bool = False) -> Structure:
 
 def _general_torque(number: int, torque: Torque, known: set[str], switched: bool) -> TorqueStructure:
     """Return the structure of one torque, its constants free; their names are added to those ``known``."""
-    if torque.kind == "expression":
+    if torque.formulas:
         general = _formula_torque(torque, switched)
         prefix = _prefix(number, list(general.parameters), known)
         return general._replace(prefix=prefix)
     fields: list[tuple[str, FieldPattern]] = [
-        (name, (FREE,) * len(value) if isinstance(value, tuple) else FREE)
-        for name, value in torque.values.items()
-        if value is not None
+        (name, (FREE,) * len(value) if isinstance(value, tuple) else FREE) for name, value in torque.values.items()
     ]
     prefix = _prefix(number, [name for field in fields for name in component_names(*field)], known)
     return FieldTorque(torque.kind, prefix, tuple(fields))
@@ -275,8 +271,7 @@ def _general_torque(number: int, torque: Torque, known: set[str], switched: bool
 
 def _formula_torque(torque: Torque, switched: bool) -> FormulaTorque:
     """Return the structure of a torque given by formulas, without a prefix."""
-    formulas, parameters = tuple(torque.values["torque"]), tuple(torque.values["parameters"])
-    frame: str = torque.values["frame"]
+    formulas, parameters, frame = torque.formulas, tuple(torque.values), torque.frame
     if not (switched and any(has_switches(expression.parse(text, switching=True)) for text in formulas)):
         return FormulaTorque("", formulas, parameters, frame)
     form = smooth(formulas)
@@ -328,15 +323,15 @@ def _scene_constants(scene: Scene, structure: Structure) -> dict[str, Fraction]:
     for torque, scene_torque in zip(structure.torques, scene.torques, strict=True):
         prefix = torque.prefix
         if isinstance(torque, FormulaTorque):
-            constants |= {f"{prefix}{name}": value for name, value in scene_torque.values["parameters"].items()}
+            constants |= {f"{prefix}{name}": scene_torque.number(name) for name in scene_torque.values}
             constants |= {f"{prefix}{switch.mode}": Fraction(1) for switch in torque.switches}
             continue
         for name, field in torque.fields:
-            value = scene_torque.values[name]
             if isinstance(field, Pattern):
-                constants |= {f"{prefix}{name}": value} if field is FREE else {}
+                constants |= {f"{prefix}{name}": scene_torque.number(name)} if field is FREE else {}
                 continue
-            for component, entry, mark in zip(component_names(name, field), value, field, strict=True):
+            vector = scene_torque.vector(name)
+            for component, entry, mark in zip(component_names(name, field), vector, field, strict=True):
                 constants |= {f"{prefix}{component}": entry} if mark is FREE else {}
     return constants
 
@@ -382,9 +377,9 @@ def _special_constants(scene: Scene, structure: Structure) -> RuleOutcome:
         fields: list[tuple[str, FieldPattern]] = []
         for name, general in torque.fields:
             value, unit = scene_torque.values[name], name in UNIT_FIELDS
-            many = isinstance(general, tuple)
-            marks = tuple([_pattern(entry, unit) for entry in (value if many else (value,))])
-            fields.append((name, marks if many else marks[0]))
+            entries = value if isinstance(value, tuple) else (value,)
+            marks = tuple([_pattern(entry, unit) for entry in entries])
+            fields.append((name, marks if isinstance(value, tuple) else marks[0]))
             for component, mark in zip(component_names(name, general), marks, strict=True):
                 special[mark].append(component)
         torques.append(torque._replace(fields=tuple(fields)))
@@ -398,7 +393,7 @@ def _special_constants(scene: Scene, structure: Structure) -> RuleOutcome:
 
 def _silent(torque: FormulaTorque, scene_torque: Torque) -> list[str]:
     """Return in words the axes about which formulas give no torque."""
-    axes = [str(i + 1) for i, formula in enumerate(scene_torque.values["torque"]) if _is_zero(formula)]
+    axes = [str(i + 1) for i, formula in enumerate(scene_torque.formulas) if _is_zero(formula)]
     if not axes:
         return []
     listed = f"axis {axes[0]}" if len(axes) == 1 else f"axes {', '.join(axes[:-1])} and {axes[-1]}"
@@ -449,9 +444,9 @@ def _torque_along(torque: TorqueStructure, axis: int, scene: Scene, scene_torque
     if torque.kind == "rotor":
         return _only_along(torque.vector("angular_momentum"), axis)
     if torque.kind == "constant_space":
-        return _lies_along(scene_torque.values["torque"], axis, scene)
+        return _lies_along(scene_torque.vector("torque"), axis, scene)
     if torque.kind == "gravity":  # a pendulum: level axis, centre of mass beside it
-        level = _small_components(scene_torque.values["direction"], scene.initial)[axis]
+        level = _small_components(scene_torque.vector("direction"), scene.initial)[axis]
         return level and torque.vector("center_of_mass")[axis] is ZERO
     return torque.kind == "damping"
 

@@ -86,7 +86,7 @@ def scene_kernel(plan: Plan, on_rates: Callable[[Program, str], object] = lambda
     from symrot.codegen.scene_kernels import derive_scene_kernel
 
     kernel = derive_scene_kernel(plan.structure, on_rates)
-    library.store(kernel_key(plan), json.dumps(kernel.data))
+    library.store(kernel_key(plan), json.dumps(kernel.record))
     return kernel
 
 

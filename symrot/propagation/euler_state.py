@@ -9,7 +9,7 @@ The result is an ordinary trajectory, its quaternion rebuilt from the angles: wh
 
 import json
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import closing
 from dataclasses import replace
 from functools import cached_property
@@ -26,7 +26,7 @@ from symrot.dynamics.structure import Structure
 from symrot.errors import InputError, PropagationError
 from symrot.kinematics import conversions
 from symrot.planning.plan import Plan
-from symrot.planning.scene_kernel import SceneKernel, bind
+from symrot.planning.scene_kernel import KernelRecord, SceneKernel, bind
 from symrot.propagation import time_shift
 from symrot.propagation.compiled_models import ATTITUDE_SCALE, RATE_SCALE, has_formulas, kernel_key, scene_kernel
 from symrot.propagation.method import Choice
@@ -267,13 +267,13 @@ class EulerMotion(Motion):
         return at
 
 
-def _derived(structure: Structure) -> Mapping[str, Any]:
+def _derived(structure: Structure) -> KernelRecord:
     """Return the saved form of the equations of motion in Euler angles."""
     from symrot.codegen.scene_kernels import RATES, rates_program, rates_source
     from symrot.dynamics.equations import equations_of_motion
 
     rates = rates_program(equations_of_motion(structure), RATES)
-    return SceneKernel.of(rates.program, rates.parameters, rates.program, (), (), rates_source(rates)).data
+    return SceneKernel.of(rates.program, rates.parameters, rates.program, (), (), rates_source(rates)).record
 
 
 class EulerPropagator(Propagator):

@@ -18,7 +18,7 @@ def invariant_source(kernel: SceneKernel, states: Sequence[str]) -> str:
     """Return what :func:`symrot.propagation.steppers.taylor.translation_unit` takes as ``invariants``."""
     from symrot.codegen.taylor.invariant_source import invariant_definitions
 
-    outputs = [item.output for item in kernel.conserved if item.kept]
+    outputs = [item.output for item in kernel.conserved if item.holds]
     return invariant_definitions(kernel.quantities, outputs, states, [name for name, _ in kernel.quantity_parameters])
 
 

@@ -49,7 +49,7 @@ def time_shifted(plan: Plan, kernel: SceneKernel) -> tuple[Plan, SceneKernel]:
     from symrot.codegen.taylor.time_shift import from_epoch
 
     kernel = from_epoch(kernel)
-    library.store(kernel_key(plan), json.dumps(kernel.data))
+    library.store(kernel_key(plan), json.dumps(kernel.record))
     return plan, kernel
 
 

@@ -212,7 +212,7 @@ class Trajectory:
     def invariants(self) -> list[Invariant]:
         """The conserved quantities of the scene along this trajectory, each proven when the kernel was derived."""
         invariants = []
-        conserved = [item for item in self._motion.kernel.conserved if item.kept]
+        conserved = [item for item in self._motion.kernel.conserved if item.holds]
         for item in conserved:
             values = self._evaluate(item.output)[:, 0]
             invariants.append(

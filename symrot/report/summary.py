@@ -69,7 +69,7 @@ def facts(propagator: Any, trajectory: Any, preparation: float) -> dict[str, Any
         "not_conserved": [
             {"name": item.name, "unit": item.unit, "reason": item.reason}
             for item in propagator.kernel.conserved
-            if not item.kept
+            if not item.holds
         ],
         "final": final,
         "written": {},

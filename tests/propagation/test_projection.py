@@ -49,7 +49,7 @@ class Body:
         """The largest change of an invariant that is kept, exactly."""
         values = {name: Fraction(v) for (name, _), v in zip(self.kernel.quantity_parameters, bind(
             self.kernel.quantity_parameters, self.plan.constants), strict=True)}  # fmt: skip
-        outputs = [item.output for item in self.kernel.conserved if item.kept]
+        outputs = [item.output for item in self.kernel.conserved if item.holds]
         both = []
         for y in (state, self.start):
             known = values | {name: Fraction(float(v)) for name, v in zip(self.plan.states, y, strict=True)}

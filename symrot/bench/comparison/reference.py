@@ -172,7 +172,7 @@ def _taylor(problem: Problem, say: Progress, seconds: float) -> list[State]:
     kernel, plan = problem.kernel, problem.plan
     exact_numbers = _exact_parameters(kernel.rate_parameters, plan), _exact_start(plan)
     where = f"{problem.start} {problem.ends}"
-    key = f"held reference {DIGITS} {ORDER} {TAIL}\n{json.dumps(kernel.data['rates'])}\n{exact_numbers}\n{where}"
+    key = f"held reference {DIGITS} {ORDER} {TAIL}\n{json.dumps(kernel.record['rates'])}\n{exact_numbers}\n{where}"
     stored = cache.fetch(key)
     with mpmath.workdps(DIGITS):
         if stored is None:
