@@ -290,9 +290,6 @@ def _scipy(stepped: _Stepped, method: str) -> lanes.Outcome:
 
     problem, rates = stepped.problem, python_rates(*stepped.moved)
     blocks, scales = error_blocks(stepped.plan)
-    solver = method.partition(":")[2]
-    options: dict[str, Any] = {"blocks": blocks, "scales": scales, **({"method": solver} if solver else {})}
-
     bounds = formula_deviations(*stepped.moved)
     names = [name for name, _ in stepped.moved[1].rate_parameters]
 
@@ -300,7 +297,8 @@ def _scipy(stepped: _Stepped, method: str) -> lanes.Outcome:
         start = rates, stepped.p[k], stepped.y[k], stepped.t0
         deviations = bounds and bounds(dict(zip(names, stepped.p[k].tolist(), strict=True)))
         clock = stepped.clock(k, python_rates)
-        return fallback.integrate(*start, times, problem.tolerance, deviations=deviations, clock=clock, **options)
+        options = fallback.Options(method, blocks, scales, deviations=deviations, clock=clock)
+        return fallback.integrate(*start, times, problem.tolerance, options)
 
     return stepped.one_by_one(integrate)
 

@@ -27,13 +27,13 @@ from symrot.propagation.compiled_models import compiled, error_blocks, formula_d
 from symrot.propagation.events.polynomials import Piece
 from symrot.propagation.method import Choice
 from symrot.propagation.steppers import dop853, taylor
-from symrot.propagation.steppers.dop853 import Stats
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
-from symrot.propagation.steppers.stepping import NOT_FINITE_SENTENCE, Integration, Recording
+from symrot.propagation.steppers.stepping import NOT_FINITE_SENTENCE, Integration, Recording, Stats
 from symrot.scene.scene import Initial
 
 if TYPE_CHECKING:
     from symrot.propagation.enclosures.step_limit import Deviations
+    from symrot.propagation.steppers.fallback import Options
 
 __all__ = [
     "ClosedFormMotion", "ConstantMotion", "Motion", "MotionInParts", "RestartableMotion", "SciPyMotion", "Setup",
@@ -527,32 +527,28 @@ class SciPyMotion(ShiftableMotion):
         names = [name for name, _ in self.kernel.rate_parameters]
         return self.setup.deviations(dict(zip(names, parameters, strict=True)))
 
-    @property
-    def scipy_options(self) -> dict[str, Any]:
-        """How the fallback judges errors, and by which of SciPy's methods it steps."""
-        return self.scipy_options_for(self.rate_parameters)
+    def options(self, parameters: Sequence[float]) -> "Options":
+        """Return how SciPy steps the motion and judges errors, for parameters of the rates."""
+        from symrot.propagation.steppers.fallback import Options
 
-    def scipy_options_for(self, parameters: Sequence[float]) -> dict[str, Any]:
-        """Return the options of the fallback for parameters of the rates."""
         blocks, scales = error_blocks(self.plan)
-        solver = self.choice.method.partition(":")[2]
-        named = {"method": solver} if solver else {}
         clock = self._clock if self.setup.moves_clock else None
-        return {"blocks": blocks, "scales": scales, "deviations": self.deviations(parameters), "clock": clock, **named}
+        deviations = self.deviations(parameters)
+        return Options(self.choice.method, blocks, scales, deviations=deviations, clock=clock)
 
     def steps(self, times: Floats, in_order: bool) -> tuple[Floats, Stats]:
         """Return the states at times on the clock of the motion, shape (n, N), and what they cost."""
         from symrot.propagation.steppers import fallback
 
         start = (self.rate_parameters, self.plan.initial_state, self.start)
-        return fallback.integrate(self.rates, *start, times, self.tolerance, **self.scipy_options)
+        return fallback.integrate(self.rates, *start, times, self.tolerance, self.options(self.rate_parameters))
 
     def dense(self, span: tuple[float, float]) -> Recording:
         """Return the states as a function of time."""
         from symrot.propagation.steppers import fallback
 
         start = (self.rate_parameters, self.plan.initial_state, self.start)
-        recording = fallback.record(self.rates, *start, span, self.tolerance, **self.scipy_options)
+        recording = fallback.record(self.rates, *start, span, self.tolerance, self.options(self.rate_parameters))
         recording.epoch = self.epoch
         return recording
 

@@ -11,7 +11,7 @@ from symrot.errors import InputError
 from symrot.kinematics import conversions
 from symrot.propagation.events.event_result import EventResult
 from symrot.propagation.motion import Motion
-from symrot.propagation.steppers.dop853 import Stats
+from symrot.propagation.steppers.stepping import Stats
 
 __all__ = ["Invariant", "Trajectory"]
 

@@ -291,7 +291,9 @@ def test_without_the_enclosure_the_pulse_is_missed(stepper):
             bounds = enclosure_source(kernel.rates, dop853.DENSE_ORDER, edges[0]) if enclosed else dop853.NO_ENCLOSURE
             text = dop853.translation_unit(kernel.source, "symrot_rates", len(plan.states), len(p), *edges, bounds)
             flags = library.FLAGS
-        states, _ = stepper.integrate(library.build(text, "held", flags), p, plan.initial_state, 0.0, [10.0], 1e-10)
+        states, _ = stepper.integration(library.build(text, "held", flags), p, plan.initial_state, 0.0, 1e-10).sample(
+            [10.0]
+        )
         omega = states[0, plan.states.index("omega_3")]
         assert (abs(omega - 1e-3 * math.sqrt(math.pi) / 3) < 1e-12) == enclosed
 
@@ -325,7 +327,7 @@ def test_smooth_torques_of_time_cost_no_more_steps(torque):
     steps = []
     for enclosed in (False, True):
         path = library.build(taylor.translation_unit(kernel.rates, *edges, enclosed=enclosed), "held", taylor.FLAGS)
-        steps.append(taylor.integrate(path, p, plan.initial_state, 0.0, [20.0], 1e-12)[1].accepted)
+        steps.append(taylor.integration(path, p, plan.initial_state, 0.0, 1e-12).sample([20.0])[1].accepted)
     assert steps[1] <= 1.2 * steps[0] + 1
 
 

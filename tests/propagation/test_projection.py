@@ -43,7 +43,7 @@ class Body:
         self.start, self.plan = [float(value) for value in plan.initial_state], plan
 
     def at(self, t, tolerance=1e-15, **more):
-        return taylor.integrate(self.path, self.p, self.start, 0.0, [t], tolerance, **more)[0][0]
+        return taylor.integration(self.path, self.p, self.start, 0.0, tolerance, **more).sample([t])[0][0]
 
     def drift(self, state):
         """The largest change of an invariant that is kept, exactly."""

@@ -120,7 +120,7 @@ def s24(long):
     ]
     errors = {}
     for tolerance in [10.0**-k for k in range(4, 16)]:
-        states, _ = taylor.integrate(path, problem.taylor_p, problem.y0, 0.0, [200.0], tolerance)
+        states, _ = taylor.integration(path, problem.taylor_p, problem.y0, 0.0, tolerance).sample([200.0])
         errors[tolerance] = problem.error(states[0], exact)
     worst = max(error / tolerance for tolerance, error in errors.items() if tolerance >= 1e-13)
     return [*found, Figure("taylor", "error over tolerance, 1e-4 to 1e-13", 10, worst),

@@ -173,7 +173,13 @@ def _side(motion: Motion, end: float) -> _Side:
         from symrot.propagation.steppers import fallback
 
         recording = fallback.record(
-            motion.rates, motion.rate_parameters, y0, start, (start, end), motion.tolerance, **motion.scipy_options
+            motion.rates,
+            motion.rate_parameters,
+            y0,
+            start,
+            (start, end),
+            motion.tolerance,
+            motion.options(motion.rate_parameters),
         )
 
         def steps() -> Generator[Piece, None, None]:

@@ -1,7 +1,7 @@
 """Dormand-Prince 8(5,3) around an emitted kernel: the C of :file:`dop853.c` driven from Python, one call per span.
 
-A library holds one kernel and the stepper compiled together (:func:`translation_unit`); :func:`integrate` follows a
-motion through sample times, :func:`record` keeps every step so that the motion can be asked for at any time later.
+A library holds one kernel and the stepper compiled together (:func:`translation_unit`). An :func:`integration` follows
+a motion through sample times, or records every step so that the states are known at any time later.
 
 Tolerance: the promise is about the trajectory, not about one step, see :func:`step_tolerance`.
 
@@ -25,19 +25,16 @@ from symrot.propagation.steppers.stepping import (
     NOT_FINITE_SENTENCE,
     PAUSED,
     UNDERFLOW,
-    Floats,
     Integration,
     PathLike,
-    Recording,
     Run,
     Segment,
-    Stats,
     Stepper,
     Window,
     check_tolerance,
 )
 
-__all__ = ["MAX_STEPS", "Recording", "Stats", "integrate", "record", "step_tolerance", "translation_unit"]
+__all__ = ["DENSE_ORDER", "MAX_STEPS", "NO_ENCLOSURE", "Clock", "integration", "step_tolerance", "translation_unit"]
 
 STEP_SHARE, NATURAL_TIMES = 0.14, 0.16  # of the tolerance; of the span, see step_tolerance
 TERMS = 8  # of the dense output
@@ -122,75 +119,6 @@ def translation_unit(
     )
 
 
-def integrate(
-    library: PathLike,
-    p: ArrayLike,
-    y0: ArrayLike,
-    t0: float,
-    times: ArrayLike,
-    tolerance: float,
-    *,
-    breaks: Sequence[float] = (),
-    max_step: float = math.inf,
-    max_steps: int = MAX_STEPS,
-) -> tuple[Floats, Stats]:
-    """Return the states at the sample times, and what it cost.
-
-    Parameters
-    ----------
-    library : path
-        Built from :func:`translation_unit`.
-    p, y0 : arrays, shapes (parameters,) and (N,)
-        Parameters of the kernel; state at ``t0``.
-    t0 : float
-        Initial time, s.
-    times : array, shape (n,)
-        Sample times, s, in any order, before or after ``t0``, repeated or not. The steps depend on the first and last
-        of them only.
-    tolerance : float
-        Aim for the error of the whole trajectory, see :func:`step_tolerance`.
-    breaks : sequence of float
-        Times at which the kernel jumps; the motion is stepped exactly to each and started anew behind it.
-    max_step : float
-        Longest step, s, where the kernel has features that a longer one could pass over.
-    max_steps : int
-        Most steps to try before giving up.
-
-    Returns
-    -------
-    states : array, shape (n, N), C layout
-    stats : Stats
-
-    Raises
-    ------
-    InputError
-        If a shape, a time or the tolerance cannot be used.
-    PropagationError
-        If the motion cannot be followed to the end; the sentence says how far it came.
-    """
-    return integration(library, p, y0, t0, tolerance, max_step, max_steps, breaks).sample(times)
-
-
-def record(
-    library: PathLike,
-    p: ArrayLike,
-    y0: ArrayLike,
-    t0: float,
-    span: tuple[float, float],
-    tolerance: float,
-    *,
-    breaks: Sequence[float] = (),
-    max_step: float = math.inf,
-    max_steps: int = MAX_STEPS,
-) -> Recording:
-    """Return the motion over ``span`` as a function of time; arguments as :func:`integrate`.
-
-    The same steps are taken as by :func:`integrate` to the ends of the span, so the two agree where they overlap. One
-    step takes 8 N + 2 numbers of memory.
-    """
-    return integration(library, p, y0, t0, tolerance, max_step, max_steps, breaks).record(span)
-
-
 def integration(
     library: PathLike,
     p: ArrayLike,
@@ -202,7 +130,32 @@ def integration(
     breaks: Sequence[float] = (),
     clock: Clock | None = None,
 ) -> Integration:
-    """Return a motion to follow; arguments as :func:`integrate`, and the clock of its kernel if it can be moved."""
+    """Return a motion to sample or to record, its input checked.
+
+    Parameters
+    ----------
+    library : path
+        Built from :func:`translation_unit`.
+    p, y0 : arrays, shapes (parameters,) and (N,)
+        Parameters of the kernel; state at ``t0``.
+    t0 : float
+        Initial time, s.
+    tolerance : float
+        Error of the whole trajectory to aim for, see :func:`step_tolerance`.
+    max_step : float
+        Longest step, s, where the kernel has features that a longer one could pass over.
+    max_steps : int
+        Most steps to try before giving up.
+    breaks : sequence of float
+        Times at which the kernel jumps; the motion is stepped exactly to each and restarted behind it.
+    clock : function, optional
+        The clock of the kernel, if it can be moved.
+
+    Raises
+    ------
+    InputError
+        If a shape, a time or the tolerance cannot be used.
+    """
     if clock is None:
         return Integration(_stepper, library, p, y0, t0, tolerance, max_step, max_steps, breaks)
     return _Clocked(clock, _stepper, library, p, y0, t0, tolerance, max_step, max_steps, breaks)

@@ -11,6 +11,7 @@ can be moved (a :data:`Clock`), SciPy then starts anew on one that shows 0 nearb
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 from time import perf_counter
 from typing import Any, NamedTuple
@@ -35,7 +36,7 @@ from symrot.propagation.steppers.stepping import (
     split_at,
 )
 
-__all__ = ["METHODS", "FallbackRecording", "WholeMotion", "integrate", "method_name", "record"]
+__all__ = ["METHODS", "FallbackRecording", "Options", "WholeMotion", "integrate", "method_name", "record"]
 
 Rhs = Callable[[float, Floats, Floats], ArrayLike]
 Clock = Callable[[float], tuple[Rhs, Sequence[float]]]
@@ -88,59 +89,71 @@ def method_name(text: str) -> str:
     return name
 
 
+@dataclass(frozen=True)
+class Options:
+    """How SciPy follows a motion.
+
+    Attributes
+    ----------
+    method : str
+        As :func:`method_name` takes it.
+    blocks, scales
+        As :func:`symrot.propagation.steppers.dop853.translation_unit` takes them; the last edge may lie beyond N.
+    breaks, max_step
+        As :func:`symrot.propagation.steppers.dop853.integration` takes them.
+    max_steps : int
+        Most evaluations of the right-hand side.
+    deviations : Deviations, optional
+        Of the terms of the right-hand side that may hide a feature: steps are held to what they prove.
+    clock : callable, optional
+        Of the right-hand side, where it can be moved: see :data:`Clock`.
+    whole : WholeMotion, optional
+        The motion of which a part is followed. Then ``max_steps`` is the limit of the whole.
+    """
+
+    method: str = DEFAULT
+    blocks: Sequence[int] = (0, 3, 7)
+    scales: Sequence[float] = (0.0, 1.0)
+    breaks: Sequence[float] = ()
+    max_step: float = math.inf
+    max_steps: int = MAX_EVALUATIONS
+    deviations: Deviations | None = None
+    clock: Clock | None = None
+    whole: WholeMotion | None = None
+
+
 def integrate(
-    rhs: Rhs,
-    p: ArrayLike,
-    y0: ArrayLike,
-    t0: float,
-    times: ArrayLike,
-    tolerance: float,
-    *,
-    method: str = DEFAULT,
-    blocks: Sequence[int] = (0, 3, 7),
-    scales: Sequence[float] = (0.0, 1.0),
-    breaks: Sequence[float] = (),
-    max_step: float = math.inf,
-    max_steps: int = MAX_EVALUATIONS,
-    deviations: Deviations | None = None,
-    clock: Clock | None = None,
+    rhs: Rhs, p: ArrayLike, y0: ArrayLike, t0: float, times: ArrayLike, tolerance: float, options: Options = Options()
 ) -> tuple[Floats, Stats]:
     """Return the states at the sample times, shape (n, N), and what it cost.
-
-    As :func:`symrot.propagation.steppers.dop853.integrate`, but for these:
 
     Parameters
     ----------
     rhs : callable
         ``rhs(t, y, p)`` returns dy, shape (N,).
-    method : str
-        As :func:`method_name` takes it.
-    blocks, scales
-        As :func:`symrot.propagation.steppers.dop853.translation_unit` takes them; the last edge may lie beyond N.
-    max_steps : int
-        Most evaluations of ``rhs``.
-    deviations : Deviations, optional
-        Of the terms of ``rhs`` that may hide a feature: steps are held to what they prove.
-    clock : callable, optional
-        Of ``rhs``, where it can be moved: see :data:`Clock`.
+    p, y0, t0, tolerance
+        As :func:`symrot.propagation.steppers.dop853.integration` takes them.
+    times : array, shape (n,)
+        Sample times, s, in any order, before or after ``t0``.
+    options : Options
+        The method, and what its steps are held to.
     """
     times = np.asarray(times, dtype=np.float64)
     if times.ndim != 1 or not np.isfinite(times).all():
         raise InputError(f"sample times are a sequence of finite numbers, got {times!r}")
-    limits = breaks, max_step, max_steps, deviations, clock
-    task = _Integration(rhs, p, y0, t0, tolerance, method, blocks, scales, *limits)
-    states = np.empty((len(times), len(task.y0)))
+    motion = _Integration(rhs, p, y0, t0, tolerance, options)
+    states = np.empty((len(times), len(motion.y0)))
     done = np.empty(0, dtype=np.intp)
-    for part in split_at(times, task.t0):
+    for part in split_at(times, motion.t0):
         try:
-            states[part] = task.follow(times[part])
+            states[part] = motion.follow(times[part])
         except (IntegrationStopped, KeyboardInterrupt) as error:
-            inside, own = task.partial(times[part])
-            add_samples(error, part[inside], own, task.stats()[:3])
+            inside, own = motion.partial(times[part])
+            add_samples(error, part[inside], own, motion.stats()[:3])
             add_samples(error, done, states[done])
             raise
         done = np.concatenate([done, part])
-    return states, task.stats()
+    return states, motion.stats()
 
 
 def record(
@@ -150,44 +163,34 @@ def record(
     t0: float,
     span: tuple[float, float],
     tolerance: float,
-    *,
-    method: str = DEFAULT,
-    blocks: Sequence[int] = (0, 3, 7),
-    scales: Sequence[float] = (0.0, 1.0),
-    breaks: Sequence[float] = (),
-    max_step: float = math.inf,
-    max_steps: int = MAX_EVALUATIONS,
-    deviations: Deviations | None = None,
-    clock: Clock | None = None,
-    whole: WholeMotion | None = None,
+    options: Options = Options(),
 ) -> "FallbackRecording":
-    """Return the motion over ``span`` as a function of time; see :func:`symrot.propagation.steppers.dop853.record`.
+    """Return the motion over ``span`` as a function of time; arguments as :func:`integrate` takes them.
 
-    A motion that is cut off or interrupted has what was computed in the ``recording`` of the exception, if anything
-    was. Of a part of a motion, ``max_steps`` is that of the ``whole``.
+    A motion that stops early or is interrupted has the part computed before in the ``recording`` of the exception, if
+    there is one.
     """
-    limits = breaks, max_step, max_steps, deviations, clock
-    task = _Integration(rhs, p, y0, t0, tolerance, method, blocks, scales, *limits, whole)
-    low, high = min(*span, task.t0), max(*span, task.t0)
+    motion = _Integration(rhs, p, y0, t0, tolerance, options)
+    low, high = min(*span, motion.t0), max(*span, motion.t0)
     finished: list[Piece] = []
     try:
         for end in (low, high):
-            finished += task.solutions(end)
+            finished += motion.solutions(end)
     except (IntegrationStopped, KeyboardInterrupt) as error:
-        finished += task.pieces if task.final else []
+        finished += motion.pieces if motion.final else []
         if finished:
-            reached = [time for low, high, _ in finished for time in (low, high)]
-            error.recording = FallbackRecording(task, finished, min(reached), max(reached))  # type: ignore[union-attr]
+            ends = [time for low, high, _ in finished for time in (low, high)]
+            error.recording = FallbackRecording(motion, finished, min(ends), max(ends))  # type: ignore[union-attr]
         raise
-    return FallbackRecording(task, finished, low, high)
+    return FallbackRecording(motion, finished, low, high)
 
 
 class FallbackRecording(Recording):
     """A motion that SciPy has followed; see :class:`symrot.propagation.steppers.stepping.Recording`."""
 
-    def __init__(self, task: "_Integration", pieces: list[Piece], low: float, high: float) -> None:
+    def __init__(self, motion: "_Integration", pieces: list[Piece], low: float, high: float) -> None:
         self._pieces = pieces
-        super().__init__(task.t0, task.y0, (low, high), task.stats())
+        super().__init__(motion.t0, motion.y0, (low, high), motion.stats())
 
     def edges(self, start: float, end: float) -> list[Floats]:
         """Return the ends of SciPy's steps from a start to an end, one array for each segment, in that order."""
@@ -225,44 +228,28 @@ class _ShiftedSolution:
 class _Integration:
     """One motion to follow with SciPy."""
 
-    def __init__(
-        self,
-        rhs: Rhs,
-        p: ArrayLike,
-        y0: ArrayLike,
-        t0: float,
-        tolerance: float,
-        method: str,
-        blocks: Sequence[int],
-        scales: Sequence[float],
-        breaks: Sequence[float],
-        max_step: float,
-        max_steps: int,
-        deviations: Deviations | None,
-        clock: Clock | None,
-        whole: WholeMotion | None = None,
-    ) -> None:
+    def __init__(self, rhs: Rhs, p: ArrayLike, y0: ArrayLike, t0: float, tolerance: float, options: Options) -> None:
         self.began = perf_counter()
-        self.method = method_name(method)
-        self.rhs, self.p, self.clock, self.epoch = rhs, np.array(p, dtype=np.float64), clock, 0.0
+        self.method, self.clock, self.deviations = method_name(options.method), options.clock, options.deviations
+        self.rhs, self.p, self.epoch = rhs, np.array(p, dtype=np.float64), 0.0
         self.unmoved = self.rhs, self.p
         self.y0, self.t0 = np.array(y0, dtype=np.float64), float(t0)
         if self.y0.ndim != 1 or not all(np.isfinite(values).all() for values in (self.t0, self.y0, self.p)):
             raise InputError(f"initial time, state and parameters are finite numbers, got {t0!r}, {y0!r}, {p!r}")
         check_tolerance(tolerance)
-        check_longest_step(max_step)
-        self.tolerance, self.breaks, self.deviations = tolerance, sorted(map(float, breaks)), deviations
-        self.max_step, self.max_evaluations = max_step, max_steps
+        check_longest_step(options.max_step)
+        self.tolerance, self.breaks = tolerance, sorted(map(float, options.breaks))
+        self.max_step, self.max_evaluations = options.max_step, options.max_steps
         self.blocks = [
             (slice(low, min(high, len(self.y0))), scale)
-            for (low, high), scale in zip(pairwise(blocks), scales, strict=True)
+            for (low, high), scale in zip(pairwise(options.blocks), options.scales, strict=True)
             if low < len(self.y0)
         ]
         self.steps = self.evaluations = self.broken = 0
         self.pieces: list[Piece] = []  # of the pass that runs
         self.final = False  # whether that is the pass that counts
         self.mark = (0, self.t0)  # work and time when the pace was judged last
-        self.whole, self.before = whole, deviations.spent if deviations else 0
+        self.whole, self.before = options.whole, self.deviations.spent if self.deviations else 0
         with np.errstate(all="ignore"):  # the sentence says it
             first = self._derivative(self.t0, self.y0)
         if not np.isfinite(first).all():

@@ -358,8 +358,8 @@ def is_sorted(times: Floats) -> bool:
 class Integration:
     """One motion to follow: checked input, and the counts of all calls made for it.
 
-    ``load`` returns the stepper of a library's path; the rest as :func:`symrot.propagation.steppers.dop853.integrate`
-    takes it.
+    ``load`` returns the stepper of a library's path. The other parameters are those of
+    :func:`symrot.propagation.steppers.dop853.integration`.
     """
 
     def __init__(
@@ -415,7 +415,18 @@ class Integration:
         return Stats(self.accepted, self.rejected, self.evaluations, perf_counter() - self.began)
 
     def sample(self, times: ArrayLike) -> tuple[Floats, Stats]:
-        """Return the states at sample times in any order, shape (n, N), and what they cost."""
+        """Return the states at sample times, shape (n, N), and what they cost.
+
+        The times, s, may be in any order, before or after ``t0``, repeated or not. The steps depend on the first and
+        last of them only.
+
+        Raises
+        ------
+        InputError
+            If the times are not finite or have a wrong shape.
+        PropagationError
+            If the motion cannot be followed to the end; the sentence says how far it came.
+        """
         times = np.asarray(times, dtype=np.float64, order="C")
         if times.ndim != 1:
             raise InputError(f"sample times are a sequence of numbers, got an array of shape {times.shape}")
@@ -476,7 +487,11 @@ class Integration:
         return run
 
     def record(self, span: tuple[float, float]) -> SteppedRecording:
-        """Return the motion over a span, and over all between it and t0."""
+        """Return the motion over a span, and over all between it and t0, as a function of time.
+
+        The steps are those of :meth:`sample` to the ends of the span, so that the two agree. A step takes 8 N + 2
+        numbers of memory by DOP853, and 21 N + 4 by Taylor series of order 20.
+        """
         low, high = min(span), max(span)
         if not (math.isfinite(low) and math.isfinite(high)):
             raise InputError(f"a span runs between two finite times, got {span}")

@@ -29,15 +29,13 @@ from symrot.propagation.steppers.stepping import (
     Floats,
     Integration,
     PathLike,
-    Recording,
     Run,
     Segment,
-    Stats,
     Stepper,
     check_tolerance,
 )
 
-__all__ = ["FLAGS", "integrate", "order_for", "record", "refusal", "step_tail", "translation_unit"]
+__all__ = ["FLAGS", "integration", "order_for", "refusal", "step_tail", "translation_unit"]
 
 FLAGS = (*compiled.FLAGS, *compiled.SCHEDULED)
 STEPS_OF_ALL = 4.0  # a span of so many steps allows each of them the whole tolerance, see step_tail
@@ -141,60 +139,6 @@ def translation_unit(
     return "\n".join(parts)
 
 
-def integrate(
-    library: PathLike,
-    p: ArrayLike,
-    y0: ArrayLike,
-    t0: float,
-    times: ArrayLike,
-    tolerance: float,
-    *,
-    max_step: float = math.inf,
-    max_steps: int = MAX_STEPS,
-    project: bool = True,
-) -> tuple[Floats, Stats]:
-    """Return the states at the sample times, shape (n, N), and what it cost.
-
-    As :func:`symrot.propagation.steppers.dop853.integrate`, but for these:
-
-    Parameters
-    ----------
-    library : path
-        Built from :func:`translation_unit`.
-    tolerance : float
-        Aim for the error of the whole trajectory, see :func:`step_tail`.
-    max_steps : int
-        Most steps to take before giving up.
-    project : bool
-        Whether to hold the motion on its invariants, where the library knows some.
-
-    Returns
-    -------
-    stats : Stats
-        ``evaluations`` counts jets: all coefficients of one step.
-    """
-    return integration(library, p, y0, t0, tolerance, max_step, max_steps, project).sample(times)
-
-
-def record(
-    library: PathLike,
-    p: ArrayLike,
-    y0: ArrayLike,
-    t0: float,
-    span: tuple[float, float],
-    tolerance: float,
-    *,
-    max_step: float = math.inf,
-    max_steps: int = MAX_STEPS,
-    project: bool = True,
-) -> Recording:
-    """Return the motion over ``span`` as a function of time; see :func:`symrot.propagation.steppers.dop853.record`.
-
-    One step takes 21 N + 4 numbers of memory.
-    """
-    return integration(library, p, y0, t0, tolerance, max_step, max_steps, project).record(span)
-
-
 def integration(
     library: PathLike,
     p: ArrayLike,
@@ -205,7 +149,21 @@ def integration(
     max_steps: int = MAX_STEPS,
     project: bool = True,
 ) -> Integration:
-    """Return a motion to follow; arguments as :func:`integrate`."""
+    """Return a motion to sample or to record, as :func:`symrot.propagation.steppers.dop853.integration` does.
+
+    Its ``stats`` count as evaluations the jets, each of which is all coefficients of one step.
+
+    Parameters
+    ----------
+    library : path
+        Built from :func:`translation_unit`.
+    tolerance : float
+        Error of the whole trajectory to aim for, see :func:`step_tail`.
+    max_steps : int
+        Most steps to take before giving up.
+    project : bool
+        Whether to hold the motion on its invariants, where the library knows some.
+    """
     motion = Integration(_stepper, library, p, y0, t0, tolerance, max_step, max_steps)
     motion.fields["every"] = PROJECTED_EVERY if project else 0
     return motion

@@ -1,6 +1,7 @@
 """The pieces of a smooth motion on its way to the next switch, by each stepper: polynomials, and states at any time."""
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
@@ -81,17 +82,17 @@ class SciPyPieces:
         run, t, y = self.run, self.run.t, self.run.y
         side = 1.0 if run.end >= t else -1.0
         length = self._first_length()
-        options = self.motion.scipy_options_for(self.rates) | {"clock": self.clock}
+        options = replace(self.motion.options(self.rates), clock=self.clock)
         while t != run.end:
             stop = run.end if abs(run.end - t) <= 1.01 * length else t + side * length
             share = max(abs(stop - t) / run.span, 1e-3)
             self._judge_pace(t)
-            options["whole"] = fallback.WholeMotion(run.start, run.end, run.spent)
+            part = replace(options, whole=fallback.WholeMotion(run.start, run.end, run.spent))
             ended: IntegrationStopped | KeyboardInterrupt | None = None
             recording: Any
             try:
                 recording = fallback.record(
-                    self.motion.rates, self.rates, y, t, (t, stop), run.motion.tolerance * share, **options
+                    self.motion.rates, self.rates, y, t, (t, stop), run.motion.tolerance * share, part
                 )
             except (IntegrationStopped, KeyboardInterrupt) as error:
                 before: fallback.FallbackRecording | None = getattr(error, "recording", None)
