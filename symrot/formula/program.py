@@ -48,7 +48,7 @@ class Signature:
 
 
 class ProgramRecord(TypedDict):
-    """A :class:`Program` as JSON keeps it; formulas are nested lists, see :func:`node_to_json`."""
+    """A :class:`Program` as data for JSON; formulas are nested lists, see :func:`node_to_json`."""
 
     name: str
     arguments: list[tuple[str, str, list[list[str]], bool]]  # name, role, components, is_scalar

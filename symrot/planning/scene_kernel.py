@@ -1,6 +1,6 @@
 """The kernels of one plan as saved data: rates, quantities, conserved quantities, and the C text. No SymPy.
 
-:mod:`symrot.codegen.scene_kernels` derives it; the cache keeps it as JSON; the propagator binds it to numbers.
+:mod:`symrot.codegen.scene_kernels` derives them, the cache stores them as JSON, the propagator binds them to numbers.
 """
 
 from collections.abc import Callable, Mapping
@@ -21,7 +21,7 @@ EXACT_FUNCTIONS: dict[str, Callable[..., Fraction]] = {
     "abs": abs,
     "without_turns": number.without_turns,
 }
-EPOCH = "epoch"  # of formulas of parameters: the time, s, that the clock of a moved kernel calls 0
+EPOCH = "epoch"  # name in formulas of parameters: the time of the scene, s, at which a moved clock shows 0
 
 Parameters = tuple[tuple[str, Node], ...]  # name in the kernel, formula over the physical constants
 
@@ -51,7 +51,7 @@ SavedParameters = list[tuple[str, list[Any]]]  # name, formula as nested lists
 
 
 class KernelRecord(TypedDict):
-    """A :class:`SceneKernel` as JSON keeps it."""
+    """A :class:`SceneKernel` as data for JSON."""
 
     rates: ProgramRecord
     rate_parameters: SavedParameters
@@ -88,7 +88,7 @@ class SceneKernel:
         )
 
     def without_invariants(self, reason: str) -> "SceneKernel":
-        """Return the kernel with nothing conserved, for the given reason."""
+        """Return the kernel with all candidates for conserved quantities marked as not conserved, with a reason."""
         lost = [(name, unit, output, False, reason) for name, unit, output, *_ in self.record["conserved"]]
         return SceneKernel({**self.record, "conserved": lost})
 
@@ -104,7 +104,7 @@ class SceneKernel:
 
     @cached_property
     def quantities(self) -> Program:
-        """Angular velocity, attitude, momentum, energy and what is conserved, of time and states."""
+        """Angular velocity, attitude, momentum, energy and conserved quantities as functions of time and states."""
         return Program.from_json(self.record["quantities"])
 
     @cached_property
@@ -119,7 +119,7 @@ class SceneKernel:
 
     @property
     def source(self) -> str:
-        """C text of the rates, the function ``symrot_rates``, taking parameters even if it has none."""
+        """C text of the rates: the function ``symrot_rates``, which always takes an array of parameters."""
         return self.record["source"]
 
 

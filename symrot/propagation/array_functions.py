@@ -1,4 +1,4 @@
-"""The functions that formulas of scenes call, for arrays of NumPy."""
+"""The functions that formulas of scenes may call, for NumPy arrays."""
 
 from typing import Any
 

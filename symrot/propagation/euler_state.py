@@ -1,10 +1,11 @@
-"""Euler angles as state, for teaching: what textbooks step, where it fails, and the way around.
+"""Euler angles as state, for teaching: the state that textbooks use, where it fails, and how to go on there.
 
 The states are omega_b and the three angles of a sequence, with ``dq/dt = B(q)^-1 omega_b``. B is singular at gimbal
-lock: near it the angles turn ever faster, steps shrink, and at it the motion cannot be followed. With switching the
-angles are exchanged, a good way before, for those of a sequence that is at its best there (:func:`partner`).
+lock: near it the angles change ever faster, steps shrink, and at it the motion cannot be followed. With switching, the
+motion continues well before the lock in angles of another sequence, which is regular there (:func:`partner`).
 
-The result is an ordinary trajectory, its quaternion rebuilt from the angles: what is compared is the motion.
+The result is an ordinary trajectory whose quaternion is computed from the angles, so that it can be compared with any
+other trajectory of the scene.
 """
 
 import json
@@ -49,11 +50,11 @@ NAMES = ("phi", "theta", "psi")
 
 
 def partner(sequence: str) -> str:
-    """Return the sequence to change to near gimbal lock: the same first two turns and the other third one.
+    """Return the sequence to change to near gimbal lock: the same first two rotations and the other third one.
 
-    The two lock where entries of one row (extrinsic: column) of the attitude matrix are 1 or -1. Their squares add up
-    to 1 at most, so that where one locks the other is perfectly regular, and one of them always has
-    ``|det B| >= sqrt(1/2)``.
+    Each of the two sequences locks where its entry of one row (extrinsic: column) of the attitude matrix is 1 or -1.
+    The squares of the two entries add up to at most 1: where one sequence locks the other is perfectly regular, and
+    one of them always has ``|det B| >= sqrt(1/2)``.
     """
     axes, intrinsic = parse_sequence(sequence)
     other = ({0, 1, 2} - {axes[1], axes[2]}).pop()
@@ -71,8 +72,8 @@ def regularity(sequence: str, angles: ArrayLike) -> Floats:
 def angles_of(quaternion: Floats, sequence: str) -> Floats:
     """Return the angles, rad, that give a quaternion back with its sign, shape (3,).
 
-    A full rotation more about the first axis changes that sign. Torques that are odd in q see it: the sign must
-    survive every change of sequence.
+    One more full rotation about the first axis changes that sign. Torques that are odd in q depend on it, so that the
+    sign must survive every change of sequence.
     """
     angles: Floats = conversions.quaternion_to_euler(quaternion, sequence)[0]
     if conversions.euler_to_quaternion(angles, sequence) @ quaternion < 0.0:
@@ -89,7 +90,7 @@ class _Kernel(NamedTuple):
 
 
 class _Block(NamedTuple):
-    """Some steps in one sequence: from, to, and omega and quaternion in between."""
+    """Some steps in one sequence: first and last time, s, and omega and quaternion between them."""
 
     first: float
     last: float
@@ -100,7 +101,7 @@ class _Block(NamedTuple):
 class EulerMotion(Motion):
     """The motion of a scene with Euler angles in place of the quaternion.
 
-    It keeps the clock of the scene: angles start again on the way, each time at a time of the scene.
+    It uses the clock of the scene: at a change of sequence the new angles start at a time of the scene.
     """
 
     def __init__(self, plan: Plan, method: str, tolerance: float, sequence: str, switching: bool) -> None:
@@ -175,7 +176,7 @@ class EulerMotion(Motion):
         )
 
     def _blocks(self, end: float) -> Iterator[_Block]:
-        """Yield the motion from its start to an end, piece by piece; what it costs is added to the counts."""
+        """Yield the motion from its start to an end, piece by piece, and add its cost to the counts."""
         count, t, sequence = self._moving, self.start, self.sequence
         whole = np.array(self.plan.initial_state)
         while t != end:
@@ -234,7 +235,7 @@ class EulerMotion(Motion):
         return states
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
-        """Return omega and quaternion at the times, shape (n, N), and what it cost."""
+        """Return omega and quaternion at the times, shape (n, N), and their cost."""
         began = perf_counter()
         self._count = [0, 0, 0, 0]
         states = np.empty((len(times), len(self.plan.states)))
@@ -293,7 +294,7 @@ class EulerPropagator(Propagator):
         return EulerMotion(plan, self._method, self.tolerance, self._sequence, self._switching)
 
     def __call__(self, t: ArrayLike | None = None, *, events: Any = None, **state: Any) -> Trajectory:
-        """Return the motion as :class:`symrot.propagation.propagator.Propagator` does; events are not sought."""
+        """Return the motion as :class:`symrot.propagation.propagator.Propagator` does; events are not searched for."""
         if events is not None:
-            raise InputError("events: expected the quaternion as state; events are not sought in Euler angles")
+            raise InputError("events: expected the quaternion as state; events are not located in Euler angles")
         return super().__call__(t, **state)

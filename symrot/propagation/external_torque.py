@@ -1,7 +1,7 @@
 """A torque that is no formula: a function in Python or C, or a table of samples, with declared switching times.
 
-It acts besides the torques of the scene. Dormand and Prince's method steps the motion; at every switching time it stops
-exactly and starts anew behind it, so that a jump costs no accuracy and no rejected steps.
+It acts in addition to the torques of the scene. Dormand and Prince's method steps the motion. At every switching time
+it stops exactly and restarts behind it, so that a jump costs no accuracy and no rejected steps.
 """
 
 import ctypes
@@ -39,10 +39,10 @@ CALLBACK = ctypes.CFUNCTYPE(
     ctypes.c_int, ctypes.c_double, ctypes.POINTER(ctypes.c_double), ctypes.POINTER(ctypes.c_double),
     ctypes.POINTER(ctypes.c_double), ctypes.c_void_p,
 )  # fmt: skip
-SAMPLES_PER_STEP = 8.0  # of a table: a longer step could pass over what they say
+SAMPLES_PER_STEP = 8.0  # of a table: a longer step could pass over features of the samples
 DEFECT = 1e4  # times the error allowed in a step: more, and the dense output missed something inside
-BEND = 2.0**-50  # of the torque: what the last bits of samples bend their spline by, from one to the next
-OVERSHOOT = 100.0  # times the largest sample: a spline that goes so far says nothing of the torque
+BEND = 2.0**-50  # of the torque: rounding of samples bends their spline by as much, from one sample to the next
+OVERSHOOT = 100.0  # times the largest sample: a spline that goes so far does not represent the torque
 MOST_STEPS = 30_000_000  # under a table, some 20 s; others end at stepping.MAX_STEPS
 UNKNOWN = (
     "the torque is a function without a formula: each step is checked inside, but a feature narrower than a step may "
@@ -52,7 +52,7 @@ FORMS = "a function of (t, omega, quaternion), a C function of ctypes, or a tabl
 
 
 class TorqueSource(ABC):
-    """Where a torque without a formula comes from: a function in Python, one in C, or a table.
+    """The source of a torque without a formula: a function in Python, a function in C, or a table.
 
     Attributes
     ----------
@@ -63,7 +63,7 @@ class TorqueSource(ABC):
     knots : sequence of float
         Times, s, at which a step ends since the torque bends there.
     user : array or None
-        What the function in C gets as ``user``.
+        The argument ``user`` of the function in C.
     """
 
     samples: ClassVar[bool] = False
@@ -74,7 +74,7 @@ class TorqueSource(ABC):
 
     @abstractmethod
     def pointer_in(self, library: Path) -> Any:
-        """Return the function in C, perhaps from the library of the motion."""
+        """Return the function in C, which may be in the library of the motion."""
 
     @abstractmethod
     def check(self, low: float, high: float) -> None:
@@ -82,12 +82,12 @@ class TorqueSource(ABC):
 
     @abstractmethod
     def failure(self) -> BaseException | None:
-        """Return what the torque raised during the last motion."""
+        """Return the exception that the torque raised during the last motion, or None."""
 
 
 @final
 class _Function(TorqueSource):
-    """A function in Python as one in C; keeps the exception that ends a motion."""
+    """A function in Python, called from C; stores the exception that ends a motion."""
 
     def __init__(self, function: Callable[[float, Floats, Floats], ArrayLike]) -> None:
         self.function = function
@@ -118,11 +118,11 @@ class _Function(TorqueSource):
         return self.pointer
 
     def check(self, low: float, high: float) -> None:
-        """Forget what the last motion raised."""
+        """Forget the exception of the last motion."""
         self.error = None
 
     def failure(self) -> BaseException | None:
-        """Return what the function raised."""
+        """Return the exception that the function raised, or None."""
         return self.error
 
 
@@ -188,7 +188,7 @@ class _Table(TorqueSource):
 
 
 def _pieces(t: Floats, values: Floats, switching: Sequence[float]) -> tuple[Floats, list[float]]:
-    """Return the table of ``symrot_table_torque``, one spline between each two switching times; and where steps end."""
+    """Return the data of ``symrot_table_torque``, a spline between each two switching times, and the ends of steps."""
     from scipy.interpolate import CubicSpline
 
     cuts = [0]
@@ -211,7 +211,7 @@ def _pieces(t: Floats, values: Floats, switching: Sequence[float]) -> tuple[Floa
 
 
 def _check_overshoot(spline: Any, largest: float) -> None:
-    """Refuse samples so unevenly spaced that the spline through them is far from all of them."""
+    """Raise InputError if samples are so unevenly spaced that the spline through them overshoots all of them."""
     starts, gaps = spline.x[:-1], np.diff(spline.x)
     reach = np.max([np.abs(spline(starts + part * gaps)).max(axis=1) for part in (0.25, 0.5, 0.75)], axis=0)
     worst = int(np.argmax(reach))
@@ -225,7 +225,7 @@ def _check_overshoot(spline: Any, largest: float) -> None:
 
 
 def _bends(spline: Any) -> list[float]:
-    """Return the samples at which the third derivative jumps: not those between pieces of one line, or constant."""
+    """Return the times of samples at which the third derivative jumps, so not inside a straight line or a constant."""
     gaps, cubic = np.diff(spline.x)[:, None], spline.c[0]
     jumps = np.abs(np.diff(cubic, axis=0)) * np.minimum(gaps[1:], gaps[:-1]) ** 3
     bends: list[float] = spline.x[1:-1][(jumps > BEND * np.abs(spline.c[3]).max(axis=0)).any(axis=1)].tolist()
@@ -233,7 +233,7 @@ def _bends(spline: Any) -> list[float]:
 
 
 def _torque_source(torque: Any, switching: Sequence[float]) -> TorqueSource:
-    """Return the source of a torque as it may be given to a propagator."""
+    """Return the source of a torque in one of the forms that a propagator takes."""
     if isinstance(torque, ctypes._CFuncPtr):  # type: ignore[attr-defined]
         return _CFunction(torque)
     if callable(torque):
@@ -255,7 +255,7 @@ def _address(pointer: Any) -> int:
 @final
 @dataclass(frozen=True, eq=False)
 class ExternalSetup:
-    """What the motions under one more torque share, whatever their start.
+    """The part that motions under one more torque share, whatever their start.
 
     Attributes
     ----------
@@ -263,9 +263,9 @@ class ExternalSetup:
     library : Path
         Kernel and stepper; the kernel calls the torque.
     source : TorqueSource
-        Where the torque comes from.
+        The source of the torque.
     torque_parameters : tuple of float
-        What the kernel takes after the parameters of the rates: two addresses, the frame, the inverse of the inertia.
+        The parameters of the kernel after those of the rates: two addresses, the frame, the inverse of the inertia.
     breaks : tuple of float
         Times at which a step ends, s: switching times, and times at which an interpolated table bends.
     longest_step : float
@@ -283,7 +283,7 @@ class ExternalSetup:
 def external_setup(
     plan: Plan, tolerance: float, source: TorqueSource, in_space: bool, switching: Sequence[float], max_step: float
 ) -> ExternalSetup:
-    """Return what the motions of a scene under one more torque share: kernel, torque and stepper in one library."""
+    """Return the setup of motions under one more torque, with kernel, torque and stepper in one library."""
     plan = replace(plan, structure=replace(plan.structure.unreduced(), attitude=True))
     scene_alone = scene_kernel(plan)
     own = len(scene_alone.rate_parameters)
@@ -317,7 +317,7 @@ def external_setup(
 
 @final
 class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
-    """The motion of a scene under one more torque, which is asked for at the times of the scene."""
+    """The motion of a scene under one more torque, which is evaluated at the times of the scene."""
 
     def __init__(self, shared: ExternalSetup, plan: Plan) -> None:
         super().__init__(shared.setup, plan)
@@ -329,7 +329,7 @@ class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
 
     @cached_property
     def stepping(self) -> Integration:
-        """The motion as the stepper follows it, to each switching time and on from there."""
+        """The integration of the motion, restarted at each switching time."""
         shared = self._shared
         return dop853.integration(
             shared.library, [*self.rate_parameters, *shared.torque_parameters], self.plan.initial_state, self.start,
@@ -337,7 +337,7 @@ class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
         )  # fmt: skip
 
     def _guarded(self, low: float, high: float, run: Callable[[], Result]) -> Result:
-        """Return the result of a run, or raise what the torque raised in it."""
+        """Return the result of a run, or raise the exception that the torque raised in it."""
         source = self._shared.source
         source.check(min(low, self.start), max(high, self.start))
         try:
@@ -349,7 +349,7 @@ class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
             raise failure from failure.__cause__
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
-        """Return the states at the times, shape (n, N), and what it cost."""
+        """Return the states at the times, shape (n, N), and their cost."""
         low, high = (float(times.min()), float(times.max())) if len(times) else (self.start, self.start)
         return self._guarded(low, high, lambda: self.stepping.restarted().sample(times))
 

@@ -1,4 +1,4 @@
-"""Choose the method by which a motion is followed, and say why."""
+"""Choose the method that follows a motion, and give the reason."""
 
 from typing import NamedTuple
 
@@ -11,14 +11,14 @@ from symrot.propagation.steppers.smoothness import non_smooth_torque
 __all__ = ["EXTERNAL_TORQUE", "METHODS", "Choice", "choose_method"]
 
 METHODS = {
-    "auto": "the first of the table that fits",
+    "auto": "the first method of this table that fits",
     "constant": "every state keeps its value",
     "exact": "closed form, at any time without stepping",
     "taylor": "Taylor series stepped in C from the emitted recurrences",
     "dop853": "Dormand-Prince 8(5,3), stepped in C around the emitted kernel",
     "scipy": "SciPy around the emitted NumPy kernel",
 }
-"""Every method by name, with what it is; ``scipy`` stands for its DOP853, ``scipy:NAME`` for another of SciPy's."""
+"""Every method by name, with a description; ``scipy`` means SciPy's DOP853, ``scipy:NAME`` another of its methods."""
 
 
 class Choice(NamedTuple):
@@ -30,7 +30,7 @@ class Choice(NamedTuple):
 
 
 def _automatic(plan: Plan) -> Choice:
-    """Return the first that fits of no method at all, a closed form, Taylor series, Dormand-Prince and SciPy."""
+    """Return the first method that fits: none for a constant motion, a closed form, Taylor, Dormand-Prince, SciPy."""
     if not plan.states:
         return Choice("constant", "the plan leaves no state to integrate")
     if form := exact_form(plan.scene):
@@ -44,7 +44,7 @@ def _automatic(plan: Plan) -> Choice:
 
 
 EXTERNAL_TORQUE = Choice("dop853", "a torque that is no formula has no Taylor series")
-"""The method for such a torque, and why."""
+"""The method for motions under a torque that is no formula."""
 
 
 def choose_method(plan: Plan, method: str = "auto") -> Choice:
@@ -55,7 +55,7 @@ def choose_method(plan: Plan, method: str = "auto") -> Choice:
     InputError
         If there is no such method.
     CompilerError
-        If the method asked for steps in C and there is no compiler.
+        If the method needs a compiler and there is none.
     """
     if plan.scene.table is not None:
         if method not in ("auto", "dop853"):
@@ -83,4 +83,4 @@ def choose_method(plan: Plan, method: str = "auto") -> Choice:
         return choose_method(plan)
     if name in ("taylor", "dop853") and (reason := library.missing()):
         raise CompilerError(f"method: {reason}, or use method 'scipy'")
-    return Choice(method, "asked for")
+    return Choice(method, "the method was requested")

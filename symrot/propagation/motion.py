@@ -1,7 +1,7 @@
 """A plan bound to numbers: the states at any times by the chosen method, and quantities of them.
 
-A :class:`Motion` is one start of a scene. What it shares with other starts of the same structure is in its
-:class:`Setup`: the method, the kernel, the numbers of the scene. Each method of following a motion is a final class.
+A :class:`Motion` begins at one start of a scene. Its :class:`Setup` holds the part that all starts of the same
+structure share: the method, the kernel, the numbers of the scene. Each method of following a motion is a final class.
 """
 
 from abc import ABC, abstractmethod
@@ -71,7 +71,7 @@ def with_full_state(plan: Plan, form: Form) -> Plan:
 @final
 @dataclass(frozen=True, eq=False)
 class Setup:
-    """What the motions of one plan share, whatever their start: the method, the kernel and the numbers of the scene.
+    """The part that motions of one plan share, whatever their start: method, kernel, numbers of the scene.
 
     Attributes
     ----------
@@ -84,13 +84,13 @@ class Setup:
     start : float
         Initial time, s, on the clock of the motions.
     load_kernel : function
-        Returns the kernel. It is called when the kernel is first needed: an exact motion may do without.
+        Returns the kernel. It is called when the kernel is first needed, which an exact motion may never do.
     epoch : float
-        What the clock of the scene shows, s, where that of the motions shows 0.
+        Time of the scene, s, at which the clock of the motions shows 0.
     allows_time_shift : bool
         Whether stepped motions may take another clock.
     warnings : tuple of str
-        Sentences on what cannot be guaranteed.
+        Sentences about accuracy that cannot be guaranteed.
     """
 
     plan: Plan
@@ -129,7 +129,7 @@ class Setup:
 
     @cached_property
     def deviations(self) -> "Callable[[Mapping[str, float]], Deviations] | None":
-        """From parameters of the rates to the bounds that steps in Python are held to; None without such bounds."""
+        """A function from parameters of the rates to the bounds that limit steps in Python; None without bounds."""
         return formula_deviations(self.plan, self.kernel)
 
     def shifted(self) -> tuple[Plan, SceneKernel]:
@@ -146,14 +146,14 @@ class Setup:
 @final
 @dataclass(frozen=True, eq=False)
 class SteppedSetup:
-    """What motions that are stepped in C share: besides the setup, the library of kernel and stepper."""
+    """The part that motions stepped in C share: the setup, and the library of kernel and stepper."""
 
     setup: Setup
     library: Path
 
     @cached_property
     def integration(self) -> Integration:
-        """The motion from the start of the setup's plan: checked once."""
+        """The integration from the start of the setup's plan, with its input checked."""
         plan = self.setup.plan
         parameters = self.setup.rate_binding(plan)
         if self.setup.choice.method == "taylor":
@@ -161,7 +161,7 @@ class SteppedSetup:
         return self.integration_from(plan, parameters)
 
     def integration_from(self, plan: Plan, parameters: list[float], clock: dop853.Clock | None = None) -> Integration:
-        """Return the motion from the start of a plan, with its parameters and the clock of its rates if that moves."""
+        """Return the integration from the start of a plan; ``clock`` is that of its rates, if it moves."""
         setup = self.setup
         start = (self.library, parameters, plan.initial_state, setup.start, setup.tolerance)
         return (
@@ -170,9 +170,9 @@ class SteppedSetup:
 
     @cached_property
     def on_own_clock(self) -> "SteppedSetup":
-        """The same on a clock that shows 0 at the start."""
+        """A copy on a clock that shows 0 at the start."""
         setup = self.setup.on_own_clock()
-        if setup.plan is self.setup.plan:  # no time stands in the rates
+        if setup.plan is self.setup.plan:  # the rates do not depend on the time
             return SteppedSetup(setup, self.library)
         return _stepped_on_own_clock(setup)
 
@@ -186,20 +186,20 @@ def _stepped_on_own_clock(setup: Setup) -> SteppedSetup:
 @final
 @dataclass(frozen=True, eq=False)
 class SciPySetup:
-    """What motions that SciPy steps share: the setup, and the same on a clock that shows 0 at the start."""
+    """The part that motions stepped by SciPy share: the setup, and a copy on a clock that shows 0 at the start."""
 
     setup: Setup
 
     @cached_property
     def on_own_clock(self) -> "SciPySetup":
-        """The same on a clock that shows 0 at the start."""
+        """A copy on a clock that shows 0 at the start."""
         return SciPySetup(self.setup.on_own_clock())
 
 
 @final
 @dataclass(frozen=True, eq=False)
 class ClosedFormSetup:
-    """What motions in closed form share: besides the setup, the form."""
+    """The part that motions in closed form share: the setup, and the form."""
 
     setup: Setup
     form: Form
@@ -236,7 +236,7 @@ class Motion(ABC):
 
     @property
     def epoch(self) -> float:
-        """What the clock of the scene shows, s, where that of the motion shows 0."""
+        """Time of the scene, s, at which the clock of the motion shows 0."""
         return self.setup.epoch
 
     @property
@@ -251,7 +251,7 @@ class Motion(ABC):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Sentences on what cannot be guaranteed."""
+        """Sentences about accuracy that cannot be guaranteed."""
         return self.setup.warnings
 
     @cached_property
@@ -292,7 +292,7 @@ class Motion(ABC):
 
     @abstractmethod
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats | tuple[Floats, ...], Stats]:
-        """Return the states at the times, shape (n, N), and what they cost.
+        """Return the states at the times, shape (n, N), and their cost.
 
         An exact motion returns angular velocity and attitude in an array each. ``in_order`` says that the times are
         finite and never fall.
@@ -303,7 +303,7 @@ class Motion(ABC):
         """Return the states as a function of time."""
 
     def integrate(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
-        """Return the states at the times in one array, shape (n, N), and what they cost; see :meth:`follow`."""
+        """Return the states at the times in one array, shape (n, N), and their cost; see :meth:`follow`."""
         states, stats = self.follow(times, in_order)
         return np.concatenate(states, axis=1) if isinstance(states, tuple) else states, stats
 
@@ -344,12 +344,12 @@ class RestartableMotion(Motion):
 
 
 class SteppedInC(ABC):
-    """What motions that a stepper in C follows have in common."""
+    """The interface of motions that a stepper in C follows."""
 
     @property
     @abstractmethod
     def stepping(self) -> Integration:
-        """The motion as its stepper follows it: checked once, followed as often as needed."""
+        """The integration of the motion: its input is checked once, then it can be sampled any number of times."""
 
 
 class ShiftableMotion(RestartableMotion):
@@ -362,10 +362,10 @@ class ShiftableMotion(RestartableMotion):
 
     @abstractmethod
     def steps(self, times: Floats, in_order: bool) -> tuple[Floats, Stats]:
-        """Return the states at times on the clock of the motion, shape (n, N), and what they cost."""
+        """Return the states at times on the clock of the motion, shape (n, N), and their cost."""
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
-        """Return the states at the times, stepped on the clock that suits these times, and what they cost."""
+        """Return the states at the times, stepped on the clock that suits these times, and their cost."""
         if not self._shifts(times):
             return self.steps(times, in_order)
         motion = self.on_own_clock
@@ -395,17 +395,17 @@ class ConstantMotion(RestartableMotion):
         return ConstantMotion(self.setup, self.setup.plan.from_start(initial))
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
-        """Return an array of no states, shape (n, 0), which cost nothing."""
+        """Return an empty array, shape (n, 0): no state is integrated."""
         return np.empty((len(times), 0)), Stats(0, 0, 0, 0.0)
 
     def dense(self, span: tuple[float, float]) -> Callable[[Floats], Floats]:
-        """Return the states, of which there are none, as a function of time."""
+        """Return a function from times to empty arrays: no state is integrated."""
         return lambda t: np.empty((len(t), 0))
 
 
 @final
 class ClosedFormMotion(RestartableMotion):
-    """A motion whose closed form is evaluated at each time for itself."""
+    """A motion in closed form, which is evaluated at each time independently."""
 
     def __init__(self, shared: ClosedFormSetup, plan: Plan) -> None:
         super().__init__(shared.setup, plan)
@@ -431,7 +431,7 @@ class ClosedFormMotion(RestartableMotion):
         began, start = perf_counter(), self.start
         omega, quaternion = exact.evaluate(times - start if start else times, quaternion=attitude)
         assert omega is not None
-        if not (in_order and len(times) and times.item(0) > start):  # to the last bit, as every method has it
+        if not (in_order and len(times) and times.item(0) > start):  # exactly, as with every other method
             at_start: Any
             if not in_order:
                 at_start = times == start
@@ -479,7 +479,7 @@ class SteppedMotion(ShiftableMotion, SteppedInC):
 
     @cached_property
     def stepping(self) -> Integration:
-        """The motion as its stepper follows it."""
+        """The integration of the motion."""
         parameters = self.taylor_parameters if self.choice.method == "taylor" else self.rate_parameters
         if self.setup.moves_clock:  # whose epochs are those of this start
             clock = time_shift.clock(self.setup.shifted, self.plan.constants, self.epoch)
@@ -487,7 +487,7 @@ class SteppedMotion(ShiftableMotion, SteppedInC):
         return self._shared.integration.from_start(parameters, self.plan.initial_state)
 
     def steps(self, times: Floats, in_order: bool) -> tuple[Floats, Stats]:
-        """Return the states at times on the clock of the motion, shape (n, N), and what they cost."""
+        """Return the states at times on the clock of the motion, shape (n, N), and their cost."""
         return self.stepping.sample_sorted(times, in_order)
 
     def dense(self, span: tuple[float, float]) -> Recording:
@@ -521,7 +521,7 @@ class SciPyMotion(ShiftableMotion):
         return time_shift.clock(self.setup.shifted, self.plan.constants, self.epoch, python_rates)
 
     def deviations(self, parameters: Sequence[float]) -> "Deviations | None":
-        """Return what steps in Python are held to, for parameters of the rates."""
+        """Return the bounds that limit steps in Python, for parameters of the rates."""
         if self.setup.deviations is None:
             return None
         names = [name for name, _ in self.kernel.rate_parameters]
@@ -537,7 +537,7 @@ class SciPyMotion(ShiftableMotion):
         return Options(self.choice.method, blocks, scales, deviations=deviations, clock=clock)
 
     def steps(self, times: Floats, in_order: bool) -> tuple[Floats, Stats]:
-        """Return the states at times on the clock of the motion, shape (n, N), and what they cost."""
+        """Return the states at times on the clock of the motion, shape (n, N), and their cost."""
         from symrot.propagation.steppers import fallback
 
         start = (self.rate_parameters, self.plan.initial_state, self.start)
@@ -558,7 +558,7 @@ class MotionInParts(Motion):
 
     @abstractmethod
     def parts(self, end: float, broken: list[PropagationError]) -> tuple[list[Piece], Recording]:
-        """Return the motion from its start to an end as polynomials and at any time; what cut it off in ``broken``."""
+        """Return the motion from its start to an end as polynomials and at any time, an early end in ``broken``."""
 
 
 # ------------------------------------------------------------------------------------------------ from plans to motions
@@ -594,7 +594,7 @@ def stepped_motion(plan: Plan, choice: Choice, tolerance: float) -> SteppedMotio
 def on_own_clock(plan: Plan, choice: Choice, tolerance: float) -> SteppedMotion | SciPyMotion:
     """Return the stepped motion of a plan on a clock that shows 0 at its start; its rates may take any epoch.
 
-    Where no time stands in the rates, there is but one clock.
+    If the rates do not depend on the time, the clock of the scene is used.
     """
     setup = _setup(plan, choice, tolerance)
     timed, steps_in_c = setup.kernel.rates.uses("t"), choice.method in ("taylor", "dop853")

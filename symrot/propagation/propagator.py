@@ -1,4 +1,4 @@
-"""Propagate a scene: choose a method, bind the kernel to numbers once, then propagate as often as asked."""
+"""Propagate a scene: choose a method, bind the kernel to numbers once, then propagate any number of times."""
 
 from fractions import Fraction
 from functools import cached_property
@@ -32,7 +32,7 @@ Floats = NDArray[np.float64]
 class Propagator:
     """Propagates one scene; made by :func:`symrot.propagator`.
 
-    Derivation, compilation and binding are done when it is made; a call does the motion and nothing else.
+    Derivation, compilation and binding are done when it is made; a call only computes the motion.
     """
 
     def __init__(self, scene: Scene, method: str, tolerance: float) -> None:
@@ -49,8 +49,8 @@ class Propagator:
     def motion_from(self, initial: Initial) -> Motion:
         """Return the motion from another initial state.
 
-        The first start of each structure is planned and prepared as a new scene would be. The others take over all but
-        the numbers of the start.
+        The first start of each structure is planned and prepared like a new scene. Later starts change only the numbers
+        that depend on the start.
         """
         if not isinstance(self._motion, RestartableMotion):
             return self._prepare(self._planned(initial))
@@ -63,17 +63,17 @@ class Propagator:
 
     @property
     def plan(self) -> Plan:
-        """What is computed, what is skipped."""
+        """The plan: the parts of the motion that are computed or skipped."""
         return self._motion.plan
 
     @property
     def method(self) -> str:
-        """The method that is used."""
+        """The name of the method."""
         return self._motion.choice.method
 
     @property
     def reason(self) -> str:
-        """Why that method."""
+        """The reason for the method."""
         return self._motion.choice.reason
 
     @property
@@ -82,7 +82,7 @@ class Propagator:
         return self._motion.kernel
 
     def prepare(self) -> None:
-        """Do now what otherwise waits for the first use: derive what an exact motion keeps while its form compiles."""
+        """Do now the work of the first use: derive the kernel of an exact motion while its form compiles."""
         self._motion.kernel  # noqa: B018
         if isinstance(self._motion, ClosedFormMotion):
             self._motion.exact  # noqa: B018
@@ -112,7 +112,7 @@ class Propagator:
         quaternion : array, shape (4,), optional
             Another initial attitude, scalar first; it is normalised.
         events : sequence, optional
-            Formulas whose zeros are sought: text, :class:`symrot.propagation.events.events.Event` or mappings with its
+            Formulas whose zeros are located: text, :class:`symrot.propagation.events.events.Event` or mappings with its
             fields; see ``t_events`` of the trajectory. Samples end with one at a terminal event.
 
         Raises
@@ -141,13 +141,13 @@ class Propagator:
         return Trajectory(motion, times, states, motion.choice.method, stats, message)
 
     def _with_samples(self, error: BaseException, motion: Motion, times: Floats, began: float) -> BaseException:
-        """Return what ends a motion early, with the trajectory of the samples before."""
+        """Return the exception that ends a motion early, with the trajectory of the samples before."""
         samples: Samples | None = getattr(error, "samples", None)
         ended: BaseException = error
         if isinstance(error, PropagationError):
             ended = PropagationError(f"{self.scene.name}: {error}")
         if samples is not None:
-            numbers = np.argsort(samples.numbers)  # as they were asked for
+            numbers = np.argsort(samples.numbers)  # in the order of the requested times
             states, stats = samples.states[numbers], Stats(*samples.cost, perf_counter() - began)
             message = str(ended) or "interrupted"
             part = Trajectory(motion, times[samples.numbers[numbers]], states, motion.choice.method, stats, message)
@@ -164,7 +164,7 @@ def _times(t: ArrayLike) -> Floats:
 
 
 def _in_order(times: Floats) -> bool:
-    """Return whether times never fall; refuse those that are not finite: of times in order, the ends tell."""
+    """Return whether times never fall; raise InputError unless they are finite (of sorted times, the ends tell)."""
     if not len(times):
         return True
     if isfinite(times.item(0)) and isfinite(times.item(-1)) and is_sorted(times):
@@ -183,21 +183,21 @@ def _vector(values: ArrayLike, size: int, name: str, unit: str) -> list[float]:
 
 
 def _exact(value: float, name: str) -> Fraction:
-    """Return the exact value of a finite double; one below all normal doubles is refused as a scene's is."""
+    """Return the exact value of a finite double; a subnormal double is an InputError, as in a scene."""
     return _lowest(*value.as_integer_ratio()) if abs(value) >= SMALLEST or not value else number.read(value, name)
 
 
 def _lowest(top: int, bottom: int) -> Fraction:
-    """Return a fraction in lowest terms, whose greatest common divisor need not be sought."""
+    """Return a fraction of numbers without a common divisor, which is not searched for."""
     fraction: Any = object.__new__(Fraction)
     fraction._numerator, fraction._denominator = top, bottom  # as Fraction._from_coprime_ints of Python 3.12 does
     return fraction  # type: ignore[no-any-return]
 
 
 def _unit(q: list[float]) -> tuple[Fraction, ...]:
-    """Return :func:`symrot.formula.exact_numbers.unit` of doubles, to 2^-320 as well, in half the time.
+    """Return :func:`symrot.formula.exact_numbers.unit` of doubles, with the same accuracy of 2^-320, in half the time.
 
-    All is over powers of two.
+    All denominators are powers of two.
     """
     ratios = [x.as_integer_ratio() for x in q]
     shared = max([bottom for _, bottom in ratios])  # all are powers of two
@@ -220,7 +220,7 @@ def _unit(q: list[float]) -> tuple[Fraction, ...]:
 
 
 def read_start(scene: Scene, omega: ArrayLike | None, quaternion: ArrayLike | None) -> Initial:
-    """Return the initial state that a call of a propagator asks for, exact; what is None is the scene's own."""
+    """Return the exact initial state of a call of a propagator; None stands for the value of the scene."""
     initial = scene.initial
     if omega is not None:
         x, y, z = (_exact(value, "omega") for value in _vector(omega, 3, "omega", "rad/s"))

@@ -1,4 +1,4 @@
-"""Arrays of real numbers as they may be given: nothing that NumPy would silently read as one."""
+"""Arrays of real numbers from arguments, refusing values that NumPy would silently convert."""
 
 from typing import Any
 
@@ -25,20 +25,20 @@ NO_NUMBERS = (bool, np.bool_, np.datetime64, np.timedelta64, np.complexfloating,
 
 
 def real_array(values: Any, place: str, expected: str, ndmin: int = 0) -> NDArray[np.float64]:
-    """Return an array of doubles of its own.
+    """Return a new array of doubles.
 
     Parameters
     ----------
     place, expected : str
-        Where the values are given and what they should be, such as ``"t"`` and ``"times in s"``, for the error.
+        Name of the argument and its expected content, such as ``"t"`` and ``"times in s"``, for the error.
     ndmin : int
         Fewest dimensions.
 
     Raises
     ------
     InputError
-        For dates, differences of dates, complex numbers, true and false, text, objects that are no real numbers (as
-        fractions are), and what is no array.
+        For dates, differences of dates, complex numbers, true and false, text, objects that are not real numbers
+        (fractions are), and values that do not form an array.
     """
     try:
         array = np.asarray(values)

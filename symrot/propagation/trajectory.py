@@ -1,4 +1,4 @@
-"""A motion at its sample times: states, and every quantity computed from them when it is asked for."""
+"""A motion at its sample times: states, and quantities that are computed from them on first use."""
 
 from collections.abc import Callable, Mapping
 from functools import cached_property
@@ -34,23 +34,23 @@ class Invariant(NamedTuple):
 
 
 class Trajectory:
-    """What a propagator returns. Conventions: :mod:`symrot.conventions`.
+    """The motion that a propagator returns. Conventions: :mod:`symrot.conventions`.
 
     Attributes
     ----------
     t : array, shape (n,)
-        Sample times in s, as they were asked for.
+        The requested sample times, s; a terminal event ends them.
     y : array, shape (N, n)
         The integrated states, in the order of ``states`` (solve_ivp's layout).
     method, stats : str, Stats
-        How it was propagated, and what that cost: steps, evaluations, seconds.
+        The method, and the cost of the motion: steps, evaluations, seconds.
     status, message, success : int, str, bool
-        As of solve_ivp: 1 where a terminal event ended the motion, else 0. A motion that cannot be followed raises a
+        As in solve_ivp: 1 if a terminal event ended the motion, else 0. A motion that cannot be followed raises a
         PropagationError; its ``trajectory`` holds the samples before, with status -1 and ``success`` false.
     warnings : tuple of str
-        Sentences on what cannot be guaranteed, such as the accuracy under a torque without a formula.
+        Sentences about accuracy that cannot be guaranteed, as under a torque without a formula.
     t_events, y_events : list of arrays or None
-        Per event that was asked for: its times, shape (k,), and the states there, shape (k, N).
+        Per requested event: its times, shape (k,), and the states there, shape (k, N).
     event_kinds : list of lists of str, or None
         Per event: ``"rising"``, ``"falling"`` or ``"touching"`` for each of its times.
     """
@@ -82,12 +82,12 @@ class Trajectory:
 
     @property
     def success(self) -> bool:
-        """Whether the motion was followed to the end that was asked for, or to a terminal event."""
+        """Whether the motion reached its last sample time, or a terminal event."""
         return self.status >= 0
 
     @property
     def plan(self) -> Any:
-        """The plan that was followed."""
+        """The plan of the motion."""
         return self._motion.plan
 
     @property
@@ -102,7 +102,7 @@ class Trajectory:
 
     @cached_property
     def _states(self) -> Floats:
-        """The integrated states, shape (n, N); those of an exact motion are put side by side when asked for."""
+        """The integrated states, shape (n, N); the two arrays of an exact motion are joined on first use."""
         return np.concatenate(self._parts, axis=1) if isinstance(self._parts, tuple) else self._parts
 
     @property
@@ -116,7 +116,7 @@ class Trajectory:
 
     @property
     def has_attitude(self) -> bool:
-        """Whether the attitude was computed; the plan skips it when nothing asks for it."""
+        """Whether the attitude was computed; the plan skips it if neither a torque nor the output needs it."""
         return self._motion.plan.structure.attitude
 
     def _need_attitude(self) -> None:
@@ -258,5 +258,5 @@ class Trajectory:
         return value
 
     def as_mapping(self) -> Mapping[str, Floats]:
-        """Return time and the quantities that the scene asks for, by name."""
+        """Return time and the output quantities of the scene, by name."""
         return {"t": self.t, **{name: self.quantity(name) for name in self.scene.output.quantities}}

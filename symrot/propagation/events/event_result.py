@@ -1,4 +1,4 @@
-"""Follow a motion with events: their times, the states there, and the samples up to and at a terminal one."""
+"""Motions with events: the times of the events, the states there, and the samples up to a terminal event."""
 
 from collections.abc import Callable, Generator, Sequence
 from time import perf_counter
@@ -39,7 +39,7 @@ class EventResult(NamedTuple):
     Attributes
     ----------
     t, states : arrays, shapes (n,) and (n, N)
-        Samples as they were asked for; in place of those beyond a terminal event, one at the event.
+        Samples at the requested times; a single sample at a terminal event replaces all samples beyond it.
     t_events, y_events : lists of arrays, shapes (k,) and (k, N)
         Per event, in rising order of time: when it happened, and the states there.
     kinds : list of lists of str
@@ -58,7 +58,7 @@ class EventResult(NamedTuple):
 
 
 class _Side(NamedTuple):
-    """A motion to one side of its start: how to take it piece by piece, and its states at times on the way."""
+    """A motion to one side of its start: its pieces as polynomials, and its states at times on that side."""
 
     pieces: Generator[Piece, None, None]
     states: Callable[[Floats], Floats]
@@ -73,7 +73,7 @@ def integrate_with_events(motion: Motion, times: Floats, events: Sequence[Event]
     Raises
     ------
     InputError
-        If an event needs the attitude and the plan leaves it out, or if nothing of the motion changes.
+        If an event needs the attitude and the plan leaves it out, or if no state of the motion changes.
     CompilerError
         If there is no C compiler.
     PropagationError
@@ -138,7 +138,7 @@ def integrate_with_events(motion: Motion, times: Floats, events: Sequence[Event]
 def _joined(
     before: list[tuple[EventZero, Floats]], after: list[tuple[EventZero, Floats]], t0: float
 ) -> list[tuple[EventZero, Floats]]:
-    """Put the two sides of a motion together: a zero at the start is one, a touch if both sides leave it alike."""
+    """Join the zeros of both sides of a motion; a zero at the start counts once, as a touch if both sides agree."""
     at_start = {each.event: each for each, _ in before if each.t == t0}
     joined = [
         pair for pair in before if pair[0].t != t0 or pair[0].event not in {e.event for e, _ in after if e.t == t0}

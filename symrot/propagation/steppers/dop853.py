@@ -5,9 +5,10 @@ a motion through sample times, or records every step so that the states are know
 
 Tolerance: the promise is about the trajectory, not about one step, see :func:`step_tolerance`.
 
-Time: a double keeps 53 bits of ``a*t``, so that phases of a torque lose digits as the time grows, which costs accuracy
-and, since errors look rough to the step control, steps. A kernel whose clock can be moved (a :data:`Clock`) is
-therefore given the time since an epoch that follows the motion, every :data:`WINDOW` steps, and where steps are short.
+Time: a double holds 53 bits of ``a*t``, so that phases of a torque lose digits as the time grows. That costs accuracy,
+and also steps, since the step control sees rounding errors as a rough torque. A kernel whose clock can be moved (a
+:data:`Clock`) is therefore given the time since an epoch, which moves along with the motion every :data:`WINDOW` steps,
+and where steps are short.
 """
 
 import math
@@ -38,27 +39,27 @@ __all__ = ["DENSE_ORDER", "MAX_STEPS", "NO_ENCLOSURE", "Clock", "integration", "
 
 STEP_SHARE, NATURAL_TIMES = 0.14, 0.16  # of the tolerance; of the span, see step_tolerance
 TERMS = 8  # of the dense output
-DENSE_ORDER = 7  # to which it follows the states
+DENSE_ORDER = 7  # of the error of the dense output
 NO_ENCLOSURE = "#define SYMROT_ENCLOSED 0\n#define SYMROT_DEPENDS 0\n"
 ENCLOSURE = "/* ENCLOSURE */\n"  # where dop853.c takes enclosure.h
-ROUGH = "#define SYMROT_ROUGH\n"  # corners, as of a root at zero, are left to the control of errors: see disc.h
+ROUGH = "#define SYMROT_ROUGH\n"  # corners, such as a root at zero, are left to the error control: see disc.h
 MIDDLE_REACH = 3  # of the discs of symrot.codegen.enclosure.terms.REACHES: the one to begin with
 
 Clock = Callable[[float], tuple[PathLike, Sequence[float]]]
-"""From an epoch, s, to the library of a kernel that counts its time from there, and the parameters of that kernel."""
+"""A function from an epoch, s, to the library of a kernel that counts time from the epoch, and its parameters."""
 
 WINDOW = 2048
 FAR = 1e4  # steps from the epoch: farther on, the time would be rounded to more than 1e-12 of a step
-"""Steps after which the clock of a kernel is moved: phases on it stay below some 1e3 rad, and setting it costs a few
-per cent of the steps. Their errors are alike in all windows, and add up: with 8192 they were five times as large."""
+"""Steps after which the clock of a kernel is moved: phases on it stay below some 1e3 rad, and moving it costs a few
+per cent of the time. Phase errors are alike in all windows and add up: with 8192 they were five times as large."""
 
 
 def step_tolerance(tolerance: float) -> tuple[float, float]:
     """Return the error allowed in one step, and the fraction of the span that earns a step all of it.
 
-    A shorter step is allowed its share. Steps are about ``tolerance^(1/8)`` times as long as the motion's natural time,
-    so the second number makes the allowance a matter of natural times in the span, not of steps: the error at the end
-    then hardly depends on tolerance or span, except where the motion itself amplifies errors.
+    A shorter step is allowed a share in proportion. Steps are about ``tolerance^(1/8)`` times as long as the motion's
+    natural time, so that by the second number the allowance depends on the natural times in the span, not on the number
+    of steps: the error at the end then hardly depends on tolerance or span, except where the motion amplifies errors.
 
     Both constants are calibrated on free asymmetric bodies, through flips about the intermediate axis too, and on heavy
     tops, against 40-digit references (``tests/propagation/test_dop853.py``): errors stay below 5 times the tolerance.
@@ -87,13 +88,13 @@ def translation_unit(
     states, parameters : int
         Lengths of y and p.
     blocks : sequence of int
-        Edges of the blocks of states whose errors are judged apart, from 0 to ``states``: omega, then quaternion.
+        Edges of the blocks of states with separate error norms, from 0 to ``states``: omega, then quaternion.
     scales : sequence of float
-        One per block: 0 judges its error against the block's own size (a rate), a positive number against that number
-        (1 for a unit quaternion, or for an angle in rad).
+        One per block: with 0 the error is relative to the block's own size (a rate), otherwise to this number (1 for a
+        unit quaternion, or for an angle in rad).
     enclosure : str
-        What :func:`symrot.codegen.enclosure.terms.enclosure_source` prints of the kernel for order :data:`DENSE_ORDER`:
-        steps are held to what it proves.
+        Output of :func:`symrot.codegen.enclosure.source.enclosure_source` for the kernel and order
+        :data:`DENSE_ORDER`: the proof in it limits the steps.
     """
     edges = list(blocks)
     if edges[:1] != [0] or edges[-1] != states or edges != sorted(set(edges)) or len(scales) != len(edges) - 1:
@@ -130,7 +131,7 @@ def integration(
     breaks: Sequence[float] = (),
     clock: Clock | None = None,
 ) -> Integration:
-    """Return a motion to sample or to record, its input checked.
+    """Return the integration of a motion, to be sampled or recorded; its input is checked.
 
     Parameters
     ----------
@@ -162,14 +163,14 @@ def integration(
 
 
 class _Clocked(Integration):
-    """A motion whose kernel counts its time from an epoch that follows it."""
+    """An integration whose kernel counts time from an epoch that moves along with the motion."""
 
     def __init__(self, clock: Clock, *arguments: Any) -> None:
         super().__init__(*arguments)
         self._clock = clock
 
     def step_function(self, run: Run) -> tuple[Callable[..., Any], Any, int]:
-        """Return what steps a run further, after moving the clock where it shows too much."""
+        """Return the function that continues a run, after moving the clock if it has run too far."""
         tried = self.stepper.tried(run)
         window = run.window
         if window is None:

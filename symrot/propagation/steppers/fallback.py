@@ -1,12 +1,12 @@
-"""The SciPy fallback: any method of ``scipy.integrate.solve_ivp``, called as :mod:`symrot.propagation.steppers.dop853`
-is.
+"""The SciPy fallback: any method of ``scipy.integrate.solve_ivp``.
 
-For where there is no C compiler, and for those who want LSODA. The tolerance means the same as far as SciPy allows: the
-error of every block of states against the largest size the block has on the way, found by a first coarse pass, and
-shared out over the length of the motion. SciPy is imported when a motion is first followed.
+It steps motions where there is no C compiler, and for users who want LSODA. The tolerance means the same as far as
+SciPy allows: the error of every block of states is relative to the largest size of the block along the motion, which a
+first coarse pass determines, and is shared out over the length of the motion. SciPy is imported when a motion is first
+followed.
 
-Time: where steps are short beside the time, a double keeps too few digits of it. Where the clock of the right-hand side
-can be moved (a :data:`Clock`), SciPy then starts anew on one that shows 0 nearby.
+Time: where steps are short compared with the time, a double holds too few digits of it. If the clock of the right-hand
+side can be moved (a :data:`Clock`), SciPy then restarts on a clock that shows 0 nearby.
 """
 
 import math
@@ -40,12 +40,12 @@ __all__ = ["METHODS", "FallbackRecording", "Options", "WholeMotion", "integrate"
 
 Rhs = Callable[[float, Floats, Floats], ArrayLike]
 Clock = Callable[[float], tuple[Rhs, Sequence[float]]]
-"""From an epoch, s, to a right-hand side that counts its time from there, and its parameters."""
+"""A function from an epoch, s, to a right-hand side that counts time from the epoch, and its parameters."""
 Piece = tuple[float, float, Any]  # from, to, SciPy's solution between
 
 
 class WholeMotion(NamedTuple):
-    """The motion of which a part is followed: its two ends, s, and the evaluations spent on it before."""
+    """The whole motion when SciPy follows a part of it: both ends, s, and the evaluations spent before the part."""
 
     start: float
     end: float
@@ -53,7 +53,7 @@ class WholeMotion(NamedTuple):
 
 
 METHODS = {"DOP853": 0.1, "RK45": 0.1, "RK23": 0.1, "Radau": 1.0, "BDF": 0.01, "LSODA": 0.001}
-"""SciPy's methods, and the share of the tolerance that one step of each is given; calibrated as in dop853.py."""
+"""SciPy's methods, each with the share of the tolerance that one step may use; calibrated as in dop853.py."""
 
 DEFAULT = "DOP853"
 FIT_ORDER = 7  # of the polynomial that tells how the states move in a step
@@ -63,13 +63,13 @@ FAR = 1e4  # steps from the epoch: farther on, the time would be rounded to more
 STUCK = "the step shrank to nothing, as it does before a singularity"
 PILOT_TURN = 1e-3  # rad over the whole span
 PILOT_TOLERANCE = 1e-3  # of the coarse pass
-EFFORT_CUT_OFF = 4  # a motion that cannot be followed to its end may take a quarter of the evaluations
-BEFORE_POLE = 0.5  # of the way to where the coarse pass is cut off: further on, states may grow without bound
+EFFORT_CUT_OFF = 4  # a motion that cannot be followed to its end may take this part of the evaluations
+BEFORE_POLE = 0.5  # of the way to the end of a coarse pass that stops early: beyond, states may grow without bound
 PILOT_STEPS = 10  # a motion of so many coarse steps may spend the whole share in every step
-MAX_EVALUATIONS = 1_000_000  # unless another limit is given: half a minute
+MAX_EVALUATIONS = 1_000_000  # default limit: half a minute
 PATIENCE = 50_000  # evaluations after each of which the pace is judged
-MAX_IDLE = 100  # steps too short for the clock of the scene, one after the other, as where LSODA starts anew
-MAX_BROKEN = 1000  # derivatives that are not finite, before the motion is given up
+MAX_IDLE = 100  # consecutive steps too short for the clock of the scene, as after a restart of LSODA
+MAX_BROKEN = 1000  # derivatives that are not finite, before the motion stops
 _NODES = 0.5 - 0.5 * np.cos(np.pi * np.arange(1, FIT_ORDER + 1) / FIT_ORDER)  # Chebyshev's, without the start
 _FIT = np.linalg.inv(_NODES[:, None] ** np.arange(1, FIT_ORDER + 1))  # from rises there to coefficients
 SMALLEST_RTOL = 100 * float(np.finfo(float).eps)  # SciPy takes no smaller one
@@ -104,11 +104,11 @@ class Options:
     max_steps : int
         Most evaluations of the right-hand side.
     deviations : Deviations, optional
-        Of the terms of the right-hand side that may hide a feature: steps are held to what they prove.
+        Bounds of the terms of the right-hand side that may hide a feature: they limit the steps.
     clock : callable, optional
-        Of the right-hand side, where it can be moved: see :data:`Clock`.
+        The clock of the right-hand side, if it can be moved.
     whole : WholeMotion, optional
-        The motion of which a part is followed. Then ``max_steps`` is the limit of the whole.
+        The whole motion, if only a part of it is followed. Then ``max_steps`` limits the whole.
     """
 
     method: str = DEFAULT
@@ -125,7 +125,7 @@ class Options:
 def integrate(
     rhs: Rhs, p: ArrayLike, y0: ArrayLike, t0: float, times: ArrayLike, tolerance: float, options: Options = Options()
 ) -> tuple[Floats, Stats]:
-    """Return the states at the sample times, shape (n, N), and what it cost.
+    """Return the states at the sample times, shape (n, N), and their cost.
 
     Parameters
     ----------
@@ -136,7 +136,7 @@ def integrate(
     times : array, shape (n,)
         Sample times, s, in any order, before or after ``t0``.
     options : Options
-        The method, and what its steps are held to.
+        The method and the limits of its steps.
     """
     times = np.asarray(times, dtype=np.float64)
     if times.ndim != 1 or not np.isfinite(times).all():
@@ -186,7 +186,7 @@ def record(
 
 
 class FallbackRecording(Recording):
-    """A motion that SciPy has followed; see :class:`symrot.propagation.steppers.stepping.Recording`."""
+    """The steps of a motion by SciPy; see :class:`symrot.propagation.steppers.stepping.Recording`."""
 
     def __init__(self, motion: "_Integration", pieces: list[Piece], low: float, high: float) -> None:
         self._pieces = pieces
@@ -215,7 +215,7 @@ def _evaluate(pieces: list[Piece], times: Floats, states: Floats) -> None:
 
 
 class _ShiftedSolution:
-    """SciPy's solution over a step on a clock that shows 0 at an epoch, as a function of time on the first clock."""
+    """SciPy's solution over a step on a moved clock, as a function of time on the clock before the move."""
 
     def __init__(self, solution: Any, epoch: float) -> None:
         self._solution, self._epoch = solution, epoch
@@ -257,7 +257,7 @@ class _Integration:
 
     @property
     def work(self) -> int:
-        """Evaluations of the rates and of what bounds them, which take as long: by these the effort is limited."""
+        """Evaluations of the rates and of their bounds, which take as long; their sum is limited."""
         return self.evaluations + (self.deviations.spent - self.before if self.deviations else 0)
 
     def stats(self) -> Stats:
@@ -271,7 +271,7 @@ class _Integration:
         return states
 
     def partial(self, times: Floats) -> tuple[NDArray[np.intp], Floats]:
-        """Return numbers and states of the times, sorted away from t0, that lie before the motion was cut off."""
+        """Return numbers and states of the times, sorted away from t0, that lie before the motion stopped early."""
         pieces = self.pieces if self.final else []  # the coarse pass is no result
         way = max((max(abs(low - self.t0), abs(high - self.t0)) for low, high, _ in pieces), default=0.0)
         inside = np.flatnonzero(np.abs(times - self.t0) <= way)
@@ -283,12 +283,12 @@ class _Integration:
     def solutions(self, end: float) -> list[Piece]:
         """Return (low, high, solution) for each segment between switching times, from t0 to the end.
 
-        Where the coarse pass is cut off, the motion is followed as far as that came, so that its samples are not lost.
+        If the coarse pass stops early, the motion is followed as far as the pass, so that no sample is lost.
         """
         self.final, self.pieces = False, []
         if end == self.t0:
             return []
-        slowest = PILOT_TURN / abs(end - self.t0)  # rad/s: nothing turns the body that turns it less
+        slowest = PILOT_TURN / abs(end - self.t0)  # rad/s: a slower rotation does not count
         bars = [
             SLACK * PILOT_TOLERANCE * (scale if scale > 0.0 else max(float(np.linalg.norm(self.y0[block])), slowest))
             for block, scale in self.blocks
@@ -331,7 +331,7 @@ class _Integration:
         return self.pieces
 
     def _follow_segment(self, segment: Segment, y: Floats, rtol: float, atol: Floats, bars: list[float]) -> None:
-        """Add SciPy's solution over a segment to the pieces, as far as it comes; no step longer than is proven."""
+        """Add SciPy's solution over a segment to the pieces, as far as it gets; no step is longer than proven safe."""
         import scipy.integrate
 
         earliest, latest = min(segment.first, segment.last), max(segment.first, segment.last)
@@ -380,11 +380,13 @@ class _Integration:
             if self.broken > broken and not np.isfinite(self._derivative(float(solver.t), solver.y)).all():
                 if abs(step) <= 4.0 * math.ulp(before):
                     raise IntegrationStopped(before, NOT_FINITE_SENTENCE, end)
-                longest = 0.5 * abs(step)  # LSODA goes on where the rates have no value
+                longest = 0.5 * abs(step)  # LSODA continues where the rates have no value
                 solver = begin(now, y, longest)
                 continue
             after = segment.stop if solver.status == "finished" else self.epoch + float(solver.t)
-            moves = solver.status != "failed" and step * solver.direction > 0.0  # LSODA may say so when it could not
+            moves = (
+                solver.status != "failed" and step * solver.direction > 0.0
+            )  # LSODA may report success without a step
             if self.clock is not None and abs(now) > FAR * abs(step) and abs(now) > math.ulp(before):
                 now = self._move_clock(self.clock, now)
                 solver = begin(now, y, longest)
@@ -410,18 +412,18 @@ class _Integration:
                 longest = min(REGAIN * longest, self.max_step)
                 if self.method == "LSODA":
                     solver = begin(solver.t, solver.y.copy(), longest)
-                else:  # the others read it before every step
+                else:  # the other methods read it before every step
                     solver.max_step = longest
 
     def _move_clock(self, clock: Clock, now: float) -> float:
-        """Have the clock show about 0 where it now shows another time, and return what it shows instead, exactly."""
+        """Move the clock so that it shows about 0 at present, and return the exact time that it shows."""
         self.epoch, rest = two_sum(self.epoch, now)
         self.rhs, p = clock(self.epoch)
         self.p = np.array(p, dtype=np.float64)
         return float(rest)
 
     def _judge_pace(self, t: float, stop: float) -> None:
-        """Give the motion up if the rest would take far more evaluations than the limit."""
+        """Raise IntegrationStopped if the rest of the motion would take far more evaluations than the limit."""
         work = self.work
         spent = work - self.mark[0]
         if spent >= PATIENCE:
@@ -437,7 +439,7 @@ class _Integration:
         return self.work + (self.whole.spent if self.whole else 0)
 
     def _proven(self, t: float, y: Floats, dense: Any, now: float, step: float, bars: list[float]) -> float:
-        """Return the longest part of a step, from ``now`` on the present clock, that is proven to miss nothing."""
+        """Return the longest part of a step, from ``now`` on the present clock, that provably misses no feature."""
         assert self.deviations is not None
         path = np.abs(_FIT @ (dense(now + _NODES * step).T - y)).T.tolist()
         edges = [0, *(block.stop for block, _ in self.blocks)]

@@ -1,8 +1,8 @@
-"""Whether a plan's torques are smooth enough for Taylor series, from its structure alone. No SymPy.
+"""Decide from the structure of a plan whether its torques are smooth enough for Taylor series. No SymPy.
 
-A series needs derivatives of every order where it is expanded. Quotients, powers, sin, cos, exp, log and their like
-have them wherever they are defined; the absolute value and the square root do not where their argument vanishes, which
-a motion may well reach: at rest, where it turns back. Dormand and Prince's method steps such torques instead.
+A series needs derivatives of every order where it is expanded. Quotients, powers, sin, cos, exp and log have them
+wherever they are defined. The absolute value and the square root have none where their argument is zero, and a motion
+may reach such a point, for example at rest. Dormand and Prince's method steps such torques instead.
 """
 
 from symrot.dynamics.structure import FormulaTorque, Pattern, TorqueStructure

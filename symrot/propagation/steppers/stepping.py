@@ -1,8 +1,8 @@
-"""What the steppers share: a loaded library, a motion followed through sample times or recorded, and the sentences.
+"""The common part of the steppers: a loaded library, the integration of a motion, recordings, and error sentences.
 
-:mod:`symrot.propagation.steppers.dop853` and :mod:`symrot.propagation.steppers.taylor` each say what is their own in a
-:class:`Stepper`;
-:mod:`symrot.propagation.steppers.fallback` takes the order of times, the switching times and the sentences from here.
+:mod:`symrot.propagation.steppers.dop853` and :mod:`symrot.propagation.steppers.taylor` define their own parts in
+subclasses of :class:`Stepper`. :mod:`symrot.propagation.steppers.fallback` uses the order of times, the segments
+between switching times and the sentences.
 """
 
 import ctypes
@@ -50,11 +50,11 @@ __all__ = [
     "stats_of",
 ]
 
-MAX_STEPS = 100_000_000  # of a motion, unless another limit is given: a minute or two
+MAX_STEPS = 100_000_000  # default limit of a motion: a minute or two
 MOST_RECORDED = 2 << 30  # bytes, of the steps of a dense output
 PATIENCE = 200_000  # steps after each of which the pace is judged
-FEW = 40  # sample times
-SLIVER = 2.0**-100  # of a segment: a time that no formula tells from its end
+FEW = 40  # sample times that are compared one by one
+SLIVER = 2.0**-100  # of a segment: a time so near its end that no formula differs there
 
 Floats = NDArray[np.float64]
 PathLike = str | os.PathLike[str]
@@ -64,10 +64,10 @@ NOT_FINITE_SENTENCE = "its rate of change is not finite there"
 
 
 class Switching(NamedTuple):
-    """What a function with a switch did at a time, s, such as ``sign(omega_3)`` in a torque.
+    """A switching of a function, such as ``sign(omega_3)`` in a torque, at a time, s.
 
-    ``how`` is ``"passed"``: the motion goes on beyond the switch; ``"held"``: the motion slides along the switch, as a
-    wheel that friction holds at rest; ``"released"``: it leaves the switch along which it slid.
+    ``how`` is ``"passed"`` if the motion continues beyond the switch, ``"held"`` if it slides along the switch, as a
+    wheel that friction holds at rest, and ``"released"`` if it leaves the switch along which it slid.
     """
 
     t: float
@@ -76,10 +76,10 @@ class Switching(NamedTuple):
 
 
 class Stats(NamedTuple):
-    """What a propagation cost: steps kept and tried again, evaluations of the kernel, seconds in all.
+    """The cost of a propagation: steps accepted and rejected, evaluations of the kernel, total seconds.
 
-    ``switches`` counts changes of the sequence of Euler angles, where angles are the state, and the times at which
-    torques with switches switch: ``switching_times``, s, each once. ``switchings`` says which functions switch there.
+    ``switches`` counts changes of the sequence, if Euler angles are the state, and the times at which torques switch.
+    ``switching_times`` lists these times, s, each once; ``switchings`` names the functions that switch there.
     """
 
     accepted: int
@@ -92,10 +92,10 @@ class Stats(NamedTuple):
 
 
 def stats_of(cost: Any, seconds: float, switchings: Iterable[Switching]) -> Stats:
-    """Return what a motion cost (steps accepted and rejected, evaluations) and where it switched."""
+    """Return the statistics of a motion from its steps accepted and rejected, its evaluations and its switchings."""
     accepted, rejected, evaluations = map(int, cost)
     listed = tuple(sorted(switchings))
-    times = tuple(sorted({change.t for change in listed}))  # of switches that coincide one
+    times = tuple(sorted({change.t for change in listed}))  # coinciding switches count once
     return Stats(accepted, rejected, evaluations, seconds, len(times), times, listed)
 
 
@@ -103,13 +103,13 @@ def stats_of(cost: Any, seconds: float, switchings: Iterable[Switching]) -> Stat
 
 
 def check_tolerance(tolerance: float) -> None:
-    """Refuse a tolerance that is not between 0 and 1."""
+    """Raise InputError for a tolerance that is not between 0 and 1."""
     if not 0.0 < tolerance < 1.0:
         raise InputError(f"the tolerance lies between 0 and 1, got {tolerance}")
 
 
 def check_longest_step(max_step: float) -> None:
-    """Refuse a longest step, s, that is not positive; infinity is none."""
+    """Raise InputError for a longest step, s, that is not positive; infinity means no limit."""
     if not max_step > 0.0:
         raise InputError(f"the longest step is a positive number of seconds, got {max_step}")
 
@@ -140,7 +140,7 @@ class Segment(NamedTuple):
 
 
 def segments(t0: float, end: float, breaks: Sequence[float]) -> list[Segment]:
-    """Cut the span from t0 to an end on either side of it at the switching times, which are sorted."""
+    """Return the segments between sorted switching times, from t0 to an end on either side of it."""
     if not breaks:
         return [Segment(t0, end, t0, end)]
     low, high = min(t0, end), max(t0, end)
@@ -158,13 +158,13 @@ def segments(t0: float, end: float, breaks: Sequence[float]) -> list[Segment]:
 
 
 def _inside(edge: float, other: float) -> float:
-    """Return a time just inside an end of a stretch; near 0 a sliver, since rates there choose the first step."""
+    """Return a time just inside an end of a segment, so near that the first step, chosen there, is not affected."""
     time = edge + SLIVER * (other - edge)
     return time if time != edge else math.nextafter(edge, other)
 
 
 def split_at(times: Floats, t0: float) -> Iterator[NDArray[np.intp]]:
-    """Yield the indices of the times from t0 on, then of those before it, each sorted away from t0; none empty."""
+    """Yield the indices of the times from t0 on, then of the times before it, sorted away from t0, if there are any."""
     order = np.argsort(times, kind="stable")
     first_after = int(np.searchsorted(times[order], t0))
     for part in (order[first_after:], order[:first_after][::-1]):
@@ -179,7 +179,8 @@ class Recording(ABC):
     """A motion that can be evaluated at any time of its span: ``recording(t)``.
 
     ``recording(t)`` returns the states at a time or an array of times, shape (N,) or (n, N); a time outside ``span`` is
-    an InputError. ``stats`` says what the recording cost; ``epoch`` is what other clocks show where its own shows 0.
+    an InputError. ``stats`` is the cost of the recording; ``epoch`` is the time of the scene at which its clock shows
+    0.
     """
 
     epoch = 0.0
@@ -221,7 +222,7 @@ class SteppedRecording(Recording):
 
 
 class Window(NamedTuple):
-    """What steps a run whose kernel has a clock that is moved: for a window of steps, one function and parameters."""
+    """The function and parameters that continue a run for a number of steps, until its clock is moved again."""
 
     step: Callable[..., Any]
     parameters: Any
@@ -259,7 +260,7 @@ class Run(ctypes.Structure):
 
 
 class Stepper(ABC):
-    """The functions of one loaded library; what is its method's own stands in a subclass.
+    """The functions of one loaded library; a subclass defines the part of its method.
 
     The library exports ``symrot_NAME``, ``symrot_NAME_dense`` and ``symrot_NAME_sizes``.
     """
@@ -272,7 +273,7 @@ class Stepper(ABC):
     tail: ClassVar[tuple[str, ...]] = ()  # a vector at the end, of a length that the library says
     steps_per_call: ClassVar[int]  # some 20 ms in C, after which Python can see an interrupt
     rows_per_call: ClassVar[int]  # steps recorded per call
-    reasons: ClassVar[dict[int, str]]  # why a motion cannot be followed, per status; PAUSED: not in so many steps
+    reasons: ClassVar[dict[int, str]]  # why a motion stops, per status; PAUSED: the limit of steps
 
     def __init__(self, path: str) -> None:
         try:
@@ -298,7 +299,7 @@ class Stepper(ABC):
         self.new_parameters: Any = ctypes.c_double * self.parameters
 
     def _function(self, ending: str, result: Any, *arguments: Any) -> Callable[..., Any]:
-        """Return a function of the library by the end of its name."""
+        """Return a function of the library whose name has this ending."""
         try:
             function = getattr(self._library, f"symrot_{self.name}{ending}")
         except AttributeError as error:
@@ -314,11 +315,11 @@ class Stepper(ABC):
     @staticmethod
     @abstractmethod
     def allowance(tolerance: float) -> tuple[float, float]:
-        """Return what one step is allowed for a tolerance, and the fraction of the span that earns a step all of it."""
+        """Return the error allowed in one step, and the fraction of the span that earns a step all of it."""
 
     @abstractmethod
     def enter(self, run: Run, segment: Segment, allowed: float) -> None:
-        """Set the fields of a run that are the method's own for the segment ahead."""
+        """Set the fields of a run that only this method has, for the next segment."""
 
     @staticmethod
     @abstractmethod
@@ -348,7 +349,7 @@ def _no_stepper(path: str, error: Exception) -> CompilerError:
 
 
 def is_sorted(times: Floats) -> bool:
-    """Return whether times never fall, which a nan among two does; a few are sooner compared one by one."""
+    """Return whether times never fall; a not-a-number counts as a fall. A few times are compared faster one by one."""
     if len(times) > FEW:
         return b"\0" not in (times[1:] >= times[:-1]).tobytes()
     listed = times.tolist()
@@ -356,10 +357,10 @@ def is_sorted(times: Floats) -> bool:
 
 
 class Integration:
-    """One motion to follow: checked input, and the counts of all calls made for it.
+    """The integration of one motion: its checked input, and the cost of all calls made for it.
 
-    ``load`` returns the stepper of a library's path. The other parameters are those of
-    :func:`symrot.propagation.steppers.dop853.integration`.
+    ``load`` returns the stepper of a library's path. :func:`symrot.propagation.steppers.dop853.integration` explains
+    the other parameters.
     """
 
     def __init__(
@@ -386,12 +387,12 @@ class Integration:
         self.allowed, self.pace = stepper.allowance(tolerance)
         self.accepted = self.rejected = self.evaluations = 0
         self.mark = (0, self.t0)  # steps and time when the pace was judged last
-        self.goal = t0  # where the motion goes, beyond all switching times
-        self.way = 0.0  # the whole of which this is a part, s; 0: this is all
-        self.fields: dict[str, int] = {}  # of the run in C: what a method sets beside the rest
+        self.goal = t0  # end of the motion, beyond all switching times
+        self.way = 0.0  # length of the whole motion of which this is a part, s; 0: this is the whole
+        self.fields: dict[str, int] = {}  # further fields of the run in C that a method sets
 
     def restarted(self) -> "Integration":
-        """Return the same motion with nothing spent yet; what was checked is not checked again."""
+        """Return a copy with its counts at zero; the input is not checked again."""
         other: Integration = object.__new__(type(self))
         other.__dict__.update(self.__dict__)
         other.began = perf_counter()
@@ -400,8 +401,8 @@ class Integration:
         return other
 
     def from_start(self, p: list[float], y0: Sequence[float]) -> "Integration":
-        """Return the same motion with other parameters and another state; what they share is not checked again."""
-        if not math.isfinite(sum(p) + sum(y0)):  # a sum may overflow where no number does
+        """Return a copy with other parameters and another initial state; only these are checked."""
+        if not math.isfinite(sum(p) + sum(y0)):  # a sum may overflow though each number is finite
             _numbers("parameters", p, len(p))
             _numbers("states", y0, len(y0))
         other = self.restarted()
@@ -411,11 +412,11 @@ class Integration:
         return other
 
     def stats(self) -> Stats:
-        """Return what all was spent since the task was set."""
+        """Return the total cost so far."""
         return Stats(self.accepted, self.rejected, self.evaluations, perf_counter() - self.began)
 
     def sample(self, times: ArrayLike) -> tuple[Floats, Stats]:
-        """Return the states at sample times, shape (n, N), and what they cost.
+        """Return the states at sample times, shape (n, N), and their cost.
 
         The times, s, may be in any order, before or after ``t0``, repeated or not. The steps depend on the first and
         last of them only.
@@ -457,12 +458,12 @@ class Integration:
             done = np.concatenate([done, part])
         return states, self.stats()
 
-    def sample_sorted(self, times: Floats, rise: bool) -> tuple[Floats, Stats]:
-        """Return what ``restarted().sample(times)`` returns, by a short way where the times rise from t0 on.
+    def sample_sorted(self, times: Floats, in_order: bool) -> tuple[Floats, Stats]:
+        """Return the result of ``restarted().sample(times)``, faster if the times rise from t0 on.
 
-        ``rise`` says whether they do rise, and are finite.
+        ``in_order`` says that the times are finite and never fall.
         """
-        if self.breaks or not rise or not len(times) or times.item(0) < self.t0:
+        if self.breaks or not in_order or not len(times) or times.item(0) < self.t0:
             return self.restarted().sample(times)
         began, stepper, count, end = perf_counter(), self.stepper, len(times), times.item(-1)
         states = np.empty((count, stepper.states))
@@ -514,12 +515,12 @@ class Integration:
             done += run.next
 
     def _cost(self, run: Run) -> tuple[int, int, int]:
-        """Return what a run and all runs before it cost."""
+        """Return the cost of a run and all runs before it."""
         accepted, rejected, evaluations = self.stepper.cost(run)
         return self.accepted + accepted, self.rejected + rejected, self.evaluations + evaluations
 
     def record_steps(self, end: float) -> list[Floats]:
-        """Return the recorded steps from t0 to an end, in pieces."""
+        """Return the recorded steps from t0 to an end, in arrays of rows."""
         room = self.stepper.rows_per_call
         pieces = [np.empty((0, self.stepper.row))]
         for run in self.runs(end):
@@ -533,7 +534,7 @@ class Integration:
         return pieces
 
     def runs(self, end: float) -> Generator[Run, None, None]:
-        """Yield the C side's run, set up for each segment between switching times, and count what it cost."""
+        """Yield the run in C, set up for each segment between switching times, and add its cost to the counts."""
         stepper, self.goal = self.stepper, end
         pace = (self.way or abs(end - self.t0)) * self.pace
         run = stepper.new_run(t=self.t0, pace=pace, max_step=self.max_step, **self.fields)
@@ -543,18 +544,18 @@ class Integration:
                 run.stop, run.next = segment.stop, 0
                 stepper.enter(run, segment, self.allowed)
                 yield run
-        finally:  # a caller may need no more
+        finally:  # a caller may stop early
             accepted, rejected, evaluations = stepper.cost(run)
             self.accepted += accepted
             self.rejected += rejected
             self.evaluations += evaluations
 
     def step_function(self, run: Run) -> tuple[Callable[..., Any], Any, int]:
-        """Return what steps a run further: the function in C, its kernel's parameters, the most steps in one call."""
+        """Return the function in C that continues a run, its kernel's parameters, and the most steps in one call."""
         return self.stepper.run, self.p, self.stepper.steps_per_call
 
     def advance(self, run: Run, times: int | None, count: int, states: int | None, rows: int | None, room: int) -> int:
-        """Call the stepper once; raise where it cannot go on."""
+        """Call the stepper once; raise IntegrationStopped if it cannot continue."""
         stepper, (function, p, most) = self.stepper, self.step_function(run)
         attempts = min(most, self.max_steps - stepper.tried(run))
         status: int = function(ctypes.addressof(run), ctypes.addressof(p), times, count, states, rows, room, attempts)
@@ -573,7 +574,7 @@ class Integration:
         return status
 
     def judge_pace(self, tried: int, run: Run) -> None:
-        """Give the motion up if its steps have become so short that the rest would take far more than the limit."""
+        """Raise IntegrationStopped if the rest of the motion would take far more steps than the limit."""
         reason = why_hopeless(tried - self.mark[0], abs(run.t - self.mark[1]), abs(run.stop - run.t), self.max_steps)
         if reason:
             raise IntegrationStopped(run.t, reason, run.stop)

@@ -1,7 +1,8 @@
 """Taylor series of order 20 around an emitted jet: the C of :file:`taylor.c` driven from Python, one call per span.
 
-The counterpart of :mod:`symrot.propagation.steppers.dop853` for right-hand sides that are known as formulas and smooth:
-a few long steps, each good to round-off if asked, at any time inside a step from the same coefficients. A library holds
+The counterpart of :mod:`symrot.propagation.steppers.dop853` for right-hand sides that are smooth formulas: a few long
+steps, each accurate to round-off if the tolerance is small, and states at any time inside a step from the same
+coefficients. A library holds
 one system and the stepper compiled together (:func:`translation_unit`).
 
 Tolerance: the promise is about the trajectory, not about one step, see :func:`step_tail`.
@@ -52,8 +53,8 @@ NO_INVARIANTS = NO_INVARIANT + "#define SYMROT_INVARIANT_PARAMETERS 0\n"
 NO_ENCLOSURE = "#define SYMROT_ENCLOSED 0\n"
 MIDDLE_REACH = 3  # of the discs of symrot.codegen.enclosure.terms.REACHES: the one to begin with
 PROJECTED_EVERY = 16  # steps: by measurement, seldom enough to cost a few percent and often enough to lose nothing
-MANY_PRODUCTS = 40  # of a right-hand side: from there on the work of a step is in its sums, which grow as order squared
-ORDERS = {  # by whether there are many: from which tolerance on which order is fastest, see order_for
+MANY_PRODUCTS = 40  # of a right-hand side: above it the sums of a step, which grow as order squared, dominate its cost
+ORDERS = {  # by whether there are many products: least tolerance, and the fastest order from there on
     False: ((1e-3, 14), (1e-6, 16), (0.0, 20)),
     True: ((3e-2, 8), (1e-3, 10), (1e-5, 12), (1e-7, 16), (0.0, 20)),
 }
@@ -63,7 +64,7 @@ def step_tail(tolerance: float) -> tuple[float, float]:
     """Return the size allowed to the last terms of a step's series, and the fraction of the span that earns all of it.
 
     A step shorter than that is allowed its share of the span to the power 7/4, as errors grow with the number of steps
-    when nothing but a turning body amplifies them: the error at the end then hardly depends on the span.
+    when only the rotation amplifies them: the error at the end then hardly depends on the span.
 
     The constant is calibrated on free asymmetric bodies, through flips about the intermediate axis too, and on heavy
     tops, against references of 50 digits (``tests/propagation/test_taylor.py``): errors stay below 5 times the
@@ -74,7 +75,7 @@ def step_tail(tolerance: float) -> tuple[float, float]:
 
 
 def order_for(tolerance: float, program: Program | None = None) -> int:
-    """Return the order that is fastest for a tolerance and the products of a right-hand side; any keeps its promise.
+    """Return the fastest order for a tolerance and the products of a right-hand side; every order is accurate enough.
 
     Measured by ``python -m symrot.bench.taylor --orders``: below 1e-6 orders 16 to 24 lie within a tenth of each other.
     """
@@ -113,10 +114,10 @@ def translation_unit(
     order : int, optional
         Of the series, even; default: 20. See :func:`order_for`.
     invariants : str
-        What :func:`symrot.codegen.taylor.invariant_source.invariant_definitions` prints: the motion is projected onto
-        them. Their parameters follow those of the program.
+        Output of :func:`symrot.codegen.taylor.invariant_source.invariant_definitions`: the motion is projected onto
+        these invariants. Their parameters follow the parameters of the program.
     enclosed : bool
-        Whether steps are held to what an enclosure of the rates proves, see :mod:`symrot.codegen.enclosure.terms`.
+        Whether an enclosure of the rates limits the steps, see :mod:`symrot.codegen.enclosure.terms`.
 
     Raises
     ------
@@ -149,9 +150,9 @@ def integration(
     max_steps: int = MAX_STEPS,
     project: bool = True,
 ) -> Integration:
-    """Return a motion to sample or to record, as :func:`symrot.propagation.steppers.dop853.integration` does.
+    """Return the integration of a motion, as :func:`symrot.propagation.steppers.dop853.integration` does.
 
-    Its ``stats`` count as evaluations the jets, each of which is all coefficients of one step.
+    Its ``stats`` count jets as evaluations: a jet is all coefficients of one step.
 
     Parameters
     ----------
@@ -162,7 +163,7 @@ def integration(
     max_steps : int
         Most steps to take before giving up.
     project : bool
-        Whether to hold the motion on its invariants, where the library knows some.
+        Whether to project the motion onto its invariants, if the library has any.
     """
     motion = Integration(_stepper, library, p, y0, t0, tolerance, max_step, max_steps)
     motion.fields["every"] = PROJECTED_EVERY if project else 0

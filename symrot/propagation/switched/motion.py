@@ -1,7 +1,7 @@
 """Motions under torques that jump or bend: from one switch to the next, each located to the last bits.
 
 Between switches the modes of :mod:`symrot.formula.switches` are constants and the motion is smooth: any stepper follows
-it, while the guards are searched as events are. Where a guard would leave the side of its mode, the motion is stepped
+it, while the guards are searched like events. Where a guard would leave the side of its mode, the motion is stepped
 exactly to that time and goes on with the mode of the other side. If both sides send it back (dry friction at rest,
 relay control) the guard stays at zero: the motion slides, and the mode takes the value that holds it there, until that
 value leaves the range of the switch.
@@ -53,7 +53,7 @@ class SwitchedMotion(MotionInParts):
         self.system.regime(frozenset(), self.system.initial_modes())
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
-        """Return the states at the times, shape (n, N), and what it cost."""
+        """Return the states at the times, shape (n, N), and their cost."""
         began, states = perf_counter(), np.empty((len(times), len(self.plan.states)))
         cost, done = np.zeros(3, dtype=np.int64), np.empty(0, dtype=np.intp)
         changes: dict[tuple[float, str], str] = {}
@@ -84,7 +84,7 @@ class SwitchedMotion(MotionInParts):
         return states, stats_of(cost, perf_counter() - began, _switchings(changes))
 
     def parts(self, end: float, broken: list[PropagationError]) -> tuple[list[Piece], Recording]:
-        """Return the motion from its start to an end as polynomials and at any time; what cut it off in ``broken``."""
+        """Return the motion from its start to an end as polynomials and at any time, an early end in ``broken``."""
         chunks: list[Chunk] = []
         run = SwitchedRun(self, self.system, end)
         try:
@@ -133,7 +133,7 @@ class SwitchedRecording(Recording):
             places[beyond] += 1
         for place in np.unique(places):
             if place == len(self._chunks):
-                states[places == place] = np.nan  # beyond where the motion was cut off
+                states[places == place] = np.nan  # after the motion stopped early
             else:
                 chosen = places == place
                 states[chosen] = self._chunks[place].states(times[chosen])

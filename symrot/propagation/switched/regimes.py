@@ -25,11 +25,11 @@ Modes = dict[str, int]
 
 
 class Guard(NamedTuple):
-    """A formula that is positive as long as its switch keeps its mode, and the change of the mode where it is not."""
+    """A formula that is positive as long as its switch has its mode, and the change of the mode where it is not."""
 
     mode: str
     formula: str
-    change: int  # 0: to the opposite sign; 1, -1: to that side, or by that much
+    change: int  # 0: to the opposite sign; 1 or -1: to that side, or by that number
     where: Conditions
 
 
@@ -48,7 +48,7 @@ class RegimeParameters(NamedTuple):
 class Regime:
     """The smooth motion while some guards stay at zero, and the guards that end it.
 
-    Its clock shows 0 wherever the motion enters it: the parameters of rates and guards are those of that instant.
+    Its clock shows 0 at the instant at which the motion enters it; rates and guards have parameters for that instant.
     """
 
     def __init__(
@@ -74,10 +74,10 @@ class Regime:
         known = {name for name, _ in self.parameters} | set(modes)
         self.more = sorted(known & set().union(*map(names, nodes)))
         self.events = [Event(guard.formula, terminal=True, direction=-1) for guard in self.guards]
-        columns = {name: f"{name} of the scene" for name in self.more}  # a kernel has names of its own for constants
+        columns = {name: f"{name} of the scene" for name in self.more}  # a kernel names its constants differently
         columns |= {f"{mode}_of_t": f"{mode} of t" for mode in held}
         quantities, self.quantity_parameters = motion.kernel.quantities, motion.kernel.quantity_parameters
-        if quantities.uses("t"):  # as the value of a mode that holds its guard at zero
+        if quantities.uses("t"):  # for example the value of a mode that holds its guard at zero
             quantities, self.quantity_parameters = moved(quantities, self.quantity_parameters)
         program = _with_parameters(quantities, [columns[name] for name in self.more])
         source = guard_library_source(
@@ -115,14 +115,14 @@ class Regime:
         return self._parameters[key]
 
     def values(self, modes: Modes, zero: Instant) -> dict[str, float]:
-        """Return what the names in :attr:`formulas` stand for on a clock that shows 0 at an instant."""
+        """Return the values of the names in :attr:`formulas` on a clock that shows 0 at an instant."""
         numbers = self._parameters_under(modes).guards.parameters(zero.exact)
         return {name: number for (name, _), number in zip(self.parameters, numbers, strict=True)} | {
             name: float(mode) for name, mode in modes.items()
         }
 
     def bound(self, modes: Modes, zero: Instant) -> tuple[list[float], list[float]]:
-        """Return the parameters of the stepper's library and of the guards', on a clock that shows 0 at an instant."""
+        """Return the parameters of the stepper and of the guards, on a clock that shows 0 at an instant."""
         rates, guards, quantities, invariants = self._parameters_under(modes)
         fixed = rates.fixed and guards.fixed and quantities.fixed
         place = tuple(modes.values()), None if fixed else zero
@@ -151,7 +151,7 @@ class Regime:
         return rates, guards, quantities
 
     def active(self, modes: Modes) -> list[bool]:
-        """Return which guards matter."""
+        """Return which guards are active under some modes."""
         key = tuple(modes.values())
         if key not in self._active:
             self._active[key] = [hold(guard.where, modes, self.held) for guard in self.guards]
@@ -159,15 +159,15 @@ class Regime:
 
 
 def _distance(switch: Switch) -> Node:
-    """Return what is zero where a switch switches: its guard, less the whole number below it for a floor.
+    """Return a formula that is zero where a switch switches: its guard, less the whole number below it for a floor.
 
-    The number is subtracted before anything is rounded: far from t = 0 it takes most digits of the guard away.
+    The number is subtracted before rounding: far from t = 0 it cancels most digits of the guard.
     """
     return switch.guard if switch.kind == "sign" else ("-", switch.guard, ("symbol", switch.mode))
 
 
 def _with_parameters(program: Program, more: list[str]) -> Program:
-    """Return a program with further parameters, which its outputs do not use."""
+    """Return a program with more parameters, which its outputs do not use."""
     arguments = list(program.signature.arguments)
     place = next((k for k, argument in enumerate(arguments) if argument.name == "p"), None)
     extra = tuple((name, "", "") for name in more)

@@ -1,4 +1,4 @@
-"""A motion under torques with switches on its way from the start to one end: when it switches, slides, stops."""
+"""A motion under torques with switches from the start to one end: where it switches, slides or stops."""
 
 import math
 from collections.abc import Callable, Generator
@@ -28,11 +28,11 @@ from symrot.propagation.switched.system import SwitchedSystem
 __all__ = ["Chunk", "SwitchedRun"]
 
 MOST_SWITCHES, MOST_AT_ONCE = 1_000_000, 1000
-HOP_BITS = 10  # a hop over a switch is at most so many times two ulps of the clock long
-LEAST_TURN = 1e-3  # rad over the whole span: slower rates are as good as this one
-AWAY = range(50, 400, 10)  # a hop away from a switch is so many times halved a span
-NEARBY, MOST_ULPS = 1e-6, 64.0  # parts of the way since the last switch; last bits of a time that was located
-CHATTERING = 1e-9  # of the span: so many switches as are remembered within it are endlessly many
+HOP_BITS = 10  # a hop over a switch is at most 2 to this power units in the last place of the clock long
+LEAST_TURN = 1e-3  # rad over the whole span: errors of slower rates are relative to this one
+AWAY = range(50, 400, 10)  # a hop away from a switch is the span, halved so many times
+NEARBY, MOST_ULPS = 1e-6, 64.0  # of the way since the last switch; units in the last place of a located time
+CHATTERING = 1e-9  # of the span: CHATTER switches within it count as endlessly many
 Consumer = Callable[["Chunk"], None]
 
 
@@ -52,7 +52,7 @@ class Chunk(NamedTuple):
     def piece(self) -> Piece:
         """Return the part as polynomials on the clock of the scene."""
         rows, edges = self.own_piece.rows.copy(), self.own_piece.edges + self.zero.low + self.zero.high
-        edges[0], edges[-1] = self.start.high, self.stop.high  # as the parts before and after have them
+        edges[0], edges[-1] = self.start.high, self.stop.high  # the same numbers as in the parts before and after
         time, low = two_sum(self.zero.high, rows[:, 0])
         rows[:, 0], rows[:, 2] = two_sum(time, low + (rows[:, 2] + self.zero.low))
         return Piece(edges, rows)
@@ -61,7 +61,7 @@ class Chunk(NamedTuple):
 class SwitchedRun(RunState):
     """A motion on its way from the start to one end.
 
-    Its clock shows 0 at the last switch, which is known to twice the digits of a double: ``t`` and ``end`` are times on
+    Its clock shows 0 at the last switch, which is known to twice the digits of a double. ``t`` and ``end`` are times on
     that clock, s.
     """
 
@@ -72,15 +72,15 @@ class SwitchedRun(RunState):
         self.held = frozenset[str]()
         self.cost = np.zeros(3, dtype=np.int64)  # steps accepted and rejected, evaluations
         self.switches = 0
-        self.changes: dict[tuple[float, str], str] = {}  # what each function with a switch did at a time
-        self.flipped: dict[str, int] = {}  # modes changed at this very time, and how often
-        self.released: set[str] = set()  # modes whose guards were held until this very time: they leave zero slowly
+        self.changes: dict[tuple[float, str], str] = {}  # how each function switched, by time and function
+        self.flipped: dict[str, int] = {}  # modes changed at this time, and how often
+        self.released: set[str] = set()  # modes whose guards were held until this time: they leave zero slowly
         self.order: list[str] = []  # the same in the order of the changes
-        self.left: set[tuple[str, int]] = set()  # modes and their values left at this very time
+        self.left: set[tuple[str, int]] = set()  # modes with the values that they had before changes at this time
         self.settled, self.hopped = 0, False
 
     def follow(self, consume: Consumer) -> None:
-        """Follow the motion to its end, handing on each part as it is known."""
+        """Follow the motion to its end, passing each part to ``consume`` as soon as it is known."""
         with progress.within(self.motion.start, self._end.high, lambda: self.zero.high):
             try:
                 self._check_start()
@@ -112,7 +112,7 @@ class SwitchedRun(RunState):
             self.end = 0.0
 
     def _check_start(self) -> None:
-        """Refuse a start on a switch from which both sides lead away: the motion has more than one way on."""
+        """Raise IntegrationStopped for a start on a switch from which both sides lead away: there are two motions."""
         for switch in self.system.switches:
             mode = switch.mode
             if mode not in self.system.undecided or not hold(switch.where, self.modes) or self.t == self.end:
@@ -153,7 +153,7 @@ class SwitchedRun(RunState):
                     return
                 current[:] = [(piece, states)]
                 yield piece
-                if last:  # though no crossing was seen: within rounding it was there from the start of the piece
+                if last:  # without a crossing: within rounding the guard was negative from the start of the piece
                     violated.extend(last)
                     if passed[-1] != start:
                         self.t, self.y = passed[-1], states(np.array(passed[-1:]))[0]
@@ -187,7 +187,7 @@ class SwitchedRun(RunState):
         if violated:
             return violated[0]
         if stop is None:
-            self.t = self.end if current else self.t  # a mode was settled: once more from here
+            self.t = self.end if current else self.t  # a mode was settled: repeat from here
             return None
         piece, states = current[0]
         ended = next(each.event for each in reversed(zeros) if each.t == stop and active[each.event])
@@ -203,7 +203,7 @@ class SwitchedRun(RunState):
         return guard
 
     def _arrive(self, instant: Instant) -> None:
-        """Begin anew at a switch, where the motion is now; the clock shows 0 there, unless it is the end."""
+        """Restart at a switch, where the motion is now; the clock shows 0 there, unless it is the end."""
         if self.t != self.end:
             self._move_clock(instant)
         self.flipped, self.order, self.left, self.released, self.hopped = {}, [], set(), set(), False
@@ -211,11 +211,11 @@ class SwitchedRun(RunState):
     def _hop(
         self, regime: Regime, active: list[bool], rates: list[float], t: float, y: Floats, error: IntegrationStopped
     ) -> tuple[Piece, Callable[[Floats], Floats], Guard | None] | None:
-        """Return a straight piece on from where a stepper is stuck, and the guard that it crosses; or None.
+        """Return a straight piece that continues from where a stepper is stuck, and the guard that it crosses; or None.
 
-        As sqrt(1 - t) before a switch at 1 s, and sqrt(t - 1) after it: steps shrink to nothing where a torque has no
-        derivative, though it has an impulse. Over a time so short that the impulse is less than the tolerance the
-        motion may go straight on: to the guard if the guard is that near, or away from the last switch.
+        Examples are sqrt(1 - t) before a switch at 1 s, and sqrt(t - 1) after it: steps shrink to zero where a torque
+        has no derivative, though its impulse is finite. While the impulse is less than the tolerance the motion may
+        continue straight: to the guard if the guard is that near, or away from the last switch.
         """
         kernel, motion = regime.motion.kernel, regime.motion
         p = np.array(rates[: len(kernel.rate_parameters)])
@@ -295,7 +295,7 @@ class SwitchedRun(RunState):
     def _negative(
         self, regime: Regime, active: list[bool], values: list[float], piece: Piece
     ) -> tuple[list[Guard], list[Guard]]:
-        """Return the guards that are on the wrong side from the start of a piece on, and those that are at its end."""
+        """Return the guards that are negative from the start of a piece on, and those negative at its end."""
         formulas = [guard.formula for guard in regime.guards]
         first, last = (
             [guard for guard, on, sign in zip(regime.guards, active, signs, strict=True) if on and sign < 0]
@@ -304,9 +304,9 @@ class SwitchedRun(RunState):
         return first, last
 
     def _settle(self, regime: Regime, active: list[bool], piece: Piece, states: Callable[[Floats], Floats]) -> bool:
-        """Give each mode whose guard is zero, and stays it, its value at zero; return whether a mode changed.
+        """Give each mode whose guard is and stays zero its value at zero; return whether a mode changed.
 
-        A mode that is 0 takes the sign of its guard as soon as that is other than zero.
+        A mode that is 0 takes the sign of its guard as soon as the guard is not zero.
         """
         formulas, settled = [guard.formula for guard in regime.guards], dict(self.modes)
 
@@ -315,16 +315,16 @@ class SwitchedRun(RunState):
 
         signs_now = signs_under(self.modes)
         end = float(piece.edges[-1])
-        later = end, states(np.array([end]))[0]  # a guard may leave zero more slowly than rounding shows
+        later = end, states(np.array([end]))[0]  # a guard may leave zero so slowly that rounding hides it
         for switch in self.system.switches:
             mode = switch.mode
             numbers = [n for n, guard in enumerate(regime.guards) if guard.mode == mode and active[n]]
             if mode in self.held or not numbers:
                 continue
-            resting = switch.kind == "sign" and self.modes[mode] == 0  # so that its mode times its guard is zero
+            resting = switch.kind == "sign" and self.modes[mode] == 0  # then its mode times its guard is zero
             signs = signs_under({**self.modes, mode: 1}) if resting else signs_now
             sign = signs[numbers[0]]
-            if switch.kind == "floor":  # closed on the left: at n + 1 it is n + 1
+            if switch.kind == "floor":  # at n + 1 the floor is n + 1
                 upper = signs[numbers[1]]
                 if not upper and self._guard_value(mode) == 1.0:
                     settled[mode] = self.modes[mode] + 1
@@ -344,7 +344,7 @@ class SwitchedRun(RunState):
     def _guard_value(self, mode: str, place: tuple[float, Floats] | None = None) -> float:
         """Return the distance of a mode's guard from its zero, at a time and a state or at the present ones.
 
-        Of a floor, how far the guard is above the whole number that is its mode.
+        For a floor: the distance of the guard from the whole number that is its mode.
         """
         regime = self.system.regime(self.held, self.modes)
         return float(
@@ -352,7 +352,7 @@ class SwitchedRun(RunState):
         )
 
     def _values(self, regime: Regime, place: tuple[float, Floats]) -> dict[str, float]:
-        """Return what the names in guards stand for at a time and a state."""
+        """Return the values of the names in guards at a time and a state."""
         t, y = place
         names = [f"omega_{i} of t" for i in (1, 2, 3)]
         names += [f"q{i} of t" for i in range(4)] if self.motion.plan.structure.attitude else []
@@ -365,7 +365,7 @@ class SwitchedRun(RunState):
         mode, kind = guard.mode, self.by_name[guard.mode].kind
         self.left.add((mode, self.modes[mode]))
         again = self.flipped.get(mode, 0)
-        if again and self._jumped(mode):  # with a mode inside its guard: that it changes again says nothing
+        if again and self._jumped(mode):  # a mode inside its guard changed too, so that this is no return
             again = 0
         self.order.append(mode)
         if len(self.order) > MOST_AT_ONCE:
@@ -387,7 +387,7 @@ class SwitchedRun(RunState):
             self.modes[mode] = -self.modes[mode]
         else:
             above = math.floor(self._guard_value(mode))
-            far = abs(above) > 1  # it jumped over some whole numbers
+            far = abs(above) > 1  # the guard jumped over whole numbers
             self.modes[mode] += above if far else guard.change
             if (mode, self.modes[mode]) in self.left:
                 raise IntegrationStopped(
@@ -397,17 +397,17 @@ class SwitchedRun(RunState):
             self._wake(other)
 
     def _jumped(self, mode: str) -> bool:
-        """Return whether a mode inside a mode's guard has changed at this very time since that mode did."""
+        """Return whether a mode inside a mode's guard has changed at this time since that mode did."""
         inside = names(self.by_name[mode].guard)
         last = len(self.order) - self.order[::-1].index(mode)
         return any(other in inside for other in self.order[last:])
 
     def _asleep(self) -> set[str]:
-        """Return the modes whose guards do not matter."""
+        """Return the modes whose guards are not active."""
         return {s.mode for s in self.system.switches if s.where and not hold(s.where, self.modes, self.held)}
 
     def _wake(self, mode: str) -> None:
-        """Give a mode whose guard begins to matter the value that the guard tells, if it tells one."""
+        """Set a mode whose guard becomes active by the value of the guard, if the guard has one."""
         try:
             guard = self._guard_value(mode)
         except (ArithmeticError, ValueError):
@@ -425,7 +425,7 @@ class SwitchedRun(RunState):
         self.changes[self.now, self._name(mode)] = "held"
         guard = self.by_name[mode].guard
         if guard[0] == "symbol" and guard[1] in regime.plan.states:
-            self.y[regime.plan.states.index(guard[1])] = 0.0  # exactly, where the guard is a state
+            self.y[regime.plan.states.index(guard[1])] = 0.0  # exactly zero, where the guard is a state
         try:
             self.system.regime(self.held, self.modes)
         except InputError:

@@ -1,4 +1,4 @@
-"""The pieces of a smooth motion on its way to the next switch, by each stepper: polynomials, and states at any time."""
+"""The pieces of a smooth motion up to the next switch, by each stepper: polynomials, and states at any time."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -6,6 +6,7 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from symrot.propagation.compiled_models import error_blocks
 from symrot.propagation.events.polynomials import Piece, fitted, rows_of
@@ -19,13 +20,13 @@ from symrot.propagation.switched.run_state import RunState
 
 __all__ = ["SciPyPieces", "SteppedPieces", "smooth_pieces"]
 
-ROOM = 4  # steps in the first piece after a switch; twice as many in each piece after it
+ROOM = 4  # steps in the first piece after a switch; each further piece has twice as many
 WINDOWS, FEWEST = 64, 8  # pieces of the span that SciPy follows at a time, at first and later
 JOIN = 0.01  # of the tolerance: how far the ends of LSODA's steps may be apart
-RECENT = 4  # smooth parts before, whose lengths tell how long the next may be
+RECENT = 4  # number of smooth parts whose lengths predict the length of the next one
 FIRST_ANGLE = 30.0  # rad
 SHORTEST = 1e-6  # of the span
-OVERHEAD = 200  # evaluations: how long a window takes beside them
+OVERHEAD = 200  # evaluations that take as long as the rest of a window
 
 
 class SteppedPieces:
@@ -42,6 +43,7 @@ class SteppedPieces:
         self.integration.way, self.end = run.span, run.end
 
     def pieces(self) -> Iterator[tuple[Piece, Callable[[Floats], Floats]]]:
+        """Yield the pieces in the order of the motion, with their states as a function of time."""
         integration, room = self.integration, ROOM
         for run in integration.runs(self.end):
             while run.t != run.stop:
@@ -56,27 +58,28 @@ class SteppedPieces:
                 if len(rows):
 
                     def states(times: Floats, rows: Floats = rows) -> Floats:
-                        inside: Floats = integration.stepper.dense(rows, times)
-                        return inside
+                        return integration.stepper.dense(rows, times)
 
                     yield Piece(np.append(rows[:, 0], run.t), rows_of(integration.stepper, rows)), states
                 if stuck is not None:
                     raise stuck
                 room = min(2 * room, integration.stepper.rows_per_call)
 
-    def cost(self) -> Any:
+    def cost(self) -> NDArray[np.int64]:
+        """Return steps accepted, steps rejected and evaluations so far."""
         integration = self.integration
         return np.array([integration.accepted, integration.rejected, integration.evaluations])
 
 
 class SciPyPieces:
-    """Pieces of a motion by SciPy: a window of time after the other."""
+    """Pieces of a motion by SciPy, one window of time after another."""
 
     def __init__(self, run: RunState, regime: Regime, motion: SciPyMotion, rates: list[float]) -> None:
         self.run, self.motion, self.rates, self.counts = run, motion, rates, np.zeros(3, dtype=np.int64)
         self.clock = run.clock(regime, motion.rates)
 
     def pieces(self) -> Iterator[tuple[Piece, Callable[[Floats], Floats]]]:
+        """Yield the pieces in the order of the motion, with their states as a function of time."""
         from symrot.propagation.steppers import fallback
 
         run, t, y = self.run, self.run.t, self.run.y
@@ -100,7 +103,7 @@ class SciPyPieces:
                     raise
                 recording, ended = before, error
                 stop = recording.span[side > 0.0]
-                if isinstance(error, KeyboardInterrupt):  # a switch before it must not forget it
+                if isinstance(error, KeyboardInterrupt):  # must survive a switch before it
                     run.interrupt = error
             self.counts += recording.stats[:3]
             run.spent += recording.stats.evaluations + OVERHEAD
@@ -112,9 +115,9 @@ class SciPyPieces:
             y, t, length = recording(stop), stop, min(2.0 * length, run.span / FEWEST)
 
     def _first_length(self) -> float:
-        """Return how far to go at first, s: no farther than twice the longest smooth part of late, nor many rotations.
+        """Return the length of the first window, s: at most twice the longest recent smooth part, and few rotations.
 
-        What is followed beyond the next switch is wasted.
+        Work beyond the next switch is wasted.
         """
         run = self.run
         (_, rates, *_), _ = error_blocks(self.motion.plan)
@@ -125,7 +128,7 @@ class SciPyPieces:
         return min(max(2.0 * likely, SHORTEST * run.span), run.span / WINDOWS)
 
     def _judge_pace(self, t: float) -> None:
-        """Give the whole motion up if the rest would take far more than the limit."""
+        """Raise IntegrationStopped if the rest of the whole motion would take far more evaluations than the limit."""
         from symrot.propagation.steppers.fallback import MAX_EVALUATIONS, PATIENCE
 
         run = self.run
@@ -139,7 +142,8 @@ class SciPyPieces:
         if run.spent > MAX_EVALUATIONS:
             raise IntegrationStopped(t, f"{MAX_EVALUATIONS} evaluations were not enough", run.end)
 
-    def cost(self) -> Any:
+    def cost(self) -> NDArray[np.int64]:
+        """Return steps accepted, steps rejected and evaluations so far."""
         return self.counts
 
 
