@@ -137,19 +137,19 @@ class Setup:
         is_shifted = self.plan.structure.clock is not None
         return (self.plan, self.kernel) if is_shifted else time_shift.time_shifted(self.plan, self.kernel)
 
+    @cached_property
     def on_own_clock(self) -> "Setup":
-        """Return the setup on a clock that shows 0 at the start, see :mod:`symrot.propagation.time_shift`."""
+        """A copy on a clock that shows 0 at the start, see :mod:`symrot.propagation.time_shift`."""
         plan, kernel = time_shift.time_shifted(self.plan, self.kernel)
         return replace(self, plan=plan, start=0.0, epoch=self.start, load_kernel=lambda: kernel)
 
 
 @final
-@dataclass(frozen=True, eq=False)
 class SteppedSetup:
     """The part that motions stepped in C share: the setup, and the library of kernel and stepper."""
 
-    setup: Setup
-    library: Path
+    def __init__(self, setup: Setup, library: Path) -> None:
+        self.setup, self.library = setup, library
 
     @cached_property
     def integration(self) -> Integration:
@@ -171,7 +171,7 @@ class SteppedSetup:
     @cached_property
     def on_own_clock(self) -> "SteppedSetup":
         """A copy on a clock that shows 0 at the start."""
-        setup = self.setup.on_own_clock()
+        setup = self.setup.on_own_clock
         if setup.plan is self.setup.plan:  # the rates do not depend on the time
             return SteppedSetup(setup, self.library)
         return _stepped_on_own_clock(setup)
@@ -184,25 +184,11 @@ def _stepped_on_own_clock(setup: Setup) -> SteppedSetup:
 
 
 @final
-@dataclass(frozen=True, eq=False)
-class SciPySetup:
-    """The part that motions stepped by SciPy share: the setup, and a copy on a clock that shows 0 at the start."""
-
-    setup: Setup
-
-    @cached_property
-    def on_own_clock(self) -> "SciPySetup":
-        """A copy on a clock that shows 0 at the start."""
-        return SciPySetup(self.setup.on_own_clock())
-
-
-@final
-@dataclass(frozen=True, eq=False)
 class ClosedFormSetup:
     """The part that motions in closed form share: the setup, and the form."""
 
-    setup: Setup
-    form: Form
+    def __init__(self, setup: Setup, form: Form) -> None:
+        self.setup, self.form = setup, form
 
     @cached_property
     def starts(self) -> Starts:
@@ -501,19 +487,15 @@ class SteppedMotion(ShiftableMotion, SteppedInC):
 class SciPyMotion(ShiftableMotion):
     """A motion that one of SciPy's methods follows."""
 
-    def __init__(self, shared: SciPySetup, plan: Plan) -> None:
-        super().__init__(shared.setup, plan)
-        self._shared = shared
-
     def from_start(self, initial: Initial) -> "SciPyMotion":
         """Return the motion from another initial state of the same structure."""
-        return SciPyMotion(self._shared, self.setup.plan.from_start(initial))
+        return SciPyMotion(self.setup, self.setup.plan.from_start(initial))
 
     @cached_property
     def on_own_clock(self) -> "SciPyMotion":
         """The motion on a clock that shows 0 at the start."""
-        shared = self._shared.on_own_clock
-        return SciPyMotion(shared, shared.setup.plan.from_start(self.plan.scene.initial))
+        setup = self.setup.on_own_clock
+        return SciPyMotion(setup, setup.plan.from_start(self.plan.scene.initial))
 
     @cached_property
     def _clock(self) -> Callable[[float], Any]:
@@ -573,7 +555,7 @@ def make_motion(plan: Plan, choice: Choice, tolerance: float) -> RestartableMoti
     if choice.method in ("taylor", "dop853"):
         return stepped_motion(plan, choice, tolerance)
     setup = _setup(plan, choice, tolerance)
-    return ConstantMotion(setup, plan) if choice.method == "constant" else SciPyMotion(SciPySetup(setup), plan)
+    return ConstantMotion(setup, plan) if choice.method == "constant" else SciPyMotion(setup, plan)
 
 
 def _setup(plan: Plan, choice: Choice, tolerance: float) -> Setup:
@@ -599,8 +581,8 @@ def on_own_clock(plan: Plan, choice: Choice, tolerance: float) -> SteppedMotion 
     setup = _setup(plan, choice, tolerance)
     timed, steps_in_c = setup.kernel.rates.uses("t"), choice.method in ("taylor", "dop853")
     if not timed:
-        return stepped_motion(plan, choice, tolerance) if steps_in_c else SciPyMotion(SciPySetup(setup), plan)
-    setup = setup.on_own_clock()
+        return stepped_motion(plan, choice, tolerance) if steps_in_c else SciPyMotion(setup, plan)
+    setup = setup.on_own_clock
     if steps_in_c:
         return SteppedMotion(_stepped_on_own_clock(setup), setup.plan)
-    return SciPyMotion(SciPySetup(setup), setup.plan)
+    return SciPyMotion(setup, setup.plan)

@@ -18,7 +18,7 @@ from symrot.formula.program import Argument, Program, Signature
 from symrot.formula.tree import evaluate, parse
 from symrot.planning.scene_kernel import EXACT_FUNCTIONS, bind
 from symrot.propagation import time_shift as epoch
-from symrot.propagation.motion import SteppedMotion, on_clock
+from symrot.propagation.motion import SteppedMotion, SteppedSetup, on_clock
 from symrot.propagation.propagate import propagator
 from symrot.propagation.steppers import dop853
 from symrot.propagation.steppers.stepping import MAX_STEPS
@@ -126,7 +126,7 @@ def test_the_clock_of_the_scene_would_cost_them():
     """The check above sees the fault that it is there for."""
     found = propagator(scene(AXIS, CASES["axis"][1], 10**9), "dop853")
     motion = found._motion
-    shared = replace(motion._shared, setup=replace(motion.setup, allows_time_shift=False))
+    shared = SteppedSetup(replace(motion.setup, allows_time_shift=False), motion.library)
     found._motion = SteppedMotion(shared, motion.plan)
     with mpmath.workdps(40):
         expected = axis_reference(10**9)
