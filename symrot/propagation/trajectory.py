@@ -2,16 +2,18 @@
 
 from collections.abc import Callable, Mapping
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from symrot.errors import InputError
 from symrot.kinematics import conversions
+from symrot.planning.plan import Plan
 from symrot.propagation.events.event_result import EventResult
 from symrot.propagation.motion import Motion
 from symrot.propagation.steppers.stepping import Stats
+from symrot.scene.scene import Scene
 
 __all__ = ["Invariant", "Trajectory"]
 
@@ -86,12 +88,12 @@ class Trajectory:
         return self.status >= 0
 
     @property
-    def plan(self) -> Any:
+    def plan(self) -> Plan:
         """The plan of the motion."""
         return self._motion.plan
 
     @property
-    def scene(self) -> Any:
+    def scene(self) -> Scene:
         """The scene, with the initial state that was used."""
         return self._motion.plan.scene
 
@@ -253,6 +255,8 @@ class Trajectory:
         """Return a quantity by the name that scenes use for it (``output.quantities``)."""
         if name == "euler":
             output = self.scene.output
+            if output.sequence is None:
+                raise InputError('euler: expected an Euler sequence as output.sequence of the scene, such as "ZXZ"')
             return self.euler(output.sequence, degrees=output.degrees)
         value: Floats = getattr(self, name)
         return value

@@ -1,4 +1,4 @@
-"""The classes of motions: each is abstract or final, and none overrides what another defines."""
+"""The classes of motions, each abstract or final, none overriding another; and what a trajectory asks of its scene."""
 
 import inspect
 from abc import ABC, abstractmethod
@@ -7,6 +7,8 @@ from typing import final
 
 import pytest
 
+import symrot
+from symrot.errors import InputError
 from symrot.propagation import euler_state, external_torque, motion
 from symrot.propagation.switched import motion as switched
 
@@ -74,3 +76,10 @@ def test_each_motion_runs_the_constructor_of_its_base():
     for each in FINAL:
         constructor = vars(each).get("__init__")
         assert constructor is None or "super().__init__(" in inspect.getsource(constructor), each.__name__
+
+
+def test_euler_angles_need_a_sequence():
+    trajectory = symrot.propagate("t_handle")
+    with pytest.raises(InputError, match="expected an Euler sequence as output.sequence"):
+        trajectory.quantity("euler")
+    assert trajectory.euler("ZXZ").shape == (len(trajectory), 3)
