@@ -154,19 +154,12 @@ class SteppedSetup:
     @cached_property
     def integration(self) -> Integration:
         """The integration from the start of the setup's plan, with its input checked."""
-        plan = self.setup.plan
-        parameters = self.setup.rate_binding(plan)
-        if self.setup.choice.method == "taylor":
-            parameters = [*parameters, *self.setup.quantity_binding(plan)]
-        return self.integration_from(plan, parameters)
-
-    def integration_from(self, plan: Plan, parameters: list[float], clock: dop853.Clock | None = None) -> Integration:
-        """Return the integration from the start of a plan; ``clock`` is that of its rates, if it moves."""
-        setup = self.setup
-        start = (self.library, parameters, plan.initial_state, setup.start, setup.tolerance)
-        return (
-            taylor.integration(*start) if setup.choice.method == "taylor" else dop853.integration(*start, clock=clock)
-        )
+        setup, plan = self.setup, self.setup.plan
+        parameters, state = setup.rate_binding(plan), plan.initial_state
+        if setup.choice.method == "dop853":
+            return dop853.integration(self.library, parameters, state, setup.start, setup.tolerance)
+        parameters = [*parameters, *setup.quantity_binding(plan)]
+        return taylor.integration(self.library, parameters, state, setup.start, setup.tolerance)
 
     @cached_property
     def on_own_clock(self) -> "SteppedSetup":
@@ -466,11 +459,20 @@ class SteppedMotion(ShiftableMotion, SteppedInC):
     @cached_property
     def stepping(self) -> Integration:
         """The integration of the motion."""
-        parameters = self.taylor_parameters if self.choice.method == "taylor" else self.rate_parameters
-        if self.setup.moves_clock:  # whose epochs are those of this start
-            clock = time_shift.clock(self.setup.shifted, self.plan.constants, self.epoch)
-            return self._shared.integration_from(self.plan, parameters, clock)
-        return self._shared.integration.from_start(parameters, self.plan.initial_state)
+        state = self.plan.initial_state
+        if self.choice.method == "taylor":  # which holds the time in two parts and moves no clock
+            parameters = self.taylor_parameters
+            return self._shared.integration.from_start(parameters, state)
+        parameters = self.rate_parameters
+        if not self.setup.moves_clock:
+            return self._shared.integration.from_start(parameters, state)
+        start = (self.library, parameters, state, self.start, self.tolerance)
+        return dop853.integration(*start, clock=lambda since: self._clock(since))
+
+    @cached_property
+    def _clock(self) -> dop853.Clock:
+        """The clock of the rates, once it is moved."""
+        return time_shift.clock(self.setup.shifted, self.plan.constants, self.epoch)
 
     def steps(self, times: Floats, in_order: bool) -> tuple[Floats, Stats]:
         """Return the states at times on the clock of the motion, shape (n, N), and their cost."""
