@@ -84,7 +84,7 @@ def angles_of(quaternion: Floats, sequence: str) -> Floats:
 class _Kernel(NamedTuple):
     """Equations of motion in the angles of one sequence, compiled with a stepper, and their parameters."""
 
-    library: Any
+    library: Path
     parameters: list[float]
     clock: dop853.Clock | None
 

@@ -226,7 +226,7 @@ class _ShiftedSolution:
 
 
 class _Integration:
-    """One motion to follow with SciPy."""
+    """The integration of one motion by SciPy: its checked input, and its cost so far."""
 
     def __init__(self, rhs: Rhs, p: ArrayLike, y0: ArrayLike, t0: float, tolerance: float, options: Options) -> None:
         self.began = perf_counter()

@@ -68,9 +68,8 @@ def why_stuck(reason: str, t: float, t0: float, stop: float) -> str:
     apart = math.ulp(t)
     if abs(stop - t0) > MANY_TICKS * apart:
         return reason
-    return (
-        f"the clock is too coarse for its steps: numbers lie {apart:.3g} s apart there; count the time from nearer by"
-    )
+    advice = "choose t = 0 nearer to the motion"
+    return f"the clock is too coarse for its steps: doubles lie {apart:.3g} s apart there; {advice}"
 
 
 def why_hopeless(steps: int, way: float, left: float, limit: int) -> str:
