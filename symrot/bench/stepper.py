@@ -82,7 +82,7 @@ def _cost_and_error(run: Callable[[], tuple[int, Floats]], exact: Floats) -> tup
 
 
 def _symrot(path: Path, p: tuple[float, ...], tolerance: float, stop: float) -> tuple[int, Floats]:
-    states, stats = dop853.integrate(path, p, INITIAL, 0.0, (stop,), tolerance)
+    states, stats = dop853.integration(path, p, INITIAL, 0.0, tolerance).sample((stop,))
     return stats.evaluations, states[0]
 
 

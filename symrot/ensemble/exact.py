@@ -316,7 +316,7 @@ def _top(part: _Part) -> tuple["Batch | None", Usual]:
 
     assert part.axis is not None
     variation = part.variation
-    prefix, torque = variation.prefix(0), variation.scene.torques[0].values
+    prefix, torque = variation.prefix(0), variation.scene.torques[0]
     weight, height = (part.constant(f"{prefix}{name}") for name in ("weight", f"center_of_mass_{part.axis + 1}"))
     fine: Any = True
     if isinstance(weight, Fraction) and isinstance(height, Fraction):
@@ -334,7 +334,7 @@ def _top(part: _Part) -> tuple["Batch | None", Usual]:
             fine = fine & (size < 1e120) & (size > 1e-120)
     sign = 1 if pull.flat[0] > 0 else -1
     axis, key = part.axis, (part.axis, sign)
-    frame = variation.kept(("frame", key), lambda: Frame(axis, [-sign * x for x in torque["direction"]]))
+    frame = variation.kept(("frame", key), lambda: Frame(axis, [-sign * x for x in torque.vector("direction")]))
     if frame.plain:
         start = part.start
     elif variation.quaternion is None:

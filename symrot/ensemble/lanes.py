@@ -20,8 +20,8 @@ from symrot.build.address import address
 from symrot.build.sources import c_text
 from symrot.errors import CompilerError
 from symrot.formula.program import Program
-from symrot.propagation.steppers.cut_off import CutOff, why_stuck
-from symrot.propagation.steppers.stepping import DONE, NOT_FINITE, UNDERFLOW, Floats, PathLike, rising
+from symrot.propagation.steppers.integration_stopped import IntegrationStopped, why_stuck
+from symrot.propagation.steppers.stepping import DONE, NOT_FINITE, UNDERFLOW, Floats, PathLike, is_sorted
 from symrot.propagation.steppers.taylor import step_tail
 
 __all__ = ["FLAGS", "Lanes", "Outcome", "Task", "around", "follow", "lanes", "order_for", "translation_unit"]
@@ -162,7 +162,7 @@ class _Legs(NamedTuple):
 
 def _legs(t0: float, times: Floats, n: int) -> _Legs:
     samples, motion = times.shape[-1], np.arange(n)
-    if times.ndim == 1 and samples and times[0] >= t0 and rising(times):
+    if times.ndim == 1 and samples and times[0] >= t0 and is_sorted(times):
         rows = np.empty((4, n), dtype=np.int64)
         rows[0], rows[1], rows[2], rows[3] = motion, 0, samples, motion * samples
         return _Legs(times, rows, None)
@@ -253,7 +253,7 @@ class Task:
             reason = REASONS[int(status[leg])].format(steps=self.max_steps)
             if status[leg] == UNDERFLOW:
                 reason = why_stuck(reason, last, self.t0, stop)
-            messages[motion[leg]] = str(CutOff(last, reason, stop).later(self.epoch))
+            messages[motion[leg]] = str(IntegrationStopped(last, reason, stop).later(self.epoch))
         return tuple(messages)
 
 

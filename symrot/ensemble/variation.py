@@ -118,9 +118,7 @@ class Variation:
         if torque < 0:
             i, j = PLACES[name]
             return self.scene.body.inertia[i][j]
-        value: Any = self.scene.torques[torque].values[field]
-        number_of: Fraction = value if entry is None else value[entry]
-        return number_of
+        return self.scene.torques[torque].constant(*_constant_place(field, entry))
 
     def prefix(self, torque: int) -> str:
         """Return what stands before the names of the constants of a torque."""
@@ -160,9 +158,7 @@ class Variation:
                 i, j = PLACES[name]
                 tensor[i][j] = tensor[j][i] = value
                 continue
-            fields = dict(torques[torque].values)
-            fields[field] = _changed(fields[field], entry, value)
-            torques[torque] = torques[torque]._replace(values=fields)
+            torques[torque] = torques[torque].with_constant(*_constant_place(field, entry), value)
         if not PLACES.keys().isdisjoint(values):
             (xx, xy, xz), (_, yy, yz), (_, _, zz) = tensor
             body = body._replace(inertia=((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)), principal=principal_axes(tensor))
@@ -209,13 +205,9 @@ class Variation:
         return bool(np.all(left == right))
 
 
-def _changed(old: Any, entry: int | str | None, value: Fraction) -> Any:
-    """Return a field of a torque with one number replaced."""
-    if entry is None:
-        return value
-    if isinstance(entry, str):
-        return {**old, entry: value}
-    return tuple(value if k == entry else kept for k, kept in enumerate(old))
+def _constant_place(field: str, entry: int | str | None) -> tuple[str, int | None]:
+    """Return the name of a torque's constant and, of a vector, the component."""
+    return (entry, None) if isinstance(entry, str) else (field, entry)
 
 
 def _unit(row: list[float]) -> tuple[Fraction, Fraction, Fraction, Fraction]:

@@ -1,4 +1,4 @@
-"""From a scene to its propagator: which kind of motion it is, and which options it takes."""
+"""From a scene to its propagator: the kind of its motion, and the options that this kind takes."""
 
 from math import inf
 from pathlib import Path
@@ -46,26 +46,26 @@ def propagator(
         *user)``, which returns 0, with ``user`` null; or a table (times, samples of shape (n, 3)), which is
         interpolated by cubic splines between the switching times. The method is then ``dop853``.
     switching_times : array, optional
-        Times, s, at which that torque jumps: the motion is stepped exactly to each and started anew. A function is
-        asked just inside them; a table has two samples at each, before and after the jump.
+        Times, s, at which that torque jumps: the motion is stepped exactly to each and restarted. A function is
+        called just inside them; a table has two samples at each, before and after the jump.
     torque_frame : str
-        ``"body"`` or ``"space"``: whose components that torque has.
+        ``"body"`` or ``"space"``: the axes of the components of that torque.
     state : str
         ``"quaternion"``, or an Euler sequence such as ``"ZXZ"`` to step its angles instead, for teaching; see
         :mod:`symrot.propagation.euler_state`.
     switching : bool
-        Whether such angles are exchanged for those of a regular sequence before they reach gimbal lock; ``stats``
+        Whether the motion changes to angles of a regular sequence before such angles reach gimbal lock; ``stats``
         counts how often.
     max_step : float
-        Longest step, s, under such a torque: shorter than its narrowest feature. Formulas need none, and tables have
-        that of their samples.
+        Longest step, s, under that torque: shorter than its narrowest feature. Formulas need no such limit; the
+        limit of a table follows from its samples.
 
     Raises
     ------
     InputError
         For a scene or an option that cannot be used.
     CompilerError
-        If ``dop853`` is asked for and there is no compiler, or the compiler refuses the kernel.
+        If the method needs a compiler and there is none, or the compiler refuses the kernel.
     """
     if not isinstance(scene, Scene):
         scene = load_scene(scene)
@@ -99,11 +99,11 @@ def propagator(
         raise InputError(f"method: expected 'auto' or 'dop853' for a torque that is no formula, got {method!r}")
     if switched(scene):
         raise InputError(
-            f"torque: expected none beside formulas that jump or bend (abs, sign, ..), got {number.show(torque)}"
+            f"torque: expected none besides formulas that jump or bend (abs, sign, ..), got {number.show(torque)}"
         )
-    from symrot.propagation.external_torque import DrivenPropagator
+    from symrot.propagation.external_torque import ExternallyDrivenPropagator
 
-    return DrivenPropagator(scene, aim, torque, switching_times, torque_frame, _longest_step(max_step))
+    return ExternallyDrivenPropagator(scene, aim, torque, switching_times, torque_frame, _longest_step(max_step))
 
 
 def _longest_step(max_step: float) -> float:
@@ -117,10 +117,10 @@ def _tolerance(tolerance: float) -> float:
     from symrot.scene.scene import TOLERANCES
 
     low, high = TOLERANCES
-    found = float(number.read(tolerance, "tolerance"))
-    if not float(low) <= found <= float(high):  # as doubles: 0.01 is above 1/100
+    value = float(number.read(tolerance, "tolerance"))
+    if not float(low) <= value <= float(high):  # as doubles: 0.01 is above 1/100
         raise InputError(f"tolerance: expected a number from {float(low):g} to {float(high):g}, got {tolerance}")
-    return found
+    return value
 
 
 def propagate(

@@ -140,7 +140,7 @@ def _body_sphere(axes: Any, trajectory: Any) -> None:
     inertia = np.array(trajectory.scene.body.inertia, dtype=float)
     rotor = np.zeros(3)
     for torque in torques:
-        rotor += np.array(torque.values["angular_momentum"], dtype=float)
+        rotor += np.array(torque.vector("angular_momentum"), dtype=float)
     momentum = trajectory.angular_momentum_body
     size = float(np.linalg.norm(momentum[0]))
 

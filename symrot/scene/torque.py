@@ -15,24 +15,61 @@ from symrot.scene.attitude import Vector, read_attitude
 from symrot.scene.body import Body
 from symrot.scene.reader import Entry, Reader, choice, expected, number, read_table, table, under, vector
 
-__all__ = ["Torque", "read_torque"]
+__all__ = ["Torque", "Value", "read_torque"]
 
 DEEPEST_FORMULA = 150
 LONGEST_FORMULA = 2000
 MOST_PARAMETERS = 100
 
 
-class Torque(NamedTuple):
-    """One torque: its kind and the values of its fields, all there, by the names of the table of torques.
+Value = Fraction | tuple[Fraction, ...]
+"""A constant of a torque: a number, a vector, or the quaternion of an attitude."""
 
-    Vectors are tuples of three Fractions, an attitude a unit quaternion, ``linear`` of a damping three numbers. Gravity
-    holds ``weight``, ``center_of_mass`` and a unit ``direction``. An expression holds ``torque`` as three texts that
-    :func:`symrot.formula.tree.parse` reads, switches allowed, ``parameters`` by name (with pi, if a formula uses it)
-    and ``frame``.
+
+class Torque(NamedTuple):
+    """One torque: its kind and its constants.
+
+    Attributes
+    ----------
+    kind : str
+        As the table of torques names it.
+    values : mapping
+        The constants by name: of a torque given by formulas their parameters (with pi, if a formula uses it), of others
+        the fields of the table, all of them. Vectors have three components, an attitude is a unit quaternion, and
+        ``linear`` of a damping is a vector. Gravity has ``weight``, ``center_of_mass`` and a unit ``direction``.
+    formulas : tuple of str
+        The components of a torque given by formulas, which :func:`symrot.formula.tree.parse` reads, switches allowed.
+    frame : str
+        ``"body"`` or ``"space"``: the axes of these components.
     """
 
     kind: str
-    values: Mapping[str, Any]
+    values: Mapping[str, Value]
+    formulas: tuple[str, ...] = ()
+    frame: str = "body"
+
+    def number(self, name: str) -> Fraction:
+        """Return a constant that is a number."""
+        value = self.values[name]
+        assert isinstance(value, Fraction)
+        return value
+
+    def vector(self, name: str) -> tuple[Fraction, ...]:
+        """Return a constant that is a vector or an attitude."""
+        value = self.values[name]
+        assert isinstance(value, tuple)
+        return value
+
+    def constant(self, name: str, component: int | None) -> Fraction:
+        """Return a number by the name of its constant and, if that is a vector, its place in it."""
+        return self.number(name) if component is None else self.vector(name)[component]
+
+    def with_constant(self, name: str, component: int | None, value: Fraction) -> "Torque":
+        """Return the torque with another number in one place."""
+        if component is None:
+            return self._replace(values={**self.values, name: value})
+        vector = tuple(value if k == component else entry for k, entry in enumerate(self.vector(name)))
+        return self._replace(values={**self.values, name: vector})
 
 
 # --- fields -----------------------------------------------------------------------------------------------------------
@@ -245,6 +282,9 @@ def read_torque(value: Any, body: Body, where: str) -> Torque:
         expected(f"{where}.kind", _ABOUT_ADVICE[kind.about], name)
     fit = _FITS.get(name)
     try:
-        return Torque(name, fit(values, body, where) if fit else values)
+        fields = fit(values, body, where) if fit else values
+        if name == "expression":
+            return Torque(name, fields["parameters"], tuple(fields["torque"]), fields["frame"])
+        return Torque(name, fields)
     except RecursionError:
         raise InputError(f"{where}: expected a formula of fewer levels, got {show(found)}") from None

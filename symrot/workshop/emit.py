@@ -77,7 +77,7 @@ def plan(scene: Scene | str | Path) -> Plan:
         A scene, the name of a shipped scene, or the path of a scene file.
     """
     loaded = _scene(scene)
-    return make_plan(loaded, driven=loaded.table is not None, switched=switched(loaded))
+    return make_plan(loaded, external_torque=loaded.table is not None, switched=switched(loaded))
 
 
 def explain(scene: Scene | str | Path) -> str:

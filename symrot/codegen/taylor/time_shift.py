@@ -36,7 +36,8 @@ def from_epoch(kernel: SceneKernel) -> SceneKernel:
     """
     rates, parameters = moved(kernel.rates, kernel.rate_parameters)
     timeless = [
-        item._replace(kept=item.kept and not kernel.quantities.uses(TIME, (item.output,))) for item in kernel.conserved
+        item._replace(holds=item.holds and not kernel.quantities.uses(TIME, (item.output,)))
+        for item in kernel.conserved
     ]
     source = c_function(rates, "static inline ")
     return SceneKernel.of(rates, parameters, kernel.quantities, kernel.quantity_parameters, tuple(timeless), source)
