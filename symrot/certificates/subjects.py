@@ -12,7 +12,7 @@ from symrot.dynamics.equations import Equations
 from symrot.formula.program import Program
 from symrot.formula.tree import Node, evaluate
 from symrot.kernels.definition import Definition, Law
-from symrot.kinematics.quaternion import qmul
+from symrot.kinematics.quaternion import quaternion_product
 from symrot.symbols import constant, omega_b
 
 __all__ = ["library_subject", "scene_laws", "scene_subject"]
@@ -85,6 +85,6 @@ def scene_laws(equations: Equations) -> tuple[Law, ...]:
     if motion.quaternion is not None and (turning := [s for s in equations.states if s not in omega_b]):
         q = Matrix(motion.quaternion)
         turned = reduce(add, (q.diff(state) * rate[state] for state in turning), zeros(4, 1))
-        wanted = qmul(motion.quaternion, [0, *motion.omega_b]) / 2
+        wanted = quaternion_product(motion.quaternion, [0, *motion.omega_b]) / 2
         found.append(Law("dq/dt is q (0, omega) / 2", tuple(turned - Matrix(wanted)), relations))
     return tuple(found)

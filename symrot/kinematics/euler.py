@@ -29,7 +29,7 @@ from sympy import (
 from symrot import exact, symbols
 from symrot.conventions import SEQUENCES, parse_sequence
 from symrot.kinematics.chart import Chart, RateFacts, RateMatrix, zeros_of
-from symrot.kinematics.quaternion import elementary_quaternion, qmul
+from symrot.kinematics.quaternion import elementary_quaternion, quaternion_product
 from symrot.kinematics.rotations import check_frame, cross_sign, elementary_rotation, expressions, unit_vector
 
 __all__ = [
@@ -276,7 +276,7 @@ def sequences_at_lock(sequence: str) -> dict[str, Set]:
 def quaternion_of_euler(sequence: str, angles: Sequence[Any] | None = None) -> ImmutableMatrix:
     """Return the unit quaternion of an Euler sequence, shape (4, 1): the product of its three turns."""
     turns = (elementary_quaternion(factor.axis, factor.angle) for factor in factors(sequence, angles))
-    return ImmutableMatrix(qmul(*turns).applyfunc(expand))
+    return ImmutableMatrix(quaternion_product(*turns).applyfunc(expand))
 
 
 def euler_of_quaternion(sequence: str, q: Sequence[Any] | Matrix = symbols.quaternion) -> ImmutableMatrix:
@@ -297,7 +297,7 @@ def euler_of_quaternion(sequence: str, q: Sequence[Any] | Matrix = symbols.quate
     proper = first.axis == last.axis
     if not proper:
         quarter = [1, *unit_vector(middle.axis)]
-        q = qmul(q, quarter)
+        q = quaternion_product(q, quarter)
     a, b, c, d = q[0], q[1 + first.axis], q[1 + middle.axis], sign * q[1 + cross]
     half_sum, half_difference = atan2(b, a), atan2(d, c)
     low, high = sqrt(a**2 + b**2), sqrt(c**2 + d**2)

@@ -19,14 +19,14 @@ from symrot.kinematics.rotations import check_frame, cross_sign, expressions, un
 __all__ = [
     "chart",
     "conjugate",
-    "dcm_of",
     "elementary_quaternion",
     "left_matrix",
     "norm_squared",
-    "qmul",
     "quaternion_of_dcm",
+    "quaternion_product",
     "quaternion_rate_jacobian",
     "quaternion_rates",
+    "quaternion_to_dcm",
     "right_matrix",
     "rotation_relations",
     "unit_relation",
@@ -68,7 +68,7 @@ def right_matrix(q: Sequence[Any] | Matrix) -> ImmutableMatrix:
     return ImmutableMatrix(matrix)
 
 
-def qmul(*factors: Sequence[Any] | Matrix) -> ImmutableMatrix:
+def quaternion_product(*factors: Sequence[Any] | Matrix) -> ImmutableMatrix:
     """Return the Hamilton product of quaternions, shape (4, 1), from left to right; 1 of none."""
     product = ImmutableMatrix([1, 0, 0, 0])
     for q in factors:
@@ -108,7 +108,7 @@ def elementary_quaternion(axis: int | str, angle: Any) -> ImmutableMatrix:
     return ImmutableMatrix([cos(half), *(sin(half) * unit_vector(axis))])
 
 
-def dcm_of(q: Sequence[Any] | Matrix = symbols.quaternion, form: str = "unit") -> ImmutableMatrix:
+def quaternion_to_dcm(q: Sequence[Any] | Matrix = symbols.quaternion, form: str = "unit") -> ImmutableMatrix:
     """Return ``dcm_sb`` of a quaternion, shape (3, 3), whose columns are the turned axes ``q e_i q*``.
 
     Parameters
@@ -127,7 +127,7 @@ def dcm_of(q: Sequence[Any] | Matrix = symbols.quaternion, form: str = "unit") -
     if form not in FORMS:
         raise InputError(f"the form of a dcm is one of {', '.join(map(repr, FORMS))}; got {form!r}")
     q = expressions(q, 4, "a quaternion")
-    columns = [qmul(q, [0, *unit_vector(i)], conjugate(q))[1:, 0].applyfunc(expand) for i in range(3)]
+    columns = [quaternion_product(q, [0, *unit_vector(i)], conjugate(q))[1:, 0].applyfunc(expand) for i in range(3)]
     homogeneous = Matrix.hstack(*columns)
     if form == "unit":
         homogeneous += (1 - norm_squared(q)) * Matrix.eye(3)
@@ -219,7 +219,7 @@ def chart() -> Chart:
         name="quaternion",
         parameters=symbols.quaternion,
         relations=(unit_relation(),),
-        dcm=dcm_of(),
+        dcm=quaternion_to_dcm(),
         quaternion=ImmutableMatrix(symbols.quaternion),
         of_quaternion=ImmutableMatrix,
         rate_matrix=quaternion_rate_jacobian,

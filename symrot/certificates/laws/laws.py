@@ -20,7 +20,7 @@ from sympy.polys.rings import PolyRing
 from symrot.certificates.laws.law_proof import Attempt, CaseProof, Choice, Coarse, Full, Undecided
 from symrot.errors import CertificateError
 from symrot.kernels.definition import Definition, Law
-from symrot.kinematics.quaternion import dcm_of, rotation_relations
+from symrot.kinematics.quaternion import quaternion_to_dcm, rotation_relations
 
 __all__ = ["LawProof", "hypotheses", "prove_law", "prove_laws"]
 
@@ -111,7 +111,7 @@ def _witness(name: str, law: Law, given: Sequence[str], names: Sequence[str]) ->
     point: dict[str, Expr] = {each: Rational(2 * k + 3, 7) for k, each in enumerate(names)}
     numbers = UNIT.get(4 if len(given) == ENTRIES else len(given), ())
     unit = tuple(Rational(each) / sqrt(sum(n * n for n in numbers)) for each in numbers)
-    point |= zip(given, dcm_of(unit) if len(given) == ENTRIES else unit, strict=True)
+    point |= zip(given, quaternion_to_dcm(unit) if len(given) == ENTRIES else unit, strict=True)
     if any(
         relation.subs({symbol: point[str(symbol)] for symbol in relation.free_symbols}) for relation in law.relations
     ):

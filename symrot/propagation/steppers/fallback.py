@@ -383,7 +383,7 @@ class _Task:
             broken = self.broken
             try:
                 message = solver.step()
-            except ValueError:  # of linear algebra, for numbers that are not finite
+            except (ValueError, CutOff):  # ValueError: linear algebra rejects numbers that are not finite
                 longest = 0.5 * min(float(solver.h_abs), abs(stretch.stop - before), longest)
                 if longest <= 4.0 * math.ulp(before):
                     raise CutOff(before, NOT_FINITE_SENTENCE, end) from None

@@ -263,7 +263,7 @@ class SwitchedRun(RunState):
                 float(evaluate(parse(guard.formula), self._values(regime, place), FLOAT_FUNCTIONS, float))
                 for place in places
             )
-        except (ArithmeticError, ValueError):
+        except (ArithmeticError, ValueError, CutOff):
             return False
         return before >= 0.0 >= after and before > after
 
@@ -289,7 +289,7 @@ class SwitchedRun(RunState):
         try:
             slope = (value(aside) - value(-aside)) / (2.0 * aside)
             correction = -value(0.0) / slope
-        except (ArithmeticError, ValueError):
+        except (ArithmeticError, ValueError, CutOff):
             return instant
         return instant.after(correction) if abs(correction) <= MOST_ULPS * math.ulp(t) else instant
 
@@ -409,7 +409,7 @@ class SwitchedRun(RunState):
         """Give a mode whose guard begins to matter the value that the guard tells, if it tells one."""
         try:
             guard = self._guard_value(mode)
-        except (ArithmeticError, ValueError):
+        except (ArithmeticError, ValueError, CutOff):
             return
         if self.by_name[mode].kind == "floor":
             self.modes[mode] += math.floor(guard)
