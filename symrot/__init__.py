@@ -21,6 +21,7 @@ _NAMES_OF_MODULES = {
     "dynamics.structure": ("Structure",),
     "inertia.solids": ("Solid", "solid"),
     "proof.derivation": ("Derivation", "ProofError"),
+    "proof.page": ("Step",),
     "catalogue": ("derivation",),
     "exact": ("normal_form",),
     "checker.interface": ("RefusedClaims", "check", "check_file"),

@@ -18,6 +18,7 @@ from symrot.kinematics.quaternion import quaternion_product, quaternion_rates, q
 from symrot.planning.plan import Plan, RuleOutcome
 from symrot.planning.scene_kernel import SceneKernel
 from symrot.proof.derivation import Derivation, ProofError
+from symrot.proof.page import Step
 from symrot.propagation.events.events import Event
 from symrot.propagation.method import METHODS
 from symrot.propagation.propagate import propagate, propagator
@@ -82,6 +83,7 @@ __all__ = [
     "Solid",
     "Span",
     "Stats",
+    "Step",
     "Structure",
     "SymrotError",
     "Table",

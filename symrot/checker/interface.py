@@ -17,7 +17,19 @@ __all__ = ["RefusedClaims", "check", "check_claim", "check_file", "check_reading
 
 
 class RefusedClaims(InputError):
-    """Claims of a file that cannot be read; ``verdicts`` holds those on all claims, ``"refused"`` on the bad ones."""
+    """Some claims of a file cannot be read.
+
+    Attributes
+    ----------
+    verdicts : list of Verdict
+        The verdicts on all claims, ``"refused"`` on those that cannot be read.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> issubclass(symrot.RefusedClaims, symrot.InputError)
+    True
+    """
 
     def __init__(self, verdicts: Sequence[Verdict]) -> None:
         self.verdicts = list(verdicts)
@@ -63,6 +75,10 @@ def check(
         For text that is not understood (with its position), undefined names, shapes that do not fit, and divisions by
         what is zero everywhere. Nothing is evaluated as Python.
 
+    Notes
+    -----
+    Source: ``docs/exact_decisions.md`` says how claims are decided and why the decision is sound.
+
     Examples
     --------
     >>> check("cos(2*x) == 1 - 2*sin(x)**2").verdict
@@ -92,6 +108,18 @@ def _checked(left: Any, right: Any, assume: Sequence[Any], units: Mapping[str, s
 def check_file(path: str | Path, *, repair: bool = True) -> list[Verdict]:
     """Return the verdicts on the claims of a TOML file, in its order.
 
+    Parameters
+    ----------
+    path : str or Path
+        A TOML file of claims, as ``docs/checkers.md`` describes it.
+    repair : bool
+        Whether to diagnose claims that are not true, and to search for true formulas near them.
+
+    Returns
+    -------
+    list of Verdict
+        One for each claim, in the order of the file.
+
     Raises
     ------
     InputError
@@ -99,6 +127,16 @@ def check_file(path: str | Path, *, repair: bool = True) -> list[Verdict]:
     RefusedClaims
         Where some claims are refused, after all others were decided; names the file and the first such claim, and has
         the verdicts as ``.verdicts``.
+
+    Examples
+    --------
+    >>> import symrot, tempfile
+    >>> from pathlib import Path
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = Path(folder, "claims.toml")
+    ...     _ = path.write_text('schema = 1\\nclaim = [{id = "double", where = "p. 1", claim = "sin(2*x) == 2*sin(x)*cos(x)"}]')
+    ...     [verdict.verdict for verdict in symrot.check_file(path)]
+    ['true']
     """
     found = list(verdicts_of_file(path, repair))
     if any(verdict.verdict == "refused" for verdict in found):

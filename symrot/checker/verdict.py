@@ -8,7 +8,24 @@ __all__ = ["Counterexample", "Diagnosis", "Dimensions", "Repair", "Verdict"]
 
 @dataclass(frozen=True)
 class Counterexample:
-    """A point, with exact values as text, where the two sides differ; ``entry`` is (row, column) from 1, or None."""
+    """A point, with exact values as text, where the two sides of a claim differ.
+
+    Attributes
+    ----------
+    values : dict of str to str
+        Name of each symbol -> its value.
+    lhs, rhs : str
+        The values of the two sides.
+    entry : (int, int) or None
+        Row and column, from 1, of the entry of a matrix where they differ.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> verdict = symrot.check("sin(2*x) == sin(x)*cos(x)")
+    >>> verdict.counterexample.lhs != verdict.counterexample.rhs
+    True
+    """
 
     values: dict[str, str]
     lhs: str
@@ -23,7 +40,22 @@ class Counterexample:
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """What probably went wrong: a code of the table in :mod:`symrot.checker.codes`, and a sentence."""
+    """The probable fault of a claim.
+
+    Attributes
+    ----------
+    code : str
+        Key of the table of faults, such as ``"factor"``; ``"none"`` without a fault.
+    text : str
+        One sentence.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> verdict = symrot.check("sin(2*x) == sin(x)*cos(x)")
+    >>> verdict.diagnosis.code
+    'factor'
+    """
 
     code: str
     text: str
@@ -31,7 +63,26 @@ class Diagnosis:
 
 @dataclass(frozen=True)
 class Repair:
-    """A formula near the claim that is true; ``proven`` by the exact engine; the smaller the cost the nearer."""
+    """A true formula near a claim.
+
+    Attributes
+    ----------
+    text : str
+        The formula.
+    code : str
+        Key of the table of faults.
+    cost : float
+        The smaller, the nearer to the claim.
+    proven : bool
+        Whether the exact engine proved it.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> verdict = symrot.check("sin(2*x) == sin(x)*cos(x)")
+    >>> verdict.repairs[0].text
+    'sin(2*x) == 2*sin(x)*cos(x)'
+    """
 
     text: str
     code: str
@@ -41,9 +92,22 @@ class Repair:
 
 @dataclass(frozen=True)
 class Dimensions:
-    """Whether the units fit: ``"consistent"``, ``"inconsistent"`` (``text`` says where) or ``"unknown"``.
+    """Whether the units of a claim fit.
 
-    ``units`` holds what follows for names that came without a unit.
+    Attributes
+    ----------
+    status : str
+        ``"consistent"``, ``"inconsistent"`` or ``"unknown"``.
+    text : str
+        Where they do not fit.
+    units : dict of str to str
+        Units that follow for names that came without a unit.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.check("x == x", units={"x": "m"}).dimension.status
+    'consistent'
     """
 
     status: str = "unknown"
@@ -76,6 +140,12 @@ class Verdict:
     id, where, text : str
         The claim.
     seconds : float
+
+    Examples
+    --------
+    >>> import symrot
+    >>> bool(symrot.check("sin(x)**2 + cos(x)**2 == 1"))
+    True
     """
 
     verdict: str

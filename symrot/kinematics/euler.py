@@ -96,6 +96,11 @@ def dcm(sequence: str, angles: Sequence[Any] | None = None) -> ImmutableMatrix:
     angles : sequence of 3 Expr, optional
         rad, in order of application; phi, theta, psi when left out.
 
+    Returns
+    -------
+    ImmutableMatrix, shape (3, 3), dimensionless
+        ``v_s = dcm_sb * v_b``.
+
     Raises
     ------
     InputError
@@ -106,6 +111,12 @@ def dcm(sequence: str, angles: Sequence[Any] | None = None) -> ImmutableMatrix:
     Intrinsic: ``R1(q1) R2(q2) R3(q3)``; extrinsic: ``R3(q3) R2(q2) R1(q1)``. Equal to SciPy's
     ``Rotation.from_euler(sequence, angles).as_matrix()``. Source: Goldstein, Classical Mechanics, 3rd ed., (4.46)
     is the transpose for ZXZ.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.dcm("ZXZ")[2, 2]
+    cos(theta)
     """
     first, middle, last = factors(sequence, angles)
     return ImmutableMatrix(first.rotation * middle.rotation * last.rotation)
@@ -165,6 +176,12 @@ class EulerRateMatrix(RateMatrix):
     sequence : str
     regular_sequences : tuple of str
         The other sequences that are regular at every attitude where this one locks.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.rate_jacobian("ZXZ").determinant
+    -sin(theta)
     """
 
     @property

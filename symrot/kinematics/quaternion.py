@@ -69,7 +69,36 @@ def right_matrix(q: Sequence[Any] | Matrix) -> ImmutableMatrix:
 
 
 def quaternion_product(*factors: Sequence[Any] | Matrix) -> ImmutableMatrix:
-    """Return the Hamilton product of quaternions, shape (4, 1), from left to right; 1 of none."""
+    """Return the Hamilton product of quaternions, multiplied from left to right.
+
+    The product of rotations is the product of their quaternions in the same order.
+
+    Parameters
+    ----------
+    *factors : sequences of 4 Expr
+        Quaternions of any norm, scalar first, dimensionless.
+
+    Returns
+    -------
+    ImmutableMatrix, shape (4, 1), dimensionless
+        ``(1, 0, 0, 0)`` without factors.
+
+    Raises
+    ------
+    InputError
+        For a factor without exactly four components.
+
+    Notes
+    -----
+    Convention: ``i j = k``. Proof: ``derivations/composition.md``.
+    Source: W. R. Hamilton, Elements of Quaternions, 1866, book II.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.quaternion_product((0, 1, 0, 0), (0, 0, 1, 0)).T
+    Matrix([[0, 0, 0, 1]])
+    """
     product = ImmutableMatrix([1, 0, 0, 0])
     for q in factors:
         product = left_matrix(product) * ImmutableMatrix(expressions(q, 4, "a quaternion"))
@@ -109,20 +138,37 @@ def elementary_quaternion(axis: int | str, angle: Any) -> ImmutableMatrix:
 
 
 def quaternion_to_dcm(q: Sequence[Any] | Matrix = symbols.quaternion, form: str = "unit") -> ImmutableMatrix:
-    """Return ``dcm_sb`` of a quaternion, shape (3, 3), whose columns are the turned axes ``q e_i q*``.
+    """Return ``dcm_sb`` of a quaternion; column i is the body axis ``q e_i q*`` in space components.
 
     Parameters
     ----------
-    q : sequence of 4 Expr
+    q : sequence of 4 Expr, optional
+        Scalar first, body to space, dimensionless; the symbols q0 to q3 by default.
     form : str
-        ``"homogeneous"``: ``q e_i q*`` as it is, quadratic in q, which is ``|q|^2`` times a rotation.
-        ``"unit"``: the relation ``|q|^2 = 1`` used on the diagonal, ``1 - 2 (q2^2 + q3^2)`` and so on; a rotation
-        only for unit q. ``"normalised"``: homogeneous over ``|q|^2``, a rotation for every q but 0.
+        ``"unit"``: uses ``|q|^2 = 1`` on the diagonal, ``1 - 2 (q2^2 + q3^2)`` and so on; a rotation only for unit q.
+        ``"homogeneous"``: ``q e_i q*``, quadratic in q, which is ``|q|^2`` times a rotation. ``"normalised"``:
+        homogeneous over ``|q|^2``, a rotation for every q except 0.
+
+    Returns
+    -------
+    ImmutableMatrix, shape (3, 3), dimensionless
+        ``v_s = dcm_sb * v_b``.
 
     Raises
     ------
     InputError
         For another form, or not four components.
+
+    Notes
+    -----
+    Proof: ``derivations/euler_parameters.md``.
+    Source: Goldstein, Classical Mechanics, 3rd ed., eq. (4.47), transposed.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.quaternion_to_dcm()[2, 2]
+    -2*q1**2 - 2*q2**2 + 1
     """
     if form not in FORMS:
         raise InputError(f"the form of a dcm is one of {', '.join(map(repr, FORMS))}; got {form!r}")
@@ -166,15 +212,36 @@ def _four_q_q(dcm_sb: Matrix) -> Matrix:
 
 
 def quaternion_rates(frame: str = "body", q: Sequence[Any] | Matrix = symbols.quaternion) -> ImmutableMatrix:
-    """Return M(q), shape (4, 3), of ``dq/dt = M(q) * omega``.
+    """Return M(q) of ``dq/dt = M(q) * omega``.
 
-    Body: ``1/2 q (0, omega_b)``; space: ``1/2 (0, omega_s) q``: the last three columns of L(q)/2 or R(q)/2. The
-    norm of q is kept exactly, for any q.
+    Its columns are the last three of L(q)/2 (body) or R(q)/2 (space). The norm of q stays exactly constant, for any q.
+
+    Parameters
+    ----------
+    frame : str
+        ``"body"`` or ``"space"``: the components of omega, rad/s.
+    q : sequence of 4 Expr, optional
+        Scalar first, body to space, dimensionless; the symbols q0 to q3 by default.
+
+    Returns
+    -------
+    ImmutableMatrix, shape (4, 3), dimensionless
 
     Raises
     ------
     InputError
-        If ``frame`` is neither ``"body"`` nor ``"space"``.
+        If ``frame`` is neither ``"body"`` nor ``"space"``, or q does not have four components.
+
+    Notes
+    -----
+    Convention: body ``dq/dt = 1/2 q (0, omega_b)``; space ``dq/dt = 1/2 (0, omega_s) q``.
+    Proof: ``derivations/quaternion_rates.md``.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.quaternion_rates("body").row(0)
+    Matrix([[-q1/2, -q2/2, -q3/2]])
     """
     product = left_matrix(q) if check_frame(frame) == "body" else right_matrix(q)
     return ImmutableMatrix(product[:, 1:] / 2)

@@ -29,6 +29,19 @@ class Torque(NamedTuple):
     holds ``weight``, ``center_of_mass`` and a unit ``direction``. An expression holds ``torque`` as three texts that
     :func:`symrot.formula.tree.parse` reads, switches allowed, ``parameters`` by name (with pi, if a formula uses it)
     and ``frame``.
+
+    Attributes
+    ----------
+    kind : str
+        Name in the table of torques.
+    values : mapping
+        The fields of that kind, SI units.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.load_scene("heavy_top_loops").torques[0].kind
+    'gravity'
     """
 
     kind: str

@@ -235,8 +235,8 @@ def certify(
     objects : bool
         Whether the kernel is compiled by each installed compiler and the object code compared with the C text.
     rounding : bool
-        Whether rounding errors are bounded now; otherwise the certificate of a kernel of the library contains the bounds
-        that come with symrot.
+        Whether rounding errors are bounded now; otherwise the certificate of a kernel of the library contains the
+        bounds that come with symrot.
     progress : callable
         Called with a line of text as each part of the work begins.
 

@@ -52,6 +52,12 @@ class Identification:
         Where symrot has it: a call, or a page with its step.
     proven : bool
         Always true: what is not proven is not returned.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.identify("(A*p**2 + B*q**2 + C*r**2)/2")[0].name
+    'kinetic energy of rotation, principal axes'
     """
 
     name: str
@@ -84,7 +90,7 @@ class View:
 
 
 def identify(formula: Any, *, most: int = MOST) -> list[Identification]:
-    """Return what a formula is, nearest names first; an empty list for one that is not known.
+    """Return the known formulas that are equal to a formula, nearest names first.
 
     Parameters
     ----------
@@ -93,10 +99,19 @@ def identify(formula: Any, *, most: int = MOST) -> list[Identification]:
     most : int
         How many names to return at most.
 
+    Returns
+    -------
+    list of Identification
+        Each is proven; empty for a formula that symrot does not know.
+
     Raises
     ------
     InputError
         For text that is not understood, with the position.
+
+    Notes
+    -----
+    Source: ``.source`` of each identification names the call or page that derives it.
 
     Examples
     --------

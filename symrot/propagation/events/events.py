@@ -61,6 +61,13 @@ class Event(NamedTuple):
     direction : int
         1 for zeros through which the formula rises as the motion goes, -1 for those through which it falls, 0 for all,
         those that it only touches among them.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> event = symrot.Event("omega_3 == 0", terminal=True)
+    >>> symrot.propagate("t_handle", events=[event]).status
+    1
     """
 
     formula: str

@@ -74,10 +74,28 @@ class Switching(NamedTuple):
 
 
 class Stats(NamedTuple):
-    """What a propagation cost: steps kept and tried again, evaluations of the kernel, seconds in all.
+    """The cost of a propagation.
 
-    ``switches`` counts changes of the sequence of Euler angles, where angles are the state, and the times at which
-    torques with switches switch: ``switching_times``, s, each once. ``switchings`` says which functions switch there.
+    Attributes
+    ----------
+    accepted, rejected : int
+        Steps.
+    evaluations : int
+        Evaluations of the kernel.
+    seconds : float
+        Time of the whole propagation.
+    switches : int
+        Changes of the Euler sequence where angles are the state; otherwise the number of switching times.
+    switching_times : tuple of float
+        s, at which torques with switches switch, each once.
+    switchings : tuple of Switching
+        Which functions switch there.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.propagate("t_handle").stats.rejected >= 0
+    True
     """
 
     accepted: int
