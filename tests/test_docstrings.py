@@ -5,9 +5,11 @@ import builtins
 import doctest
 import importlib
 import inspect
+import re
 import subprocess
 import sys
 import textwrap
+import tomllib
 import typing
 from pathlib import Path
 
@@ -23,7 +25,6 @@ WITH_EXAMPLES = sorted(
     for path in PACKAGE.rglob("*.py")
     if ">>>" in path.read_text(encoding="utf-8")
 )
-STANDARD = {"numpy", "sympy", "pathlib", "fractions", "collections.abc", "collections", "typing", "builtins", "types"}
 FLAGS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 
 
@@ -175,6 +176,35 @@ def test_only_input_errors_are_value_errors():
     errors = {name: each for name, each in errors.items() if issubclass(each, Exception)}
     assert {name for name, each in errors.items() if issubclass(each, ValueError)} == {"InputError"}
     assert all(issubclass(each, symrot.SymrotError) for each in errors.values())
+
+
+def test_the_python_page_lists_every_public_name():
+    page = (ROOT / "docs" / "python.md").read_text(encoding="utf-8")
+    paths = [line.removeprefix("::: ").rsplit(".", 1) for line in page.splitlines() if line.startswith("::: ")]
+    assert sorted(name for _, name in paths) == sorted(set(symrot.__all__) - {"__version__"})
+    assert all(getattr(importlib.import_module(module), name) is getattr(symrot, name) for module, name in paths)
+
+
+OPTIONAL = {"matplotlib", "heyoka", "symforce", "casadi", "mkdocs"}  # extras, and peers of the benchmarks
+
+
+def undeclared(imports, dependencies):
+    """Return the imported packages that are neither declared dependencies nor optional nor standard Python."""
+    return imports - dependencies - OPTIONAL - set(sys.stdlib_module_names) - {"symrot"}
+
+
+def test_every_third_party_import_is_declared():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    dependencies = {re.split(r"[<>=]", each)[0] for each in project["dependencies"]}
+    imports = set()
+    for path in PACKAGE.rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Import):
+                imports |= {alias.name.partition(".")[0] for alias in node.names}
+            elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
+                imports.add(node.module.partition(".")[0])
+    assert undeclared(imports, dependencies) == set() and dependencies <= imports
+    assert undeclared(imports, dependencies - {"mpmath"}) == {"mpmath"}
 
 
 REVEALED = {  # expression -> the type that mypy reveals

@@ -132,9 +132,10 @@ def check_file(path: str | Path, *, repair: bool = True) -> list[Verdict]:
     --------
     >>> import symrot, tempfile
     >>> from pathlib import Path
+    >>> lines = ["schema = 1", "[[claim]]", 'id = "a"', 'symbols = ["x"]', 'claim = "sin(2*x) == 2*sin(x)*cos(x)"']
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     path = Path(folder, "claims.toml")
-    ...     _ = path.write_text('schema = 1\\nclaim = [{id = "double", where = "p. 1", claim = "sin(2*x) == 2*sin(x)*cos(x)"}]')
+    ...     _ = path.write_text(chr(10).join(lines))
     ...     [verdict.verdict for verdict in symrot.check_file(path)]
     ['true']
     """
