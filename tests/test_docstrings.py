@@ -185,7 +185,13 @@ def test_the_python_page_lists_every_public_name():
     assert all(getattr(importlib.import_module(module), name) is getattr(symrot, name) for module, name in paths)
 
 
-OPTIONAL = {"matplotlib", "heyoka", "symforce", "casadi", "mkdocs"}  # extras, and peers of the benchmarks
+OPTIONAL = {
+    "matplotlib",
+    "PIL",
+    "heyoka",
+    "symforce",
+    "casadi",
+}  # extras (matplotlib requires PIL), peers of benchmarks
 
 
 def undeclared(imports, dependencies):
