@@ -12,7 +12,7 @@ from symrot.dynamics.equations import Equations
 from symrot.formula.program import Program
 from symrot.formula.tree import Node, evaluate
 from symrot.kernels.definition import Definition, Law
-from symrot.kinematics.quaternion import qmul
+from symrot.kinematics.quaternion import quaternion_product
 from symrot.symbols import constant, omega_b
 
 __all__ = ["library_kernel_under_test", "scene_kernel_under_test", "scene_laws"]
@@ -90,6 +90,6 @@ def scene_laws(equations: Equations) -> tuple[Law, ...]:
     if motion.quaternion is not None and (quaternion_states := [s for s in equations.states if s not in omega_b]):
         q = Matrix(motion.quaternion)
         chain_rule = reduce(add, (q.diff(state) * rate[state] for state in quaternion_states), zeros(4, 1))
-        quaternion_rate = qmul(motion.quaternion, [0, *motion.omega_b]) / 2
+        quaternion_rate = quaternion_product(motion.quaternion, [0, *motion.omega_b]) / 2
         laws.append(Law("dq/dt is q (0, omega) / 2", tuple(chain_rule - Matrix(quaternion_rate)), relations))
     return tuple(laws)

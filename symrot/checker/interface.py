@@ -20,7 +20,19 @@ __all__ = ["RefusedClaims", "check", "check_claim", "check_file", "check_reading
 
 
 class RefusedClaims(InputError):
-    """Raised for a file with unreadable claims; ``verdicts`` are those on all its claims, ``"refused"`` on these."""
+    """Some claims of a file cannot be read.
+
+    Attributes
+    ----------
+    verdicts : list of Verdict
+        The verdicts on all claims, ``"refused"`` on those that cannot be read.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> issubclass(symrot.RefusedClaims, symrot.InputError)
+    True
+    """
 
     def __init__(self, verdicts: Sequence[Verdict]) -> None:
         self.verdicts = list(verdicts)
@@ -66,6 +78,10 @@ def check(
         For text that cannot be read (with its position), undefined names, shapes that do not fit, and divisors that
         are zero everywhere. Text is never evaluated as Python.
 
+    Notes
+    -----
+    Source: ``docs/exact_decisions.md`` says how claims are decided and why the decision is sound.
+
     Examples
     --------
     >>> check("cos(2*x) == 1 - 2*sin(x)**2").verdict
@@ -99,6 +115,18 @@ def _checked(left: Any, right: Any, assume: Sequence[Any], units: Mapping[str, s
 def check_file(path: str | Path, *, repair: bool = True) -> list[Verdict]:
     """Return the verdicts on the claims of a TOML file, in its order.
 
+    Parameters
+    ----------
+    path : str or Path
+        A TOML file of claims, as ``docs/checkers.md`` describes it.
+    repair : bool
+        Whether to diagnose claims that are not true, and to search for true formulas near them.
+
+    Returns
+    -------
+    list of Verdict
+        One for each claim, in the order of the file.
+
     Raises
     ------
     InputError
@@ -106,6 +134,17 @@ def check_file(path: str | Path, *, repair: bool = True) -> list[Verdict]:
     RefusedClaims
         If some claims are refused, after all others were decided. The message names the file and the first such claim;
         ``.verdicts`` are the verdicts on all claims.
+
+    Examples
+    --------
+    >>> import symrot, tempfile
+    >>> from pathlib import Path
+    >>> lines = ["schema = 1", "[[claim]]", 'id = "a"', 'symbols = ["x"]', 'claim = "sin(2*x) == 2*sin(x)*cos(x)"']
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = Path(folder, "claims.toml")
+    ...     _ = path.write_text(chr(10).join(lines))
+    ...     [verdict.verdict for verdict in symrot.check_file(path)]
+    ['true']
     """
     verdicts = list(verdicts_of_file(path, repair))
     if any(verdict.verdict == "refused" for verdict in verdicts):

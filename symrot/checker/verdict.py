@@ -10,7 +10,22 @@ __all__ = ["Diagnosis", "Dimensions", "Repair", "Verdict"]
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """The probable fault: a code of ``FAULT_DESCRIPTIONS`` in :mod:`symrot.checker.repair.edits`, and a sentence."""
+    """The probable fault of a claim.
+
+    Attributes
+    ----------
+    code : str
+        Key of the table of faults, such as ``"factor"``; ``"none"`` without a fault.
+    text : str
+        One sentence.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> verdict = symrot.check("sin(2*x) == sin(x)*cos(x)")
+    >>> verdict.diagnosis.code
+    'factor'
+    """
 
     code: str
     text: str
@@ -18,7 +33,26 @@ class Diagnosis:
 
 @dataclass(frozen=True)
 class Repair:
-    """A true formula near the claim, ``proven`` by the exact engine; the smaller its cost, the nearer it is."""
+    """A true formula near a claim.
+
+    Attributes
+    ----------
+    text : str
+        The formula.
+    code : str
+        Key of the table of faults.
+    cost : float
+        The smaller, the nearer to the claim.
+    proven : bool
+        Whether the exact engine proved it.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> verdict = symrot.check("sin(2*x) == sin(x)*cos(x)")
+    >>> verdict.repairs[0].text
+    'sin(2*x) == 2*sin(x)*cos(x)'
+    """
 
     text: str
     code: str
@@ -28,9 +62,22 @@ class Repair:
 
 @dataclass(frozen=True)
 class Dimensions:
-    """The result of the check of units: ``"consistent"``, ``"inconsistent"`` (``text`` says where) or ``"unknown"``.
+    """Whether the units of a claim fit.
 
-    ``units`` are the units that follow for names without a stated unit.
+    Attributes
+    ----------
+    status : str
+        ``"consistent"``, ``"inconsistent"`` or ``"unknown"``.
+    text : str
+        Where they do not fit.
+    units : dict of str to str
+        Units that follow for names that came without a unit.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.check("x == x", units={"x": "m"}).dimension.status
+    'consistent'
     """
 
     status: str = "unknown"
@@ -66,6 +113,12 @@ class Verdict:
         The name of the claim, its place in a document, and its text.
     seconds : float
         The time that it took.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> bool(symrot.check("sin(x)**2 + cos(x)**2 == 1"))
+    True
     """
 
     verdict: str

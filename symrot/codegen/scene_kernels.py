@@ -15,7 +15,7 @@ from symrot.dynamics.invariants import find_invariants
 from symrot.dynamics.structure import Structure
 from symrot.formula.program import Argument, Program, Signature
 from symrot.formula.tree import text
-from symrot.kinematics.quaternion import dcm_of
+from symrot.kinematics.quaternion import quaternion_to_dcm
 from symrot.planning.scene_kernel import Conserved, Parameters, SceneKernel, bind
 
 __all__ = ["derive_scene_kernel", "rates_program", "rates_source", "scene_description", "with_values"]
@@ -61,7 +61,7 @@ def _quantities(equations: Equations, conserved: Mapping[str, Expr]) -> Lowered:
     outputs.append(("energy", "J", equations.kinetic_energy + equations.potential))
     if equations.motion.quaternion is not None:
         outputs += [(f"q{i} of t", "1", q) for i, q in enumerate(equations.motion.quaternion)]
-        momentum_s = dcm_of(equations.motion.quaternion) * momentum
+        momentum_s = quaternion_to_dcm(equations.motion.quaternion) * momentum
         outputs += [(f"momentum_{axis}", "kg m^2/s", value) for axis, value in zip("xyz", momentum_s, strict=True)]
     outputs += [(name, "", value) for name, value in conserved.items()]
     outputs += [(f"{mode} of t", "1", value) for mode, value in equations.modes]

@@ -18,7 +18,7 @@ from symrot.dynamics.torques import Motion, TorqueLaw, collected_cross, formula,
 from symrot.errors import InputError
 from symrot.formula.tree import parse
 from symrot.kinematics.euler import dcm, quaternion_of_euler, rate_jacobian
-from symrot.kinematics.quaternion import qmul, quaternion_rates, unit_relation
+from symrot.kinematics.quaternion import quaternion_product, quaternion_rates, unit_relation
 from symrot.symbols import constant
 
 __all__ = ["Equations", "angular_acceleration", "equations_of_motion", "euler_equations", "inertia_matrix", "inverse"]
@@ -179,7 +179,7 @@ def _motion(structure: Structure) -> tuple[Motion, tuple[Symbol, ...], list[Expr
     if omega_b[axis] == 0:
         return Motion(omega_b, tuple(start), inertia), (), relations
     turn = [cos(PLANAR_ANGLE / 2), *(sin(PLANAR_ANGLE / 2) * eye(3).col(axis))]
-    return Motion(omega_b, tuple(qmul(start, turn)), inertia), (PLANAR_ANGLE,), relations
+    return Motion(omega_b, tuple(quaternion_product(start, turn)), inertia), (PLANAR_ANGLE,), relations
 
 
 def equations_of_motion(structure: Structure) -> Equations:

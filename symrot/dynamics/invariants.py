@@ -15,7 +15,7 @@ from symrot.dynamics.structure import FieldTorque, Pattern, PrincipalInertia, St
 from symrot.dynamics.torques import field_value
 from symrot.exact import is_zero
 from symrot.exact.ring.ratio import TooLarge
-from symrot.kinematics.quaternion import dcm_of
+from symrot.kinematics.quaternion import quaternion_to_dcm
 
 __all__ = ["Invariant", "find_invariants", "rate_along"]
 
@@ -54,7 +54,7 @@ def _candidates(equations: Equations, structure: Structure) -> Iterable[tuple[st
         square = momentum.dot(momentum)
         yield "angular momentum", "kg m^2/s", sqrt(square), square
     else:
-        momentum_s = dcm_of(equations.motion.quaternion) * momentum
+        momentum_s = quaternion_to_dcm(equations.motion.quaternion) * momentum
         for axis, component in zip("xyz", momentum_s, strict=True):
             yield f"angular momentum {axis}", "kg m^2/s", component, component
         for torque in structure.torques:

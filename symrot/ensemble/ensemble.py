@@ -22,7 +22,21 @@ MOST_WORKERS = 1024
 
 
 class EnsembleStats(NamedTuple):
-    """What the motions cost: steps and evaluations of each (of a series: all its coefficients), seconds in all."""
+    """The cost of an ensemble.
+
+    Attributes
+    ----------
+    steps, evaluations : array, shape (n,)
+        Of each motion; one evaluation of a series computes all its coefficients.
+    seconds : float
+        Time of the whole ensemble.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.propagate_ensemble("t_handle", omega=[[0, 1, 2]], t=[0, 1]).stats.steps.shape
+    (1,)
+    """
 
     steps: NDArray[np.int64]
     evaluations: NDArray[np.int64]
@@ -45,6 +59,12 @@ class Ensemble:
     methods : n texts
         How each was propagated.
     stats : EnsembleStats
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.propagate_ensemble("t_handle", omega=[[0, 1, 2]], t=[0, 1]).quaternion.shape
+    (1, 2, 4)
     """
 
     def __init__(self, scene: Scene, t: Floats, followed: Followed, seconds: float) -> None:
@@ -119,10 +139,19 @@ def propagate_ensemble(
     workers : int
         Threads that step.
 
+    Returns
+    -------
+    Ensemble
+        Angular velocity in rad/s, body components, shape (n, m, 3); attitude, shape (n, m, 4).
+
     Raises
     ------
     InputError
         For a scene, an array or a name that cannot be used.
+
+    Notes
+    -----
+    Convention: :mod:`symrot.conventions`.
 
     Examples
     --------

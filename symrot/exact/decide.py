@@ -64,6 +64,10 @@ def normal_form(expression: Any, relations: Sequence[Any] = ()) -> Any:
         If the formula holds a float or an infinity, divides by something that is zero everywhere, or if the
         hypotheses contradict each other.
 
+    Notes
+    -----
+    Source: ``docs/exact_decisions.md`` says how the decision works and why it is sound.
+
     Examples
     --------
     >>> from symrot.symbols import theta

@@ -23,6 +23,13 @@ class Counterexample:
         Row and column, from 1, of the entry of a matrix that differs.
     left, right : Expr or str
         The exact values of the two sides; text where it says more, such as ``"1/3 = 0.333333333333.."``.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> verdict = symrot.check("sin(2*x) == sin(x)*cos(x)")
+    >>> verdict.counterexample.lhs != verdict.counterexample.rhs
+    True
     """
 
     point: tuple[tuple[Expr, Expr], ...]

@@ -82,6 +82,12 @@ class Solid:
     center_of_mass : ImmutableMatrix, shape (3, 1), m
     inertia : ImmutableMatrix, shape (3, 3), kg m^2
         About the centre of mass, products with the minus sign.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.solid("cone").inertia[2, 2]
+    3*R**2*m/10
     """
 
     name: str
@@ -313,6 +319,11 @@ def solid(name: str, *, mass: Any = None, density: Any = None, **dimensions: Any
         the names of the dimensions: ``"1 + z/height"``.
     **dimensions : number, str or Expr, m
         By the names of the table; a dimension left out is its symbol of the table.
+
+    Returns
+    -------
+    Solid
+        Mass in kg; centre of mass in m and inertia in kg m^2, shape (3, 3), in the axes of the shape.
 
     Raises
     ------

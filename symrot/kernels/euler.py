@@ -12,7 +12,7 @@ from symrot.kernels.quaternion import Named
 from symrot.kernels.removable import select_ge
 from symrot.kinematics.chart import RateMatrix
 from symrot.kinematics.euler import dcm, euler_of_quaternion, quaternion_of_euler, rate_jacobian
-from symrot.kinematics.quaternion import dcm_of, unit_relation
+from symrot.kinematics.quaternion import quaternion_to_dcm, unit_relation
 from symrot.kinematics.rotations import skew
 
 __all__ = ["definitions"]
@@ -84,7 +84,7 @@ def _dcm(name: str, sequence: str) -> Definition:
         found = Matrix(3, 3, symbols.rotation_entries)
         return (
             Law("it is the dcm of the product of the three turns as quaternions",
-                tuple(found - dcm_of(quaternion_of_euler(sequence)))),
+                tuple(found - quaternion_to_dcm(quaternion_of_euler(sequence)))),
         )  # fmt: skip
 
     return Definition(
@@ -149,7 +149,7 @@ def _quaternion(name: str, sequence: str) -> Definition:
     named, formulas = _by_outer_products(quaternion_of_euler(sequence))
 
     def laws() -> tuple[Law, ...]:
-        return (Law("its dcm is that of the angles", tuple(dcm_of() - dcm(sequence))),
+        return (Law("its dcm is that of the angles", tuple(quaternion_to_dcm() - dcm(sequence))),
                 Law("it is of unit norm", (unit_relation(),)))  # fmt: skip
 
     return Definition(
@@ -169,7 +169,7 @@ def _of_quaternion(name: str, sequence: str) -> Definition:
     first, middle, last = euler_of_quaternion(sequence)
 
     def laws() -> tuple[Law, ...]:
-        return (Law("the dcm of the angles is that of the quaternion", tuple(dcm(sequence) - dcm_of()),
+        return (Law("the dcm of the angles is that of the quaternion", tuple(dcm(sequence) - quaternion_to_dcm()),
                     (unit_relation(),)),)  # fmt: skip
 
     return Definition(

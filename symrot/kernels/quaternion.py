@@ -10,10 +10,10 @@ from symrot.kernels.definition import Definition, Law, argument, boxed, result
 from symrot.kernels.removable import select_ge
 from symrot.kinematics.quaternion import (
     conjugate,
-    dcm_of,
     norm_squared,
-    qmul,
     quaternion_of_dcm,
+    quaternion_product,
+    quaternion_to_dcm,
     rotation_relations,
     unit_relation,
 )
@@ -61,7 +61,7 @@ def halved(omega: Sequence[Expr]) -> tuple[Named, tuple[Symbol, ...]]:
 
 def quaternion_rate(q: Sequence[Expr], half: Sequence[Expr], frame: str = "body") -> ImmutableMatrix:
     """Return ``dq/dt`` from half the angular velocity: q (0, omega/2) in body axes, (0, omega/2) q in space axes."""
-    return qmul(q, [0, *half]) if frame == "body" else qmul([0, *half], q)
+    return quaternion_product(q, [0, *half]) if frame == "body" else quaternion_product([0, *half], q)
 
 
 def _dcm(name: str) -> Definition:
@@ -70,7 +70,9 @@ def _dcm(name: str) -> Definition:
 
     def laws() -> tuple[Law, ...]:
         found, q = Matrix(3, 3, symbols.rotation_entries), symbols.quaternion
-        turned = Matrix.hstack(*(qmul(q, [0, *axis], conjugate(q))[1:, 0] for axis in Matrix.eye(3).tolist()))
+        turned = Matrix.hstack(
+            *(quaternion_product(q, [0, *axis], conjugate(q))[1:, 0] for axis in Matrix.eye(3).tolist())
+        )
         return (
             Law("its columns are the turned axes q e q*", tuple(found - turned), (unit_relation(),)),
             Law("it is orthogonal", tuple(found.T * found - Matrix.eye(3)), (unit_relation(),)),
@@ -93,7 +95,13 @@ def _of_dcm(name: str) -> Definition:
 
     def laws() -> tuple[Law, ...]:
         q = symbols.quaternion
-        return (Law("its dcm is the given one, of a rotation", tuple(dcm_of(q) - matrix), rotation_relations(matrix)),)
+        return (
+            Law(
+                "its dcm is the given one, of a rotation",
+                tuple(quaternion_to_dcm(q) - matrix),
+                rotation_relations(matrix),
+            ),
+        )
 
     return Definition(
         name, "quaternion of a direction cosine matrix dcm_sb, by the branch that divides by its largest component",
@@ -125,7 +133,7 @@ def _rates(frame: str, name: str) -> Definition:
     named, half = halved(omega)
 
     def laws() -> tuple[Law, ...]:
-        doubled = qmul(conjugate(q), dq) if frame == "body" else qmul(dq, conjugate(q))
+        doubled = quaternion_product(conjugate(q), dq) if frame == "body" else quaternion_product(dq, conjugate(q))
         return (
             Law("2 q* dq/dt is (0, omega)" if frame == "body" else "2 dq/dt q* is (0, omega)",
                 tuple(2 * doubled - Matrix([0, *omega])), (unit_relation(),)),
@@ -144,7 +152,7 @@ def _product(name: str) -> Definition:
     left, right, found = symbols.second_quaternion, symbols.quaternion, symbols.product_quaternion
 
     def laws() -> tuple[Law, ...]:
-        matrices = (dcm_of(each, "homogeneous") for each in (found, left, right))
+        matrices = (quaternion_to_dcm(each, "homogeneous") for each in (found, left, right))
         turned, first, second = matrices
         return (
             Law("its dcm is the product of the dcms", tuple(turned - first * second)),
@@ -154,7 +162,7 @@ def _product(name: str) -> Definition:
     return Definition(
         name, "Hamilton product p q of two quaternions: the turn q, then the turn p, in space",
         (argument("left", "in", left, "left factor p"), argument("right", "in", right, "right factor q")),
-        (result("product", qmul(left, right), found, "p q"),),
+        (result("product", quaternion_product(left, right), found, "p q"),),
         "all quaternions", "derivations/composition.md", boxed((*left, *right), -1, 1), laws,
     )  # fmt: skip
 
@@ -162,7 +170,7 @@ def _product(name: str) -> Definition:
 def _rotate(towards: str, name: str) -> Definition:
     vector, found = Matrix(symbols.vector), symbols.turned_vector
     to_space = towards == "space"
-    matrix = dcm_of() if to_space else dcm_of().T
+    matrix = quaternion_to_dcm() if to_space else quaternion_to_dcm().T
     here, there = ("body", "space") if to_space else ("space", "body")
     named, formulas = turned(symbols.quaternion if to_space else conjugate(symbols.quaternion), vector)
 

@@ -13,7 +13,7 @@ from symrot.formula.program import Argument
 from symrot.kernels.definition import Box, Definition, Law, boxed, interval, result, scalar
 from symrot.kernels.dynamics import OMEGA, OMEGA_BOX, TENSOR, TENSOR_BOX, tensor_argument
 from symrot.kernels.quaternion import QUATERNION, QUATERNION_BOX, turned
-from symrot.kinematics.quaternion import conjugate, dcm_of, unit_relation
+from symrot.kinematics.quaternion import conjugate, quaternion_to_dcm, unit_relation
 
 __all__ = ["definitions"]
 
@@ -108,7 +108,7 @@ def _laws(kind: str, fields: tuple[str, ...], law: TorqueLaw) -> tuple[Law, ...]
                     tuple(found - torque_of_potential(law)), unit),)  # fmt: skip
     if kind == "damping":
         return _damping_laws(found, fields)
-    matrix = dcm_of() if kind == "constant_space" else eye(3)
+    matrix = quaternion_to_dcm() if kind == "constant_space" else eye(3)
     given = field_value("torque", (FREE,) * 3)
     return (Law("carried to the axes of the given torque it is that torque", tuple(matrix * found - given), unit),)
 

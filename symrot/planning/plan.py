@@ -73,6 +73,12 @@ class RuleOutcome(NamedTuple):
         Name of the derivation that justifies it; empty where the requested output alone decides.
     item : str
         The subject of the rule in the table of rules; a rule itself leaves it empty.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.plan("tumbling_prism").rows[0].skipped
+    True
     """
 
     structure: Structure
@@ -84,7 +90,23 @@ class RuleOutcome(NamedTuple):
 
 @dataclass(frozen=True)
 class Plan:
-    """The least set of equations for a scene, with the numbers that go into it."""
+    """The least set of equations for a scene, with the numbers that go into it.
+
+    Attributes
+    ----------
+    scene : Scene
+        The problem.
+    structure : Structure
+        Which equations the motion obeys.
+    rows : tuple of RuleOutcome
+        What each rule decided, and why.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.plan("tumbling_prism").states[:3]
+    ('omega_1', 'omega_2', 'omega_3')
+    """
 
     scene: Scene
     structure: Structure

@@ -65,6 +65,12 @@ class SceneKernel:
     """The kernels derived once for a structure and used for every scene that has it.
 
     Programs are made from the saved data when they are first used: a propagation in C never needs the rates.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> "symrot_rates" in symrot.propagator("t_handle").kernel.source
+    True
     """
 
     def __init__(self, record: KernelRecord) -> None:

@@ -37,7 +37,14 @@ __all__ = ["Derivation", "Passage", "PrintedPage", "ProofError", "Section", "Ste
 
 
 class ProofError(SymrotError):
-    """Raised for a step of a derivation that does not hold."""
+    """A step of a derivation does not hold.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> issubclass(symrot.ProofError, symrot.SymrotError)
+    True
+    """
 
 
 @dataclass
@@ -80,6 +87,12 @@ class Derivation(PrintedPage):
         The meaning of names on the page, and the rates of variables (:meth:`notation`).
 
     The other parameters are those of :class:`symrot.proof.page.Page`.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.derivation("intermediate_axis").title
+    'The intermediate axis is unstable'
     """
 
     assumed: list[Expr] = field(default_factory=list)

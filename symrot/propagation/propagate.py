@@ -60,12 +60,28 @@ def propagator(
         Longest step, s, under that torque: shorter than its narrowest feature. Formulas need no such limit; the
         limit of a table follows from its samples.
 
+    Returns
+    -------
+    Propagator
+        Call it with times, s, as often as needed.
+
     Raises
     ------
     InputError
         For a scene or an option that cannot be used.
     CompilerError
         If the method needs a compiler and there is none, or the compiler refuses the kernel.
+
+    Notes
+    -----
+    Convention: :mod:`symrot.conventions`. Source: ``docs/step_control.md`` says how errors are controlled.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> propagator = symrot.propagator("t_handle")
+    >>> propagator([0.0, 1.0, 2.0]).omega.shape
+    (3, 3)
     """
     if not isinstance(scene, Scene):
         scene = load_scene(scene)
@@ -126,5 +142,41 @@ def _tolerance(tolerance: float) -> float:
 def propagate(
     scene: Scene | str | Path, method: str = "auto", tolerance: float | None = None, events: Any = None
 ) -> Trajectory:
-    """Return the motion of a scene at its own sample times; see :func:`propagator` and :class:`Propagator`."""
+    """Return the motion of a scene at its own sample times.
+
+    Parameters
+    ----------
+    scene : Scene, str or Path
+        A scene, the name of a shipped scene, or the path of a scene file.
+    method : str
+        As for :func:`propagator`.
+    tolerance : float, optional
+        Error of the trajectory to aim for; default: the scene's own.
+    events : sequence, optional
+        Formulas whose zeros are located, as for :class:`Propagator`: ``["omega_3 == 0"]``.
+
+    Returns
+    -------
+    Trajectory
+        Angular velocity in rad/s, body components; attitude as unit quaternions, body to space.
+
+    Raises
+    ------
+    InputError
+        For a scene or an option that cannot be used.
+    PropagationError
+        If the motion cannot be propagated to its last time; its ``trajectory`` holds the samples before.
+    CompilerError
+        If the method needs a compiler and there is none.
+
+    Notes
+    -----
+    Convention: :mod:`symrot.conventions`.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.propagate("t_handle", events=["omega_3 == 0"]).t_events[0][:2].round(8).tolist()
+    [1.18541555, 3.55624666]
+    """
     return propagator(scene, method, tolerance)(events=events)

@@ -33,6 +33,19 @@ class Propagator:
     """Propagates one scene; made by :func:`symrot.propagator`.
 
     Derivation, compilation and binding are done when it is made; a call only computes the motion.
+
+    Attributes
+    ----------
+    scene : Scene
+    tolerance : float
+        Error of the trajectory to aim for.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> propagator = symrot.propagator("t_handle")
+    >>> propagator([0.0, 0.5], omega=[0.0, 2.0, 0.1]).omega[0].tolist()
+    [0.0, 2.0, 0.1]
     """
 
     def __init__(self, scene: Scene, method: str, tolerance: float) -> None:

@@ -23,8 +23,22 @@ Floats = NDArray[np.float64]
 class Invariant(NamedTuple):
     """A conserved quantity along a trajectory.
 
-    ``drift`` is the largest change since the start, relative to ``scale``: the kinetic plus potential magnitude for an
-    energy, the length of the angular momentum for its components, one for the norm of the quaternion.
+    Attributes
+    ----------
+    name, unit, reason : str
+        Its name, its SI unit, and why it is conserved.
+    values : array, shape (n,)
+    scale : float
+        Kinetic plus potential magnitude for an energy, length of the angular momentum for its components, 1 for the
+        norm of the quaternion.
+    drift : float
+        Largest change since the start, relative to ``scale``.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.propagate("t_handle").invariants[0].unit
+    'J'
     """
 
     name: str
@@ -55,6 +69,13 @@ class Trajectory:
         Per requested event: its times, shape (k,), and the states there, shape (k, N).
     event_kinds : list of lists of str, or None
         Per event: ``"rising"``, ``"falling"`` or ``"touching"`` for each of its times.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> trajectory = symrot.propagate("t_handle")
+    >>> max(invariant.drift for invariant in trajectory.invariants) < 1e-12
+    True
     """
 
     def __init__(

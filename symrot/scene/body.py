@@ -41,6 +41,28 @@ class Body(NamedTuple):
 
     ``inertia`` (kg m^2) is about that point; ``center_of_mass`` (m) is relative to it, None when it is unknown;
     ``mass`` (kg) is None when it is unknown. ``principal`` holds the class of the body, its moments and axes.
+
+    Attributes
+    ----------
+    mass : Fraction or None
+        kg.
+    inertia : 3 x 3 Fraction
+        kg m^2, about the centre of mass or the fixed point.
+    center_of_mass : tuple of 3 Fraction, or None
+        m, relative to that point.
+    about : str
+        Which of the two points it is.
+    description : str
+        How the scene describes the body.
+    principal : Principal
+        Principal moments, kg m^2, and axes.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> scene = symrot.load_scene("tumbling_prism")
+    >>> scene.body.principal.moments
+    (Fraction(5, 1), Fraction(20, 1), Fraction(17, 1))
     """
 
     mass: Fraction | None

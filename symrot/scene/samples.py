@@ -29,6 +29,23 @@ class Table(NamedTuple):
     """Samples of a torque: ``times`` (s, rising; twice the same at a switching time) and ``moments`` (N m).
 
     Between switching times a cubic spline goes through the samples; outside of them the torque is not known.
+
+    Attributes
+    ----------
+    times : tuple of float
+        s, rising; each switching time twice.
+    moments : tuple of 3 float each
+        N m.
+    frame : str
+        ``"body"`` or ``"space"``: the components of the moments.
+    switching_times : tuple of float
+        s, where the torque jumps.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.Table((0.0, 1.0), ((0.0, 0.0, 1.0),) * 2, "body", ()).kind
+    'table'
     """
 
     times: tuple[float, ...]

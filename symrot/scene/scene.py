@@ -46,14 +46,44 @@ QUANTITIES: dict[str, tuple[str, str]] = {
 
 
 class Initial(NamedTuple):
-    """The state at the start: ``omega_b`` (rad/s, body components) and a unit ``quaternion`` (to 2^-200)."""
+    """The initial state.
+
+    Attributes
+    ----------
+    omega_b : tuple of 3 Fraction
+        Angular velocity, body components, rad/s.
+    quaternion : tuple of 4 Fraction
+        Attitude, scalar first, body to space; unit to 2^-200.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> scene = symrot.load_scene("tumbling_prism")
+    >>> scene.initial.quaternion[0]
+    Fraction(1, 1)
+    """
 
     omega_b: Vector
     quaternion: tuple[Fraction, Fraction, Fraction, Fraction]
 
 
 class Span(NamedTuple):
-    """Sample times: ``samples`` of them, evenly from ``start`` to ``stop`` (s), both included."""
+    """Evenly spaced sample times.
+
+    Attributes
+    ----------
+    start, stop : Fraction
+        First and last time, s.
+    samples : int
+        Number of times, both ends included.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> scene = symrot.load_scene("tumbling_prism")
+    >>> scene.span.start
+    Fraction(0, 1)
+    """
 
     start: Fraction
     stop: Fraction
@@ -61,7 +91,24 @@ class Span(NamedTuple):
 
 
 class Output(NamedTuple):
-    """The quantities asked for; ``sequence`` is the Euler sequence of ``euler``, ``degrees`` the unit of its angles."""
+    """The quantities that a scene writes.
+
+    Attributes
+    ----------
+    quantities : tuple of str
+        Names among :data:`symrot.scene.scene.QUANTITIES`.
+    sequence : str or None
+        Euler sequence of the quantity ``"euler"``.
+    degrees : bool
+        Whether these angles are in degrees rather than rad.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> scene = symrot.load_scene("tumbling_prism")
+    >>> "omega" in scene.output.quantities
+    True
+    """
 
     quantities: tuple[str, ...]
     sequence: str | None
@@ -70,7 +117,36 @@ class Output(NamedTuple):
 
 @dataclass(frozen=True)
 class Scene:
-    """A rigid body, how it starts, what acts on it, and what is asked of its motion. All numbers are exact."""
+    """A rigid body, its initial state, the torques on it, and the output of its motion. All numbers are exact.
+
+    Attributes
+    ----------
+    name, title, source : str
+        Short name, title, and origin of the problem.
+    path : str or None
+        File of the scene.
+    body : Body
+        Inertia, kg m^2, in the axes in which it was given.
+    initial : Initial
+        Angular velocity, rad/s, body components, and attitude.
+    torques : tuple of Torque
+        The torques that are formulas.
+    span : Span
+        Sample times, s.
+    output : Output
+        The quantities to write.
+    tolerance : Fraction
+        Error of the trajectory to aim for: attitude in rad, angular velocity relative to its size.
+    table : Table or None
+        A torque by samples, in addition to the formulas.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> scene = symrot.load_scene("tumbling_prism")
+    >>> scene.name
+    'tumbling_prism'
+    """
 
     name: str
     path: str | None
@@ -124,10 +200,19 @@ def load_scene(source: str | Path, *, table_folders: str | Path | Sequence[str |
     table_folders : str, Path or sequence of them
         Folders, beside that of the scene, whose files a torque of kind table may name.
 
+    Returns
+    -------
+    Scene
+        All numbers exact, in SI units.
+
     Raises
     ------
     InputError
         One sentence with file, key, expectation and value.
+
+    Notes
+    -----
+    The format: ``docs/scene_format.md``.
 
     Examples
     --------
@@ -140,7 +225,19 @@ def load_scene(source: str | Path, *, table_folders: str | Path | Sequence[str |
 
 
 def shipped_scenes() -> list[tuple[str, str, str]]:
-    """Return (name, title, source) of every scene that comes with symrot, without reading their bodies."""
+    """Return the name, the title and the source of every scene that comes with symrot, without reading their bodies.
+
+    Returns
+    -------
+    list of (str, str, str)
+        (name, title, source); a name is accepted wherever a scene is expected.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> "t_handle" in [name for name, title, source in symrot.shipped_scenes()]
+    True
+    """
     contents = [(name, read_toml(SHIPPED / f"{name}.toml", name)) for name in shipped_names()]
     return [(name, content.get("title", ""), content.get("source", "")) for name, content in contents]
 

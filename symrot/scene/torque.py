@@ -32,15 +32,21 @@ class Torque(NamedTuple):
     Attributes
     ----------
     kind : str
-        As the table of torques names it.
+        Name in the table of torques.
     values : mapping
-        The constants by name: of a torque given by formulas their parameters (with pi, if a formula uses it), of others
-        the fields of the table, all of them. Vectors have three components, an attitude is a unit quaternion, and
-        ``linear`` of a damping is a vector. Gravity has ``weight``, ``center_of_mass`` and a unit ``direction``.
+        The constants by name, SI units: the parameters of a torque given by formulas (with pi, if a formula uses it),
+        else all fields of the table. Vectors have three components, an attitude is a unit quaternion, and ``linear`` of
+        a damping is a vector. Gravity has ``weight``, ``center_of_mass`` and a unit ``direction``.
     formulas : tuple of str
         The components of a torque given by formulas, which :func:`symrot.formula.tree.parse` reads, switches allowed.
     frame : str
         ``"body"`` or ``"space"``: the axes of these components.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.load_scene("heavy_top_loops").torques[0].kind
+    'gravity'
     """
 
     kind: str

@@ -43,6 +43,19 @@ class Emitted(_Texts):
     ``certificate`` is the text of its certificate; it is proven at the first access. The certificate of a kernel of the
     library contains the bounds of its rounding errors on its own box; that of a scene's kernel contains the bounds that
     were passed to :func:`emit`.
+
+    Attributes
+    ----------
+    name : str
+        The function.
+    source, header : str
+        The text of the kernel and, in C, of its header.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> "double" in symrot.emit("euler_zxz_body_rates").source
+    True
     """
 
     kernel: Any = None
@@ -75,6 +88,25 @@ def plan(scene: Scene | str | Path) -> Plan:
     ----------
     scene : Scene, str or Path
         A scene, the name of a shipped scene, or the path of a scene file.
+
+    Returns
+    -------
+    Plan
+
+    Raises
+    ------
+    InputError
+        For a scene that cannot be used.
+
+    Notes
+    -----
+    Source: each row names the derivation that justifies it.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.plan("tumbling_prism").scene.name
+    'tumbling_prism'
     """
     loaded = _scene(scene)
     return make_plan(loaded, external_torque=loaded.table is not None, switched=switched(loaded))
@@ -87,6 +119,21 @@ def explain(scene: Scene | str | Path) -> str:
     ----------
     scene : Scene, str or Path
         As for :func:`plan`.
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    InputError
+        As for :func:`plan`.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> "derivation" in symrot.explain("tumbling_prism")
+    True
     """
     from symrot.report.explain import explanation
 
@@ -112,11 +159,26 @@ def emit(kernel: Scene | str | Path, target: str = "c", bounds: Mapping[str, Any
         Bounds of the rounding errors of a scene's kernel on a box of your choice, for the head comment of its C and for
         its certificate (:func:`symrot.workshop.bounds.section`); a kernel of the library has its own.
 
+    Returns
+    -------
+    Emitted
+        ``.name``, ``.source`` and ``.header``; ``.certificate`` is proven at the first access.
+
     Raises
     ------
     InputError
         For an unknown target, a name that is neither a kernel nor a scene, an unusable scene, or a scene without a
         state to integrate.
+
+    Notes
+    -----
+    Convention: the head comment of each kernel states frames, units and domain of its arguments.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.emit("euler_zxz_body_rates").name
+    'euler_zxz_body_rates'
     """
     from symrot.codegen.printing.c_source import DOUBLE, FLOAT, c_header, c_source
     from symrot.codegen.printing.numpy_source import numpy_source
@@ -168,7 +230,18 @@ def subject(kernel: Scene | str | Path, bounds: Mapping[str, Any] | None = None)
 
 
 def kernel_names() -> tuple[str, ...]:
-    """Return the names of the kernels of the library, for :func:`emit`."""
+    """Return the names of the kernels of the library, for :func:`emit`.
+
+    Returns
+    -------
+    tuple of str
+
+    Examples
+    --------
+    >>> import symrot
+    >>> "euler_zxz_body_rates" in symrot.kernel_names()
+    True
+    """
     from symrot.kernels import library
 
     return library.kernel_names()

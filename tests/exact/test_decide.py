@@ -87,7 +87,7 @@ def turn_z(angle):
     return Matrix([[cos(angle), -sin(angle), 0], [sin(angle), cos(angle), 0], [0, 0, 1]])
 
 
-def dcm_of(q):
+def quaternion_to_dcm(q):
     vector = skew(q[1:])
     return eye(3) + 2 * q[0] * vector + 2 * vector**2
 
@@ -120,14 +120,14 @@ TRUE = {
     "cotangent": (cot(x) - tan(x), 2 * cot(2 * x), ()),
     "rates of ZXZ": (DCM_RATE, DCM * skew(BODY_RATES), ()),
     "orthogonal": (DCM * DCM.T, eye(3), ()),
-    "unit quaternion": (dcm_of(quaternion) * dcm_of(quaternion).T, eye(3), (UNIT_QUATERNION,)),
+    "unit quaternion": (quaternion_to_dcm(quaternion) * quaternion_to_dcm(quaternion).T, eye(3), (UNIT_QUATERNION,)),
     "unit axis": (
         rodrigues_rotation((n1, n2, n3), x) * rodrigues_rotation((n1, n2, n3), y),
         rodrigues_rotation((n1, n2, n3), x + y),
         (UNIT_AXIS,),
     ),
     "half angle to quaternion": (
-        dcm_of((cos(x / 2), n1 * sin(x / 2), n2 * sin(x / 2), n3 * sin(x / 2))),
+        quaternion_to_dcm((cos(x / 2), n1 * sin(x / 2), n2 * sin(x / 2), n3 * sin(x / 2))),
         rodrigues_rotation((n1, n2, n3), x),
         (UNIT_AXIS,),
     ),
@@ -183,7 +183,7 @@ def test_every_entry_of_a_matrix_identity_counts(row, column):
     [
         (cos(2 * x), 1 + 2 * sin(x) ** 2, ()),
         (q0**2 + q1**2, 1, (UNIT_QUATERNION,)),
-        (dcm_of(quaternion), dcm_of(quaternion).T, (UNIT_QUATERNION,)),
+        (quaternion_to_dcm(quaternion), quaternion_to_dcm(quaternion).T, (UNIT_QUATERNION,)),
         (A * x, C * x, (Eq(A, B),)),
         (1 / sin(x), sin(x), ()),
         (omega_1 * sin(omega_1 * t), sin(omega_1 * t), ()),

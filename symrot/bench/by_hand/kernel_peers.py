@@ -27,7 +27,7 @@ from symrot.formula.program import Program, Signature
 from symrot.formula.tree import Node, children
 from symrot.kernels.dynamics import TENSOR
 from symrot.kinematics.euler import rate_jacobian
-from symrot.kinematics.quaternion import dcm_of, quaternion_rates
+from symrot.kinematics.quaternion import quaternion_rates, quaternion_to_dcm
 
 __all__ = [
     "PEERS_IN_C",
@@ -59,13 +59,13 @@ def _rigid_body() -> list[sympy.Expr]:
 
 
 def _heavy_top() -> list[sympy.Expr]:
-    weight = symbols.W * Matrix(symbols.center_of_mass).cross(-dcm_of().T.col(2))
+    weight = symbols.W * Matrix(symbols.center_of_mass).cross(-quaternion_to_dcm().T.col(2))
     alpha = angular_acceleration(sympy.diag(*symbols.principal), Matrix(symbols.omega_b), weight)
     return [*alpha, *_quaternion_rates()]
 
 
 TEXTBOOK: dict[str, Callable[[], list[sympy.Expr]]] = {
-    "quaternion_dcm": lambda: list(dcm_of()),
+    "quaternion_dcm": lambda: list(quaternion_to_dcm()),
     **{f"euler_{sequence.lower()}_body_rates": partial(_euler_rates, sequence) for sequence in INTRINSIC_SEQUENCES},
     "rigid_body_tensor": _rigid_body,
     "heavy_top": _heavy_top,

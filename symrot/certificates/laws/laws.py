@@ -27,7 +27,7 @@ from symrot.certificates.laws.law_proof import (
 )
 from symrot.errors import CertificateError
 from symrot.kernels.definition import Definition, Law
-from symrot.kinematics.quaternion import dcm_of, rotation_relations
+from symrot.kinematics.quaternion import quaternion_to_dcm, rotation_relations
 
 __all__ = ["LawProof", "hypotheses", "prove_law", "prove_laws"]
 
@@ -135,7 +135,7 @@ def _witness(name: str, law: Law, hypothesis_names: Sequence[str], names: Sequen
     point: dict[str, Expr] = {each: Rational(2 * k + 3, 7) for k, each in enumerate(names)}
     numbers = UNIT.get(4 if len(hypothesis_names) == ENTRIES else len(hypothesis_names), ())
     unit = tuple(Rational(each) / sqrt(sum(n * n for n in numbers)) for each in numbers)
-    point |= zip(hypothesis_names, dcm_of(unit) if len(hypothesis_names) == ENTRIES else unit, strict=True)
+    point |= zip(hypothesis_names, quaternion_to_dcm(unit) if len(hypothesis_names) == ENTRIES else unit, strict=True)
     if any(
         relation.subs({symbol: point[str(symbol)] for symbol in relation.free_symbols}) for relation in law.relations
     ):

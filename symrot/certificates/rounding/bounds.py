@@ -351,7 +351,7 @@ def check_section(
         for part in section["precisions"]:
             _check_precision(part, kernels[part["precision"]], box, region, libm_ulp)
         precisions = [part["precision"] for part in section["precisions"]]
-    except (KeyError, TypeError, ValueError, AttributeError, OverflowError) as error:
+    except (CertificateError, KeyError, TypeError, ValueError, AttributeError, OverflowError) as error:
         if isinstance(error, CertificateError | InputError):
             raise CertificateError(str(error)) from None
         raise CertificateError(

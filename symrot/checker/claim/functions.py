@@ -26,7 +26,7 @@ from symrot.checker.claim.tree import Node
 from symrot.errors import InputError
 from symrot.exact.intervals import enclosure
 from symrot.exact.size import pieces
-from symrot.kinematics.quaternion import dcm_of, qmul
+from symrot.kinematics.quaternion import quaternion_product, quaternion_to_dcm
 from symrot.kinematics.rotations import elementary_rotation, skew, vee
 
 __all__ = ["BUILT_IN", "inverted"]
@@ -206,12 +206,14 @@ def _hstack(scope: Scope, node: Node) -> ImmutableMatrix:
 
 
 def _qmul(scope: Scope, node: Node) -> ImmutableMatrix:
-    return qmul(*(scope.matrix(argument, "as a quaternion in qmul", (4, 1)) for argument in node.args))
+    return quaternion_product(*(scope.matrix(argument, "as a quaternion in qmul", (4, 1)) for argument in node.args))
 
 
 def _dcm_of(scope: Scope, node: Node) -> ImmutableMatrix:
     components = dict(zip(symbols.quaternion, _components(scope, node, 4), strict=True))
-    return dcm_of(form="homogeneous").xreplace(components)  # nothing is multiplied out: components may be long
+    return quaternion_to_dcm(form="homogeneous").xreplace(
+        components
+    )  # nothing is multiplied out: components may be long
 
 
 def _diff(scope: Scope, node: Node) -> Any:

@@ -56,6 +56,12 @@ class Identification:
         The place of the formula in symrot: a call, or a page with its step.
     proven : bool
         Always true: names without a proof are not returned.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.identify("(A*p**2 + B*q**2 + C*r**2)/2")[0].name
+    'kinetic energy of rotation, principal axes'
     """
 
     name: str
@@ -97,10 +103,19 @@ def identify(formula: Any, *, most: int = MOST) -> list[Identification]:
     most : int
         How many names to return at most.
 
+    Returns
+    -------
+    list of Identification
+        Each is proven; empty for a formula that symrot does not know.
+
     Raises
     ------
     InputError
         For text that is not understood, with the position.
+
+    Notes
+    -----
+    Source: ``.source`` of each identification names the call or page that derives it.
 
     Examples
     --------

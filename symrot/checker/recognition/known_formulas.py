@@ -81,13 +81,25 @@ def _axes() -> Iterator[Named]:
 def _quaternions() -> Iterator[Named]:
     q, p = symbols.quaternion, symbols.second_quaternion
     page_of = "derivations/quaternion_rates.md"
-    yield "rotation matrix of a unit quaternion, body to space", "symrot.dcm_of()", quaternion.dcm_of(q)
+    yield (
+        "rotation matrix of a unit quaternion, body to space",
+        "symrot.quaternion_to_dcm()",
+        quaternion.quaternion_to_dcm(q),
+    )
     for form in ("homogeneous", "normalised"):
-        matrix = quaternion.dcm_of(q, form)
-        yield f"rotation matrix of a quaternion, {form}, body to space", f'symrot.dcm_of(q, "{form}")', matrix
-    yield "quaternion product q p", "symrot.qmul(q, p)", quaternion.qmul(q, p)
-    yield "matrix of the product with a quaternion on the left", "symrot.qmul", quaternion.left_matrix(q)
-    yield "matrix of the product with a quaternion on the right", "symrot.qmul", quaternion.right_matrix(q)
+        matrix = quaternion.quaternion_to_dcm(q, form)
+        yield (
+            f"rotation matrix of a quaternion, {form}, body to space",
+            f'symrot.quaternion_to_dcm(q, "{form}")',
+            matrix,
+        )
+    yield "quaternion product q p", "symrot.quaternion_product(q, p)", quaternion.quaternion_product(q, p)
+    yield "matrix of the product with a quaternion on the left", "symrot.quaternion_product", quaternion.left_matrix(q)
+    yield (
+        "matrix of the product with a quaternion on the right",
+        "symrot.quaternion_product",
+        quaternion.right_matrix(q),
+    )
     for frame in FRAMES:
         rates, jacobian = quaternion.quaternion_rates(frame), quaternion.quaternion_rate_jacobian(frame)
         omega = Matrix(symbols.omega_b if frame == "body" else symbols.omega_s)

@@ -62,6 +62,13 @@ class Event(NamedTuple):
     direction : int
         1 for zeros through which the formula rises along the motion, -1 for zeros through which it falls, 0 for all
         zeros, including touches.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> event = symrot.Event("omega_3 == 0", terminal=True)
+    >>> symrot.propagate("t_handle", events=[event]).status
+    1
     """
 
     formula: str

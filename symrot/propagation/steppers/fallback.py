@@ -370,7 +370,7 @@ class _Integration:
             broken = self.broken
             try:
                 message = solver.step()
-            except ValueError:  # of linear algebra, for numbers that are not finite
+            except (ValueError, IntegrationStopped):  # ValueError: linear algebra rejects numbers that are not finite
                 longest = 0.5 * min(float(solver.h_abs), abs(segment.stop - before), longest)
                 if longest <= 4.0 * math.ulp(before):
                     raise IntegrationStopped(before, NOT_FINITE_SENTENCE, end) from None

@@ -76,10 +76,28 @@ class Switching(NamedTuple):
 
 
 class Stats(NamedTuple):
-    """The cost of a propagation: steps accepted and rejected, evaluations of the kernel, total seconds.
+    """The cost of a propagation.
 
-    ``switches`` counts changes of the sequence, if Euler angles are the state, and the times at which torques switch.
-    ``switching_times`` lists these times, s, each once; ``switchings`` names the functions that switch there.
+    Attributes
+    ----------
+    accepted, rejected : int
+        Steps.
+    evaluations : int
+        Evaluations of the kernel.
+    seconds : float
+        Time of the whole propagation.
+    switches : int
+        Changes of the Euler sequence where angles are the state; otherwise the number of switching times.
+    switching_times : tuple of float
+        s, at which torques with switches switch, each once.
+    switchings : tuple of Switching
+        Which functions switch there.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.propagate("t_handle").stats.rejected >= 0
+    True
     """
 
     accepted: int

@@ -262,7 +262,7 @@ class SwitchedRun(RunState):
                 float(evaluate(parse(guard.formula), self._values(regime, place), FLOAT_FUNCTIONS, float))
                 for place in places
             )
-        except (ArithmeticError, ValueError):
+        except (ArithmeticError, ValueError, IntegrationStopped):
             return False
         return before >= 0.0 >= after and before > after
 
@@ -288,7 +288,7 @@ class SwitchedRun(RunState):
         try:
             slope = (value(aside) - value(-aside)) / (2.0 * aside)
             correction = -value(0.0) / slope
-        except (ArithmeticError, ValueError):
+        except (ArithmeticError, ValueError, IntegrationStopped):
             return instant
         return instant.after(correction) if abs(correction) <= MOST_ULPS * math.ulp(t) else instant
 
@@ -410,7 +410,7 @@ class SwitchedRun(RunState):
         """Set a mode whose guard becomes active by the value of the guard, if the guard has one."""
         try:
             guard = self._guard_value(mode)
-        except (ArithmeticError, ValueError):
+        except (ArithmeticError, ValueError, IntegrationStopped):
             return
         if self.by_name[mode].kind == "floor":
             self.modes[mode] += math.floor(guard)
