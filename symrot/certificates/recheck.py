@@ -393,8 +393,8 @@ TOKEN = re.compile(
     r"|(?P<symbol>\*\*|\+\+|--|[-+*/<>=!]=|<<|>>|->|[-+*/()\[\]{},;<>=?:])",
     re.ASCII,
 )
-NUMBER = re.compile(r"\d+(\.\d+)?(e[-+]?\d\d?)?", re.ASCII)  # of a formula
-C_NUMBER = re.compile(r"(\d+\.\d*|\d+(?=e))(e[-+]?\d\d?)?(f?)", re.ASCII)
+NUMBER = re.compile(r"\d{1,400}(\.\d{1,400})?(e[-+]?\d\d?)?", re.ASCII)  # of a formula
+C_NUMBER = re.compile(r"(\d{1,40}\.\d{0,40}|\d{1,40}(?=e))(e[-+]?\d\d?)?(f?)", re.ASCII)
 INDEX = re.compile(r"0|[1-9]\d{0,2}", re.ASCII)
 END = "the end"
 
@@ -612,7 +612,7 @@ class Parameter(NamedTuple):
 
     name: str
     form: str
-    size: int | None  # of an array
+    size: int  # components
     is_input: bool
 
 
@@ -678,10 +678,11 @@ def split_includes(text, name, files):
 class CReader(Reader):
     """The functions of a C file, by the grammar at the head of this file."""
 
-    def __init__(self, text, name, files):
+    def __init__(self, text, name, files, sizes):
         included, text = split_includes(without_comments(text, f"{name}.c"), name, files)
         super().__init__(text, f"{name}.c")
         self.included = included
+        self.sizes = sizes  # of arrays, by the certificate: a batch does not declare them
         self.kernels, self.inline = {}, {real: {} for real in REALS}
         self.parameters, self.names, self.assigned = {}, set(), set()
         self.real, self.in_batch = "double", False
@@ -719,13 +720,13 @@ class CReader(Reader):
         component = 0
         if parameter.form == "array":
             component = self.index()
-            need(component < parameter.size, f"{self.place}: expected an index below {parameter.size} of {name}")
         elif not self.accept("k"):
             component = 1
             if self.token.text != "n":
                 component = self.index()
                 self.take("*")
             self.take("n + k")
+        need(component < parameter.size, f"{self.here()}: expected an index below {parameter.size} of {name}")
         self.take("]")
         return name, component
 
@@ -830,13 +831,13 @@ class CReader(Reader):
             self.take("SYMROT_RESTRICT")
         name = self.new_name("the name of a parameter")
         if samples:
-            return Parameter(name, "samples", None, is_input)
+            return Parameter(name, "samples", self.sizes.get(name, 0), is_input)
         if self.accept("["):
             size = self.index()
             self.take("]")
             return Parameter(name, "array", size, is_input)
         need(not is_input, f"{self.place}: expected `{self.real} {name}` without const, as a number by value")
-        return Parameter(name, "value", None, True)
+        return Parameter(name, "value", 1, True)
 
     def loops(self):
         """Read the loops over samples, which have one of three shapes, word for word.
@@ -893,7 +894,9 @@ class CReader(Reader):
     def assignment(self):
         """Read ``a[2] = E;``: each component of an output is written once, and never read."""
         place = self.component(self.take_name("`const`, an output or `}`"), is_input=False)
-        need(place not in self.assigned, f"{self.here()}: {place} is no new output")
+        need(
+            place not in self.assigned, f"{self.here()}: expected an output to be written once, found {place[0]} again"
+        )
         self.assigned.add(place)
         self.take("=")
         expression = self.expression()
@@ -1182,38 +1185,32 @@ def component_of(place):
     return match[1], int(match[2] or 0)
 
 
-def expected_parameters(data, batch):
-    """Return the parameters that a kernel has, by the inputs and outputs of its certificate, in their order.
+def array_sizes(data, is_input):
+    """Return the number of components of each input or output, in order, refused if places have gaps."""
+    sizes = {}
+    for place, *_ in data["inputs"] if is_input else data["spec"]["formulas"]:
+        name, component = component_of(place)
+        right = component == sizes.get(name, 0) and not (place == name and name in sizes)
+        need(right, f"{shown(place)}: expected the inputs and outputs of the certificate to list arguments in order")
+        sizes[name] = component + 1
+    return sizes
 
-    Inputs are const, numbers come by value, and in a batch each is an array of all samples, but for the parameters of
-    a scene, which all samples share.
+
+def expected_parameters(data, in_batch):
+    """Return the parameters that a kernel has, by the inputs and outputs of its certificate.
+
+    A number comes by value and an array by its components; in a batch, both come as arrays of all samples, but for the
+    parameters of a scene, which all samples share. Inputs are const.
     """
+    by_value = {place for place, *_ in data["inputs"] if "[" not in place}
     parameters = []
-    for places, is_input in ((data["inputs"], True), (data["spec"]["formulas"], False)):
-        sizes = {}
-        for place, *_ in places:
-            name, component = component_of(place)
-            need(
-                component == sizes.get(name, 0),
-                f"arguments are others: expected component {component} of {name} in order",
-            )
-            sizes[name] = component + 1
-        listed = {place for place, *_ in places}
-        for name, size in sizes.items():
-            shared = name == "p" and data["spec"]["parameters"] and is_input
-            single = name in listed
-            need(
-                not (single and (size > 1 or not is_input)),
-                f"arguments are others: expected {name} to be one number or an array",
-            )
-            if batch and not shared:
-                parameters.append(Parameter(name, "samples", None, is_input))
-            elif single:
-                parameters.append(Parameter(name, "value", None, True))
-            else:
-                parameters.append(Parameter(name, "array", size, is_input))
-    names = [parameter.name for parameter in parameters]
-    need(len({*names}) == len(names), "arguments are others: expected inputs and outputs of different names")
+    for is_input in (True, False):
+        for name, size in array_sizes(data, is_input).items():
+            form = "value" if is_input and name in by_value else "array"
+            shared = bool(data["spec"]["parameters"]) and name == "p"
+            if in_batch and not shared:
+                form = "samples"
+            parameters.append(Parameter(name, form, size, is_input))
     return parameters
 
 
@@ -1285,19 +1282,27 @@ class BoxPoint(NamedTuple):
     bounds: dict
 
 
+def hexadecimal(text, place):
+    """Return the double that a text such as 0x1.8p+3 is."""
+    try:
+        return float.fromhex(text)
+    except (ValueError, OverflowError):
+        raise ValueError(f"{place}: expected a number such as 0x1.8p+3, found {shown(text)}") from None
+
+
 def point_of_box(data, specification, real):
     """Return a random point of the box of rounding errors; None if nothing is bounded or the box has holes."""
     if "rounding" not in data or data["spec"]["parameters"]:
         return None
     check_shape(data["rounding"], ROUNDING_SHAPE, "rounding")
     bounds = data["rounding"]
-    if float.fromhex(bounds["clearance"]):
+    if hexadecimal(bounds["clearance"], "rounding.clearance"):
         return None
     numbers = Decimals()
     names, inputs = Names(numbers), {}
     for place, symbol in specification.symbols.items():
         need(place in bounds["box"], f"rounding.box: expected a range of {shown(place)}")
-        low, high = map(float.fromhex, bounds["box"][place])
+        low, high = (hexadecimal(end, f"rounding.box.{place}") for end in bounds["box"][place])
         need(-math.inf < low <= high < math.inf, f"rounding.box: expected a finite range of {shown(place)}")
         value = NEAREST[real](low + (high - low) * randbelow(2**53 + 1) / 2**53).value
         inputs[place] = min(max(value, low), high)
@@ -1311,7 +1316,7 @@ def point_of_box(data, specification, real):
     for precision in bounds["precisions"]:
         if precision["precision"] == PRECISIONS[real]:
             for each in precision["outputs"]:
-                limits[component_of(each["output"])] = Decimal(float.fromhex(each["absolute"]))
+                limits[component_of(each["output"])] = Decimal(hexadecimal(each["absolute"], "rounding.precisions"))
     exact = {component_of(place): names[symbol] for place, symbol in specification.outputs}
     return BoxPoint(by_component(inputs), exact, limits)
 
@@ -1464,15 +1469,16 @@ def check_files(path):
         "symrot_math.h is another: expected that of symrot",
     )
     need(data["laws"], "there are no laws: expected at least one")
-    text = path.with_name(f"{name}.c").read_text("utf-8")
+    text, header = (content(path.with_name(f"{name}{end}")).decode() for end in (".c", ".h"))
     check_banner(data, text)
-    kernels = CReader(text, name, files).kernels
+    sizes = {array: size for is_input in (True, False) for array, size in array_sizes(data, is_input).items()}
+    kernels = CReader(text, name, files, sizes).kernels
     expected = {function + end for function in readback for end in ("", "_batch")}
     need(
         readback and kernels.keys() == expected,
         f"functions are others: expected {', '.join(sorted(expected))} in {name}.c",
     )
-    check_header(name, path.with_name(f"{name}.h").read_text("utf-8"), kernels)
+    check_header(name, header, kernels)
     specification = Specification(data, defined_functions(data["spec"]["functions"]))
     with localcontext(DIGITS):
         for law in data["laws"]:
