@@ -210,6 +210,8 @@ CERTIFICATES = {  # what it is: how the certificate of heavy_top is forged, what
     "other name of the kernel": (part(lambda name: "heavy_bottom", "kernel"), "of another file"),
     "kernel of another folder": (part(lambda name: "../heavy_top", "kernel"), "of another file"),
     "other title": (part(lambda title: "light top", "title"), "expected the banner to begin with the kernel and title"),
+    "title without its end": (part(lambda title: title[:-3], "title"), "expected the banner to begin with the kernel and title"),
+    "no command": (part(lambda command: "", "regenerate"), "expected the banner to name the command"),
     "other command": (part(lambda text: "symrot emit mrp_shadow --target c", "regenerate"), "expected the banner to name the command"),
     "law that is no text": (part(lambda laws: [5], "laws", 0, "vanishing"), r"certificate.laws\[0\].vanishing\[0\]: expected a text"),
     "laws that are none": (part(lambda laws: [], "laws"), "there are no laws"),
