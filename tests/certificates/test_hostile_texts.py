@@ -195,7 +195,7 @@ def test_angles_are_asked_for_before_anything_is_computed_again(kernels, refused
     end = text.index("        }\n", at)
     late = text[:at].replace(FAR, "") + text[at:end] + "    " + FAR + "\n" + text[end:]
     assert late.count(FAR) == 1
-    assert "found 'beyond'" in refused(R, late)
+    assert "got 'beyond'" in refused(R, late)
     start = text.index("{\n", text.index("k < end")) + 2
     assert "is not its formulas" in refused(R, text[:start] + text[text.index("        }\n", start) :])
 
