@@ -88,12 +88,12 @@ class CompilerRecord(TypedDict):
 
 
 class CacheRecord(TypedDict):
-    """The cache; ``kept`` says whether it lasts longer than this process."""
+    """The cache; ``persistent`` says whether it lasts longer than this process."""
 
     directory: str
     files: int
     bytes: int
-    kept: bool
+    persistent: bool
 
 
 class PythonRecord(TypedDict):
@@ -137,7 +137,7 @@ def facts() -> DoctorReport:
         "needed": versions,
         "extras": {extra: {name: _version(name) for name in names} for extra, names in EXTRAS.items()},
         "compiler": compiler,
-        "cache": {"directory": str(cache.directory), "files": count, "bytes": size, "kept": not cache.reason},
+        "cache": {"directory": str(cache.directory), "files": count, "bytes": size, "persistent": not cache.reason},
         "problems": problems,
     }
 
@@ -147,7 +147,7 @@ def _packages(versions: dict[str, str | None]) -> str:
 
 
 def _cache_text(cache: CacheRecord) -> str:
-    remark = "" if cache["kept"] else ", for this process only"
+    remark = "" if cache["persistent"] else ", for this process only"
     return f"{cache['directory']}: {cache['files']} files, {cache['bytes'] / 1e6:.2g} MB{remark}"
 
 
