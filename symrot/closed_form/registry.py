@@ -110,11 +110,11 @@ def _gyrostat(scene: Scene) -> Starts:
 
 def push_and_drag(scene: Scene) -> tuple[Vector, Vector]:
     """Return the constant torque in the body and the coefficients of linear damping."""
-    found = []
+    sums = []
     for kind, field in (("constant_body", "torque"), ("damping", "linear")):
         vectors = [torque.vector(field) for torque in scene.torques if torque.kind == kind]
-        found.append(tuple(sum((vector[i] for vector in vectors), Fraction(0)) for i in range(3)))
-    return found[0], found[1]
+        sums.append(tuple(sum((vector[i] for vector in vectors), Fraction(0)) for i in range(3)))
+    return sums[0], sums[1]
 
 
 def _is_driven(scene: Scene) -> bool:

@@ -83,10 +83,10 @@ def derive_scene_kernel(
     source = rates_source(rates)
     on_rates(rates.program, source)
     invariants = find_invariants(equations, structure)
-    conserved_values = {f"conserved_{i}": item.value for i, item in enumerate(invariants) if item.kept}
+    conserved_values = {f"conserved_{i}": item.value for i, item in enumerate(invariants) if item.holds}
     quantities = _quantities(equations, conserved_values)
     conserved = tuple(
-        Conserved(item.name, item.unit, f"conserved_{i}" if item.kept else "", item.kept, item.reason)
+        Conserved(item.name, item.unit, f"conserved_{i}" if item.holds else "", item.holds, item.reason)
         for i, item in enumerate(invariants)
     )
     return SceneKernel.of(rates.program, rates.parameters, quantities.program, quantities.parameters, conserved, source)

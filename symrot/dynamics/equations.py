@@ -128,14 +128,14 @@ def euler_equations(inertia: Any = symbols.principal, torque: Any = symbols.torq
     >>> euler_equations(torque=None)[0]
     omega_2*omega_3*(B - C)/A
     """
-    given = _read(inertia, "inertia: expected 3 principal moments or a symmetric 3x3 tensor in kg m^2")
-    tensor = diag(*given) if len(given) == 3 else given
+    entries = _read(inertia, "inertia: expected 3 principal moments or a symmetric 3x3 tensor in kg m^2")
+    tensor = diag(*entries) if len(entries) == 3 else entries
     if tensor.shape != (3, 3) or not tensor.is_symmetric():
         raise InputError(f"inertia: expected 3 principal moments or a symmetric 3x3 tensor in kg m^2, got {inertia}")
-    spoken = "torque: expected 3 body components in N m"
-    moment = zeros(3, 1) if torque is None else _read(torque, spoken)
+    expected = "torque: expected 3 body components in N m"
+    moment = zeros(3, 1) if torque is None else _read(torque, expected)
     if len(moment) != 3:
-        raise InputError(f"{spoken}, got {torque}")
+        raise InputError(f"{expected}, got {torque}")
     return angular_acceleration(tensor, Matrix(symbols.omega_b), moment.reshape(3, 1))
 
 
@@ -205,9 +205,9 @@ def equations_of_motion(structure: Structure) -> Equations:
         rates += list(quaternion_rates("body") * motion.omega_b) if attitude else []
     elif attitude:
         rates.append(motion.omega_b[structure.planar])
-    found = Equations((*states, *attitude), tuple(rates), definitions, motion, laws, momentum_b, tuple(relations))
+    equations = Equations((*states, *attitude), tuple(rates), definitions, motion, laws, momentum_b, tuple(relations))
     held = [(torque, mode) for torque in structure.formula_torques for mode in torque.held]
-    return sliding(found, held) if held else found
+    return sliding(equations, held) if held else equations
 
 
 def sliding(equations: Equations, held: list[tuple[FormulaTorque, str]]) -> Equations:

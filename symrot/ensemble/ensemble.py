@@ -78,9 +78,9 @@ class Ensemble:
 
     def __repr__(self) -> str:
         broken = int((self.status != 0).sum())
-        said = f", {broken} broken off" if broken else ""
+        ending = f", {broken} broken off" if broken else ""
         kinds = "/".join(dict.fromkeys(self.methods))
-        return f"<Ensemble of {self.scene.name}: {len(self)} trajectories, {self.t.shape[-1]} samples, {kinds}{said}>"
+        return f"<Ensemble of {self.scene.name}: {len(self)} trajectories, {self.t.shape[-1]} samples, {kinds}{ending}>"
 
     @property
     def quaternion(self) -> Floats:
@@ -161,20 +161,20 @@ def propagate_ensemble(
     (2, 2, 3)
     """
     began = perf_counter()
-    given = scene if isinstance(scene, Scene) else scene.scene if isinstance(scene, Propagator) else load_scene(scene)
-    own = scene.tolerance if isinstance(scene, Propagator) else float(given.tolerance)
-    variation = read_variation(given, omega, quaternion, parameters)
-    times = read_times(t, given, len(variation))
+    source = scene if isinstance(scene, Scene) else scene.scene if isinstance(scene, Propagator) else load_scene(scene)
+    own = scene.tolerance if isinstance(scene, Propagator) else float(source.tolerance)
+    variation = read_variation(source, omega, quaternion, parameters)
+    times = read_times(t, source, len(variation))
     if isinstance(workers, bool) or not isinstance(workers, int) or not 1 <= workers <= MOST_WORKERS:
         raise InputError(f"workers: expected a whole number from 1 to {MOST_WORKERS}, got {number.show(workers)}")
     aim = own if tolerance is None else _tolerance(tolerance)
-    problem = Problem(variation, variation.plan(), float(given.span.start), times, aim, workers)
-    return Ensemble(given, times, follow(problem, method), perf_counter() - began)
+    problem = Problem(variation, variation.plan(), float(source.span.start), times, aim, workers)
+    return Ensemble(source, times, follow(problem, method), perf_counter() - began)
 
 
 def _tolerance(tolerance: float) -> float:
     low, high = TOLERANCES
-    found = number.read(tolerance, "tolerance")
-    if not low <= found <= high:
+    value = number.read(tolerance, "tolerance")
+    if not low <= value <= high:
         raise InputError(f"tolerance: expected a number from {float(low):g} to {float(high):g}, got {tolerance}")
-    return float(found)
+    return float(value)

@@ -66,8 +66,8 @@ class Problem(NamedTuple):
 
     def times_of(self, i: int) -> Floats:
         """Return the times of motion i, s, shape (m,)."""
-        found: Floats = self.times if self.times.ndim == 1 else self.times[i]
-        return found
+        times: Floats = self.times if self.times.ndim == 1 else self.times[i]
+        return times
 
 
 def follow(problem: Problem, method: str) -> Followed:
@@ -213,23 +213,23 @@ class _Stepped:
         chosen = list(self.chosen)
         values: dict[str, Any] = dict(zip(self.plan.states, np.moveaxis(states, -1, 0), strict=True))
         values["t"] = self.times
-        wanted = OMEGA + (QUATERNION if quaternion is not None else ())
-        parameters = self._parameters_of(wanted)
+        outputs = OMEGA + (QUATERNION if quaternion is not None else ())
+        parameters = self._parameters_of(outputs)
         columns = self.numbers.bound(parameters).T
         values |= dict(zip([name for name, _ in parameters], columns[:, :, None], strict=True))
-        found = self.kernel.quantities.evaluate(values, ARRAY_FUNCTIONS, float, wanted)
+        values_of = self.kernel.quantities.evaluate(values, ARRAY_FUNCTIONS, float, outputs)
         for k, name in enumerate(OMEGA):
-            omega[chosen, :, k] = found[name]
+            omega[chosen, :, k] = values_of[name]
         if quaternion is not None:
             for k, name in enumerate(QUATERNION):
-                quaternion[chosen, :, k] = found[name]
+                quaternion[chosen, :, k] = values_of[name]
             size = np.sqrt((quaternion[chosen] ** 2).sum(axis=-1, keepdims=True))
             quaternion[chosen] /= size
 
-    def _parameters_of(self, wanted: Sequence[str]) -> Any:
+    def _parameters_of(self, outputs: Sequence[str]) -> Any:
         """Return the parameters that stand in some quantities."""
         program, parameters = self.kernel.quantities, self.kernel.quantity_parameters
-        needed = set().union(*(names(node) for name, node in program.outputs if name in wanted))
+        needed = set().union(*(names(node) for name, node in program.outputs if name in outputs))
         for name, node in reversed(program.temporaries):
             needed |= names(node) if name in needed else set()
         return tuple([(name, node) for name, node in parameters if name in needed])
@@ -279,8 +279,8 @@ def _dop853(stepped: _Stepped, method: str) -> lanes.Outcome:
     path = compiled(plan)[1] if stepped.moved[0] is plan else epoch.compiled(*stepped.moved)
 
     def integrate(k: int, times: Floats) -> tuple[Floats, Any]:
-        given = path, stepped.p[k], stepped.y[k], stepped.t0, problem.tolerance
-        return dop853.integration(*given, clock=stepped.clock(k)).sample(times)
+        arguments = path, stepped.p[k], stepped.y[k], stepped.t0, problem.tolerance
+        return dop853.integration(*arguments, clock=stepped.clock(k)).sample(times)
 
     return stepped.one_by_one(integrate)
 

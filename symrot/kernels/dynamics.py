@@ -167,8 +167,10 @@ def _heavy_top(name: str, body: str) -> Definition:
 
 def _weighed(center: Matrix) -> tuple[Matrix, Named]:
     """Return twice the weight times the centre of mass as symbols, zero where that is zero, and what they are."""
-    found = [symbol if c else c for symbol, c in zip(_symbols("moment_of_weight"), center, strict=True)]
-    return Matrix(found), tuple((symbol, 2 * _WEIGHT * c) for symbol, c in zip(found, center, strict=True) if c)
+    components = [symbol if c else c for symbol, c in zip(_symbols("moment_of_weight"), center, strict=True)]
+    return Matrix(components), tuple(
+        (symbol, 2 * _WEIGHT * c) for symbol, c in zip(components, center, strict=True) if c
+    )
 
 
 _MOMENTUM_S = tuple(Symbol(f"L_{i}", real=True) for i in "xyz")
@@ -194,8 +196,8 @@ def _momentum_body(name: str) -> Definition:
     omega = Matrix(symbols.omega_b)
 
     def laws() -> tuple[Law, ...]:
-        found = Matrix(_MOMENTUM_B)
-        return (Law("it is the inertia tensor times omega", tuple(found - TENSOR * omega)),)
+        momentum = Matrix(_MOMENTUM_B)
+        return (Law("it is the inertia tensor times omega", tuple(momentum - TENSOR * omega)),)
 
     return Definition(
         name, "angular momentum in body axes", (tensor_argument(), OMEGA),
@@ -210,9 +212,9 @@ def _momentum_space(name: str) -> Definition:
     named = (*zip(_MOMENTUM_B, TENSOR * omega, strict=True), *named)
 
     def laws() -> tuple[Law, ...]:
-        found = Matrix(_MOMENTUM_S)
+        momentum = Matrix(_MOMENTUM_S)
         rotated = quaternion_to_dcm() * TENSOR * omega
-        return (Law("it is the dcm times the momentum in body axes", tuple(found - rotated), (unit_relation(),)),)
+        return (Law("it is the dcm times the momentum in body axes", tuple(momentum - rotated), (unit_relation(),)),)
 
     return Definition(
         name, "angular momentum in space axes", (tensor_argument(), OMEGA, QUATERNION),

@@ -61,7 +61,7 @@ def _by_outer_products(entries: Iterable[Expr]) -> tuple[Named, list[Expr]]:
     What they are multiplied by, a function of the middle angle, is taken out of the sums.
     """
     named: dict[Expr, Symbol] = {}
-    found = []
+    formulas = []
     for entry in entries:
         sums: dict[Expr, Expr] = {}
         for term in Add.make_args(expand(entry)):
@@ -72,8 +72,8 @@ def _by_outer_products(entries: Iterable[Expr]) -> tuple[Named, list[Expr]]:
                 product = named.setdefault(product, Symbol(f"outer_{len(named) + 1}", real=True))
             middle = Mul(*(f for f in factors if f not in outer))
             sums[middle] = sums.get(middle, Integer(0)) + coefficient * product
-        found.append(Add(*(middle * value for middle, value in sums.items())))
-    return tuple((symbol, product) for product, symbol in named.items()), found
+        formulas.append(Add(*(middle * value for middle, value in sums.items())))
+    return tuple((symbol, product) for product, symbol in named.items()), formulas
 
 
 def _dcm(name: str, sequence: str) -> Definition:
@@ -81,10 +81,10 @@ def _dcm(name: str, sequence: str) -> Definition:
     named, formulas = _by_outer_products(matrix)
 
     def laws() -> tuple[Law, ...]:
-        found = Matrix(3, 3, symbols.rotation_entries)
+        entries = Matrix(3, 3, symbols.rotation_entries)
         return (
             Law("it is the dcm of the product of the three turns as quaternions",
-                tuple(found - quaternion_to_dcm(quaternion_of_euler(sequence)))),
+                tuple(entries - quaternion_to_dcm(quaternion_of_euler(sequence)))),
         )  # fmt: skip
 
     return Definition(
@@ -96,12 +96,12 @@ def _dcm(name: str, sequence: str) -> Definition:
 
 def _jacobian(frame: str, name: str, sequence: str) -> Definition:
     def laws() -> tuple[Law, ...]:
-        found, matrix = Matrix(3, 3, JACOBIAN), dcm(sequence)
+        jacobian, matrix = Matrix(3, 3, JACOBIAN), dcm(sequence)
         columns = []
         for place, angle in enumerate(symbols.angles):
             rate = matrix.diff(angle)
             turning = matrix.T * rate if frame == "body" else rate * matrix.T
-            columns += list(turning - skew(found[:, place]))
+            columns += list(turning - skew(jacobian[:, place]))
         return (Law("skew(B dq/dt) is the spin tensor of the dcm", tuple(columns)),)
 
     return Definition(

@@ -40,10 +40,10 @@ def _quaternion(name: str) -> Definition:
 
     def laws() -> tuple[Law, ...]:
         derived = quaternion_of_rotation_vector(_VECTOR)
-        found = Matrix(symbols.quaternion)
-        return (Law("it is the quaternion derived from axis and angle", tuple(found - derived)),
+        quaternion = Matrix(symbols.quaternion)
+        return (Law("it is the quaternion derived from axis and angle", tuple(quaternion - derived)),
                 Law("its dcm is the exponential of skew(v)",
-                    tuple(quaternion_to_dcm(found) - dcm(_VECTOR))))  # fmt: skip
+                    tuple(quaternion_to_dcm(quaternion) - dcm(_VECTOR))))  # fmt: skip
 
     formulas = [cos(half), *(sinc(half) / 2 * v for v in _VECTOR)]
     return Definition(

@@ -79,9 +79,9 @@ class SingularSet:
     def points(self) -> tuple[Expr, ...]:
         """Return the distinct values within one turn, in increasing order: the first turn from 0 that has any."""
         for turn in (Interval.Ropen(0, 2 * pi), Interval.Ropen(2 * pi, 4 * pi)):
-            found = self.values.intersect(turn)
-            if found is not S.EmptySet:
-                return tuple(sorted(found, key=float))
+            points = self.values.intersect(turn)
+            if points is not S.EmptySet:
+                return tuple(sorted(points, key=float))
         return ()
 
     def __contains__(self, value: Any) -> bool:
@@ -124,9 +124,9 @@ def zeros_of(equation: Expr, variable: Symbol, domain: Set = S.Reals) -> Set:
     period = periodicity(fraction(together(equation))[0], variable)
     if period is None or not (4 * pi / period).is_integer:
         return solution
-    found = sorted(solution.intersect(Interval.Ropen(4 * pi, 8 * pi)), key=float)
-    spacing, first = 4 * pi / len(found), found[0] - 4 * pi
-    if any(after - before != spacing for before, after in pairwise(found)):
+    zeros = sorted(solution.intersect(Interval.Ropen(4 * pi, 8 * pi)), key=float)
+    spacing, first = 4 * pi / len(zeros), zeros[0] - 4 * pi
+    if any(after - before != spacing for before, after in pairwise(zeros)):
         return solution
     numbers = {S.Reals: S.Integers, Interval(0, oo): S.Naturals0, Interval.open(0, oo): S.Naturals}[domain]
     if first != 0 and numbers is S.Naturals:

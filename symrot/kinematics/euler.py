@@ -199,8 +199,10 @@ class EulerRateMatrix(RateMatrix):
         With symbols among the angles: those that are not singular for all values of the symbols. A float stands for
         the rational number it is.
         """
-        given = expressions(self.parameters if angles is None else angles, 3, f"the Euler sequence {self.sequence}")
-        attitude = dcm(self.sequence, [Rational(angle) if angle.is_Float else angle for angle in given])
+        own_angles = expressions(
+            self.parameters if angles is None else angles, 3, f"the Euler sequence {self.sequence}"
+        )
+        attitude = dcm(self.sequence, [Rational(angle) if angle.is_Float else angle for angle in own_angles])
         return tuple(other for other in SEQUENCES if not _is_one(lock_indicator(other, attitude) ** 2))
 
 
@@ -247,8 +249,8 @@ def rate_jacobian(sequence: str, frame: str = "body", angles: Sequence[Any] | No
     Matrix([[cos(theta), 0, 1]])
     """
     first, middle, last = factors(sequence, angles)
-    given = tuple(factor.angle for factor in sorted((first, middle, last), key=lambda factor: factor.place))
-    carry, core, order = _core(sequence, frame, given)
+    parameters = tuple(factor.angle for factor in sorted((first, middle, last), key=lambda factor: factor.place))
+    carry, core, order = _core(sequence, frame, parameters)
     determinant, inverse = _solved(carry, core, order)
     cosine = Abs((first.direction.T * middle.rotation * last.direction)[0])
     return EulerRateMatrix.build(
@@ -256,13 +258,13 @@ def rate_jacobian(sequence: str, frame: str = "body", angles: Sequence[Any] | No
         RateFacts(
             name=sequence,
             frame=frame,
-            parameters=given,
+            parameters=parameters,
             relations=(),
             inverse=inverse,
             determinant=determinant,
             condition_number=oo if inverse is None else sqrt((1 + cosine) / (1 - cosine)),
-            variable=given[1],
-            along=partial(_along, sequence, frame, given),
+            variable=parameters[1],
+            along=partial(_along, sequence, frame, parameters),
         ),
     )
 
@@ -282,12 +284,12 @@ def sequences_at_lock(sequence: str) -> dict[str, Set]:
     for point in rate_jacobian(sequence).singular_set.points():
         _, locked, _ = factors(sequence, (0, point, 0))
         attitudes.append(left.rotation * locked.rotation)
-    found = {}
+    locks = {}
     for other in SEQUENCES:
         if other != sequence:
             indicators = {lock_indicator(other, attitude) for attitude in attitudes}
-            found[other] = Union(*(zeros_of((c - 1) * (c + 1), chi) for c in indicators))
-    return found
+            locks[other] = Union(*(zeros_of((c - 1) * (c + 1), chi) for c in indicators))
+    return locks
 
 
 def quaternion_of_euler(sequence: str, angles: Sequence[Any] | None = None) -> ImmutableMatrix:

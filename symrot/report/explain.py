@@ -141,7 +141,7 @@ def facts(plan: Plan) -> "PlanReport":
     }
 
 
-def _spoken(counts: dict[str, int] | None) -> str:
+def _counts_text(counts: dict[str, int] | None) -> str:
     order = ("mul", "add", "div")
     if counts is None:
         return ""
@@ -149,20 +149,20 @@ def _spoken(counts: dict[str, int] | None) -> str:
     return ", ".join(f"{counts[name]} {name}" for name in names if counts.get(name)) or "none"
 
 
-def lines(found: "PlanReport") -> list[str]:
+def lines(report: "PlanReport") -> list[str]:
     """Return the lines for people that say what :func:`facts` says; the first is the title."""
     rows = [HEAD]
-    for row in found["rows"]:
+    for row in report["rows"]:
         changed = row["saved"] != 0
         saved = str(row["saved"]) if changed and row["saved"] else ""
         verdict = "skipped" if row["skipped"] else "kept"
-        left = _spoken(row["operations"]) if changed else ""
+        left = _counts_text(row["operations"]) if changed else ""
         rows.append((row["item"], verdict, one_line(row["why"]), row["derivation"], left, saved))
     table = columns(rows, width=room(118), wrap=2, right=(5,))
-    counts = found["operations"]
+    counts = report["operations"]
     rule = "-" * max(map(len, table))
     last = f"One evaluation of the rates costs {counts['specialised']} operations instead of {counts['general']}."
-    title = f"{one_line(found['scene']['title'])} [{one_line(found['scene']['name'])}]"
+    title = f"{one_line(report['scene']['title'])} [{one_line(report['scene']['name'])}]"
     return [title, "", table[0], rule, *table[1:], rule, last]
 
 

@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING, Any
 
 from symrot import __version__
-from symrot.report.layout import apart, columns, duration, exact, fields, one_line, shown
+from symrot.report.layout import apart, columns, duration, exact, fields, number_text, one_line
 
 if TYPE_CHECKING:
     from symrot.propagation.propagator import Propagator
@@ -91,7 +91,7 @@ def facts(propagator: "Propagator", trajectory: "Trajectory", preparation: float
 
 
 def _numbers(values: list[Any], digits: int = 6) -> str:
-    return ", ".join(shown(float(value), digits) for value in values)
+    return ", ".join(number_text(float(value), digits) for value in values)
 
 
 def _value(text: str) -> float:
@@ -123,25 +123,25 @@ def _steps(cost: "CostRecord", exact: bool) -> str:
     )
 
 
-def _settings(found: "RunReport") -> list[tuple[str, str]]:
-    span, method = found["span"], found["method"]
+def _settings(report: "RunReport") -> list[tuple[str, str]]:
+    span, method = report["span"], report["method"]
     from symrot.propagation.method import METHODS  # here, since an error found earlier needs no NumPy
 
     meaning = METHODS[method["name"].partition(":")[0]]
-    torques = ", ".join(kind.replace("_", " ") for kind in found["torques"]) or "none"
+    torques = ", ".join(kind.replace("_", " ") for kind in report["torques"]) or "none"
     exact = method["name"] == "exact"
     start, stop = apart(_value(span["start"]), _value(span["stop"]))
     return [
-        ("body", _body(found["body"])),
+        ("body", _body(report["body"])),
         ("torque", torques),
-        ("start", f"omega = ({_numbers([_value(x) for x in found['initial']['omega']])}) rad/s in the body"),
+        ("start", f"omega = ({_numbers([_value(x) for x in report['initial']['omega']])}) rad/s in the body"),
         ("span", f"{start} to {stop} s, {span['samples']} samples"),
         ("method", f"{method['name']} ({meaning}); {method['reason']}"),
         ("tolerance", f"{method['tolerance']:g}"),
-        ("states", (not exact and _states(found["states"])) or "none to integrate"),
-        ("cost", _steps(found["cost"], exact)),
-        *_switches(found["switching_times"], found["switchings"], span["start"], span["stop"]),
-        *(("warning", text) for text in found["warnings"]),
+        ("states", (not exact and _states(report["states"])) or "none to integrate"),
+        ("cost", _steps(report["cost"], exact)),
+        *_switches(report["switching_times"], report["switchings"], span["start"], span["stop"]),
+        *(("warning", text) for text in report["warnings"]),
     ]  # fmt: skip
 
 
@@ -154,31 +154,33 @@ def _switches(times: list[float], switchings: "list[SwitchingRecord]", start: st
         by_function[""] = [(t, "") for t in times]
     listed = dict(list(by_function.items())[:SWITCHES_SHOWN])
     seen = [t for own in listed.values() for t, _ in own[:SWITCHES_SHOWN]]
-    spoken = dict(zip(seen, apart(_value(start), _value(stop), *seen)[2:], strict=True))
+    texts = dict(zip(seen, apart(_value(start), _value(stop), *seen)[2:], strict=True))
     rows = []
     for function, own in listed.items():
-        said = ", ".join(f"{spoken[t]}{how}" for t, how in own[:SWITCHES_SHOWN])
+        listed_times = ", ".join(f"{texts[t]}{how}" for t, how in own[:SWITCHES_SHOWN])
         more = f", .. ({len(own)} times in all)" if len(own) > SWITCHES_SHOWN else ""
-        rows.append(f"{function}at t = {said}{more} s")
+        rows.append(f"{function}at t = {listed_times}{more} s")
     if len(by_function) > len(listed):
         rows.append(f".. ({len(by_function)} functions in all; --json lists them)")
     return [("switches" if number == 0 else "", row) for number, row in enumerate(rows)]
 
 
-def _skipped(found: "RunReport") -> list[tuple[str, str]]:
-    rows = [f"{row['item']}: {row['why']}" for row in found["plan"] if row["skipped"]]
+def _skipped(report: "RunReport") -> list[tuple[str, str]]:
+    rows = [f"{row['item']}: {row['why']}" for row in report["plan"] if row["skipped"]]
     return [("skipped" if number == 0 else "", row) for number, row in enumerate(rows)]
 
 
-def _kept(found: "RunReport") -> list[str]:
+def _conserved(report: "RunReport") -> list[str]:
     rows = [("  kept", "at the start", "relative drift", "why")]
-    for item in found["invariants"]:
+    for item in report["invariants"]:
         unit = "" if item["unit"] == "1" else f" {item['unit']}"
-        rows.append((f"  {item['name']}", f"{shown(item['initial'])}{unit}", f"{item['drift']:.1e}", item["reason"]))
+        rows.append(
+            (f"  {item['name']}", f"{number_text(item['initial'])}{unit}", f"{item['drift']:.1e}", item["reason"])
+        )
     lines = columns(rows, right=(2,))
-    if not found["invariants"]:
+    if not report["invariants"]:
         lines = ["  kept  no conserved quantity is made of the states that are integrated"]
-    return lines + [f"  {line}" for line in fields(_lost(found["not_conserved"]))]
+    return lines + [f"  {line}" for line in fields(_lost(report["not_conserved"]))]
 
 
 def _lost(candidates: "list[LostRecord]") -> list[tuple[str, str]]:
@@ -186,7 +188,7 @@ def _lost(candidates: "list[LostRecord]") -> list[tuple[str, str]]:
     names: dict[str, list[str]] = {}
     for item in candidates:
         names.setdefault(item["reason"], []).append(item["name"])
-    rows = [f"{', '.join(found)}: {reason}" for reason, found in names.items()]
+    rows = [f"{', '.join(quantities)}: {reason}" for reason, quantities in names.items()]
     return [("not kept" if number == 0 else "", row) for number, row in enumerate(rows)]
 
 
@@ -212,20 +214,20 @@ def _holding(item: "WrittenRecord") -> str:
     return f": {', '.join(item['arrays'])} at {item['samples']} times" if "arrays" in item else ""
 
 
-def summary(found: "RunReport") -> list[str]:
+def summary(report: "RunReport") -> list[str]:
     """Return the lines for people that say what :func:`facts` says; the first is the title."""
-    scene = found["scene"]
+    scene = report["scene"]
     source = [f"  {line}" for line in fields([("", one_line(scene["source"]))])] if scene["source"] else []
-    settings = [f"  {line}" for line in fields(_settings(found) + _skipped(found))]
+    settings = [f"  {line}" for line in fields(_settings(report) + _skipped(report))]
     return [
         f"{one_line(scene['title'])} [{one_line(scene['name'])}]",
         *(line.replace("    ", "  ", 1) for line in source),
         "",
         *settings,
         "",
-        *_kept(found),
+        *_conserved(report),
         "",
-        *_final(found["final"], _value(found["span"]["start"])),
+        *_final(report["final"], _value(report["span"]["start"])),
         "",
-        *_written(found["written"]),
+        *_written(report["written"]),
     ]

@@ -253,23 +253,23 @@ def _schema(value: Any, where: str) -> int:
 
 def _read_initial(value: Any, where: str) -> Initial:
     entries = {"omega": Entry(vector("rad/s")), "omega_space": Entry(vector("rad/s")), "attitude": Entry(read_attitude)}
-    found = read_table(value, where, entries, "the initial state")
-    given = [key for key in ("omega", "omega_space") if found[key] is not None]
-    if len(given) != 1:
-        spoken = "exactly one of omega (body axes) and omega_space, three numbers in rad/s"
-        both = {key: value[key] for key in given}
-        expected(f"{where}.omega", spoken if both else f"{spoken}, got neither", both or ...)
-    attitude = found["attitude"] or read_attitude({"quaternion": [1, 0, 0, 0]}, where)
-    omega_b = found["omega"] if given == ["omega"] else to_body(attitude.dcm, found["omega_space"])
+    values = read_table(value, where, entries, "the initial state")
+    present = [key for key in ("omega", "omega_space") if values[key] is not None]
+    if len(present) != 1:
+        expectation = "exactly one of omega (body axes) and omega_space, three numbers in rad/s"
+        both = {key: value[key] for key in present}
+        expected(f"{where}.omega", expectation if both else f"{expectation}, got neither", both or ...)
+    attitude = values["attitude"] or read_attitude({"quaternion": [1, 0, 0, 0]}, where)
+    omega_b = values["omega"] if present == ["omega"] else to_body(attitude.dcm, values["omega_space"])
     return Initial(omega_b, attitude.quaternion)
 
 
 def _samples(value: Any, where: str) -> int:
-    spoken = f"a whole number of samples from 2 to {MOST_SAMPLES}"
-    found = number(spoken)(value, where)
-    if found.denominator != 1 or not 2 <= found <= MOST_SAMPLES:
-        expected(where, spoken, value)
-    return int(found)
+    expectation = f"a whole number of samples from 2 to {MOST_SAMPLES}"
+    count = number(expectation)(value, where)
+    if count.denominator != 1 or not 2 <= count <= MOST_SAMPLES:
+        expected(where, expectation, value)
+    return int(count)
 
 
 _time = number("a time in s")
@@ -289,9 +289,9 @@ def _times(value: Any, where: str) -> tuple[Fraction, Fraction]:
 
 def _read_span(value: Any, where: str) -> Span:
     entries = {"t": Entry(_times, required=True), "samples": Entry(_samples, default=1001)}
-    found = read_table(value, where, entries, "a span")
-    start, stop = found["t"]
-    return Span(start, stop, found["samples"])
+    values = read_table(value, where, entries, "a span")
+    start, stop = values["t"]
+    return Span(start, stop, values["samples"])
 
 
 _quantity = choice(*QUANTITIES)
@@ -300,25 +300,25 @@ _quantity = choice(*QUANTITIES)
 def _quantities(value: Any, where: str) -> tuple[str, ...]:
     if not isinstance(value, list | tuple) or not value:
         expected(where, f"a list of quantities among {', '.join(QUANTITIES)}", value)
-    found = tuple(_quantity(item, f"{where}[{index}]") for index, item in enumerate(value))
-    for index, name in enumerate(found):
-        if name in found[:index]:
+    names = tuple(_quantity(item, f"{where}[{index}]") for index, item in enumerate(value))
+    for index, name in enumerate(names):
+        if name in names[:index]:
             expected(f"{where}[{index}]", "each quantity once", name)
-    return found
+    return names
 
 
 def _read_output(value: Any, where: str) -> Output:
-    found = read_table(value, where, {
+    values = read_table(value, where, {
         "quantities": Entry(_quantities, default=("omega", "quaternion")),
         "sequence": Entry(read_sequence),
         "degrees": Entry(flag, default=False),
     }, "the output")  # fmt: skip
-    if "euler" in found["quantities"] and found["sequence"] is None:
+    if "euler" in values["quantities"] and values["sequence"] is None:
         expected(f"{where}.sequence", 'an Euler sequence for the quantity euler, such as "ZXZ", the key is missing')
     for key in ("sequence", "degrees"):
-        if "euler" not in found["quantities"] and key in value:
+        if "euler" not in values["quantities"] and key in value:
             expected(f"{where}.{key}", "euler among the quantities, which alone uses it", value[key])
-    return Output(found["quantities"], found["sequence"], found["degrees"])
+    return Output(values["quantities"], values["sequence"], values["degrees"])
 
 
 def _read_tolerance(value: Any, where: str) -> Fraction:
@@ -332,12 +332,12 @@ def _read_tolerance(value: Any, where: str) -> Fraction:
 
 
 def _read_accuracy(value: Any, where: str) -> Fraction:
-    found = read_table(value, where, {"tolerance": Entry(_read_tolerance, required=True)}, "the accuracy")
-    tolerance: Fraction = found["tolerance"]
+    values = read_table(value, where, {"tolerance": Entry(_read_tolerance, required=True)}, "the accuracy")
+    tolerance: Fraction = values["tolerance"]
     return tolerance
 
 
-def _kept(value: Any, where: str) -> Any:
+def _unchanged(value: Any, where: str) -> Any:
     return value
 
 
@@ -347,7 +347,7 @@ TOP: dict[str, Entry] = {
     "source": Entry(text, default=""),
     "body": Entry(read_body, required=True),
     "initial": Entry(_read_initial, required=True),
-    "torque": Entry(_kept, default=()),
+    "torque": Entry(_unchanged, default=()),
     "span": Entry(_read_span, required=True),
     "output": Entry(_read_output, default=Output(("omega", "quaternion"), None, False)),
     "accuracy": Entry(_read_accuracy, default=Fraction(1, 10**12)),
@@ -381,21 +381,21 @@ def _read_scene(
 ) -> Scene:
     where = f"{label}: "
     table(content, where, "a table with schema, body, initial, span")
-    found = read_table(content, where, TOP, "a scene")
+    values = read_table(content, where, TOP, "a scene")
     folder = Path() if path is None else Path(path).parent
     torques, samples = _read_torques(
-        found["torque"], found["body"], found["span"], folder, f"{where}torque", table_folders
+        values["torque"], values["body"], values["span"], folder, f"{where}torque", table_folders
     )
     return Scene(
         name=name,
         path=path,
-        title=found["title"] or name.replace("_", " "),
-        source=found["source"],
-        body=found["body"],
-        initial=found["initial"],
+        title=values["title"] or name.replace("_", " "),
+        source=values["source"],
+        body=values["body"],
+        initial=values["initial"],
         torques=torques,
-        span=found["span"],
-        output=found["output"],
-        tolerance=found["accuracy"],
+        span=values["span"],
+        output=values["output"],
+        tolerance=values["accuracy"],
         table=samples,
     )

@@ -87,8 +87,8 @@ def _scalar_or_vector(field: Field) -> Reader:
 
     def reader(value: Any, where: str) -> Vector:
         if isinstance(value, list | tuple):
-            found: Vector = three(value, where)
-            return found
+            components: Vector = three(value, where)
+            return components
         x = one(value, where)
         return x, x, x
 
@@ -146,15 +146,20 @@ _parameter = number("a number")
 
 
 def _parameters(value: Any, where: str) -> dict[str, Fraction]:
-    found = table(value, where, "a table of numbers by name, such as {k = 0.1}")
-    if len(found) > MOST_PARAMETERS:
-        expected(where, f"at most {MOST_PARAMETERS} parameters", len(found))
-    taken = {*EXPRESSION_NAMES, *expression.FUNCTIONS, *expression.SWITCHING, *expression.LOGIC, "not", "pi"}
-    for name in found:
-        if not isinstance(name, str) or not (name.isascii() and name.isidentifier()) or len(name) > 40 or name in taken:
+    entries = table(value, where, "a table of numbers by name, such as {k = 0.1}")
+    if len(entries) > MOST_PARAMETERS:
+        expected(where, f"at most {MOST_PARAMETERS} parameters", len(entries))
+    reserved = {*EXPRESSION_NAMES, *expression.FUNCTIONS, *expression.SWITCHING, *expression.LOGIC, "not", "pi"}
+    for name in entries:
+        if (
+            not isinstance(name, str)
+            or not (name.isascii() and name.isidentifier())
+            or len(name) > 40
+            or name in reserved
+        ):
             expected(under(where, name), "a parameter named by letters, digits and underscores, and not as what a "
-                     f"formula knows already ({', '.join(sorted(taken))})", name)  # fmt: skip
-    return {name: _parameter(item, f"{where}.{name}") for name, item in found.items()}
+                     f"formula knows already ({', '.join(sorted(reserved))})", name)  # fmt: skip
+    return {name: _parameter(item, f"{where}.{name}") for name, item in entries.items()}
 
 
 _FIELD_READERS: dict[str, Callable[[Field], Reader]] = {
@@ -277,12 +282,12 @@ def read_torque(value: Any, body: Body, where: str) -> Torque:
         For an unknown kind, key or name in a formula, a value out of range, or a torque that the body cannot feel.
     """
     kinds = (*TORQUE_KINDS, TABLE_KIND.kind)
-    found = table(value, where, f"a table with a kind, one of {', '.join(kinds)}")
-    if "kind" not in found:
+    entries = table(value, where, f"a table with a kind, one of {', '.join(kinds)}")
+    if "kind" not in entries:
         expected(f"{where}.kind", f"one of {', '.join(kinds)}, the key is missing")
-    name = choice(*kinds)(found["kind"], f"{where}.kind")
+    name = choice(*kinds)(entries["kind"], f"{where}.kind")
     kind = TORQUE_KINDS[name]
-    values = read_table(found, where, _entries(kind), f"a torque of kind {name}")
+    values = read_table(entries, where, _entries(kind), f"a torque of kind {name}")
     del values["kind"]
     if kind.about not in ("any", body.about):
         expected(f"{where}.kind", _ABOUT_ADVICE[kind.about], name)
@@ -293,4 +298,4 @@ def read_torque(value: Any, body: Body, where: str) -> Torque:
             return Torque(name, fields["parameters"], tuple(fields["torque"]), fields["frame"])
         return Torque(name, fields)
     except RecursionError:
-        raise InputError(f"{where}: expected a formula of fewer levels, got {show(found)}") from None
+        raise InputError(f"{where}: expected a formula of fewer levels, got {show(entries)}") from None

@@ -88,7 +88,7 @@ class CompilerRecord(TypedDict):
 
 
 class CacheRecord(TypedDict):
-    """The cache; ``kept`` says whether it lasts longer than this process."""
+    """The cache; ``persistent`` says whether it lasts longer than this process."""
 
     directory: str
     files: int

@@ -150,7 +150,7 @@ def structure_of(inertia, *torques, **others):
 )  # fmt: skip
 def test_what_is_kept_is_found_and_what_is_not_is_not(structure, kept):
     found = find_invariants(equations_of_motion(structure), structure)
-    assert {item.name for item in found if item.kept} == kept
+    assert {item.name for item in found if item.holds} == kept
     assert all(item.reason for item in found)
 
 
